@@ -27,7 +27,11 @@ use peer::{Outline, Peer};
     clippy::cast_precision_loss,
     reason = "its crates count in u32 and f32; all numbers are small"
 )]
-#[expect(unreachable_pub, reason = "written as one would for oneself")]
+#[expect(
+    unreachable_pub,
+    clippy::disallowed_methods,
+    reason = "written as one would for oneself"
+)]
 #[expect(dead_code, reason = "another benchmark looks at more of it")]
 mod peer;
 

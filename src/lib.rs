@@ -83,7 +83,7 @@
 //!
 //! ```text
 //!                     brings                                           on top of
-//! (none)              all but what stands below; glam and serde only
+//! (none)              all but what stands below; glam, libm and serde only
 //! json                formats::StoredShape, Job
 //! sweep               pose, atlas, sweep; formats::atlas, archive;     json
 //!                     storage::AtlasFile, PoseFile, UnfinishedFile

@@ -117,7 +117,7 @@ fn straight(low: f64, high: f64, least: f64, most: usize) -> (f64, f64, usize) {
     let guess = ((high - low) / most as f64).max(least).max(1e-9);
     #[expect(clippy::cast_possible_truncation, reason = "at most a few hundred")]
     let mut exponent = if high > low || least > 0.0 {
-        guess.log10().floor() as i32
+        libm::log10(guess).floor() as i32
     } else {
         0
     };

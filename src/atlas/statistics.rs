@@ -167,14 +167,14 @@ impl Total {
             signed_mean(self.sum.y, poses),
         );
         // No vector is longer than its parts together: a file may say otherwise, and rounding may.
-        let own = x.hypot(y).min(1.0);
+        let own = libm::hypot(x, y).min(1.0);
         let within = between.mean(poses).clamp(own, 1.0);
         // Vectors that cancel up to the rounding of their parts point nowhere.
         if own < 1e-11 {
             return;
         }
-        let deviation = |length: f64| (-2.0 * length.ln()).max(0.0).sqrt().to_degrees();
-        statistic.mean = Some(y.atan2(x).to_degrees() + 0.0);
+        let deviation = |length: f64| (-2.0 * libm::log(length)).max(0.0).sqrt().to_degrees();
+        statistic.mean = Some(libm::atan2(y, x).to_degrees() + 0.0);
         statistic.sd = Some(deviation(own));
         statistic.sd_position = Some(deviation(within));
         statistic.sd_angle = Some(deviation(own / within));

@@ -114,7 +114,7 @@ fn note(
         feature_values(description, |index, value| {
             let (column, circular) = columns[index];
             if circular {
-                let (sin, cos) = value.to_radians().sin_cos();
+                let (sin, cos) = libm::sincos(value.to_radians());
                 (row[column], row[column + 1]) = (signed(cos), signed(sin));
             } else {
                 row[column] = fixed(value);

@@ -49,7 +49,7 @@ impl Sum {
     /// The length of the sum of the unit vectors.
     #[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
     fn length(&self) -> f64 {
-        (self.x as f64).hypot(self.y as f64)
+        libm::hypot(self.x as f64, self.y as f64)
     }
 }
 

@@ -77,7 +77,7 @@ impl Description {
 
     fn diagonals(&self) -> [f64; 2] {
         let sides = self.sides();
-        let rising = sides.y.atan2(sides.x).to_degrees();
+        let rising = libm::atan2(sides.y, sides.x).to_degrees();
         [rising, 180.0 - rising]
     }
 
@@ -136,7 +136,7 @@ impl Description {
             return Value::None;
         }
         // Upwards is counter-clockwise; 0 − y rather than −y, whose zero would be negative and point to −180.
-        Value::Number((0.0 - way.y).atan2(way.x).to_degrees())
+        Value::Number(libm::atan2(0.0 - way.y, way.x).to_degrees())
     }
 }
 

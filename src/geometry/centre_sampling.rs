@@ -299,7 +299,7 @@ mod tests {
                     // The centre of the cell lies on an ellipse smaller by the root of this.
                     let size = (1.0 - depth).sqrt();
                     for place in 0..40_u32 {
-                        let (sin, cos) = (9.0 * f64::from(place)).to_radians().sin_cos();
+                        let (sin, cos) = libm::sincos((9.0 * f64::from(place)).to_radians());
                         let aside = |across: f64, along: f64| size * (across * cos + along * sin);
                         let centre = Point::new(
                             0.5 - aside(around.across.x, around.along.x),

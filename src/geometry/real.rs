@@ -356,7 +356,7 @@ impl Real for Double {
     }
     fn angle(sin: Self, cos: Self) -> Self {
         // What the f64 angle is off by is so small that it is its own sine.
-        let near = Self::from(f64::atan2(sin.high, cos.high));
+        let near = Self::from(libm::atan2(sin.high, cos.high));
         let (near_sin, near_cos) = near.sin_cos();
         near + (sin * near_cos - cos * near_sin)
     }

@@ -138,7 +138,7 @@ impl Model {
             let most = (odds.iter()).fold(f64::NEG_INFINITY, |most, [_, odds]| most.max(*odds));
             let sum = |which: usize| -> f64 {
                 let own = odds.iter().map(|odds| odds[which]);
-                own.map(|odds| (odds - most).exp()).sum()
+                own.map(|odds| libm::exp(odds - most)).sum()
             };
             let (least, all) = (sum(0), sum(1));
             // The sums are equal where nothing lies further away, or where nothing is possible.
@@ -161,7 +161,7 @@ impl Model {
     ) -> (Vec<[f64; 2]>, Method) {
         let weights = self.shapes().iter();
         let mut odds: Vec<[f64; 2]> = weights
-            .map(|shape| [f64::from(shape.weight).ln(); 2])
+            .map(|shape| [libm::log(f64::from(shape.weight)); 2])
             .collect();
         let mut method = Method::Exact;
         for touch in touches {
@@ -189,7 +189,7 @@ impl Model {
         let mut logarithms: Vec<Option<f64>> = self
             .shapes()
             .iter()
-            .map(|shape| Some(f64::from(shape.weight).ln()))
+            .map(|shape| Some(libm::log(f64::from(shape.weight))))
             .collect();
         for touch in touches {
             let counts = self.counts_of(touch);
@@ -198,7 +198,7 @@ impl Model {
                     .iter()
                     .find(|count| usize::from(count.shape) == shape);
                 #[expect(clippy::cast_precision_loss, reason = "a logarithm has no more digits")]
-                let more = count.map(|count| (count.poses as f64).ln());
+                let more = count.map(|count| libm::log(count.poses as f64));
                 *logarithm = logarithm.zip(more).map(|(sum, more)| sum + more);
             }
         }
@@ -257,7 +257,7 @@ impl Posterior {
         let finite = logarithms.clone().flatten();
         let possible = finite.clone().count();
         let most = finite.fold(f64::NEG_INFINITY, f64::max);
-        let odds = logarithms.map(|own| own.map(|own| (own - most).exp()));
+        let odds = logarithms.map(|own| own.map(|own| libm::exp(own - most)));
         let sum: f64 = odds.clone().flatten().sum();
         Self {
             possible,

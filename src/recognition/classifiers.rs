@@ -235,7 +235,7 @@ fn information(confusion: &[Vec<u128>]) -> f64 {
             .filter(|(_, touches)| **touches > 0)
         {
             let ratio = share(touches, rows[row]) / share(columns[named], total);
-            bits += share(touches, total) * ratio.log2();
+            bits += share(touches, total) * libm::log2(ratio);
         }
     }
     bits
@@ -362,7 +362,7 @@ impl FeatureTable {
                     .l_dirty()
                     .diagonal()
                     .iter()
-                    .map(|side| side.ln())
+                    .map(|&side| libm::log(side))
                     .sum::<f64>()
             });
             Covariance {
@@ -381,7 +381,11 @@ impl FeatureTable {
 
     fn diagonal_scores(&self, model: &Model, classes: &[Gaussian], key: usize) -> Scores {
         let score = |(class, prior): (&Gaussian, f64)| {
-            let logarithms: f64 = class.variances.iter().map(|variance| variance.ln()).sum();
+            let logarithms: f64 = class
+                .variances
+                .iter()
+                .map(|&variance| libm::log(variance))
+                .sum();
             class.distance(self.row(key)) + logarithms + prior
         };
         classes.iter().zip(priors(model)).map(score).collect()
@@ -428,7 +432,7 @@ fn columns(
             let name = format!("{}_{suffix}", feature.key);
             (name, descriptor, values.collect())
         };
-        vec![part("cos", f64::cos), part("sin", f64::sin)]
+        vec![part("cos", libm::cos), part("sin", libm::sin)]
     })
 }
 
@@ -446,7 +450,7 @@ impl Gaussian {
 fn priors(model: &Model) -> impl Iterator<Item = f64> + '_ {
     let weights = model.weights();
     let shapes = model.shapes().iter();
-    shapes.map(move |shape| -2.0 * share(shape.weight.into(), weights).ln())
+    shapes.map(move |shape| -2.0 * libm::log(share(shape.weight.into(), weights)))
 }
 
 /// Mean and population variance of a feature over all touches of all shapes.

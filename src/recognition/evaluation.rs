@@ -113,7 +113,7 @@ impl Evaluation {
             let prior = u128::from(model.shapes()[shape].weight);
             let joint = share(touches, self.touches);
             let ratio = share(touches, sum) / share(prior, model.weights());
-            self.information_bits += joint * ratio.log2();
+            self.information_bits += joint * libm::log2(ratio);
         }
     }
 
@@ -173,7 +173,7 @@ fn prior_bits(shapes: &[NamedShape]) -> f64 {
     let bits = shapes.iter().map(|shape| {
         let prior = share(u128::from(shape.weight), sum);
         // 0 − x, since a negative zero would be shown as −0.
-        0.0 - prior * prior.log2()
+        0.0 - prior * libm::log2(prior)
     });
     bits.sum()
 }

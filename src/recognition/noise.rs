@@ -80,7 +80,7 @@ impl Noise {
             return 0;
         }
         // The nearest touch weighs 1, all beyond D at most odds · ratio^(D + 1 − least).
-        let steps = (NEGLIGIBLE / odds).ln() / self.ratio().ln();
+        let steps = libm::log(NEGLIGIBLE / odds) / libm::log(self.ratio());
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -184,7 +184,7 @@ impl Model {
         distances: &Distances,
         noise: &Noise,
     ) -> Vec<[f64; 2]> {
-        let fall = noise.ratio().ln();
+        let fall = libm::log(noise.ratio());
         let all = u32::from(imprint.columns()) * u32::from(imprint.rows());
         let bounds = |(touches, total): (&Vec<u64>, u64)| {
             if total == 0 {
@@ -193,7 +193,7 @@ impl Model {
             // From the shape's own nearest touch on, so that no sum is too small for an `f64`.
             let from = touches.iter().position(|&touches| touches > 0);
             let least = from.map_or(f64::NEG_INFINITY, |from| {
-                let sum = (weighed(&touches[from..], noise) / float(total)).ln();
+                let sum = libm::log(weighed(&touches[from..], noise) / float(total));
                 if from == 0 {
                     sum
                 } else {
@@ -357,7 +357,7 @@ fn log_of_sum(one: f64, other: f64) -> f64 {
     if low == f64::NEG_INFINITY {
         return high;
     }
-    high + (low - high).exp().ln_1p()
+    high + libm::log1p(libm::exp(low - high))
 }
 
 /// Sums added up.

@@ -271,7 +271,7 @@ impl PoseMoments {
 
     /// Adds an angle as a part of a full turn.
     fn turn(&mut self, weight: u64, part: f64) {
-        let (sine, cosine) = (part * std::f64::consts::TAU).sin_cos();
+        let (sine, cosine) = libm::sincos(part * std::f64::consts::TAU);
         self.cosine += float(weight) * cosine;
         self.sine += float(weight) * sine;
     }
@@ -287,10 +287,11 @@ impl PoseMoments {
             variance.max(0.0).sqrt()
         });
         let angle = angles.map(|(period, degrees)| {
-            let length = self.cosine.hypot(self.sine) / all;
+            let length = libm::hypot(self.cosine, self.sine) / all;
             let directed = length > 1e-9;
-            let mean = self.sine.atan2(self.cosine) / std::f64::consts::TAU;
-            let deviation = (-2.0 * length.min(1.0).ln()).max(0.0).sqrt() / std::f64::consts::TAU;
+            let mean = libm::atan2(self.sine, self.cosine) / std::f64::consts::TAU;
+            let deviation =
+                (-2.0 * libm::log(length.min(1.0))).max(0.0).sqrt() / std::f64::consts::TAU;
             AngleEstimate {
                 period,
                 mean: directed.then(|| (mean * period).rem_euclid(period)),

@@ -298,19 +298,19 @@ impl Model {
         let weights = self
             .shapes()
             .iter()
-            .map(|shape| f64::from(shape.weight).ln());
+            .map(|shape| libm::log(f64::from(shape.weight)));
         let mut logarithms: Vec<f64> = weights.collect();
         for touches in 1..=MOST_TOUCHES {
             let counts = self.counts(draw.key(random)?);
             let mut own = counts.iter().peekable();
             for (index, logarithm) in logarithms.iter_mut().enumerate() {
                 match own.next_if(|count| usize::from(count.shape) == index) {
-                    Some(found) => *logarithm += float(found.poses).ln(),
+                    Some(found) => *logarithm += libm::log(float(found.poses)),
                     None => *logarithm = f64::NEG_INFINITY,
                 }
             }
             let (best, most) = first_of_most(&logarithms)?;
-            let sum: f64 = logarithms.iter().map(|own| (own - most).exp()).sum();
+            let sum: f64 = logarithms.iter().map(|own| libm::exp(own - most)).sum();
             if 1.0 / sum >= until {
                 return Some((touches, best == shape));
             }

@@ -60,13 +60,13 @@ impl Pen<f64> for Ideal {
         let (mut doubled, mut length) = (0.0, 0.0);
         for (one, other) in points.iter().zip(next) {
             doubled += one.x * other.y - other.x * one.y;
-            length += (other.x - one.x).hypot(other.y - one.y);
+            length += libm::hypot(other.x - one.x, other.y - one.y);
         }
         self.add(f64::abs(doubled) / 2.0, length, material);
     }
 
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, material: Side) {
-        let length = |vector: Point<f64>| vector.x.hypot(vector.y);
+        let length = |vector: Point<f64>| libm::hypot(vector.x, vector.y);
         let (one, other) = (length(ellipse.across), length(ellipse.along));
         self.add(PI * one * other, perimeter(one, other), material);
     }

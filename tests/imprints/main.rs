@@ -1,5 +1,10 @@
 //! From a shape to its imprint, regions and descriptors: by hand, by a second method, and over whole grids of poses.
 
+#![expect(
+    clippy::disallowed_methods,
+    reason = "second methods may use the system's mathematics: what they give is compared within a tolerance"
+)]
+
 #[path = "../common/mod.rs"]
 mod common;
 

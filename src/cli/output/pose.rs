@@ -240,7 +240,7 @@ impl Pen<f64> for Outline {
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
         let at = |piece: u16| {
             let turn = std::f64::consts::TAU * f64::from(piece) / f64::from(PIECES);
-            let (sin, cos) = turn.sin_cos();
+            let (sin, cos) = libm::sincos(turn);
             (
                 ellipse.centre.x + ellipse.across.x * cos + ellipse.along.x * sin,
                 ellipse.centre.y + ellipse.across.y * cos + ellipse.along.y * sin,

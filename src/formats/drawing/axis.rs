@@ -16,7 +16,7 @@ impl Ticks {
     /// The same from one number to another, at most about `steps` of them.
     pub(super) fn between((low, high): (f64, f64), least: f64, steps: f64) -> Self {
         let smallest = ((high - low) / steps).max(least);
-        let power = 10_f64.powf(smallest.log10().floor());
+        let power = libm::pow(10.0, libm::log10(smallest).floor());
         // A hair is allowed for the roundings of the logarithm.
         let fits = |factor: &f64| factor * power >= smallest * (1.0 - 1e-9);
         let factor = [1.0, 2.0, 5.0].into_iter().find(fits).unwrap_or(10.0);

@@ -260,7 +260,7 @@ fn distance(place: Position, from: Position, to: Position) -> f64 {
     } else {
         0.0
     };
-    (off.0 - way.0 * along).hypot(off.1 - way.1 * along)
+    libm::hypot(off.0 - way.0 * along, off.1 - way.1 * along)
 }
 
 /// The pieces of a path as corners.
@@ -311,7 +311,7 @@ fn dashed(pieces: &[Vec<Position>], [dash, gap]: [f64; 2]) -> Vec<Vec<Position>>
         for pair in piece.windows(2) {
             let (mut from, to) = (pair[0], pair[1]);
             loop {
-                let length = (to.0 - from.0).hypot(to.1 - from.1);
+                let length = libm::hypot(to.0 - from.0, to.1 - from.1);
                 // What is not a length ends the piece too.
                 if length <= left || !length.is_finite() {
                     left -= length;

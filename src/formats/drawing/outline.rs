@@ -115,7 +115,7 @@ mod tests {
                     bend([from.0, a.0, b.0, to.0]),
                     bend([from.1, a.1, b.1, to.1]),
                 );
-                let strays = ((x - 1.0).hypot(y - 2.0) - 3.0).abs();
+                let strays = (libm::hypot(x - 1.0, y - 2.0) - 3.0).abs();
                 assert!(strays < 3.0 * 1e-5, "{strays}");
             }
             from = to;

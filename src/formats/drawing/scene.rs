@@ -50,7 +50,7 @@ pub(super) fn ellipse(centre: Position, across: Position, along: Position) -> Ve
     const PARTS: u8 = 8;
     let part = std::f64::consts::TAU / f64::from(PARTS);
     // The usual length of a circle's control arms.
-    let arm = 4.0 / 3.0 * (part / 4.0).tan();
+    let arm = 4.0 / 3.0 * libm::tan(part / 4.0);
     let image = |u: f64, v: f64| {
         (
             centre.0 + across.0 * u + along.0 * v,
@@ -59,8 +59,8 @@ pub(super) fn ellipse(centre: Position, across: Position, along: Position) -> Ve
     };
     let mut steps = vec![Segment::Move(image(1.0, 0.0))];
     for index in 0..PARTS {
-        let (sin, cos) = (f64::from(index) * part).sin_cos();
-        let (next_sin, next_cos) = (f64::from(index + 1) * part).sin_cos();
+        let (sin, cos) = libm::sincos(f64::from(index) * part);
+        let (next_sin, next_cos) = libm::sincos(f64::from(index + 1) * part);
         steps.push(Segment::Curve(
             image(cos - arm * sin, sin + arm * cos),
             image(next_cos + arm * next_sin, next_sin - arm * next_cos),

@@ -82,7 +82,7 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     let (x, y) = field.dot(field.point(at)?);
     let far = |(_, point): &&(usize, (f64, f64))| {
         let (other_x, other_y) = field.dot(*point);
-        (other_x - x).hypot(other_y - y)
+        libm::hypot(other_x - x, other_y - y)
     };
     let nearest = points
         .iter()

@@ -122,7 +122,7 @@ pub(super) fn round_up(value: f64) -> f64 {
     if value < f64::MIN_POSITIVE || !value.is_finite() {
         return 1.0;
     }
-    let unit = 10_f64.powf(value.log10().floor());
+    let unit = libm::pow(10.0, libm::log10(value).floor());
     let steps = [1.0, 2.0, 5.0, 10.0];
     let fits = steps.map(|step| step * unit).into_iter();
     // What rounding has made a little too large is not rounded up once more.

@@ -92,7 +92,7 @@ impl Pen<f64> for DotGrid<'_> {
     fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
         let (from, to) = (self.place(from.x, from.y), self.place(to.x, to.y));
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        let length = dx.hypot(dy);
+        let length = libm::hypot(dx, dy);
         if length > 0.0 {
             let aside = (-dy / length * INSIDE, dx / length * INSIDE);
             let moved = |place: DotPosition| (place.0 + aside.0, place.1 + aside.1);
@@ -109,7 +109,7 @@ impl Pen<f64> for DotGrid<'_> {
         };
         let at = |piece: u16| {
             let (sin, cos) =
-                (std::f64::consts::TAU * f64::from(piece) / f64::from(PIECES)).sin_cos();
+                libm::sincos(std::f64::consts::TAU * f64::from(piece) / f64::from(PIECES));
             let along = |centre: f64, a: f64, b: f64| centre + scale * (a * cos + b * sin);
             self.place(
                 along(ellipse.centre.x, ellipse.across.x, ellipse.along.x),

@@ -139,7 +139,7 @@ fn direction(known: &[(f64, f64)]) -> f64 {
             .map(|(value, count)| of(value.to_radians()) * count)
             .sum()
     };
-    part(f64::sin).atan2(part(f64::cos)).to_degrees()
+    libm::atan2(part(libm::sin), part(libm::cos)).to_degrees()
 }
 
 #[cfg(test)]
