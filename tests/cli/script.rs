@@ -18,6 +18,21 @@ fn messages_name_the_script_and_the_line() {
         ("Keys f\nFly", 2, "line 2: \"Fly\" is unknown"),
         ("Set columns 99", 2, "line 1: columns: 99 is out of range"),
         ("Keys q\nKeys f", 3, "line 2: the program had already ended"),
+        (
+            "Source nofile.csv",
+            1,
+            "line 1: nofile.csv: cannot open it: No such file",
+        ),
+        (
+            "Frames 1",
+            1,
+            "line 1: expected 1 frame, found 0: no source",
+        ),
+        (
+            "Source tests/scripts/touch.csv\nFrames 3\nFrames 6",
+            1,
+            "line 3: expected 6 frames, found 5: the source has ended",
+        ),
     ] {
         let run = of_file(script);
         assert_eq!(run.status, Some(status), "{run:?}");
@@ -132,9 +147,10 @@ fn a_script_changes_nothing_outside_its_folder() {
     assert!(made.expect("started").success());
     for source in ["tcp://127.0.0.1:9", pipe.to_str().expect("text"), "-"] {
         let script = format!("Source {source}\nFrames 1\nScreen\n");
-        let shown = run("d.taxel", &script, &["--size", "200x24"]);
+        let refused = run("d.taxel", &script, &[]);
         let refusal = "a script reads frames from files only";
-        assert!(shown.stdout.contains(refusal), "{source}: {shown:?}");
+        assert!(refused.stderr.contains(refusal), "{source}: {refused:?}");
+        assert_eq!(refused.status, Some(1), "{source}: {refused:?}");
     }
     // A library is refused before anything is done.
     let library = place.path().join("library");

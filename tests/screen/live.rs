@@ -51,6 +51,29 @@ fn a_source_is_shown_frame_by_frame() {
 }
 
 #[test]
+fn a_source_that_cannot_be_read_opens_no_page() {
+    let keys = ":watch nowhere.csv<Enter>";
+    shows(
+        keys,
+        &["! nowhere.csv: cannot open it: No such", ":watch nowhere"],
+    );
+    hides(keys, &["no frame yet"]);
+    let keys = ":watch tcp://robot<Enter>";
+    shows(
+        keys,
+        &["! tcp://robot: cannot open it: expected tcp://HOST"],
+    );
+    // The page that is open stays.
+    let mut page = watched(2, "");
+    let refused = page.watch("nowhere.csv");
+    assert!(refused.is_err_and(|reason| reason.contains("nowhere.csv")));
+    shows(&page, &["touch.csv", "frame 1"]);
+    assert_eq!(page.watch("tests/scripts/touch.csv"), Ok(()));
+    shows(&page, &["touch.csv", "no frame yet"]);
+    then(&mut page, "<Esc>", &["Space draws"]);
+}
+
+#[test]
 fn the_threshold_goes_up_and_down_and_changes_its_unit() {
     shows(&watched(6, "+"), &["threshold  5", "NA         91"]);
     shows(&watched(6, "++"), &["threshold  6"]);

@@ -121,10 +121,11 @@ pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command a line; places are colum
   Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"
   ExpectStyle 3,10 reverse
   Source touch.csv    Frames 3  (watch a recording, and take its next 3 frames)
-Quit checks that the program has ended. Without --library the script has an
-empty library of its own. It writes files only below its own folder, and
-replaces none that was there before; --allow-outside, for scripts that you
-trust, lets it write anywhere and set a library.
+Quit checks that the program has ended; Source and Frames fail without the
+file or with fewer frames. Without --library the script has an empty library
+of its own. It writes files only below its own folder, and replaces none that
+was there before; --allow-outside, for scripts that you trust, lets it write
+anywhere and set a library.
 
 Exit status: 0 all held, 1 an expectation failed, 2 the script is wrong, 3 the
 program ended before the script.

@@ -3,6 +3,8 @@
 //! A key becomes a message by the table of keys, a `:` command by its text, a click by what it points at. Effects
 //! answer with messages, too. A script sends the same ones.
 
+use std::sync::Arc;
+
 use crate::formats::StoredShape;
 use crate::imprint::Imprint;
 use crate::storage::{Expected, LibraryEntry, LoadedShape};
@@ -11,6 +13,7 @@ use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::keys::key::{Arrow, Key};
 use crate::tui::live::message::LiveMessage;
+use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::message::RecogniseMessage;
 
 /// A message, from a key, a click, a command, a script, or as the answer to an effect.
@@ -201,6 +204,8 @@ pub enum FileEvent {
     Exists(String, Vec<u8>),
     /// Nothing came of it.
     Failed(String),
+    /// The source of frames can be watched.
+    Source(Arc<WatchRequest>),
     /// The paths that were asked for.
     Paths(Vec<String>),
 }

@@ -6,7 +6,7 @@
 use crate::tui::app::change::{compare_with, inform, refuse, settle};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Reading;
-use crate::tui::app::message::Message;
+use crate::tui::app::message::{FileEvent, Message};
 use crate::tui::app::mouse;
 use crate::tui::app::quit::can_save_first;
 use crate::tui::app::state::{App, Mode, Notice, RunState};
@@ -17,6 +17,7 @@ use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Key;
 use crate::tui::keys::keymap::Keymap;
+use crate::tui::live::message::LiveMessage;
 
 use crate::tui::matrix::files;
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
@@ -63,6 +64,10 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
         }
         Message::Library(answer) => {
             return answered(app, |app| shapes::update::on_library(app, answer));
+        }
+        Message::File(FileEvent::Source(request)) => {
+            let watch = LiveMessage::Watch(request);
+            return answered(app, |app| live::update::act(app, &watch));
         }
         Message::File(answer) => return answered(app, |app| files::on_file(app, answer)),
         Message::Worker(event @ WorkerEvent::Recognition(_)) => {

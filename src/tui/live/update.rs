@@ -20,20 +20,23 @@ use crate::tui::live::message::{LiveEvent, LiveMessage};
 use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::live::state::Live;
-use crate::tui::runtime::effect::{Effect, Work};
+use crate::tui::runtime::effect::{Effect, FileRequest, Work};
 
 /// Handles what is asked for over the matrix.
 /// What concerns the open page only, such as a tare, does nothing here: there is no page to do it on.
 pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
     match asked {
         LiveMessage::Watch(request) => Some(watch(app, request)),
-        LiveMessage::Source(name) => {
-            let request = app.watch_settings.for_source(name);
-            Some(watch(app, &Arc::new(request)))
-        }
+        LiveMessage::Source(name) => Some(look(app, name)),
         LiveMessage::Open => open(app),
         _ => None,
     }
+}
+
+/// Has a source looked at with the settings of the program; it is watched if it can be read.
+fn look(app: &App, name: &str) -> Effect {
+    let request = app.watch_settings.for_source(name);
+    Effect::File(FileRequest::Source(Arc::new(request)))
 }
 
 /// Opens a page for a source, in place of the one before.
@@ -49,7 +52,11 @@ fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
     );
     let write = request.write.clone();
     let watched = begin(&page, write);
+    // It has led to this page, and is not opened again by what is refused here.
+    app.prompt = None;
     app.live = None;
+    app.dialogs
+        .retain(|dialog| !matches!(dialog, Dialog::Live(_)));
     app.dialogs.push(Dialog::Live(Box::new(page)));
     watched
 }
@@ -210,7 +217,8 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             inform(app, text);
             return Some(Effect::Work(Work::NameBy(page.number(), naming)));
         }
-        LiveMessage::Open | LiveMessage::Watch(_) | LiveMessage::Source(_) => {}
+        LiveMessage::Source(name) => return Some(look(app, name)),
+        LiveMessage::Open | LiveMessage::Watch(_) => {}
     }
     None
 }
@@ -262,7 +270,17 @@ fn record(page: &mut Live) -> Effect {
     Effect::Work(Work::Record(Box::new(metadata)))
 }
 
-/// The page, open or not.
+/// The page of the source that was watched last, open or not.
+pub(in crate::tui) fn last_page(app: &App) -> Option<&Live> {
+    let mut dialogs = app.dialogs.iter().rev();
+    let open = dialogs.find_map(|dialog| match dialog {
+        Dialog::Live(page) => Some(page),
+        _ => None,
+    });
+    open.or(app.live.as_ref()).map(|page| &**page)
+}
+
+/// The same, to change it.
 fn page(app: &mut App) -> Option<&mut Live> {
     let mut dialogs = app.dialogs.iter_mut().rev();
     let open = dialogs.find_map(|dialog| match dialog {

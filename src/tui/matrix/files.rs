@@ -105,6 +105,8 @@ pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect
             app.dialogs.push(Dialog::Question(Question::new(text, yes)));
         }
         FileEvent::Failed(reason) => refuse(app, reason),
+        // Watched by its own page.
+        FileEvent::Source(_) => {}
         FileEvent::Paths(paths) => {
             if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
                 command.complete_asked(&paths);

@@ -113,6 +113,7 @@ impl DiskRequest {
             Self::ThrowAway(_) => "Moving it to the trash".to_owned(),
             Self::File(FileRequest::Write(name, ..)) => format!("Writing {name}"),
             Self::File(FileRequest::Open(name)) => format!("Opening {name}"),
+            Self::File(FileRequest::Source(request)) => format!("Opening {}", request.name()),
             Self::File(FileRequest::Paths(_)) => "Listing files".to_owned(),
             Self::List => "Listing the shapes".to_owned(),
             Self::Trash => "Listing the deleted shapes".to_owned(),

@@ -36,6 +36,8 @@ pub enum FileRequest {
     Open(String),
     /// Write a file, given its name, what it shall hold, and what happens to one that exists.
     Write(String, Vec<u8>, Existing),
+    /// Look whether a source of frames can be read.
+    Source(Arc<WatchRequest>),
     /// List the paths that begin like this.
     Paths(String),
 }

@@ -1,4 +1,5 @@
-//! Files that the screen opens and writes: imprints in any form, shapes, drawings; and paths for completion.
+//! Files that the screen opens and writes: imprints in any form, shapes, drawings; sources of frames before they are watched;
+//! and paths for completion.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -8,6 +9,7 @@ use crate::formats::{Content, imprint_file, read_content};
 use crate::storage::{Existing, UnfinishedFile, location};
 use crate::tui::app::message::{FileEvent, OpenedFile};
 use crate::tui::runtime::effect::FileRequest;
+use crate::tui::runtime::source;
 use crate::tui::runtime::write_access::WriteAccess;
 
 /// No file is read further than one byte after this: it is refused then.
@@ -25,6 +27,10 @@ pub(in crate::tui) fn perform(request: FileRequest, access: &WriteAccess) -> Fil
         },
         FileRequest::Write(name, content, existing) => match access.path(&name, existing) {
             Ok(path) => write(path, name, content, existing),
+            Err(refused) => FileEvent::Failed(refused),
+        },
+        FileRequest::Source(request) => match source::readable(&request.source, access) {
+            Ok(_) => FileEvent::Source(request),
             Err(refused) => FileEvent::Failed(refused),
         },
         FileRequest::Paths(start) => FileEvent::Paths(paths(&start)),

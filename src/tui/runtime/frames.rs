@@ -8,7 +8,6 @@
 //!
 //! The file is long because what is taken in, recorded and shown shares one lock, and its tests are about that.
 
-use std::ffi::OsStr;
 use std::mem::take;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -20,7 +19,7 @@ use std::time::{Duration, Instant};
 use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, acquire};
 use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
 use crate::frame::Frame;
-use crate::storage::{Existing, location};
+use crate::storage::Existing;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::history::bytes_of;
 use crate::tui::live::message::{FrameBatch, LiveEvent, ProvisionalChange, SourceState};
@@ -28,6 +27,8 @@ use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::progress::WorkerEventSink;
 use crate::tui::runtime::recording::Recording;
+use crate::tui::runtime::source;
+use crate::tui::runtime::write_access::WriteAccess;
 
 /// The source that is watched.
 #[derive(Debug, Default)]
@@ -36,9 +37,6 @@ pub(super) struct FrameWatcher {
     watched: Option<Watched>,
     /// The thread of the last source, which may still read it after it was stopped.
     thread: Option<JoinHandle<()>>,
-    /// Whether only files are read, as is right for a script of a stranger: a serial line would be set up and its device
-    /// reset, a connection made, a pipe waited for.
-    pub(super) only_files: bool,
 }
 
 /// A source with the thread that reads it. The thread ends by itself when `stop` is set or the source ends.
@@ -131,7 +129,7 @@ impl FrameWatcher {
             if let Err(refused) = feed.begin_recording(&request, existing) {
                 post(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
             }
-            let source = source(&request.source);
+            let source = source::named(&request.source);
             let post = || post(WorkerEvent::Live(number, LiveEvent::Waiting));
             let mut options = request.options.clone();
             options.waits = true;
@@ -230,7 +228,7 @@ impl FrameWatcher {
 
     /// Reads the next frames of the source, up to `count`, each as an event; for scripts, which have no clock.
     /// Nothing reads ahead in a script: the source is read anew from its start, and what was taken is skipped.
-    pub(super) fn next(&mut self, count: usize) -> Vec<WorkerEvent> {
+    pub(super) fn next(&mut self, count: usize, access: &WriteAccess) -> Vec<WorkerEvent> {
         let Some(watched) = &mut self.watched else {
             return Vec::new();
         };
@@ -250,16 +248,15 @@ impl FrameWatcher {
         };
         record_from(&feed, seen);
         let mut events = Vec::new();
-        let source = source(&request.source);
-        if self.only_files && !is_file(&source) {
-            let reason = "a script reads frames from files only; --allow-outside lifts that";
-            feed.change(|pending| {
-                pending.batch.status.state = SourceState::Failed(reason.to_owned());
-            });
-            let batch = feed.take().map(Arc::new);
-            let event = batch.map(|batch| WorkerEvent::Live(number, LiveEvent::Arrived(batch)));
-            return event.into_iter().collect();
-        }
+        let source = match source::readable(&request.source, access) {
+            Ok(source) => source,
+            Err(reason) => {
+                feed.change(|pending| pending.batch.status.state = SourceState::Failed(reason));
+                let batch = feed.take().map(Arc::new);
+                let event = batch.map(|batch| WorkerEvent::Live(number, LiveEvent::Arrived(batch)));
+                return event.into_iter().collect();
+            }
+        };
         feed.run(
             &source,
             &request,
@@ -292,28 +289,6 @@ impl Drop for FrameWatcher {
         if let Some((_, recording)) = self.stop() {
             let _ = recording.finish();
         }
-    }
-}
-
-/// The source of a name, which may begin with `~`.
-fn source(name: &OsStr) -> FrameSource {
-    let below = name.to_str().and_then(location::below_home);
-    match below {
-        Some(path) if name != "-" && !name.to_string_lossy().starts_with("tcp://") => {
-            FrameSource::new(path.as_os_str())
-        }
-        _ => FrameSource::new(name),
-    }
-}
-
-/// Whether it is a file that has something in it. Those of `/proc`, which can be waited for as pipes are, are empty.
-/// One that is not there is left to whoever opens it, who says so.
-fn is_file(source: &FrameSource) -> bool {
-    match source {
-        FrameSource::File(path) => path
-            .metadata()
-            .map_or(true, |metadata| metadata.is_file() && metadata.len() > 0),
-        _ => false,
     }
 }
 
@@ -353,7 +328,7 @@ impl FrameFeed {
             rule: request.rule,
             ..RecordingMetadata::default()
         };
-        source(&request.source)
+        source::named(&request.source)
             .refuse_as_target(recording.path())
             .map_err(|error| error.to_string())?;
         recording.begin(existing, &metadata)?;

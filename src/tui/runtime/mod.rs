@@ -17,6 +17,7 @@
 //! lock             a mutex, locked whatever another thread has done
 //! slow_work        work that is waited for, and when that is said
 //! reading          what is read from it, for the page that asked
+//! source           what the name of a source of frames stands for
 //! journal_writer   unsaved work, written beside the program
 //! write_access     where files may be written
 //! reminders        what is remembered for the next run
@@ -37,6 +38,8 @@ mod sizes;
 mod frames;
 
 mod recording;
+
+mod source;
 
 mod naming;
 
@@ -223,7 +226,7 @@ impl World {
     pub fn confined_to(mut self, folder: PathBuf) -> Self {
         self.workers.access = Arc::new(WriteAccess::below(folder));
         self.writer.access = Arc::clone(&self.workers.access);
-        self.workers.frames.only_files = true;
+        self.reader.queue.access = Arc::clone(&self.workers.access);
         self
     }
 
@@ -377,7 +380,8 @@ impl World {
 
     /// The next frames of a source that is not watched on a thread of its own: a message for each.
     pub(in crate::tui) fn next_frames(&mut self, count: usize) -> Vec<Message> {
-        let events = self.workers.frames.next(count).into_iter();
+        let access = Arc::clone(&self.workers.access);
+        let events = self.workers.frames.next(count, &access).into_iter();
         events.map(Message::Worker).collect()
     }
 

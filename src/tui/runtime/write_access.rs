@@ -28,6 +28,11 @@ impl WriteAccess {
         }
     }
 
+    /// Whether it is a script's, which may be a stranger's.
+    pub(super) fn is_confined(&self) -> bool {
+        self.folder.is_some()
+    }
+
     /// The path for a file of that name, which may begin with `~/`. For a script, a relative one is below its folder.
     ///
     /// # Errors

@@ -8,7 +8,7 @@
 //! Screen [name]       State [json-pointer]
 //! Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"   ExpectStyle 3,10 reverse
 //! Signal HUP          Wait                Quit                Seed 7
-//! Source touch.csv    Frames 3            frames of a file, as many as asked for: the clock stands still
+//! Source touch.csv    Frames 3            the next frames of a file: the clock stands still
 //! ```
 //! Places are column,row of the screen, from 0. `#` begins a comment line. `Quit` holds where the program has ended.
 //! A drag visits its places and no others, as a terminal reports them.
@@ -62,9 +62,9 @@ pub enum ScriptCommand {
     Wait,
     /// The program must have ended.
     Quit,
-    /// Watch a file with frames; none is read yet.
+    /// Watch a file with frames, which must be readable; no frame is read yet.
     Source(String),
-    /// Read and draw the next frames of it, at most this number.
+    /// Read and draw the next frames of it. This many must be there.
     Frames(usize),
 }
 

@@ -17,11 +17,11 @@ use std::ops::ControlFlow;
 use serde_json::{Value, json};
 
 use crate::formats::DescribedImprint;
+use crate::formats::value::counted;
 use crate::quote::shortened;
 use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::state::App;
 use crate::tui::keys::key::Key;
-use crate::tui::live::message::LiveMessage;
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::runtime::World;
 use crate::tui::script::command::{ScreenPosition, ScriptCommand, ScriptError, read};
@@ -166,9 +166,18 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
             session.send(Message::Recognise(RecogniseMessage::Seed(*seed)));
         }
         ScriptCommand::Source(name) => {
-            session.send(Message::Live(LiveMessage::Source(name.clone())));
+            let watched = session.watch(name);
+            watched.map_err(|message| fails(session, line, message))?;
         }
-        ScriptCommand::Frames(count) => session.frames(*count),
+        ScriptCommand::Frames(count) => {
+            let found = session.frames(*count);
+            if found < *count {
+                let expected = counted(*count as u64, "frame");
+                let why = session.end_of_frames();
+                let message = format!("expected {expected}, found {found}: {why}");
+                return Err(fails(session, line, message));
+            }
+        }
         ScriptCommand::Signal(name) if name == "TSTP" => session.send(Message::Redraw),
         // What is not saved is in the journal already; the program ends without a question.
         ScriptCommand::Signal(_) => session.send(Message::Terminate),

@@ -17,9 +17,13 @@ use ratatui::backend::TestBackend;
 use ratatui::layout::Position;
 
 use crate::tui::app::message::Message;
-use crate::tui::app::state::{App, Options};
+use crate::tui::app::state::{App, Notice, Options};
 use crate::tui::app::view::view;
+use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::key::{Key, KeyError, parse};
+use crate::tui::live::message::{LiveEvent, LiveMessage, SourceState};
+use crate::tui::live::state::Live;
+use crate::tui::live::update::last_page;
 use crate::tui::runtime::World;
 use crate::tui::script::drawing;
 use crate::tui::widget::theme::letter;
@@ -85,10 +89,42 @@ impl Session {
         self.draw();
     }
 
-    /// Reads the next frames of the source that is watched, at most `count`, and draws each.
-    pub fn frames(&mut self, count: usize) {
+    /// Watches a source of frames; none is read yet.
+    ///
+    /// # Errors
+    /// Why it cannot be watched, in a sentence.
+    pub fn watch(&mut self, name: &str) -> Result<(), String> {
+        let number = |app: &App| last_page(app).map(Live::number);
+        let before = number(&self.app);
+        self.send(Message::Live(LiveMessage::Source(name.to_owned())));
+        if number(&self.app) != before {
+            return Ok(());
+        }
+        Err(match &self.app.notice {
+            Some(Notice::Refusal(reason)) => reason.clone(),
+            _ => format!("{name}: no source can be watched on this page"),
+        })
+    }
+
+    /// Reads the next frames of the source that is watched, at most `count`, and draws each. Returns how many there were.
+    pub fn frames(&mut self, count: usize) -> usize {
+        let mut frames = 0;
         for message in self.world.next_frames(count) {
+            if let Message::Worker(WorkerEvent::Live(_, LiveEvent::Arrived(batch))) = &message {
+                frames += batch.frames.len();
+            }
             self.send(message);
+        }
+        frames
+    }
+
+    /// Why no more frames come of the source that is watched, in a few words.
+    pub(super) fn end_of_frames(&self) -> String {
+        let page = last_page(&self.app).filter(|page| !page.stopped());
+        match page.map(|page| &page.status().state) {
+            None => "no source is watched".to_owned(),
+            Some(SourceState::Failed(reason)) => reason.clone(),
+            Some(_) => "the source has ended".to_owned(),
         }
     }
 

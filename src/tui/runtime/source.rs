@@ -1,0 +1,46 @@
+//! What the name of a source of frames stands for, and whether it can be watched.
+
+use std::ffi::OsStr;
+
+use crate::acquire::FrameSource;
+use crate::storage::location;
+use crate::tui::runtime::write_access::WriteAccess;
+
+/// The source of a name, which may begin with `~`.
+pub(super) fn named(name: &OsStr) -> FrameSource {
+    let below = name.to_str().and_then(location::below_home);
+    match below {
+        Some(path) if name != "-" && !name.to_string_lossy().starts_with("tcp://") => {
+            FrameSource::new(path.as_os_str())
+        }
+        _ => FrameSource::new(name),
+    }
+}
+
+/// Returns the source of a name, unless it cannot be read however long it is waited for. A script of a stranger reads
+/// files only: a serial line would be set up and its device reset, a connection made, a pipe waited for.
+///
+/// # Errors
+/// A sentence with the name.
+pub(super) fn readable(name: &OsStr, access: &WriteAccess) -> Result<FrameSource, String> {
+    let source = named(name);
+    let refused = |reason: &dyn std::fmt::Display| format!("{}: {reason}", source.name());
+    if access.is_confined() && !is_file(&source) {
+        return Err(refused(
+            &"a script reads frames from files only; --allow-outside lifts that",
+        ));
+    }
+    source.check().map_err(|error| refused(&error))?;
+    Ok(source)
+}
+
+/// Whether it is a file that has something in it. Those of `/proc`, which can be waited for as pipes are, are empty.
+/// One that is not there is left to whoever opens it, who says so.
+fn is_file(source: &FrameSource) -> bool {
+    match source {
+        FrameSource::File(path) => path
+            .metadata()
+            .map_or(true, |metadata| metadata.is_file() && metadata.len() > 0),
+        _ => false,
+    }
+}
