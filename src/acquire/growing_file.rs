@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::fs::{self, File};
-use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{self, ErrorKind, Read, Seek};
 use std::os::unix::fs::{FileExt, MetadataExt};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
@@ -53,14 +53,30 @@ impl GrowingFile {
     /// # Errors
     /// What the system reports.
     pub(super) fn open(path: &Path) -> io::Result<Self> {
-        Ok(Self {
+        Ok(Self::new(path, File::open(path)?))
+    }
+
+    /// One that is open, before its first byte.
+    pub(super) fn new(path: &Path, file: File) -> Self {
+        Self {
             path: path.to_owned(),
-            file: File::open(path)?,
+            file,
             offset: 0,
             last: Vec::new(),
             at_end: false,
             changed: None,
-        })
+        }
+    }
+
+    /// Goes back to its first byte.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(super) fn rewind(&mut self) -> io::Result<()> {
+        self.file.rewind()?;
+        (self.offset, self.at_end, self.changed) = (0, false, None);
+        self.last.clear();
+        Ok(())
     }
 
     /// Reads what has come; waits a moment where there is nothing.
@@ -93,9 +109,7 @@ impl GrowingFile {
             return Ok(None);
         }
         if self.was_cut()? {
-            self.file.seek(SeekFrom::Start(0))?;
-            (self.offset, self.at_end, self.changed) = (0, false, None);
-            self.last.clear();
+            self.rewind()?;
             return Ok(Some(ReadAnew::Cut));
         }
         // As long as there is none of that name, what is open is all there is.

@@ -17,6 +17,8 @@ mod byte_input;
 
 mod growing_file;
 
+mod followed_file;
+
 mod event;
 
 mod stream;

@@ -1,17 +1,20 @@
-//! A recording, played back at its own rate, another one, or as fast as it goes.
+//! A recording, played back at its own rate, another one, or as fast as it goes; or followed while it is written.
 
+use std::cell::RefCell;
 use std::fs::File;
+use std::io::{self, Read, Seek};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
+use crate::acquire::followed_file::{self, FollowEnd, FollowedFile, Growth};
 use crate::acquire::recorder::description_beside;
 use crate::acquire::stream::Consumer;
 use crate::formats::recording::{
-    ChannelChoice, ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingMetadata,
-    RecordingNote, read,
+    ChannelChoice, ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingFormat,
+    RecordingMetadata, RecordingNote, read_as, recognised_input,
 };
 use crate::formats::stream::StreamCounts;
 use crate::frame::Frame;
@@ -26,7 +29,7 @@ const MOMENT: Duration = Duration::from_millis(100);
 const LONGEST: f64 = 86_400.0;
 
 /// When the next frame is due.
-struct Pace {
+struct Pace<'a> {
     begun: Instant,
     /// Seconds from one frame to the next, where frames have no time.
     step: f64,
@@ -39,9 +42,11 @@ struct Pace {
     channel: ChannelChoice,
     /// How many values a frame of it has, if nothing says their rows and columns.
     unshaped: Option<u64>,
+    /// Whether the file grows: then no frame is waited for.
+    growth: Option<&'a Growth>,
 }
 
-impl Pace {
+impl Pace<'_> {
     fn new(options: &AcquireOptions) -> Self {
         let is_speed = options.speed > 0.0;
         Self {
@@ -52,6 +57,7 @@ impl Pace {
             span: None,
             channel: ChannelChoice::new(options.channel.as_deref()),
             unshaped: None,
+            growth: None,
         }
     }
 
@@ -115,7 +121,7 @@ impl Pace {
             if stop.load(Ordering::Relaxed) {
                 return ControlFlow::Break(());
             }
-            if left.is_zero() {
+            if left.is_zero() || self.growth.is_some_and(Growth::has_grown) {
                 return ControlFlow::Continue(());
             }
             consumer(AcquireEvent::Tick(&StreamCounts::default()))?;
@@ -124,42 +130,158 @@ impl Pace {
     }
 }
 
-/// Plays a recording.
+/// Plays a recording. One that grows meanwhile is followed: what is in it is given at once, then each frame as it comes.
 pub(super) fn run(
     path: &Path,
     options: &AcquireOptions,
     stop: &AtomicBool,
     consumer: &mut Consumer<'_>,
 ) -> Result<(), AcquireError> {
-    let mut file = File::open(path).map_err(|error| AcquireError::Io {
-        doing: "open it",
-        error,
-    })?;
-    let reading = ReadOptions {
-        shape: options.shape,
-    };
     let ControlFlow::Continue(description) = description_of(path, consumer) else {
         return Ok(());
     };
-    let mut round = 0;
-    loop {
-        let mut pace = Pace::new(options);
+    let player = Player {
+        options,
+        stop,
+        description,
+        consumer: RefCell::new(consumer),
+    };
+    let format = File::open(path).and_then(recognised_input);
+    let format = format.map_err(refused)?.ok_or(RecordingError::Unknown)?;
+    let is_paced = options.repeat || options.speed != AcquireOptions::default().speed;
+    if options.once || is_paced || !format.is_appended_to() {
+        player.play(path, format)
+    } else {
+        player.follow(path, format)
+    }
+}
+
+fn refused(error: io::Error) -> AcquireError {
+    let doing = "open it";
+    AcquireError::Io { doing, error }
+}
+
+/// What plays a recording.
+struct Player<'a, 'b> {
+    options: &'a AcquireOptions,
+    stop: &'a AtomicBool,
+    /// What lies beside it.
+    description: Option<RecordingMetadata>,
+    /// Takes what is read, and is told that time goes by where more is waited for.
+    consumer: RefCell<&'a mut Consumer<'b>>,
+}
+
+/// How a recording is read from its beginning once more.
+#[derive(Clone, Copy, Default)]
+struct Round<'a> {
+    /// Whether its channels were reported before.
+    is_again: bool,
+    /// The number of its first frame.
+    first: u64,
+    /// Whether the file grows, if it is followed.
+    growth: Option<&'a Growth>,
+}
+
+impl Player<'_, '_> {
+    /// Plays a file, once or again and again.
+    fn play(&self, path: &Path, format: RecordingFormat) -> Result<(), AcquireError> {
+        let mut file = File::open(path).map_err(refused)?;
+        let mut round = Round::default();
+        loop {
+            let (pace, read) = self.round(format, &mut file, round);
+            // What has no frame is not repeated: it would be read again and again without a pause.
+            let ends = read?.is_break() || !self.options.repeat || pace.frames == 0;
+            let consumer = &mut **self.consumer.borrow_mut();
+            if ends
+                || pace.last_frame(self.stop, consumer).is_break()
+                || consumer(AcquireEvent::Again).is_break()
+            {
+                return Ok(());
+            }
+            round.is_again = true;
+        }
+    }
+
+    /// Plays a file, and what is written at its end meanwhile.
+    fn follow(&self, path: &Path, mut format: RecordingFormat) -> Result<(), AcquireError> {
+        let (mut file, growth) = followed_file::open(path).map_err(refused)?;
+        let mut round = Round {
+            growth: Some(&growth),
+            ..Round::default()
+        };
+        loop {
+            let waiting = &mut || self.tick();
+            let mut followed = FollowedFile::new(file, &growth, waiting).map_err(refused)?;
+            let (pace, read) = self.round(format, &mut followed, round);
+            let end;
+            (file, end) = followed.into_parts();
+            let how = match end {
+                None => return read.map(drop).map_err(AcquireError::from),
+                Some(FollowEnd::Stopped) => return Ok(()),
+                // What was torn by that is not an error.
+                Some(FollowEnd::Anew(how)) => how,
+            };
+            if (self.consumer.borrow_mut())(AcquireEvent::Anew(how)).is_break() {
+                return Ok(());
+            }
+            (round.is_again, round.first) = (true, round.first + u64::from(pace.frames));
+            // Its beginning may not be written yet.
+            format = loop {
+                match File::open(path).and_then(recognised_input) {
+                    Ok(Some(format)) if format.is_appended_to() => break format,
+                    Ok(Some(_)) => return Err(RecordingError::Unknown.into()),
+                    Ok(None) | Err(_) if self.tick().is_break() => return Ok(()),
+                    Ok(None) | Err(_) => std::thread::sleep(MOMENT),
+                }
+            };
+        }
+    }
+
+    /// Says that time goes by; `Break` if no more is wanted.
+    fn tick(&self) -> ControlFlow<()> {
+        if self.stop.load(Ordering::Relaxed) {
+            return ControlFlow::Break(());
+        }
+        (self.consumer.borrow_mut())(AcquireEvent::Tick(&StreamCounts::default()))
+    }
+
+    /// Reads a recording from its beginning to its end. Returns how far it was played, and whether no more is wanted.
+    fn round<'r>(
+        &self,
+        format: RecordingFormat,
+        input: impl Read + Seek,
+        round: Round<'r>,
+    ) -> (Pace<'r>, Result<ControlFlow<()>, RecordingError>) {
+        let reading = ReadOptions {
+            shape: self.options.shape,
+        };
+        let mut pace = Pace::new(self.options);
+        pace.growth = round.growth;
         let mut flow = ControlFlow::Continue(());
-        read(&mut file, reading, &mut |event| {
+        let mut renumbered = Frame::new(1, 1);
+        let read = read_as(format, input, reading, &mut |event| {
+            let consumer = &mut **self.consumer.borrow_mut();
             flow = match event {
                 RecordingEvent::Channel(info) => {
-                    let info = completed(info, description.as_ref());
+                    let info = completed(info, self.description.as_ref());
                     pace.add(&info);
-                    match round {
-                        0 => consumer(AcquireEvent::Channel(&info)),
-                        _ => ControlFlow::Continue(()),
+                    if round.is_again {
+                        ControlFlow::Continue(())
+                    } else {
+                        consumer(AcquireEvent::Channel(&info))
                     }
                 }
                 RecordingEvent::Frame(frame) if pace.has_no_shape(frame) => ControlFlow::Break(()),
-                RecordingEvent::Frame(frame) => {
+                RecordingEvent::Frame(mut frame) => {
                     let time = frame.time;
-                    let given_up = !options.once && pace.wait(frame, stop, consumer).is_break();
-                    if given_up || stop.load(Ordering::Relaxed) {
+                    let given_up =
+                        !self.options.once && pace.wait(frame, self.stop, consumer).is_break();
+                    if round.first > 0 {
+                        renumbered.copy_from(frame);
+                        renumbered.number += round.first;
+                        frame = &renumbered;
+                    }
+                    if given_up || self.stop.load(Ordering::Relaxed) {
                         ControlFlow::Break(())
                     } else {
                         consumer(AcquireEvent::Frame { frame, time })
@@ -168,19 +290,13 @@ pub(super) fn run(
                 RecordingEvent::Note(note) => consumer(AcquireEvent::Note(note)),
             };
             flow
-        })?;
-        if let Some(values) = pace.unshaped {
-            return Err(RecordingError::Shape { values }.into());
-        }
-        round += 1;
-        // What has no frame is not repeated: it would be read again and again without a pause.
-        let ends = flow.is_break() || !options.repeat || pace.frames == 0;
-        if ends
-            || pace.last_frame(stop, consumer).is_break()
-            || consumer(AcquireEvent::Again).is_break()
-        {
-            return Ok(());
-        }
+        });
+        let unshaped = pace.unshaped;
+        let read = read.and_then(|()| match unshaped {
+            Some(values) => Err(RecordingError::Shape { values }),
+            None => Ok(flow),
+        });
+        (pace, read)
     }
 }
 

@@ -120,20 +120,31 @@ fn an_old_recording_stays_until_the_first_frame_comes() {
     assert_eq!(names, 2, "nothing is left behind");
 }
 
-/// Each of these begins a file from its start, with whatever was torn before.
+/// Each of these begins a file from its start, with whatever was torn before. What has the form of a recording is
+/// followed, too, as soon as it grows.
 #[test]
 fn a_growing_file_is_read_on_after_it_was_cut_or_replaced() {
+    for flags in [&["--format", "lines"][..], &[]] {
+        read_on(flags);
+    }
+}
+
+fn read_on(flags: &[&str]) {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("g.txt");
     let path = file.to_str().expect("UTF-8");
     fs::write(&file, stream(10..15)).expect("written");
-    let mut child = started(&["watch", path, "--format", "lines"]);
+    let mut child = started(&[&["watch", path][..], flags].concat());
     let mut output = BufReader::new(child.stdout.take().expect("piped"));
+    let mut frame = 0;
     let mut numbers = |expected: std::ops::Range<u32>| {
         for number in expected {
             let mut answer = String::new();
             output.read_line(&mut answer).expect("it answers");
-            assert_eq!(lines(&answer)[0]["sum"], 9 + number);
+            let answer = &lines(&answer)[0];
+            assert_eq!(answer["sum"], 9 + number);
+            assert_eq!(answer["frame"], frame, "they are counted on");
+            frame += 1;
         }
     };
     numbers(10..15);
@@ -159,6 +170,67 @@ fn a_growing_file_is_read_on_after_it_was_cut_or_replaced() {
     let count = |what: &str| said.matches(what).count();
     assert_eq!(count("was cut or written anew"), 2, "{said}");
     assert_eq!(count("was replaced"), 2, "{said}");
+}
+
+#[test]
+fn a_first_frame_that_is_not_whole_yet_is_waited_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (index, (flags, pieces)) in [
+        ("", ["1 2\n3", " 4\n", "\n", "5 6\n7 8\n\n"]),
+        (
+            "",
+            [
+                "{\"frame\":[[1,2",
+                "],[3,4]]",
+                "}\n",
+                "{\"frame\":[[5,6],[7,8]]}\n",
+            ],
+        ),
+        ("", ["r0c0,r0c1", ",r1c0,r1c1\n1,2", ",3,4\n", "5,6,7,8\n"]),
+        ("--rows 2 --columns 2", ["1", " 2 3", " 4\n", "5 6 7 8\n"]),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let file = folder.path().join(format!("{index}.txt"));
+        fs::write(&file, pieces[0]).expect("written");
+        let line = format!("watch {} --json {flags}", file.display());
+        let mut child = started(&line.split_whitespace().collect::<Vec<_>>());
+        for piece in &pieces[1..] {
+            std::thread::sleep(std::time::Duration::from_millis(300));
+            let mut grown = fs::File::options().append(true).open(&file);
+            let grown = grown.as_mut().expect("opened");
+            grown.write_all(piece.as_bytes()).expect("written");
+        }
+        let mut output = BufReader::new(child.stdout.take().expect("piped"));
+        for sum in [10, 26] {
+            let mut answer = String::new();
+            output.read_line(&mut answer).expect("it answers");
+            assert_eq!(lines(&answer)[0]["sum"], sum, "{line}");
+        }
+        child.kill().expect("it is killed");
+        assert_eq!(finish(child, b"").stderr, "");
+    }
+}
+
+#[test]
+fn a_file_that_was_not_changed_lately_ends_where_it_ends() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("old.txt");
+    for (text, expected) in [("1 2\n3 4\n\n", ""), ("1 2\n3", "line 2: found 1 value")] {
+        fs::write(&file, text).expect("written");
+        let earlier = std::time::SystemTime::now() - std::time::Duration::from_mins(1);
+        let opened = fs::File::options().write(true).open(&file);
+        opened.expect("opened").set_modified(earlier).expect("set");
+        let begun = std::time::Instant::now();
+        let run = taxel(
+            &format!("watch {} --json --rows 2 --columns 2", file.display()),
+            "",
+        );
+        assert!(begun.elapsed() < std::time::Duration::from_secs(2));
+        assert_eq!(run.status, Some(i32::from(!expected.is_empty())), "{run:?}");
+        assert!(run.stderr.contains(expected), "{run:?}");
+    }
 }
 
 #[test]

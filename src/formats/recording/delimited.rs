@@ -261,8 +261,14 @@ fn of_numbers(
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
     let numbers = separator.numbers(first);
+    // A file that grows is read no further than the answer needs.
+    let enough = match (options.shape, side(numbers.len())) {
+        (Some((rows, columns)), Some(width)) if width == columns && rows > 1 => rows + 1,
+        (Some(_), _) => 2,
+        (None, _) => MAX_FRAME_SIDE + 1,
+    };
     let (mut block, mut second, mut parted) = (1_u16, None, false);
-    while block <= MAX_FRAME_SIDE && lines.advance()? {
+    while block < enough && lines.advance()? {
         if is_blank(lines.line()) {
             parted = true;
             break;

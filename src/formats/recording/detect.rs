@@ -107,6 +107,17 @@ pub fn read(
 ) -> Result<RecordingFormat, RecordingError> {
     input.seek(SeekFrom::Start(0))?;
     let format = recognised_input(&mut input)?.ok_or(RecordingError::Unknown)?;
+    read_as(format, input, options, sink)?;
+    Ok(format)
+}
+
+/// The same for a recording whose form is known.
+pub(crate) fn read_as(
+    format: RecordingFormat,
+    mut input: impl Read + Seek,
+    options: ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), RecordingError> {
     input.seek(SeekFrom::Start(0))?;
     let mut input = BufReader::with_capacity(CHUNK, input);
     match format {
@@ -127,6 +138,5 @@ pub fn read(
         RecordingFormat::Mcap => Err(RecordingError::damaged(
             "an MCAP file, which this build does not read: it was built without the feature mcap",
         )),
-    }?;
-    Ok(format)
+    }
 }

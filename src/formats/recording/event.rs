@@ -55,6 +55,15 @@ impl RecordingFormat {
             Self::Flexitac => "flexitac",
         }
     }
+
+    /// Whether frames are written at its end as they are measured, as in a live stream, and can be read from there.
+    #[cfg(feature = "acquire")]
+    pub(crate) fn is_appended_to(self) -> bool {
+        matches!(
+            self,
+            Self::Csv | Self::JsonLines | Self::Ros2 | Self::Flexitac
+        )
+    }
 }
 
 /// What is known beforehand.

@@ -77,6 +77,8 @@ pub use channel_choice::ChannelChoice;
 pub use description::{FrameMark, RecordingMetadata};
 #[cfg(feature = "cli")]
 pub(crate) use detect::LOOKED_AT;
+#[cfg(all(feature = "acquire", unix))]
+pub(crate) use detect::read_as;
 pub use detect::{read, recognised, recognised_input};
 pub use error::RecordingError;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};

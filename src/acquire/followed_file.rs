@@ -1,0 +1,134 @@
+//! A recording that may still be written: at its end more is waited for, as `tail -f` does.
+//!
+//! A file that has grown since it was opened is followed until it is cut or replaced. One that has not, but was changed
+//! a moment ago, is given as long to grow; any other file ends where it ends.
+
+use std::cell::Cell;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::{Duration, SystemTime};
+
+use crate::acquire::growing_file::{GrowingFile, ReadAnew};
+
+/// A file that was not changed for this long, and has not grown since it was opened, is complete.
+const UNCHANGED: Duration = Duration::from_secs(2);
+
+/// Whether a file grows.
+#[derive(Debug)]
+pub(super) struct Growth {
+    file: File,
+    /// Its bytes when it was opened.
+    length: u64,
+    has_grown: Cell<bool>,
+}
+
+impl Growth {
+    /// Whether it has become longer since it was opened, or is another file by now.
+    pub(super) fn has_grown(&self) -> bool {
+        if !self.has_grown.get() {
+            let found = self.file.metadata();
+            let has_grown = found.is_ok_and(|found| found.len() > self.length);
+            self.has_grown.set(has_grown);
+        }
+        self.has_grown.get()
+    }
+
+    /// Whether it may be about to grow.
+    fn was_just_changed(&self) -> bool {
+        let changed = self.file.metadata().and_then(|found| found.modified());
+        let age = changed.map(|changed| SystemTime::now().duration_since(changed));
+        matches!(age, Ok(Ok(age)) if age < UNCHANGED)
+    }
+}
+
+/// Why reading a followed file ended, other than by its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FollowEnd {
+    /// No more is wanted.
+    Stopped,
+    /// It is to be read from its start.
+    Anew(ReadAnew),
+}
+
+/// Such a file. Whoever reads it waits at its end.
+pub(super) struct FollowedFile<'a> {
+    file: GrowingFile,
+    growth: &'a Growth,
+    /// Called while more is waited for; breaks if no more is wanted.
+    waiting: &'a mut dyn FnMut() -> ControlFlow<()>,
+    end: Option<FollowEnd>,
+}
+
+/// Opens a file. Returns also whether it grows.
+///
+/// # Errors
+/// What the system reports.
+pub(super) fn open(path: &Path) -> io::Result<(GrowingFile, Growth)> {
+    let file = File::open(path)?;
+    let growth = Growth {
+        length: file.metadata()?.len(),
+        file: file.try_clone()?,
+        has_grown: Cell::new(false),
+    };
+    Ok((GrowingFile::new(path, file), growth))
+}
+
+impl<'a> FollowedFile<'a> {
+    /// Follows a file from its start.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(super) fn new(
+        mut file: GrowingFile,
+        growth: &'a Growth,
+        waiting: &'a mut dyn FnMut() -> ControlFlow<()>,
+    ) -> io::Result<Self> {
+        file.rewind()?;
+        Ok(Self {
+            file,
+            growth,
+            waiting,
+            end: None,
+        })
+    }
+
+    /// The file, and why reading it has ended if not by its end.
+    pub(super) fn into_parts(self) -> (GrowingFile, Option<FollowEnd>) {
+        (self.file, self.end)
+    }
+}
+
+impl Read for FollowedFile<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        while self.end.is_none() {
+            if let Some(how) = self.file.anew()? {
+                self.growth.has_grown.set(true);
+                self.end = Some(FollowEnd::Anew(how));
+                break;
+            }
+            let count = self.file.read(bytes)?;
+            if count > 0 {
+                return Ok(count);
+            }
+            if !self.growth.has_grown() && !self.growth.was_just_changed() {
+                break;
+            }
+            if (self.waiting)().is_break() {
+                self.end = Some(FollowEnd::Stopped);
+            }
+        }
+        Ok(0)
+    }
+}
+
+impl Seek for FollowedFile<'_> {
+    /// Only to the start, which is all that a reader of lines or markers needs.
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        if to != SeekFrom::Start(0) {
+            return Err(io::ErrorKind::Unsupported.into());
+        }
+        self.file.rewind().map(|()| 0)
+    }
+}
