@@ -3,8 +3,10 @@
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::net::TcpStream;
+use std::ops::ControlFlow;
 use std::os::fd::{AsFd, BorrowedFd};
 use std::path::Path;
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -20,6 +22,9 @@ const MOMENT: Timespec = Timespec {
     tv_sec: 0,
     tv_nsec: 100_000_000,
 };
+
+/// How long it takes until one asks again whether a connection is still wanted.
+const ASKED: Duration = Duration::from_millis(100);
 
 /// How long a connection may take.
 const CONNECTING: Duration = Duration::from_secs(5);
@@ -55,19 +60,28 @@ pub(super) enum ByteInput {
 }
 
 impl ByteInput {
-    /// Opens a source; a file is read to its end only, if asked for.
+    /// Opens a source; a file is read to its end only, if asked for. `waiting` is called ten times a second where that takes
+    /// long; None if it breaks.
     ///
     /// # Errors
     /// What the system reports.
-    pub(super) fn open(source: &FrameSource, baud: u32, once: bool) -> io::Result<Self> {
-        Ok(match source {
+    pub(super) fn open(
+        source: &FrameSource,
+        baud: u32,
+        once: bool,
+        waiting: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> io::Result<Option<Self>> {
+        Ok(Some(match source {
             FrameSource::Standard => Self::Standard(io::stdin()),
-            FrameSource::Tcp(address) => Self::Tcp(connect(address)?),
+            FrameSource::Tcp(address) => match connect_unless(address, waiting)? {
+                Some(stream) => Self::Tcp(stream),
+                None => return Ok(None),
+            },
             FrameSource::Serial(path) => Self::Device(serial::open_line(path, baud)?),
             FrameSource::Fifo(path) => Self::Device(open_fifo(path)?),
             FrameSource::File(path) if once => Self::File(File::open(path)?),
             FrameSource::File(path) => Self::Growing(GrowingFile::open(path)?),
-        })
+        }))
     }
 
     /// What is waited for; none where bytes are read at once.
@@ -122,6 +136,36 @@ fn open_fifo(path: &Path) -> io::Result<File> {
     Ok(open(path, flags, Mode::empty())?.into())
 }
 
+/// Connects, on a thread that is left to itself where that is not wanted any more: to find the addresses of a name, and to
+/// wait for an answer from each of them, cannot be broken off.
+///
+/// # Errors
+/// As of [`connect`].
+fn connect_unless(
+    address: &str,
+    waiting: &mut dyn FnMut() -> ControlFlow<()>,
+) -> io::Result<Option<TcpStream>> {
+    let (send, connected) = channel();
+    let own = address.to_owned();
+    let body = move || send.send(connect(&own));
+    if std::thread::Builder::new().spawn(body).is_err() {
+        return connect(address).map(Some);
+    }
+    loop {
+        match connected.recv_timeout(ASKED) {
+            Ok(stream) => return stream.map(Some),
+            Err(RecvTimeoutError::Timeout) if waiting().is_break() => return Ok(None),
+            Err(RecvTimeoutError::Timeout) => {}
+            // It does not panic.
+            Err(RecvTimeoutError::Disconnected) => return Err(ErrorKind::NotConnected.into()),
+        }
+    }
+}
+
+/// Connects to the first address of a name that answers.
+///
+/// # Errors
+/// What the system reports.
 fn connect(address: &str) -> io::Result<TcpStream> {
     use std::net::ToSocketAddrs;
     check_address(address)?;
@@ -169,12 +213,31 @@ mod tests {
     }
 
     #[test]
+    fn a_connection_that_is_not_made_is_waited_for_a_moment_at_a_time() {
+        // A full queue of connections: the next one gets no answer.
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("bound");
+        let address = listener.local_addr().expect("an address");
+        rustix::net::listen(&listener, 0).expect("shortened");
+        let mut queue = Vec::new();
+        while let Ok(stream) = TcpStream::connect_timeout(&address, ASKED) {
+            queue.push(stream);
+        }
+        let begun = std::time::Instant::now();
+        let source = FrameSource::Tcp(address.to_string());
+        let waiting = &mut || ControlFlow::Break(());
+        let opened = ByteInput::open(&source, 0, false, waiting).expect("no error");
+        assert!(opened.is_none() && begun.elapsed() < CONNECTING);
+    }
+
+    #[test]
     fn a_pipe_without_a_writer_is_waited_for_a_moment_at_a_time() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("pipe");
         mknodat(CWD, &path, FileType::Fifo, Mode::from_raw_mode(0o600), 0).expect("made");
         let source = FrameSource::new(path.as_os_str());
-        let mut input = ByteInput::open(&source, 0, false).expect("opened");
+        let waiting = &mut || ControlFlow::Continue(());
+        let input = ByteInput::open(&source, 0, false, waiting).expect("opened");
+        let mut input = input.expect("wanted");
         let mut bytes = [0; 8];
         let mut read = || input.read(&mut bytes).expect("read");
         assert_eq!(read(), ReadOutcome::Bytes(0));

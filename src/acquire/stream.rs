@@ -98,8 +98,8 @@ pub(super) fn run(
         from_start: !source.comes_back(),
     };
     let mut decoder = StreamDecoder::new(stream);
-    let open = || ByteInput::open(source, options.baud, options.once);
-    let opened = first_input(source, options, &open, stop, &decoder, consumer)?;
+    let open: &Open<'_> = &|waiting| ByteInput::open(source, options.baud, options.once, waiting);
+    let opened = first_input(source, options, open, stop, &decoder, consumer)?;
     let Some(mut input) = opened else {
         return Ok(());
     };
@@ -134,7 +134,7 @@ pub(super) fn run(
         if step(&mut decoder, StreamDecoder::restart, &mut clock, consumer).is_break() {
             return Ok(());
         }
-        match again(&open, AcquireEvent::Lost(&lost), stop, &decoder, consumer) {
+        match again(open, AcquireEvent::Lost(&lost), stop, &decoder, consumer) {
             Some(found) => input = found,
             None => return Ok(()),
         }
@@ -147,17 +147,32 @@ pub(super) fn run(
     Ok(())
 }
 
+/// Opens the source, unless what it calls meanwhile breaks.
+type Open<'a> = dyn Fn(&mut dyn FnMut() -> ControlFlow<()>) -> io::Result<Option<ByteInput>> + 'a;
+
+/// Says that time goes by while a source is opened or waited for; `Break` if no more is wanted.
+fn wait(
+    stop: &AtomicBool,
+    decoder: &StreamDecoder,
+    consumer: &mut Consumer<'_>,
+) -> ControlFlow<()> {
+    if stop.load(Ordering::Relaxed) {
+        return ControlFlow::Break(());
+    }
+    consumer(AcquireEvent::Tick(decoder.counts()))
+}
+
 /// Opens a source, and waits for one that is not there yet if that is wanted; none if no more is wanted.
 fn first_input(
     source: &FrameSource,
     options: &AcquireOptions,
-    open: &dyn Fn() -> io::Result<ByteInput>,
+    open: &Open<'_>,
     stop: &AtomicBool,
     decoder: &StreamDecoder,
     consumer: &mut Consumer<'_>,
 ) -> Result<Option<ByteInput>, AcquireError> {
-    match open() {
-        Ok(input) => Ok(Some(input)),
+    match open(&mut || wait(stop, decoder, consumer)) {
+        Ok(input) => Ok(input),
         Err(error) if options.waits && source.comes_back() && source.check().is_ok() => {
             let absent = AcquireEvent::Absent(&error);
             Ok(again(open, absent, stop, decoder, consumer))
@@ -199,7 +214,7 @@ fn refused(doing: &'static str, error: io::Error) -> AcquireError {
 
 /// Reports why a source is waited for and opens it again, each second, until it is there; none if no more is wanted.
 fn again(
-    open: &dyn Fn() -> io::Result<ByteInput>,
+    open: &Open<'_>,
     event: AcquireEvent<'_>,
     stop: &AtomicBool,
     decoder: &StreamDecoder,
@@ -212,14 +227,13 @@ fn again(
     loop {
         let next = Instant::now() + RETRY;
         while Instant::now() < next {
-            if stop.load(Ordering::Relaxed)
-                || consumer(AcquireEvent::Tick(decoder.counts())).is_break()
-            {
+            if wait(stop, decoder, consumer).is_break() {
                 return None;
             }
             std::thread::sleep(TICK);
         }
-        if let Ok(input) = open() {
+        if let Ok(input) = open(&mut || wait(stop, decoder, consumer)) {
+            let input = input?;
             let gap = since.elapsed();
             let back = consumer(AcquireEvent::Back { gap });
             return back.is_continue().then_some(input);

@@ -9,8 +9,8 @@
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::{Duration, Instant};
 
@@ -24,6 +24,7 @@ use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::effect::FileRequest;
 use crate::tui::runtime::files;
+use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::models::ModelStore;
 use crate::tui::runtime::progress::WorkerEventSink;
 use crate::tui::runtime::recording::Recording;
@@ -244,7 +245,7 @@ pub(super) struct DiskQueue {
     library: Library,
     /// Where files may be written.
     pub(super) access: Arc<WriteAccess>,
-    /// The thread, once there is one.
+    /// What is shared with the thread, once there is one.
     thread: Option<DiskThread>,
     /// The requests without an answer; the first is being carried out.
     pending: VecDeque<PendingRequest>,
@@ -270,13 +271,65 @@ impl std::fmt::Debug for Post {
     }
 }
 
-/// The ends of the channels to the thread.
+/// This end of a thread that carries out requests.
 #[derive(Debug)]
 struct DiskThread {
-    /// Requests to carry out.
-    requests: Sender<DiskRequest>,
+    desk: Arc<Desk>,
     /// What became of them, in their order.
     answers: Receiver<DiskAnswer>,
+}
+
+/// Where requests wait for the thread.
+#[derive(Debug)]
+struct Desk {
+    waiting: Mutex<WaitingRequests>,
+    /// Notified when that changes.
+    changed: Condvar,
+    /// Used under the lock of `waiting`, and only by the thread whose turn it is.
+    answer: Sender<DiskAnswer>,
+}
+
+/// The requests that no thread has begun.
+#[derive(Debug, Default)]
+struct WaitingRequests {
+    requests: VecDeque<DiskRequest>,
+    /// Counts the threads. Only the last one takes requests and gives answers: those before it hang.
+    turn: u64,
+    /// Whether no more requests come.
+    is_closed: bool,
+}
+
+impl Desk {
+    /// Carries out requests as the thread of a turn, until another thread takes over or no more come.
+    fn work(&self, turn: u64, library: &Library, access: &WriteAccess, post: &WorkerEventSink) {
+        while let Some(request) = self.next(turn) {
+            let was_save = matches!(request, DiskRequest::Store(..));
+            let made = catch_unwind(AssertUnwindSafe(|| request.perform(library, access)));
+            let made = made.unwrap_or(DiskAnswer::Panicked { was_save });
+            let waiting = locked(&self.waiting);
+            if waiting.turn != turn || self.answer.send(made).is_err() {
+                return;
+            }
+            drop(waiting);
+            post(WorkerEvent::Answered);
+        }
+    }
+
+    /// Waits for the next request of a turn; None if there is none any more.
+    fn next(&self, turn: u64) -> Option<DiskRequest> {
+        let mut waiting = locked(&self.waiting);
+        while waiting.turn == turn {
+            if let Some(request) = waiting.requests.pop_front() {
+                return Some(request);
+            }
+            if waiting.is_closed {
+                break;
+            }
+            let woken = self.changed.wait(waiting);
+            waiting = woken.unwrap_or_else(PoisonError::into_inner);
+        }
+        None
+    }
 }
 
 impl DiskQueue {
@@ -322,37 +375,36 @@ impl DiskQueue {
             work: SlowWork::new(request.words()),
             locks: request.locks(),
         });
-        // It ends only after this end of the channel.
-        let _ = thread.requests.send(request);
+        locked(&thread.desk.waiting).requests.push_back(request);
+        thread.desk.changed.notify_all();
         None
     }
 
     /// Starts the thread where it is wanted and there is none. Without one, requests are carried out at once.
     fn start(&mut self) {
-        let Some(Post(post)) = self.post.as_ref().filter(|_| self.thread.is_none()) else {
+        if self.thread.is_some() || self.post.is_none() {
             return;
-        };
-        let (requests, asked) = channel::<DiskRequest>();
-        let (answer, answers) = channel();
-        let (library, access, post) = (
-            self.library.clone(),
-            Arc::clone(&self.access),
-            Arc::clone(post),
-        );
-        let body = move || {
-            for request in asked {
-                let was_save = matches!(request, DiskRequest::Store(..));
-                let made = catch_unwind(AssertUnwindSafe(|| request.perform(&library, &access)));
-                let made = made.unwrap_or(DiskAnswer::Panicked { was_save });
-                if answer.send(made).is_err() {
-                    return;
-                }
-                post(WorkerEvent::Answered);
-            }
-        };
-        if Builder::new().spawn(body).is_ok() {
-            self.thread = Some(DiskThread { requests, answers });
         }
+        let (answer, answers) = channel();
+        let desk = Arc::new(Desk {
+            waiting: Mutex::default(),
+            changed: Condvar::new(),
+            answer,
+        });
+        if self.spawn(&desk, 0) {
+            self.thread = Some(DiskThread { desk, answers });
+        }
+    }
+
+    /// Starts the thread of a turn. Returns whether there is one.
+    fn spawn(&self, desk: &Arc<Desk>, turn: u64) -> bool {
+        let Some(Post(post)) = &self.post else {
+            return false;
+        };
+        let (desk, library) = (Arc::clone(desk), self.library.clone());
+        let (access, post) = (Arc::clone(&self.access), Arc::clone(post));
+        let body = move || desk.work(turn, &library, &access, &post);
+        Builder::new().spawn(body).is_ok()
     }
 
     /// The next answer, if there is one within `time`.
@@ -372,10 +424,23 @@ impl DiskQueue {
         self.pending.len()
     }
 
-    /// Waits for none of them any more: the thread ends when the disk lets it. Returns what the first one does.
-    pub(super) fn abandon(&mut self) -> Option<String> {
-        self.thread = None;
-        let first = self.pending.drain(..).next()?;
+    /// Waits for the first of them no longer. Its thread ends when the disk lets it, and another one carries out the
+    /// others. Returns what the first one does.
+    pub(super) fn abandon_first(&mut self) -> Option<String> {
+        let first = self.pending.pop_front()?;
+        if let Some(thread) = &self.thread {
+            let mut waiting = locked(&thread.desk.waiting);
+            // It may have been answered just now.
+            if thread.answers.try_recv().is_err() {
+                waiting.turn += 1;
+                let turn = waiting.turn;
+                drop(waiting);
+                if !self.spawn(&thread.desk, turn) {
+                    // Requests are carried out at once from now on; these are lost.
+                    (self.thread, self.pending) = (None, VecDeque::new());
+                }
+            }
+        }
         Some(first.work.words)
     }
 
@@ -412,5 +477,15 @@ impl DiskQueue {
         lines
             .map(|words| format!("{words}: not done yet, because {why}\n"))
             .collect()
+    }
+}
+
+impl Drop for DiskQueue {
+    /// The thread ends when it has carried out what was asked for.
+    fn drop(&mut self) {
+        if let Some(thread) = &self.thread {
+            locked(&thread.desk.waiting).is_closed = true;
+            thread.desk.changed.notify_all();
+        }
     }
 }

@@ -3,7 +3,7 @@
 //! ```text
 //! ask -> answer within a moment: the next message
 //!        later: as soon as no other page stands above the one that asked
-//!        Esc there: no longer waited for; the thread that hangs is left to itself
+//!        Esc there: no longer waited for; the thread that hangs is left to itself, and another one goes on
 //! ```
 
 use std::collections::VecDeque;
@@ -16,8 +16,8 @@ use crate::tui::runtime::disk::{DiskAnswer, DiskQueue, DiskRequest};
 pub(super) struct Reader {
     /// The requests.
     pub(super) queue: DiskQueue,
-    /// How many pages were open when each of them was made.
-    asked: VecDeque<usize>,
+    /// How many pages were open when each of them was made; None if its answer is not wanted any more.
+    asked: VecDeque<Option<usize>>,
     /// Answers that wait for their page, with the same number.
     answers: VecDeque<(usize, DiskAnswer)>,
 }
@@ -37,7 +37,7 @@ impl Reader {
         let before = self.queue.len();
         let answer = self.queue.ask(request);
         if self.queue.len() > before {
-            self.asked.push_back(pages);
+            self.asked.push_back(Some(pages));
         }
         answer
     }
@@ -45,7 +45,7 @@ impl Reader {
     /// Takes the next answer whose page is on top when that many are open.
     pub(super) fn take(&mut self, pages: usize) -> Option<DiskAnswer> {
         while let Some(answer) = self.queue.wait(Duration::ZERO) {
-            let asked = self.asked.pop_front();
+            let asked = self.asked.pop_front().flatten();
             self.answers.extend(asked.map(|asked| (asked, answer)));
         }
         let mut waiting = self.answers.iter();
@@ -53,11 +53,21 @@ impl Reader {
         self.answers.remove(next).map(|(_, answer)| answer)
     }
 
-    /// Waits no longer, if the page that asked first is on top when that many are open. Returns what was waited for.
+    /// Waits no longer for what was asked for first, if the page that did so is on top when that many are open. Returns what
+    /// was waited for. Other answers go on being waited for, but for those to a page, which closes now.
     pub(super) fn give_up(&mut self, pages: usize) -> Option<String> {
-        self.asked.front().filter(|asked| **asked >= pages)?;
-        self.asked.clear();
-        self.queue.abandon()
+        let is_of_page = |asked: &Option<usize>| asked.is_none_or(|asked| asked >= pages);
+        self.asked.pop_front_if(|asked| is_of_page(asked))?;
+        if pages > 0 {
+            let others = self.asked.iter_mut();
+            others
+                .filter(|asked| is_of_page(asked))
+                .for_each(|asked| *asked = None);
+        }
+        let given_up = self.queue.abandon_first();
+        // Without another thread the others are lost.
+        self.asked.truncate(self.queue.len());
+        given_up
     }
 
     /// What is waited for, if it takes long.

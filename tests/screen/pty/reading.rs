@@ -109,6 +109,26 @@ fn esc_gives_up_waiting() {
 }
 
 #[test]
+fn what_was_asked_for_behind_it_is_not_given_up() {
+    let folder = library();
+    let mut program = started(folder.path());
+    let file = folder.path().join("a.txt");
+    fs::write(&file, "#.#\n").expect("written");
+    let Some(hanging) = Tracer::hang(&mut program, OPENING, &[&file]) else {
+        return;
+    };
+    program.types(format!(":open {}\r", file.display()).as_bytes());
+    program.shows("waiting for the disk; Esc gives up");
+    program.types(b":load stripe\r");
+    program.types(b"\x1b");
+    program.shows("stripe loaded");
+    program.shows("NA 7 in all");
+    hanging.end();
+    program.types(b"q");
+    program.ends_well(0);
+}
+
+#[test]
 fn a_shape_comes_when_the_page_opened_meanwhile_is_closed() {
     let folder = library();
     let mut program = started(folder.path());
