@@ -77,14 +77,6 @@ pub enum RecorderError {
         /// The file.
         path: PathBuf,
     },
-    /// A frame of another size than those before it.
-    #[error("a frame of {found_rows} × {found_columns} cells, expected {rows} × {columns} as before", found_rows = found.0, found_columns = found.1, rows = expected.0, columns = expected.1)]
-    Size {
-        /// Its rows and columns.
-        found: (u16, u16),
-        /// Those of the first frame.
-        expected: (u16, u16),
-    },
 }
 
 /// No description is longer.
@@ -105,6 +97,8 @@ pub struct FrameRecorder {
     records: u64,
     /// Records in the file.
     in_file: u64,
+    /// Frames of another size than the first one.
+    left_out: u64,
     /// What went wrong first.
     reason: Option<String>,
     written: Instant,
@@ -220,6 +214,7 @@ impl FrameRecorder {
             metadata,
             names: Names::Waiting(array, description),
             in_file: 0,
+            left_out: 0,
             reason: None,
             syncer: Syncer::new(&file),
             last_time: None,
@@ -301,10 +296,20 @@ impl FrameRecorder {
         self.records
     }
 
-    /// Records a frame, with its time in seconds.
+    /// Number of frames that were not, since they are of another size than the first one: an array has one size.
+    pub fn left_out(&self) -> u64 {
+        self.left_out
+    }
+
+    /// Rows and columns of the frames that are recorded; None before the first one.
+    pub fn size(&self) -> Option<(u16, u16)> {
+        self.shape
+    }
+
+    /// Records a frame, with its time in seconds; one of another size than the first is left out and counted.
     ///
     /// # Errors
-    /// If it is of another size than the first one, or cannot be written.
+    /// If it cannot be written.
     pub fn add(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), RecorderError> {
         let added = self.take(frame, time);
         self.noted(added)
@@ -324,8 +329,9 @@ impl FrameRecorder {
             }
             names => names,
         };
-        if let Some(expected) = self.shape.filter(|shape| *shape != found) {
-            return Err(RecorderError::Size { found, expected });
+        if self.shape.is_some_and(|shape| shape != found) {
+            self.left_out += 1;
+            return Ok(());
         }
         if let Some(time) = time {
             if self.steps.len() == MOST_STEPS {

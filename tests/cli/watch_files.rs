@@ -214,6 +214,32 @@ fn a_first_frame_that_is_not_whole_yet_is_waited_for() {
 }
 
 #[test]
+fn frames_of_another_size_do_not_end_a_recording() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("touch.npy");
+    let name = file.to_str().expect("UTF-8");
+    let frame = |columns: usize| format!("{{\"frame\":[{:?}]}}\n", vec![5; columns]);
+    let stream: String = [2, 3, 2, 3, 3, 3, 3, 2, 2, 2].map(frame).concat();
+    let run = taxel(&format!("watch - --format jsonl --write {name}"), stream);
+    assert_eq!(run.status, Some(0), "{run:?}");
+    // The sizes are those of the stream, which changes its own after three frames.
+    let sums: Vec<Value> = lines(&run.stdout)
+        .iter()
+        .map(|line| line["sum"].clone())
+        .collect();
+    assert_eq!(sums, [10, 10, 15, 15, 10]);
+    let said = "frame 2 has 1 x 3 cells; the recording has frames of 1 x 2 and leaves out others";
+    assert!(run.stderr.contains(said), "{run:?}");
+    assert!(run.stderr.contains("5 torn, short"), "{run:?}");
+    assert!(
+        run.stderr.contains("2 frames of another size not recorded"),
+        "{run:?}"
+    );
+    let listed = taxel(&format!("frames {name} --json"), "");
+    assert_eq!(lines(&listed.stdout)[0]["channels"][0]["frames"], 3);
+}
+
+#[test]
 fn a_file_that_was_not_changed_lately_ends_where_it_ends() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("old.txt");

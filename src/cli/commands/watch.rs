@@ -36,7 +36,7 @@ use crate::formats::recording::{
     RecordingMetadata, SetRule,
 };
 use crate::formats::stream::StreamCounts;
-use crate::formats::value::grouped;
+use crate::formats::value::{counted, grouped};
 use crate::frame::{Frame, FrameError, Processing, Tare, TareFrames};
 use crate::matrix::Matrix;
 use crate::tui::live::request::WatchRequest;
@@ -399,10 +399,28 @@ impl Watcher<'_> {
         }
     }
 
-    fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
-        if let Some(recorder) = &mut self.recorder {
-            recorder.add(frame, time).map_err(CliError::Recorder)?;
+    /// Records a frame if that is wanted. The first one of another size is named: no such frame is in the recording.
+    fn record(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
+        let Some(recorder) = &mut self.recorder else {
+            return Ok(());
+        };
+        let before = recorder.left_out();
+        recorder.add(frame, time).map_err(CliError::Recorder)?;
+        if let (0, 1, Some((rows, columns))) = (before, recorder.left_out(), recorder.size()) {
+            let found = (frame.number, frame.rows(), frame.columns());
+            let (number, found_rows, found_columns) = found;
+            let text = format!(
+                "frame {number} has {found_rows} x {found_columns} cells; the recording has frames of {rows} x {columns} \
+                 and leaves out others"
+            );
+            self.say(&text);
         }
+        Ok(())
+    }
+
+    /// Takes a frame of the channel: it is recorded, and answered or kept for the tare.
+    fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
+        self.record(frame, time)?;
         let mut own = std::mem::replace(&mut self.frame, Frame::new(1, 1));
         own.copy_from(frame);
         own.time = time;
@@ -559,6 +577,11 @@ impl Watcher<'_> {
         // A stream has said so already.
         if failure.is_none() && ended_well && !self.begun {
             failure = Some(self.refused("no frames"));
+        }
+        let left_out = self.recorder.as_ref().map_or(0, FrameRecorder::left_out);
+        if left_out > 0 {
+            let frames = counted(left_out, "frame");
+            self.say(&format!("{frames} of another size not recorded"));
         }
         let recorded = self.recorder.take().map(FrameRecorder::finish);
         // A file that could not be begun is not for want of frames.

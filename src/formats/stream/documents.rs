@@ -1,12 +1,13 @@
 //! Messages in text: a JSON object a line, and what `ros2 topic echo` prints.
 //!
-//! Unlike a recording, a stream goes on after a line or a message that is wrong: it is dropped and counted. Rows and
-//! columns may change from frame to frame.
+//! Unlike a recording, a stream goes on after a line or a message that is wrong, or of another size than those before: it is
+//! dropped and counted.
 
 use crate::formats::recording::json_lines::FrameLine;
 use crate::formats::recording::ros_text::{self, RosLine, RosMessage};
 use crate::formats::seconds::since;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
+use crate::formats::stream::size::FrameSize;
 use crate::frame::Frame;
 
 /// A decoder of JSON lines.
@@ -14,6 +15,8 @@ use crate::frame::Frame;
 pub(super) struct JsonDecoder {
     /// The line that was read last.
     line: FrameLine,
+    /// Rows and columns of all frames.
+    size: FrameSize,
     /// The time of the first frame, from which all others count.
     start: Option<f64>,
     /// The frame made of it.
@@ -26,6 +29,7 @@ impl JsonDecoder {
     pub(super) fn new(shape: Option<(u16, u16)>, start: Option<f64>) -> Self {
         Self {
             line: FrameLine::new(shape),
+            size: FrameSize::new(shape),
             start,
             frame: Frame::new(1, 1),
         }
@@ -47,6 +51,7 @@ impl JsonDecoder {
             return;
         }
         match self.line.read(line) {
+            Ok(()) if !self.size.admits(self.line.shape) => counts.drop_frames(1, line),
             Ok(()) => {
                 let (rows, columns) = self.line.shape;
                 self.frame.reset(columns, rows);
@@ -59,6 +64,7 @@ impl JsonDecoder {
                 sink(StreamEvent::Frame(&self.frame));
             }
             Err(error) => {
+                self.size.pass_torn();
                 counts.unshaped = counts.unshaped.or(error.unshaped());
                 counts.drop_frames(1, line);
             }
@@ -71,6 +77,8 @@ impl JsonDecoder {
 pub(super) struct RosDecoder {
     /// Rows and columns of messages that do not say them.
     shape: Option<(u16, u16)>,
+    /// Rows and columns of all frames.
+    size: FrameSize,
     /// The message so far.
     message: RosMessage,
     /// Whether its beginning was seen; a stream may be joined in the middle of one.
@@ -87,6 +95,8 @@ impl RosDecoder {
     pub(super) fn new(shape: Option<(u16, u16)>, from_start: bool) -> Self {
         Self {
             shape,
+            // Messages that say their size may have another one than was named.
+            size: FrameSize::new(None),
             message: RosMessage::default(),
             begun: from_start,
             broken: false,
@@ -134,6 +144,9 @@ impl RosDecoder {
             |(rows, columns): &(u16, u16)| usize::from(*rows) * usize::from(*columns) == values;
         match shape.filter(fits) {
             _ if !begun => {}
+            Some(shape) if !self.broken && !self.size.admits(shape) => {
+                counts.drop_frames(1, line);
+            }
             Some((rows, columns)) if !self.broken => {
                 self.frame.reset(columns, rows);
                 self.frame
@@ -144,6 +157,7 @@ impl RosDecoder {
                 sink(StreamEvent::Frame(&self.frame));
             }
             _ => {
+                self.size.pass_torn();
                 if shape.is_none() && !self.broken {
                     counts.unshaped = Some(values as u64);
                 }

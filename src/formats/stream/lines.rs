@@ -8,27 +8,21 @@
 //! 7 3
 //! ```
 //! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are never
-//! joined. A shape that was not named is that of the first frame, until three frames in a row have another one.
+//! joined.
 
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
+use crate::formats::stream::size::FrameSize;
 use crate::frame::{Frame, MAX_FRAME_SIDE};
 
 /// The most values of a frame.
 const MOST: usize = 512 * 512;
 
-/// Frames in a row that another shape needs to become the shape, where none was named.
-const AGAIN: u8 = 3;
-
 /// A decoder of lines of numbers.
 #[derive(Debug)]
 pub(super) struct LinesDecoder {
-    /// Rows and columns: as named, else those of the first whole frame, until other ones come again and again.
-    shape: Option<(u16, u16)>,
-    /// Those that were named.
-    named: Option<(u16, u16)>,
-    /// Another shape, and how many frames in a row have had it.
-    other: Option<((u16, u16), u8)>,
+    /// Rows and columns.
+    size: FrameSize,
     /// Whether a boundary was seen, so that a frame may begin.
     begun: bool,
     /// The rows of the frame so far.
@@ -49,9 +43,7 @@ impl LinesDecoder {
     /// Where the stream is joined in the middle, nothing counts before the first boundary.
     pub(super) fn new(shape: Option<(u16, u16)>, from_start: bool) -> Self {
         Self {
-            shape,
-            named: shape,
-            other: None,
+            size: FrameSize::new(shape),
             begun: from_start,
             values: Vec::new(),
             rows: 0,
@@ -83,21 +75,22 @@ impl LinesDecoder {
             rows > 1 && count == usize::from(rows) * usize::from(columns)
         };
         if read.is_some()
-            && (self.shape.is_some_and(is_frame) || self.named == Some((1, width(count))))
+            && (self.size.present().is_some_and(is_frame)
+                || self.size.named() == Some((1, width(count))))
         {
             if self.rows > 0 && self.begun {
                 counts.drop_frames(1, &self.broken_row);
             }
             self.values.drain(..before);
-            self.other = None;
+            self.size.pass_torn();
             // The line before it was ended.
             self.begun = true;
             self.give(counts, sink);
             self.clear();
             return;
         }
-        let expected = match self.shape {
-            Some((_, columns)) if self.named.is_some() => usize::from(columns),
+        let expected = match self.size.named() {
+            Some((_, columns)) => usize::from(columns),
             _ if self.rows > 0 => before / usize::from(self.rows),
             _ => count,
         };
@@ -114,14 +107,15 @@ impl LinesDecoder {
             self.broken_row.clear();
             self.broken_row.extend(line.iter().take(64));
         }
-        if self.shape.is_none() && self.rows > MAX_FRAME_SIDE {
+        if self.size.present().is_none() && self.rows > MAX_FRAME_SIDE {
             counts.unshaped = Some(count as u64);
         }
     }
 
     /// Counts a broken line at once where no empty line parts frames, as far as is known.
     fn give_up(&mut self, line: &[u8], counts: &mut StreamCounts) {
-        if self.named.is_some_and(|(rows, _)| self.rows > rows) || self.rows > MAX_FRAME_SIDE {
+        let is_full = |(rows, _)| self.rows > rows;
+        if self.size.named().is_some_and(is_full) || self.rows > MAX_FRAME_SIDE {
             if self.begun {
                 counts.drop_frames(1, line);
             }
@@ -140,40 +134,20 @@ impl LinesDecoder {
         let columns = width(self.values.len() / usize::from(self.rows.max(1)));
         let own = (self.rows, columns);
         let fits = !self.broken && (1..=MAX_FRAME_SIDE).contains(&columns);
-        if fits && self.has_shape(own) {
+        if fits && self.size.admits(own) {
             self.give(counts, sink);
         } else {
             if !fits {
-                self.other = None;
+                self.size.pass_torn();
             }
             counts.drop_frames(1, &self.broken_row);
         }
         self.clear();
     }
 
-    /// Whether a whole frame has the shape. The first one may have been something else, such as the number of a version:
-    /// where no shape was named, another one that comes often enough takes its place.
-    fn has_shape(&mut self, own: (u16, u16)) -> bool {
-        let shape = *self.shape.get_or_insert(own);
-        if own == shape || self.named.is_some() {
-            self.other = None;
-            return own == shape;
-        }
-        let times = match self.other {
-            Some((other, times)) if other == own => times + 1,
-            _ => 1,
-        };
-        if times < AGAIN {
-            self.other = Some((own, times));
-            return false;
-        }
-        (self.shape, self.other) = (Some(own), None);
-        true
-    }
-
     /// Gives a frame of the shape.
     fn give(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
-        let Some((rows, columns)) = self.shape else {
+        let Some((rows, columns)) = self.size.present() else {
             return;
         };
         self.frame.reset(columns, rows);
@@ -203,7 +177,7 @@ impl LinesDecoder {
             self.broken_row = torn.iter().take(64).copied().collect();
         }
         // Lines and nothing else: of frames, or rows of a single one.
-        if self.shape.is_none() && !self.parted && self.rows > 0 {
+        if self.size.present().is_none() && !self.parted && self.rows > 0 {
             counts.unshaped = Some(self.values.len() as u64 / u64::from(self.rows));
             self.clear();
             return;

@@ -25,6 +25,8 @@ mod event;
 
 mod numbers;
 
+mod size;
+
 mod lines;
 
 mod documents;

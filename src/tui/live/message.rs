@@ -110,11 +110,20 @@ pub struct FeedStatus {
     /// Frames that came while nobody took them and there was no memory for more.
     pub overflowed: u64,
     /// How many frames are in the recording; None without one.
-    pub recorded: Option<u64>,
+    pub recorded: Option<RecordedFrames>,
     /// Why the recording has ended early.
     pub record_error: Option<String>,
     /// What is odd in a recording that is played, the first of it.
     pub note: Option<String>,
+}
+
+/// What has become of frames that are recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RecordedFrames {
+    /// How many are in the recording.
+    pub frames: u64,
+    /// How many are not, since they are of another size.
+    pub left_out: u64,
 }
 
 /// Whether frames come.

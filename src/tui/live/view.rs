@@ -213,8 +213,13 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
         say("marked", format!("frame {}", numbers.join(", ")));
     }
     if let Some(name) = live.recording() {
-        let frames = counted(live.status().recorded.into_iter().sum(), "frame");
-        say("recording", format!("{name}, {frames}"));
+        let recorded = live.status().recorded.unwrap_or_default();
+        let frames = counted(recorded.frames, "frame");
+        let left_out = match recorded.left_out {
+            0 => String::new(),
+            frames => format!("; {} of another size left out", grouped(frames)),
+        };
+        say("recording", format!("{name}, {frames}{left_out}"));
     } else if let Some(reason) = live.not_recorded() {
         say("recording", format!("none: {reason}"));
     }

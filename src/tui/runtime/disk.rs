@@ -21,7 +21,7 @@ use crate::storage::{
 };
 use crate::tui::app::message::{FileEvent, LibraryEvent, Purpose};
 use crate::tui::app::worker_event::WorkerEvent;
-use crate::tui::live::message::LiveEvent;
+use crate::tui::live::message::{LiveEvent, RecordedFrames};
 use crate::tui::runtime::effect::FileRequest;
 use crate::tui::runtime::files;
 use crate::tui::runtime::lock::locked;
@@ -204,7 +204,7 @@ impl DiskRequest {
 }
 
 /// What became of a recording of the source of that number to which something was written: a failure ends it.
-fn written(number: u64, written: Result<Option<u64>, String>) -> DiskAnswer {
+fn written(number: u64, written: Result<Option<RecordedFrames>, String>) -> DiskAnswer {
     let failed = |reason| DiskAnswer::Live(number, LiveEvent::NotRecorded(reason));
     written.map_or_else(failed, |_| DiskAnswer::Nothing)
 }

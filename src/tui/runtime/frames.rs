@@ -22,7 +22,9 @@ use crate::frame::Frame;
 use crate::storage::Existing;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::history::bytes_of;
-use crate::tui::live::message::{FrameBatch, LiveEvent, ProvisionalChange, SourceState};
+use crate::tui::live::message::{
+    FrameBatch, LiveEvent, ProvisionalChange, RecordedFrames, SourceState,
+};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::progress::WorkerEventSink;
@@ -188,7 +190,7 @@ impl FrameWatcher {
         watched.begins = false;
         let before = locked(&watched.feed.recording).replace(recording?);
         let mut pending = locked(&watched.feed.pending);
-        pending.batch.status.recorded = Some(0);
+        pending.batch.status.recorded = Some(RecordedFrames::default());
         pending.batch.status.record_error = None;
         before
     }
@@ -308,8 +310,8 @@ impl FrameFeed {
     /// Writes to it, if there is one. Returns how many frames are recorded then.
     fn recorded(
         &self,
-        write: impl FnOnce(&Recording) -> Result<Option<u64>, String>,
-    ) -> Result<Option<u64>, String> {
+        write: impl FnOnce(&Recording) -> Result<Option<RecordedFrames>, String>,
+    ) -> Result<Option<RecordedFrames>, String> {
         let recording = self.recording();
         recording.map_or(Ok(None), |recording| write(&recording))
     }
@@ -332,7 +334,7 @@ impl FrameFeed {
             .refuse_as_target(recording.path())
             .map_err(|error| error.to_string())?;
         recording.begin(existing, &metadata)?;
-        locked(&self.pending).batch.status.recorded = Some(0);
+        locked(&self.pending).batch.status.recorded = Some(RecordedFrames::default());
         Ok(())
     }
 
@@ -485,7 +487,7 @@ impl Pending {
     }
 
     /// Notes how a recording is.
-    fn note(&mut self, recorded: Result<Option<u64>, String>) {
+    fn note(&mut self, recorded: Result<Option<RecordedFrames>, String>) {
         match recorded {
             Ok(recorded) => self.batch.status.recorded = recorded,
             Err(error) => {

@@ -17,7 +17,7 @@ use crate::acquire::{FrameRecorder, RecorderError};
 use crate::formats::recording::{FrameMark, RecordingMetadata};
 use crate::frame::Frame;
 use crate::storage::Existing;
-use crate::tui::live::message::LiveEvent;
+use crate::tui::live::message::{LiveEvent, RecordedFrames};
 use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::write_access::WriteAccess;
 
@@ -99,7 +99,11 @@ impl Recording {
     ///
     /// # Errors
     /// A sentence. The recording ends then; what is in it so far stays.
-    pub(super) fn add(&self, frame: &Frame, time: Option<f64>) -> Result<Option<u64>, String> {
+    pub(super) fn add(
+        &self,
+        frame: &Frame,
+        time: Option<f64>,
+    ) -> Result<Option<RecordedFrames>, String> {
         self.write(|recorder| recorder.add(frame, time))
     }
 
@@ -107,7 +111,7 @@ impl Recording {
     ///
     /// # Errors
     /// A sentence. The recording ends then.
-    pub(super) fn tick(&self) -> Result<Option<u64>, String> {
+    pub(super) fn tick(&self) -> Result<Option<RecordedFrames>, String> {
         self.write(FrameRecorder::tick)
     }
 
@@ -115,7 +119,7 @@ impl Recording {
     ///
     /// # Errors
     /// A sentence. The recording ends then.
-    pub(super) fn flush(&self) -> Result<Option<u64>, String> {
+    pub(super) fn flush(&self) -> Result<Option<RecordedFrames>, String> {
         self.write(FrameRecorder::flush)
     }
 
@@ -123,7 +127,7 @@ impl Recording {
     ///
     /// # Errors
     /// A sentence. The recording ends then.
-    pub(super) fn mark(&self, marks: Vec<FrameMark>) -> Result<Option<u64>, String> {
+    pub(super) fn mark(&self, marks: Vec<FrameMark>) -> Result<Option<RecordedFrames>, String> {
         self.write(|recorder| recorder.mark(marks))
     }
 
@@ -131,15 +135,18 @@ impl Recording {
     fn write(
         &self,
         write: impl FnOnce(&mut FrameRecorder) -> Result<(), RecorderError>,
-    ) -> Result<Option<u64>, String> {
+    ) -> Result<Option<RecordedFrames>, String> {
         let mut state = locked(&self.recorder);
         let RecorderState::Open(recorder) = &mut *state else {
             return Ok(None);
         };
         let written = write(recorder);
-        let frames = recorder.frames();
+        let recorded = RecordedFrames {
+            frames: recorder.frames(),
+            left_out: recorder.left_out(),
+        };
         written
-            .map(|()| Some(frames))
+            .map(|()| Some(recorded))
             .map_err(|error| close(&mut state, &error))
     }
 

@@ -215,6 +215,12 @@ fn torn_short_long_and_garbled_frames_are_counted_and_never_joined() {
     let json = b"{\"frame\":[[1]]}\n{\"frame\":[[1],[2,3]]}\nnonsense\n{\"frame\":[[2]]}";
     let (found, counts) = decoded(options(None), json, &mut Random::new(3));
     assert_eq!((found, counts.dropped), (vec![vec![1.0], vec![2.0]], 2));
+    // One of another size is dropped, too, until such ones come again and again.
+    let json =
+        [1, 2, 2, 1, 2, 2, 2, 2, 1].map(|rows| format!("{{\"frame\":{:?}}}\n", vec![[5]; rows]));
+    let (found, counts) = decoded(options(None), json.concat().as_bytes(), &mut Random::new(3));
+    let sizes: Vec<usize> = found.iter().map(Vec::len).collect();
+    assert_eq!((sizes, counts.dropped), (vec![1, 1, 2, 2], 5));
     let ended = [
         &[1, 2, 3, 4, 255][..],
         &[1, 2, 3, 255],
