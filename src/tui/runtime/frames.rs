@@ -30,6 +30,7 @@ use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::progress::WorkerEventSink;
 use crate::tui::runtime::recording::Recording;
 use crate::tui::runtime::source;
+use crate::tui::runtime::threads;
 use crate::tui::runtime::write_access::WriteAccess;
 
 /// The source that is watched.
@@ -123,7 +124,7 @@ impl FrameWatcher {
         };
         let stop = Arc::clone(&watched.stop);
         let before = self.thread.take();
-        let thread = std::thread::Builder::new().spawn(move || {
+        let thread = threads::start(move || {
             if let Some(before) = before {
                 give_time_to_end(&before);
             }
@@ -141,8 +142,7 @@ impl FrameWatcher {
             });
         });
         let thread = thread.map(|thread| self.thread = Some(thread));
-        if let Err(error) = thread {
-            let reason = format!("cannot start a thread: {error}");
+        if let Err(reason) = thread {
             let recording = locked(&watched.feed.recording).take();
             watched.feed.change(|pending| {
                 pending.batch.status.state = SourceState::Failed(reason.clone());

@@ -12,7 +12,7 @@
 
 use std::cell::Cell;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::thread::{Builder, JoinHandle};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::formats::StoredShape;
@@ -20,6 +20,7 @@ use crate::storage::{Journal, Orphan};
 use crate::tui::app::state::App;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::runtime::progress::WorkerEventSink;
+use crate::tui::runtime::threads;
 
 /// Changes are gathered for this time before they are written, so a crash loses less than a second of work.
 const GATHER: Duration = Duration::from_millis(400);
@@ -67,7 +68,7 @@ impl JournalWriter {
             post: None,
             reported: false,
         };
-        match Builder::new().spawn(move || writer.run(&inbox)) {
+        match threads::start(move || writer.run(&inbox)) {
             Ok(thread) => Self {
                 notes: Some(notes),
                 thread: Some(thread),
@@ -75,9 +76,9 @@ impl JournalWriter {
                 refused: None,
                 hangs: Cell::new(false),
             },
-            Err(error) => {
+            Err(reason) => {
                 let mut idle = Self::idle();
-                idle.refused = Some(error.to_string());
+                idle.refused = Some(reason);
                 idle
             }
         }
@@ -96,8 +97,8 @@ impl JournalWriter {
 
     /// Reports errors to `post` from now on.
     pub(in crate::tui) fn report_to(&self, post: WorkerEventSink) {
-        if let Some(error) = &self.refused {
-            let message = format!("unsaved work cannot be kept: cannot start a thread: {error}");
+        if let Some(reason) = &self.refused {
+            let message = format!("unsaved work cannot be kept: {reason}");
             post(WorkerEvent::Refused(message));
         }
         self.send(JournalRequest::ReportTo(post));

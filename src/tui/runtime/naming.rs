@@ -86,11 +86,10 @@ impl ShapeNamer {
                 say(LiveEvent::NotNamed(by, reason));
             }
         };
-        let thread = std::thread::Builder::new().spawn(move || threads::run(work));
+        let thread = threads::start(move || threads::run(work));
         match thread {
             Ok(thread) => self.thread = Some(thread),
-            Err(error) => {
-                let reason = format!("cannot start a thread: {error}");
+            Err(reason) => {
                 refused(WorkerEvent::Live(number, LiveEvent::NotNamed(by, reason)));
             }
         }

@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
-use std::thread::{Builder, JoinHandle};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::tui::app::worker_event::WorkerEvent;
@@ -70,11 +70,8 @@ pub(super) fn on_a_thread(
     work: impl FnOnce(&WorkerEventSink) + Send + 'static,
 ) -> Result<JoinHandle<()>, WorkerEvent> {
     let own = Arc::clone(post);
-    let thread = Builder::new().spawn(move || threads::run(|| work(&own)));
-    thread.map_err(|error| {
-        let message = format!("cannot start a thread: {error}");
-        WorkerEvent::Failed(number, message)
-    })
+    let thread = threads::start(move || threads::run(|| work(&own)));
+    thread.map_err(|message| WorkerEvent::Failed(number, message))
 }
 
 /// Turns a panic into an event; without it the program would wait for ever.

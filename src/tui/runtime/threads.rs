@@ -4,13 +4,14 @@
 //! Therefore all its threads are there before it is built. If there are too few, each thread does its own work alone:
 //! ```text
 //! prepare   on the screen's thread, before there is work: a thread a core, or a pool of that thread alone
+//! start     a thread for work
 //! run       on a thread that has work: in that pool, or in one of its own
 //! ```
 
 use std::io;
 use std::sync::OnceLock;
 use std::sync::mpsc::{Sender, channel};
-use std::thread::{Builder, available_parallelism};
+use std::thread::{Builder, JoinHandle, available_parallelism};
 
 use rayon::{ThreadBuilder, ThreadPoolBuilder};
 
@@ -47,6 +48,15 @@ fn spare_threads() -> io::Result<Vec<Sender<ThreadBuilder>>> {
         Ok(give)
     });
     spare.collect()
+}
+
+/// Starts a thread.
+///
+/// # Errors
+/// A sentence, where the system gives none.
+pub(super) fn start(body: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>, String> {
+    let thread = Builder::new().spawn(body);
+    thread.map_err(|error| format!("cannot start a thread: {error}"))
 }
 
 /// Does work on a thread that was started for it.
