@@ -209,11 +209,17 @@ fn what_the_recording_does_not_say_is_asked_for_and_never_cut() {
         answered("u2.npy", crop)[0]["imprint"],
         serde_json::json!(["..", "##"])
     );
-    refused(
-        "u2.npy",
-        "--frame 0 --at-least 9 --crop 3,0,3x1",
-        "the crop reaches beyond",
-    );
+    for choice in ["--frame 0 --at-least 9", ""] {
+        let beyond = format!("{choice} --crop 3,0,3x1");
+        refused("u2.npy", &beyond, "the crop reaches beyond");
+    }
+    // A listing is about what is left.
+    let list = &answered("u2.npy", "--crop 1,1,2x3 --json")[0]["channels"][0];
+    let size = ["rows", "columns", "cells"].map(|key| list[key].as_u64());
+    assert_eq!(size, [Some(3), Some(2), Some(6)]);
+    let run = taxel(&format!("frames {} --crop 1,1,2x3", sample("u2.npy")), "");
+    let size = "size      3 rows × 2 columns of 4 × 5, 6 cells";
+    assert!(run.stdout.contains(size), "{}", run.stdout);
 }
 
 #[test]

@@ -291,6 +291,17 @@ fn frames_are_looked_at_as_the_file_says() {
         flags.contains("\"rule\":{\"at_least\":9,\"from\":\"flag\"}") && !flags.contains("tare"),
         "{flags}"
     );
+    // A tare that cannot be made is named as that of the settings.
+    let few = self::home("[frames]\ntare = 9\n");
+    for command in ["frames --all", "watch --once"] {
+        let line = |tare| format!("{command} {samples}/tekscan.asf --json --at-least 9 {tare}");
+        let said = |tare| run(&mut at_home(&line(tare), few.path())).stderr;
+        let lacking = "frames for the tare: found 3, expected 9";
+        let of_settings = format!("{lacking}, by tare under [frames] in the settings");
+        assert!(said("").contains(&of_settings), "{}", said(""));
+        let of_flag = said("--tare 9");
+        assert!(of_flag.ends_with(&format!("{lacking}\n")), "{of_flag}");
+    }
     // A stream has the rows and columns of the settings; a recording its own.
     let stream = answered(format!(
         "watch {samples}/flexitac.bin --once --format flexitac"

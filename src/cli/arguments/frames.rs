@@ -58,6 +58,8 @@ pub(crate) struct ProcessingArguments {
     pub(crate) mask: Option<PathBuf>,
     /// Frames that the tare is made of; 0 for none, not given for that of the recording.
     pub(crate) tare: Option<u64>,
+    /// Where that is from: `flag` or `settings`.
+    pub(crate) tare_from: RuleOrigin,
     /// A recording of one frame: what each cell is multiplied by after the tare.
     pub(crate) gain: Option<PathBuf>,
     /// The threshold; None for that of the recording.
@@ -334,6 +336,7 @@ impl ProcessingArguments {
         let flips = |axis: char| flip.is_some_and(|flip| flip.contains(axis));
         let turn = matches.get_one::<String>("turn").map(String::as_str);
         let path = |id| matches.get_one::<PathBuf>(id).cloned();
+        let tare = matches.get_one("tare").copied();
         Ok(Self {
             shape: side("frame_rows").zip(side("frame_columns")),
             channel: matches.get_one::<String>("channel").cloned(),
@@ -347,7 +350,8 @@ impl ProcessingArguments {
                 _ => 0,
             },
             mask: path("mask"),
-            tare: matches.get_one("tare").copied().or(settings.tare()),
+            tare: tare.or(settings.tare()),
+            tare_from: tare.map_or(RuleOrigin::Settings, |_| RuleOrigin::Flag),
             gain: path("gain"),
             rule: asked.or_else(|| settings.rule()),
             rule_from,
@@ -363,6 +367,16 @@ impl ProcessingArguments {
     pub(crate) fn set_rule(&self) -> Option<SetRule> {
         let (least, from) = (self.least, self.rule_from);
         self.rule.map(|rule| SetRule { rule, least, from })
+    }
+
+    /// The message about a tare that cannot be made. One that lacks frames names the settings if it is theirs.
+    pub(crate) fn tare_refused(&self, error: &FrameError) -> String {
+        match (error, self.tare_from) {
+            (FrameError::Tare { .. }, RuleOrigin::Settings) => {
+                format!("{error}, by tare under [frames] in the settings; --tare 0 takes none")
+            }
+            _ => error.to_string(),
+        }
     }
 }
 

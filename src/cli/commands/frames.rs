@@ -28,7 +28,7 @@ use crate::cli::arguments::request::{Form, Kept, Saving};
 use crate::cli::commands::export::{Begun, Export, Exported};
 use crate::cli::commands::naming::FrameNamer;
 use crate::cli::commands::noise_report;
-use crate::cli::commands::watch::no_channel;
+use crate::cli::commands::recording_scan::Scan;
 use crate::cli::error::CliError;
 use crate::cli::input::processing;
 use crate::cli::input::recording::RecordingFile;
@@ -39,122 +39,15 @@ use crate::cli::output::recording_list::{self, ListedChannel};
 use crate::cli::output::report;
 use crate::cli::settings::pitch::Pitch;
 use crate::formats::recording::{
-    ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent, RecordingFormat,
-    RecordingNote, SetRule,
+    ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent, SetRule,
 };
 use crate::formats::{StoredShape, json};
-use crate::frame::{FlipReport, Frame, Processed, Processing, Rule, Tare, View};
+use crate::frame::{FlipReport, Frame, Processed, Processing, Rule, Tare};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::parameter::Parameter;
 use crate::parameter::number::short;
 use crate::sensor::Sensor;
-
-/// More warnings than these are only counted.
-const MOST_WARNINGS: usize = 20;
-
-/// What one reading of a recording finds.
-#[derive(Debug, Default)]
-pub(crate) struct Scan {
-    /// None if damage comes before the form is certain.
-    format: Option<RecordingFormat>,
-    /// In the order in which the recording names them; a frame's channel is an index here.
-    channels: Vec<ListedChannel>,
-    /// The first [`MOST_WARNINGS`] oddities that are not damage, such as a line of the wrong length.
-    notes: Vec<RecordingNote>,
-    /// How many more there were.
-    more_notes: u64,
-    /// The damage at which it ended.
-    error: Option<RecordingError>,
-}
-
-impl Scan {
-    /// Reads a recording; sums are those of what the view shows, or of the whole frame if that is too large.
-    fn of(recording: &mut RecordingFile, view: &View) -> Self {
-        let mut scan = Self::default();
-        let mut seen = Matrix::filled(1, 1, f64::NAN);
-        let result = recording.read(&mut |event| {
-            match event {
-                RecordingEvent::Channel(info) => scan.channels.push(ListedChannel::new(info)),
-                RecordingEvent::Frame(frame) => {
-                    let values = match view.of(frame, &mut seen) {
-                        Ok(()) => seen.values(),
-                        Err(_) => frame.values(),
-                    };
-                    if let Some(channel) = scan.channels.get_mut(frame.channel) {
-                        channel.add(frame, values);
-                    }
-                }
-                RecordingEvent::Note(note) => {
-                    if scan.notes.len() < MOST_WARNINGS {
-                        scan.notes.push(note.clone());
-                    } else {
-                        scan.more_notes += 1;
-                    }
-                }
-            }
-            ControlFlow::Continue(())
-        });
-        match result {
-            Ok(format) => scan.format = Some(format),
-            Err(error) => {
-                scan.format = recording.format();
-                scan.error = Some(error);
-                recording.remember_damage();
-            }
-        }
-        scan
-    }
-
-    /// What is odd in the recording, for standard error.
-    fn warnings(&self, name: &str) -> Vec<String> {
-        let lines = self.notes.iter().map(|note| format!("{name}: {note}"));
-        let mut lines: Vec<String> = lines.collect();
-        if self.more_notes > 0 {
-            lines.push(format!("{name}: {} more of these", self.more_notes));
-        }
-        lines
-    }
-
-    /// That rows and columns were given for a recording that states its own, and others.
-    fn unused_shape(&self, given: Option<(u16, u16)>) -> Option<String> {
-        let stated = self
-            .channels
-            .iter()
-            .find_map(|channel| channel.info.shape)?;
-        let (rows, columns) = stated;
-        (given? != stated).then(|| {
-            format!(
-                "it states {rows} rows and {columns} columns; --rows and --columns have no effect"
-            )
-        })
-    }
-
-    /// The number of the channel that is asked for.
-    /// Without `--channel` there must be one only; a channel without a name is called `unnamed`.
-    ///
-    /// # Errors
-    /// If there is none of that name, or none is named and there are several. The message lists the names.
-    fn channel(&self, recording: &RecordingFile, asked: Option<&str>) -> Result<usize, CliError> {
-        let names: Vec<&str> = self
-            .channels
-            .iter()
-            .map(|channel| channel.info.shown_name())
-            .collect();
-        match (asked, &names[..]) {
-            (None, [_]) => Ok(0),
-            (None, names) => Err(recording.refused(&format!(
-                "{} channels, choose one with --channel: {}",
-                names.len(),
-                names.join(", ")
-            ))),
-            (Some(asked), names) => {
-                let found = names.iter().position(|name| *name == asked);
-                found.ok_or_else(|| recording.refused(&no_channel(asked, names)))
-            }
-        }
-    }
-}
 
 /// Where answers and notes go.
 pub(crate) struct FramesOutput<'a> {
@@ -215,6 +108,9 @@ pub(crate) fn frames(
         return Err(damage.unwrap_or_else(|| recording.refused("no frames")));
     }
     let Some(choice) = asked.choice else {
+        if let Some(misfit) = scan.misfit {
+            return Err(recording.refused(&misfit));
+        }
         let wanted = asked.processing.channel.as_deref();
         let listed = match wanted {
             Some(_) => slice::from_ref(&scan.channels[scan.channel(&recording, wanted)?]),
@@ -335,7 +231,10 @@ impl Selection {
         processing.least = rule.least;
         match asked.processing.tare {
             Some(0) => {}
-            Some(wanted) => processing::tare(recording, channel, wanted, &mut processing)?,
+            Some(wanted) => {
+                let asked = &asked.processing;
+                processing::tare(recording, (channel, wanted), asked, &mut processing)?;
+            }
             None => processing.tare = processing::own_tare(&listed.info, &processing.view),
         }
         let number = match choice {

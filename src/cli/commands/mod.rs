@@ -34,6 +34,8 @@ pub(super) mod naming;
 
 pub(super) mod frames;
 
+pub(super) mod recording_scan;
+
 pub(super) mod noise_report;
 
 pub(super) mod watch;

@@ -572,7 +572,8 @@ impl Watcher<'_> {
         if let (None, Some((tare, _)), true) = (&failure, &self.tare, ended_well) {
             let wanted = tare.wanted();
             let frames = wanted - tare.missing();
-            failure = Some(self.refused(&FrameError::Tare { frames, wanted }.to_string()));
+            let error = FrameError::Tare { frames, wanted };
+            failure = Some(self.refused(&self.asked.processing.tare_refused(&error)));
         }
         // A stream has said so already.
         if failure.is_none() && ended_well && !self.begun {

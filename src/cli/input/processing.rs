@@ -121,11 +121,11 @@ pub(crate) fn own_tare(info: &ChannelInfo, view: &View) -> Option<Tare> {
 /// The median of each cell over these frames is its value at rest, and is taken off from then on.
 ///
 /// # Errors
-/// If the channel has fewer frames than wanted: `frames for the tare: found 3, expected 5: …`.
+/// If the channel has fewer frames than wanted: `frames for the tare: found 3, expected 5`.
 pub(crate) fn tare(
     recording: &mut RecordingFile,
-    channel: usize,
-    wanted: u64,
+    (channel, wanted): (usize, u64),
+    asked: &ProcessingArguments,
     processing: &mut Processing,
 ) -> Result<(), CliError> {
     let mut frames = TareFrames::new(wanted);
@@ -149,7 +149,8 @@ pub(crate) fn tare(
         read?;
     }
     let tare = failure.map_or_else(|| frames.finish(), Err);
-    processing.tare = Some(tare.map_err(|error| recording.refused(&error))?);
+    let refused = |error| recording.refused(&asked.tare_refused(&error));
+    processing.tare = Some(tare.map_err(refused)?);
     Ok(())
 }
 

@@ -18,7 +18,7 @@ use crate::cli::output::charset::Charset;
 use crate::formats::json;
 use crate::formats::recording::{ChannelInfo, RecordingFormat};
 use crate::formats::value::{counted, decimal};
-use crate::frame::{Frame, Peak};
+use crate::frame::{Frame, Peak, View};
 use crate::parameter::number::short;
 
 /// A channel of a recording.
@@ -26,6 +26,8 @@ use crate::parameter::number::short;
 pub(crate) struct ListedChannel {
     /// What the recording says of it.
     pub(crate) info: ChannelInfo,
+    /// Rows and columns of what is seen of its frames, after the crop.
+    seen: Option<(u16, u16)>,
     /// How many frames it has.
     pub(crate) frames: u64,
     /// The frame with the greatest sum of values.
@@ -39,10 +41,15 @@ pub(crate) struct ListedChannel {
 }
 
 impl ListedChannel {
-    /// Without frames.
-    pub(crate) fn new(info: &ChannelInfo) -> Self {
+    /// Without frames, whose size is that of what the view shows.
+    pub(crate) fn new(info: &ChannelInfo, view: &View) -> Self {
+        let seen = info.shape.map(|(rows, columns)| {
+            let (columns, rows) = view.size(columns, rows);
+            (rows, columns)
+        });
         Self {
             info: info.clone(),
+            seen,
             ..Self::default()
         }
     }
@@ -50,10 +57,10 @@ impl ListedChannel {
     /// Counts another frame, and compares the sum of its values.
     pub(crate) fn add(&mut self, frame: &Frame, values: &[f64]) {
         let present = values.iter().filter(|value| !value.is_nan());
+        self.cells = self.cells.max(present.clone().count());
         self.peak.add(frame.number, present.sum());
         self.frames += 1;
         self.values = self.info.values.unwrap_or(frame.values().len() as u64);
-        self.cells = self.cells.max(frame.cells());
         self.first = self.first.or(frame.first);
     }
 }
@@ -64,8 +71,8 @@ impl Serialize for ListedChannel {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("name", &info.name)?;
         map.serialize_entry("frames", &self.frames)?;
-        map.serialize_entry("rows", &info.shape.map(|(rows, _)| rows))?;
-        map.serialize_entry("columns", &info.shape.map(|(_, columns)| columns))?;
+        map.serialize_entry("rows", &self.seen.map(|(rows, _)| rows))?;
+        map.serialize_entry("columns", &self.seen.map(|(_, columns)| columns))?;
         map.serialize_entry("cells", &self.cells)?;
         map.serialize_entry("unit", &info.unit)?;
         map.serialize_entry("start", &info.start)?;
@@ -125,9 +132,12 @@ pub(crate) fn text(
 fn channel_lines(channel: &ListedChannel) -> Vec<String> {
     let info = &channel.info;
     let row = |name: &str, value: Option<String>| value.map(|value| format!("{name:<10}{value}"));
-    let size = match info.shape {
+    let whole = info.shape.filter(|whole| Some(*whole) != channel.seen);
+    let whole = whole.map(|(rows, columns)| format!(" of {rows} × {columns}"));
+    let size = match channel.seen {
         Some((rows, columns)) => format!(
-            "{rows} rows × {columns} columns, {}",
+            "{rows} rows × {columns} columns{}, {}",
+            whole.unwrap_or_default(),
             counted(channel.cells as u64, "cell")
         ),
         None => format!(
