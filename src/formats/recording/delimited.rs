@@ -14,7 +14,10 @@
 //! How the fields are arranged is found from the first lines; the file is then read from its beginning. A header names
 //! the cells, see [`cell_names`](super::cell_names). Without one, rows and columns have to be known beforehand, unless
 //! the table is in blocks of a row a line; numbers before or behind the cells are then recognised by how they grow from
-//! the first line to the second ([`without_header`]).
+//! line to line ([`without_header`]).
+//!
+//! A line of commas alone between two frames is one without cells, unless frames have a number or a time; elsewhere it is
+//! an empty line, as spreadsheet programs write it.
 //!
 //! Refused, with line and field: words where numbers are expected, and lines or blocks of another length. Nothing is
 //! padded, since a value that is missing in the middle would shift all that follow.
@@ -28,101 +31,14 @@ use crate::formats::recording::event::{
     ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
 use crate::formats::recording::lines::{TextLines, is_blank, text};
+use crate::formats::recording::separator::Separator;
 use crate::formats::recording::side::side;
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::seconds::{since, to_nanoseconds};
 use crate::frame::{Frame, MAX_FRAME_SIDE};
 
-/// What parts the fields of a line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Separator {
-    /// This byte; between two of them is an empty field.
-    Byte(u8),
-    /// Any number of blanks; there are no empty fields.
-    Spaces,
-}
-
-impl Separator {
-    /// That of a line: the first of semicolon, comma and tab which it has, otherwise blanks.
-    fn of(line: &[u8]) -> Self {
-        let marks = *b";,\t";
-        let found = marks.into_iter().find(|mark| line.contains(mark));
-        found.map_or(Self::Spaces, Self::Byte)
-    }
-
-    /// The fields of a line, as [`Self::fields`]; but where one is missing to `expected`, a separator at the end of the line
-    /// is followed by an empty field.
-    fn fields_of(self, line: &[u8], expected: usize) -> impl Iterator<Item = &[u8]> {
-        let is_short = match self {
-            Self::Byte(_) => self.fields(line).count() + 1 == expected,
-            Self::Spaces => false,
-        };
-        let ends_empty = |mark| line.trim_ascii().ends_with(&[mark]);
-        let has_empty = is_short && matches!(self, Self::Byte(mark) if ends_empty(mark));
-        self.fields(line).chain(has_empty.then_some(&line[..0]))
-    }
-
-    /// The fields of a line without blanks and quotes around them; an empty one at the end is none.
-    fn fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
-        let line = line.trim_ascii();
-        let line = match self {
-            Self::Byte(mark) => line.strip_suffix(&[mark]).unwrap_or(line),
-            Self::Spaces => line,
-        };
-        let is_end = move |byte: &u8| match self {
-            Self::Byte(mark) => *byte == mark,
-            Self::Spaces => byte.is_ascii_whitespace(),
-        };
-        let fields = line.split(is_end).map(|field| {
-            let field = field.trim_ascii();
-            let inner = field
-                .strip_prefix(b"\"")
-                .and_then(|field| field.strip_suffix(b"\""));
-            inner.unwrap_or(field)
-        });
-        fields.filter(move |field| self != Self::Spaces || !field.is_empty())
-    }
-
-    /// What a field says of its cell. A decimal comma is read as a point, in numbers of up to 32 characters.
-    fn value(self, field: &[u8]) -> Field {
-        let is_none = field.is_empty()
-            || [&b"nan"[..], b"null", b"none", b"na"]
-                .iter()
-                .any(|none| field.eq_ignore_ascii_case(none));
-        if is_none {
-            return Field::NoCell;
-        }
-        let decimal_comma = self == Self::Byte(b';') && field.contains(&b',');
-        if !decimal_comma {
-            return text_row::value(field);
-        }
-        let mut pointed = [0; 32];
-        match pointed.get_mut(..field.len()) {
-            Some(pointed) => {
-                pointed.copy_from_slice(field);
-                for byte in pointed.iter_mut().filter(|byte| **byte == b',') {
-                    *byte = b'.';
-                }
-                text_row::value(pointed)
-            }
-            None => Field::Wrong,
-        }
-    }
-
-    /// Whether a field may be a cell's: a number, or a word for none.
-    fn is_numeric(self, field: &[u8]) -> bool {
-        !matches!(self.value(field), Field::Wrong)
-    }
-
-    /// The numbers of a line; NaN for fields that are none.
-    fn numbers(self, line: &[u8]) -> Vec<f64> {
-        let value = |field| match self.value(field) {
-            Field::Value(value) => value,
-            _ => f64::NAN,
-        };
-        self.fields(line).map(value).collect()
-    }
-}
+/// Lines that are compared to find what stands beside the cells where nothing names it.
+const COMPARED: u16 = 8;
 
 /// How a table is arranged.
 #[derive(Debug)]
@@ -261,13 +177,17 @@ fn of_numbers(
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
     let numbers = separator.numbers(first);
+    let values = numbers.len();
+    let cells = |(rows, columns)| usize::from(rows) * usize::from(columns);
     // A file that grows is read no further than the answer needs.
-    let enough = match (options.shape, side(numbers.len())) {
+    let enough = match (options.shape, side(values)) {
         (Some((rows, columns)), Some(width)) if width == columns && rows > 1 => rows + 1,
+        (Some(shape), _) if values == cells(shape) + 2 => COMPARED,
         (Some(_), _) => 2,
         (None, _) => MAX_FRAME_SIDE + 1,
     };
-    let (mut block, mut second, mut parted) = (1_u16, None, false);
+    let (mut block, mut parted) = (1_u16, false);
+    let mut compared = vec![numbers];
     while block < enough && lines.advance()? {
         if is_blank(lines.line()) {
             parted = true;
@@ -276,20 +196,24 @@ fn of_numbers(
         if is_comment(lines.line()) {
             continue;
         }
-        second.get_or_insert_with(|| separator.numbers(lines.line()));
+        if block < COMPARED {
+            compared.push(separator.numbers(lines.line()));
+        }
         block += 1;
     }
-    let values = numbers.len() as u64;
-    let (shape, lines) = match (options.shape, side(numbers.len())) {
+    let (shape, lines) = match (options.shape, side(values)) {
         (Some(shape), Some(width)) if width == shape.1 && shape.0 > 1 => {
             (shape, LineLayout::Row { parted })
         }
         (Some(shape), _) => {
-            let fields = without_header(shape, &numbers, second.as_deref())?;
+            let fields = without_header(shape, &compared)?;
             (shape, LineLayout::Frame(fields))
         }
         (None, Some(width)) if parted && block > 1 => ((block, width), LineLayout::Row { parted }),
-        (None, _) => return Err(RecordingError::Shape { values }),
+        (None, _) => {
+            let values = values as u64;
+            return Err(RecordingError::Shape { values });
+        }
     };
     Ok(TableLayout {
         separator,
@@ -393,16 +317,16 @@ fn named_cells(
 }
 
 /// The arrangement of lines without names: the cells alone; a number or a time before them, or both; or a number and
-/// milliseconds behind them. The part that grows from the first line to the second says which it is.
+/// milliseconds behind them. What grows from line to line says which it is; of a single line they are taken to stand behind.
 ///
 /// # Errors
-/// If the line has fewer fields than a frame has cells, or others that are none of these.
+/// If the line has fewer fields than a frame has cells, or others that are none of these or may be either.
 fn without_header(
     (rows, columns): (u16, u16),
-    first: &[f64],
-    second: Option<&[f64]>,
+    lines: &[Vec<f64>],
 ) -> Result<FrameFields, RecordingError> {
     let cells = usize::from(rows) * usize::from(columns);
+    let first = &lines[0];
     let arranged = |start: usize, label, time| {
         Ok(FrameFields {
             count: first.len(),
@@ -412,26 +336,58 @@ fn without_header(
             time,
         })
     };
-    let growth = |field: usize| match second {
-        Some(second) => second
-            .get(field)
-            .map_or(f64::NAN, |value| value - first[field]),
-        None => f64::NAN,
-    };
-    let alone = second.is_none();
+    let growth_is = |field, fits: fn(f64) -> bool| grows(&lines[..lines.len().min(2)], field, fits);
     match first.len().checked_sub(cells) {
         Some(0) => arranged(0, None, None),
-        Some(1) if growth(0) == 1.0 => arranged(1, Some(0), None),
-        Some(1) if growth(0) > 0.0 || alone => arranged(1, None, Some((0, 1.0))),
-        // The offset of a message of ROS.
-        Some(1) if first[0] == 0.0 && growth(0) == 0.0 => arranged(1, None, None),
-        Some(2) if growth(cells) == 1.0 && growth(cells + 1) >= 0.0 || alone => {
-            arranged(0, Some(cells), Some((cells + 1, 1e-3)))
+        Some(1) if lines.len() > 1 && growth_is(0, |step| step == 1.0) => {
+            arranged(1, Some(0), None)
         }
-        Some(2) if growth(0) == 1.0 && growth(1) >= 0.0 => arranged(2, Some(0), Some((1, 1.0))),
-        Some(2) if growth(1) == 1.0 && growth(0) >= 0.0 => arranged(2, Some(1), Some((0, 1.0))),
+        Some(1) if growth_is(0, |step| step > 0.0) => arranged(1, None, Some((0, 1.0))),
+        // The offset of a message of ROS.
+        Some(1) if first[0] == 0.0 && growth_is(0, |step| step == 0.0) => arranged(1, None, None),
+        Some(2) => match number_and_time(lines, cells)? {
+            Some((label, time)) if label < cells => arranged(2, Some(label), Some((time, 1.0))),
+            Some((label, time)) => arranged(0, Some(label), Some((time, 1e-3))),
+            None => Err(text_row::count(1, first.len(), cells)),
+        },
         _ => Err(text_row::count(1, first.len(), cells)),
     }
+}
+
+/// Whether the steps of a field from line to line are all as they should be; they are in a single line.
+fn grows(lines: &[Vec<f64>], field: usize, fits: fn(f64) -> bool) -> bool {
+    let value = |line: &[f64]| line.get(field).copied().unwrap_or(f64::NAN);
+    let mut pairs = lines.windows(2);
+    pairs.all(|pair| fits(value(&pair[1]) - value(&pair[0])))
+}
+
+/// The fields of a number that counts frames and of a time, both before the cells or both behind them; None where there are
+/// none. As many lines are compared as it takes until one of the two is ruled out: the last one may be torn.
+///
+/// # Errors
+/// If none is.
+fn number_and_time(
+    lines: &[Vec<f64>],
+    cells: usize,
+) -> Result<Option<(usize, usize)>, RecordingError> {
+    for count in lines.len().min(2)..=lines.len() {
+        let lines = &lines[..count];
+        let fits = |&(label, time): &(usize, usize)| {
+            whole(lines[0][label]).is_some()
+                && grows(lines, label, |step| step == 1.0)
+                && grows(lines, time, |step| step >= 0.0)
+        };
+        let before = [(0, 1), (1, 0)].into_iter().find(fits);
+        let behind = Some((cells, cells + 1)).filter(fits);
+        if count == 1 || before.is_none() || behind.is_none() {
+            return Ok(behind.or(before));
+        }
+    }
+    let message = format!(
+        "2 numbers more than the {cells} cells, before or behind them: name the columns in a line above, such as \
+         frame,time,r0c0"
+    );
+    Err(RecordingError::in_line(1, message))
 }
 
 /// Reads frames of a line each.
@@ -449,10 +405,24 @@ fn frames(
     let (rows, columns) = layout.shape;
     let mut frame = Frame::new(columns, rows);
     let mut start = None;
-    while lines.advance_to_content()? {
+    // Lines of commas since the last frame.
+    let mut without_cells = 0_u64;
+    while lines.advance()? {
         let (line, number) = (lines.line(), lines.number());
+        if is_blank(line) {
+            let is_frame = frame.number > 0 && fields.may_be_commas(line);
+            without_cells += u64::from(is_frame);
+            continue;
+        }
         if fields.header == Some(number) || is_comment(line) {
             continue;
+        }
+        for _ in 0..std::mem::take(&mut without_cells) {
+            frame.values_mut().fill(f64::NAN);
+            if sink(RecordingEvent::Frame(&frame)).is_break() {
+                return Ok(());
+            }
+            frame.number += 1;
         }
         let time = fields.fill(&slots, &mut frame, layout.separator, (line, number))?;
         frame.time = time.zip(fields.time).map(|(time, (_, factor))| {
@@ -467,6 +437,14 @@ fn frames(
 }
 
 impl FrameFields {
+    /// Whether a line of commas is a frame without cells, if another frame follows. Spreadsheet programs write such lines in
+    /// place of empty ones, but hardly between frames.
+    fn may_be_commas(&self, line: &[u8]) -> bool {
+        let commas = line.iter().filter(|&&byte| byte == b',').count();
+        let is_frame = commas > 0 && (commas == self.count || commas + 1 == self.count);
+        is_frame && self.label.is_none() && self.time.is_none()
+    }
+
     /// Fills the values and the label of a frame from a line. Returns its time, in the unit of the table.
     ///
     /// Text in a field that is neither cell nor label nor time is not looked at.

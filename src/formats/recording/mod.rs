@@ -44,6 +44,8 @@ mod emed;
 
 mod zebris;
 
+mod separator;
+
 mod delimited;
 
 mod cell_names;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use taxel::frame::{Processing, Rule};
+use taxel::frame::{Frame, Processing, Rule};
 
 use super::{Recorded, recorded};
 
@@ -114,6 +114,46 @@ fn a_picture_of_lines_counted_as_x() {
         (found.frames[0].cells(), found.frames[0].label),
         (5, Some(1))
     );
+}
+
+#[test]
+fn numbers_beside_the_cells_are_told_by_how_they_grow() {
+    let read = |text: &str| recorded(text.as_bytes(), Some((1, 2)));
+    let first = |text: &str| -> Vec<f64> {
+        let found = read(text);
+        assert!(found.error.is_none(), "{text}: {:?}", found.error);
+        found.frames.iter().map(|frame| frame.values()[0]).collect()
+    };
+    assert_eq!(first("5,6,0,0\n7,8,1,40\n"), [5.0, 7.0]);
+    assert_eq!(first("0,0.0,5,6\n1,0.1,7,8\n"), [5.0, 7.0]);
+    // For two lines the cells, too, grow as a number and a time do.
+    assert_eq!(first("0,0.0,5,6\n1,0.1,6,6\n2,0.2,9,6\n"), [5.0, 6.0, 9.0]);
+    assert_eq!(first("5,6,0,0\n6,6,1,40\n9,6,2,80\n"), [5.0, 6.0, 9.0]);
+    let error = read("0,0.0,5,6\n1,0.1,6,6\n")
+        .error
+        .map(|error| error.to_string());
+    let unclear =
+        "line 1: 2 numbers more than the 2 cells, before or behind them: name the columns";
+    assert!(error.is_some_and(|error| error.starts_with(unclear)));
+}
+
+#[test]
+fn a_line_of_commas_between_frames_is_one_without_cells() {
+    for (text, cells) in [
+        ("1,2\n,\n,\n3,4\n", &[2, 0, 0, 2][..]),
+        ("r0c0,r0c1\n,\n1,2\n,\n3,\n", &[2, 0, 1]),
+        // Padding.
+        ("1,2\n3,4\n,\n,\n", &[2, 2]),
+        ("frame,r0c0,r0c1\n0,1,2\n,,\n1,3,4\n", &[2, 2]),
+        ("1,2\n,,,\n3,4\n", &[2, 2]),
+    ] {
+        let found = recorded(text.as_bytes(), Some((1, 2)));
+        assert!(found.error.is_none(), "{text}: {:?}", found.error);
+        let counted: Vec<usize> = found.frames.iter().map(Frame::cells).collect();
+        assert_eq!(counted, cells, "{text}");
+        let numbers: Vec<u64> = found.frames.iter().map(|frame| frame.number).collect();
+        assert!(numbers.into_iter().eq(0..cells.len() as u64), "{text}");
+    }
 }
 
 /// What comes before a damage is given, then the damage with its place.

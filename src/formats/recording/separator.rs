@@ -1,0 +1,100 @@
+//! What parts the fields of a table, and what a field says.
+//!
+//! ```text
+//! 0;1,5;;3      semicolons: a comma is the decimal sign, and an empty field is no cell
+//! 0,1.5,,3      commas, or tabs
+//! 0 1.5 nan 3   any number of blanks
+//! ```
+
+use crate::formats::recording::text_row::{self, Field};
+
+/// What parts the fields of a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Separator {
+    /// This byte; between two of them is an empty field.
+    Byte(u8),
+    /// Any number of blanks; there are no empty fields.
+    Spaces,
+}
+
+impl Separator {
+    /// That of a line: the first of semicolon, comma and tab which it has, otherwise blanks.
+    pub(super) fn of(line: &[u8]) -> Self {
+        let marks = *b";,\t";
+        let found = marks.into_iter().find(|mark| line.contains(mark));
+        found.map_or(Self::Spaces, Self::Byte)
+    }
+
+    /// The fields of a line, as [`Self::fields`]; but where one is missing to `expected`, a separator at the end of the line
+    /// is followed by an empty field.
+    pub(super) fn fields_of(self, line: &[u8], expected: usize) -> impl Iterator<Item = &[u8]> {
+        let is_short = match self {
+            Self::Byte(_) => self.fields(line).count() + 1 == expected,
+            Self::Spaces => false,
+        };
+        let ends_empty = |mark| line.trim_ascii().ends_with(&[mark]);
+        let has_empty = is_short && matches!(self, Self::Byte(mark) if ends_empty(mark));
+        self.fields(line).chain(has_empty.then_some(&line[..0]))
+    }
+
+    /// The fields of a line without blanks and quotes around them; an empty one at the end is none.
+    pub(super) fn fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
+        let line = line.trim_ascii();
+        let line = match self {
+            Self::Byte(mark) => line.strip_suffix(&[mark]).unwrap_or(line),
+            Self::Spaces => line,
+        };
+        let is_end = move |byte: &u8| match self {
+            Self::Byte(mark) => *byte == mark,
+            Self::Spaces => byte.is_ascii_whitespace(),
+        };
+        let fields = line.split(is_end).map(|field| {
+            let field = field.trim_ascii();
+            let inner = field
+                .strip_prefix(b"\"")
+                .and_then(|field| field.strip_suffix(b"\""));
+            inner.unwrap_or(field)
+        });
+        fields.filter(move |field| self != Self::Spaces || !field.is_empty())
+    }
+
+    /// What a field says of its cell. A decimal comma is read as a point, in numbers of up to 32 characters.
+    pub(super) fn value(self, field: &[u8]) -> Field {
+        let is_none = field.is_empty()
+            || [&b"nan"[..], b"null", b"none", b"na"]
+                .iter()
+                .any(|none| field.eq_ignore_ascii_case(none));
+        if is_none {
+            return Field::NoCell;
+        }
+        let decimal_comma = self == Self::Byte(b';') && field.contains(&b',');
+        if !decimal_comma {
+            return text_row::value(field);
+        }
+        let mut pointed = [0; 32];
+        match pointed.get_mut(..field.len()) {
+            Some(pointed) => {
+                pointed.copy_from_slice(field);
+                for byte in pointed.iter_mut().filter(|byte| **byte == b',') {
+                    *byte = b'.';
+                }
+                text_row::value(pointed)
+            }
+            None => Field::Wrong,
+        }
+    }
+
+    /// Whether a field may be a cell's: a number, or a word for none.
+    pub(super) fn is_numeric(self, field: &[u8]) -> bool {
+        !matches!(self.value(field), Field::Wrong)
+    }
+
+    /// The numbers of a line; NaN for fields that are none.
+    pub(super) fn numbers(self, line: &[u8]) -> Vec<f64> {
+        let value = |field| match self.value(field) {
+            Field::Value(value) => value,
+            _ => f64::NAN,
+        };
+        self.fields(line).map(value).collect()
+    }
+}
