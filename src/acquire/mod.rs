@@ -31,6 +31,8 @@ mod recorder;
 
 pub use event::{AcquireError, AcquireEvent, AcquireOptions};
 pub use growing_file::ReadAnew;
+#[cfg(feature = "tui")]
+pub(crate) use recorder::name_description;
 pub use recorder::{FrameRecorder, RecorderError, description_beside};
 pub use run::acquire;
 pub use source::FrameSource;

@@ -243,34 +243,58 @@ impl FrameRecorder {
     /// # Errors
     /// What the system reports.
     pub fn mark(&mut self, marks: Vec<FrameMark>) -> Result<(), RecorderError> {
-        self.metadata.marks = marks;
+        self.set_marks(marks);
         let written = self.write_description();
         self.noted(written)
+    }
+
+    /// The same for a caller who writes the description itself: see [`DescriptionDraft`].
+    pub(crate) fn set_marks(&mut self, marks: Vec<FrameMark>) -> DescriptionDraft {
+        self.metadata.marks = marks;
+        self.draft()
     }
 
     /// Keeps the reason of the first failure for the description.
     fn noted<T>(&mut self, result: Result<T, RecorderError>) -> Result<T, RecorderError> {
         if let Err(error) = &result {
-            self.reason.get_or_insert_with(|| match error {
-                RecorderError::Io { error, .. } => error.to_string(),
-                error => error.to_string(),
-            });
+            self.note_failure(error);
         }
         result
     }
 
-    fn write_description(&mut self) -> Result<(), RecorderError> {
-        let existing = match self.names {
-            Names::Waiting(..) => self.existing,
-            _ => Existing::Replaced,
-        };
-        let file = prepared(&self.path, existing, &self.metadata)?;
+    /// Keeps the reason of a failure for the description, if it is the first.
+    pub(crate) fn note_failure(&mut self, error: &RecorderError) {
+        self.reason.get_or_insert_with(|| match error {
+            RecorderError::Io { error, .. } => error.to_string(),
+            error => error.to_string(),
+        });
+    }
+
+    fn draft(&self) -> DescriptionDraft {
+        DescriptionDraft {
+            path: self.path.clone(),
+            existing: match self.names {
+                Names::Waiting(..) => self.existing,
+                _ => Existing::Replaced,
+            },
+            metadata: self.metadata.clone(),
+        }
+    }
+
+    /// Takes a description that is on the disk, to give it its name together with the array. Returns it if the array has its
+    /// name already: it is to be given its own at once.
+    pub(crate) fn take_description(&mut self, file: FinishedFile) -> Option<FinishedFile> {
         match &mut self.names {
             Names::Waiting(_, description) => *description = file,
-            Names::Given => file.persist().map_err(refused)?,
+            Names::Given => return Some(file),
             Names::Refused => {}
         }
-        Ok(())
+        None
+    }
+
+    fn write_description(&mut self) -> Result<(), RecorderError> {
+        let file = self.draft().prepare()?;
+        self.take_description(file).map_or(Ok(()), name_description)
     }
 
     /// Writes the description over the old one, where a full disk has no room for both.
@@ -464,6 +488,36 @@ impl FrameRecorder {
         written.and(synced).and(described)?;
         Ok(self.records)
     }
+}
+
+/// What the description beside an array is to say. To write it takes as long as the disk does, and needs no recorder, to
+/// which frames can be added meanwhile:
+/// ```text
+/// set_marks -> DescriptionDraft -> prepare -> take_description -> name_description
+/// ```
+#[derive(Debug)]
+pub(crate) struct DescriptionDraft {
+    path: PathBuf,
+    existing: Existing,
+    metadata: RecordingMetadata,
+}
+
+impl DescriptionDraft {
+    /// Writes it, on disk but without its name.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(crate) fn prepare(&self) -> Result<FinishedFile, RecorderError> {
+        prepared(&self.path, self.existing, &self.metadata)
+    }
+}
+
+/// Gives a description its name.
+///
+/// # Errors
+/// What the system reports.
+pub(crate) fn name_description(file: FinishedFile) -> Result<(), RecorderError> {
+    file.persist().map_err(refused)
 }
 
 /// The header of an array of records. Before the first frame comes: no records of one cell, which numpy opens too.

@@ -21,7 +21,7 @@ use crate::storage::{
 };
 use crate::tui::app::message::{FileEvent, LibraryEvent, Purpose};
 use crate::tui::app::worker_event::WorkerEvent;
-use crate::tui::live::message::{LiveEvent, RecordedFrames};
+use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::effect::FileRequest;
 use crate::tui::runtime::files;
 use crate::tui::runtime::lock::locked;
@@ -194,7 +194,7 @@ impl DiskRequest {
                 DiskAnswer::Recording(number, Recording::in_free_file(access, &metadata))
             }
             Self::MarkRecording(number, recording, marks) => written(number, recording.mark(marks)),
-            Self::FlushRecording(number, recording) => written(number, recording.flush()),
+            Self::FlushRecording(number, recording) => written(number, recording.flush().map(drop)),
             Self::EndRecording(number, recording) => {
                 let ended = recording.finish();
                 ended.map_or(DiskAnswer::Nothing, |event| DiskAnswer::Live(number, event))
@@ -204,9 +204,9 @@ impl DiskRequest {
 }
 
 /// What became of a recording of the source of that number to which something was written: a failure ends it.
-fn written(number: u64, written: Result<Option<RecordedFrames>, String>) -> DiskAnswer {
+fn written(number: u64, written: Result<(), String>) -> DiskAnswer {
     let failed = |reason| DiskAnswer::Live(number, LiveEvent::NotRecorded(reason));
-    written.map_or_else(failed, |_| DiskAnswer::Nothing)
+    written.map_or_else(failed, |()| DiskAnswer::Nothing)
 }
 
 /// An error of the library in a sentence.

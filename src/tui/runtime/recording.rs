@@ -13,7 +13,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use crate::acquire::{FrameRecorder, RecorderError};
+use crate::acquire::{FrameRecorder, RecorderError, name_description};
 use crate::formats::recording::{FrameMark, RecordingMetadata};
 use crate::frame::Frame;
 use crate::storage::Existing;
@@ -26,7 +26,9 @@ use crate::tui::runtime::write_access::WriteAccess;
 pub(super) struct Recording {
     /// The file.
     path: PathBuf,
-    /// Held for as long as the disk takes to write.
+    /// Held for as long as the disk takes to write a description, and then before `recorder`: of two the later stays.
+    description: Mutex<()>,
+    /// Held for as long as the disk takes to write frames.
     recorder: Mutex<RecorderState>,
 }
 
@@ -46,6 +48,7 @@ impl Recording {
     pub(super) fn new(path: PathBuf) -> Arc<Self> {
         Arc::new(Self {
             path,
+            description: Mutex::default(),
             recorder: Mutex::new(RecorderState::New),
         })
     }
@@ -123,12 +126,33 @@ impl Recording {
         self.write(FrameRecorder::flush)
     }
 
-    /// Writes these marks into the description, in place of those before. Returns how many frames are recorded.
+    /// Writes these marks into the description, in place of those before. Frames are added meanwhile.
     ///
     /// # Errors
     /// A sentence. The recording ends then.
-    pub(super) fn mark(&self, marks: Vec<FrameMark>) -> Result<Option<RecordedFrames>, String> {
-        self.write(|recorder| recorder.mark(marks))
+    pub(super) fn mark(&self, marks: Vec<FrameMark>) -> Result<(), String> {
+        let one_at_a_time = locked(&self.description);
+        let Some(draft) = self.open(|recorder| recorder.set_marks(marks)) else {
+            return Ok(());
+        };
+        let written = draft.prepare().and_then(|file| {
+            let file = self.open(|recorder| recorder.take_description(file));
+            file.flatten().map_or(Ok(()), name_description)
+        });
+        drop(one_at_a_time);
+        written.map_err(|error| {
+            self.open(|recorder| recorder.note_failure(&error));
+            self.close();
+            error.to_string()
+        })
+    }
+
+    /// Does something with the recorder that needs no disk, if frames are recorded still.
+    fn open<T>(&self, act: impl FnOnce(&mut FrameRecorder) -> T) -> Option<T> {
+        match &mut *locked(&self.recorder) {
+            RecorderState::Open(recorder) => Some(act(recorder)),
+            _ => None,
+        }
     }
 
     /// Writes something, if frames are recorded still. Returns how many are recorded then.
@@ -145,30 +169,29 @@ impl Recording {
             frames: recorder.frames(),
             left_out: recorder.left_out(),
         };
-        written
-            .map(|()| Some(recorded))
-            .map_err(|error| close(&mut state, &error))
+        drop(state);
+        written.map(|()| Some(recorded)).map_err(|error| {
+            self.close();
+            error.to_string()
+        })
     }
 
     /// Finishes it. None where nothing is recorded any more: that has been said.
     pub(super) fn finish(&self) -> Option<LiveEvent> {
-        let mut state = locked(&self.recorder);
-        let before = std::mem::replace(&mut *state, RecorderState::Closed);
-        let RecorderState::Open(recorder) = before else {
-            return None;
-        };
-        Some(match recorder.finish() {
+        Some(match self.close()? {
             Ok(frames) => LiveEvent::Recorded(self.path.to_string_lossy().into_owned(), frames),
             Err(error) => LiveEvent::NotFinished(error.to_string()),
         })
     }
-}
 
-/// Ends a recording that has failed; what is in the file so far stays. Returns why.
-fn close(state: &mut RecorderState, error: &RecorderError) -> String {
-    if let RecorderState::Open(recorder) = std::mem::replace(state, RecorderState::Closed) {
-        // The first error is the one that is reported.
-        let _ = recorder.finish();
+    /// Ends it; what is in the file so far stays. Returns how many frames that are, None where it was ended before. Of a
+    /// recording that has failed the first error is the one that is reported, not what this returns.
+    fn close(&self) -> Option<Result<u64, RecorderError>> {
+        let before = std::mem::replace(&mut *locked(&self.recorder), RecorderState::Closed);
+        let RecorderState::Open(recorder) = before else {
+            return None;
+        };
+        let _one_at_a_time = locked(&self.description);
+        Some(recorder.finish())
     }
-    error.to_string()
 }

@@ -247,6 +247,33 @@ fn leaving_the_page_says_what_was_recorded() {
 }
 
 #[test]
+fn frames_are_recorded_while_a_hanging_disk_takes_a_mark() {
+    let Some(mut watched) = Watched::start() else {
+        return;
+    };
+    watched.program.types(b"r");
+    watched.program.shows("recording in touch-1.npy");
+    watched.sends(1..11);
+    watched.program.shows("touch-1.npy, 10 frames");
+    let Some(hanging) = Tracer::hang(&mut watched.program, "?fsync", &[]) else {
+        return;
+    };
+    watched.program.types(b"m");
+    watched.program.shows("frame 9: marked");
+    watched.sends(11..21);
+    watched.program.shows("touch-1.npy, 20 frames");
+    hanging.end();
+    watched.program.types(b"r");
+    watched.program.shows("touch-1.npy: 20 frames recorded");
+    let beside = fs::read(watched.folder.path().join("touch-1.json")).expect("written");
+    let beside: serde_json::Value = serde_json::from_slice(&beside).expect("JSON");
+    assert_eq!(beside["marks"][0]["number"], 9, "{beside}");
+    watched.program.types(b"q");
+    watched.program.types(b"q");
+    watched.program.ends_well(0);
+}
+
+#[test]
 fn keys_go_on_while_a_hanging_disk_takes_a_recording() {
     for leaves in [false, true] {
         let Some((mut watched, file, hanging)) = recorded_on_a_hanging_disk() else {
