@@ -60,7 +60,7 @@ pub enum RecorderError {
         error: io::Error,
     },
     /// There is a file already.
-    #[error("{} already exists; --force replaces it", path.display())]
+    #[error("{} already exists", path.display())]
     Exists {
         /// The file.
         path: PathBuf,

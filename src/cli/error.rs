@@ -240,7 +240,7 @@ pub(crate) enum CliError {
         error: RecordingError,
     },
     /// Frames cannot be recorded.
-    #[error(transparent)]
+    #[error("{error}{help}", error = .0, help = advice(.0))]
     Recorder(RecorderError),
     /// A recording does not have what is asked for.
     #[error("{name}: {}", legible(.message))]
@@ -309,6 +309,14 @@ impl From<ArchiveFileError> for CliError {
         } else {
             Self::SweepFile(error)
         }
+    }
+}
+
+/// What helps where frames cannot be recorded, as the end of a message.
+fn advice(error: &RecorderError) -> &'static str {
+    match error {
+        RecorderError::Exists { .. } => "; --force replaces it",
+        _ => "",
     }
 }
 

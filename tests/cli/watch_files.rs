@@ -479,4 +479,17 @@ fn a_recording_without_frames_is_refused_and_not_repeated() {
     super::refused(&run, 1, &expected);
     let run = taxel("watch nowhere.npy --tare 3 --once", "");
     assert!(!run.stderr.contains("tare"), "{}", run.stderr);
+    for command in [
+        "watch ''",
+        "describe ''",
+        "recognise ''",
+        "recognise a --model ''",
+    ] {
+        let mut words: Vec<&str> = command.split(' ').collect();
+        let empty = words.iter_mut().find(|word| **word == "''");
+        *empty.expect("there") = "";
+        let run = super::run_in("C.UTF-8", &words, b"");
+        assert_eq!(run.status, Some(2), "{run:?}");
+        assert!(run.stderr.contains("expected a name or a path"), "{run:?}");
+    }
 }

@@ -224,6 +224,28 @@ fn the_history_is_scrubbed_while_frames_come() {
 }
 
 #[test]
+fn a_narrow_title_keeps_what_is_not_usual() {
+    let mut page = watched(6, "p<Left>m");
+    shows(
+        &page,
+        &["touch.csv  frame 4  0.4 s  frozen, 1 frame behind  raw  peak held  marked"],
+    );
+    for (columns, title) in [
+        (
+            66,
+            "touch.csv  frame 4  frozen, 1 frame behind  peak held  marked",
+        ),
+        (50, "touch.csv  frame 4  frozen, 1 frame behind"),
+        (36, "touch.csv  frozen, 1 frame behind"),
+        (30, "touch…  frozen, 1 frame behind"),
+    ] {
+        page.resize(columns, 20);
+        let screen = page.screen();
+        assert_eq!(screen.lines().nth(1), Some(title), "{screen}");
+    }
+}
+
+#[test]
 fn the_peak_of_each_cell_is_held() {
     let mut page = watched(1, "p");
     page.frames(7);

@@ -9,15 +9,14 @@
 //! The order of the calls is the order in the help; headings (`Figure`, `Sensor`, `Grid`, …) part longer lists of
 //! flags.
 
-use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgGroup, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    anchor, force, jobs, json, memory, name, of_sensor, option, parse_name, parse_npy, quiet,
-    range, replace, resume, sensor, sensor_of_imprints, shard, switch, what,
+    anchor, force, jobs, json, memory, name, name_or_path, of_sensor, option, parse_name,
+    parse_npy, quiet, range, replace, resume, sensor, sensor_of_imprints, shard, switch, what,
 };
 use crate::cli::arguments::help::{
     ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
@@ -206,8 +205,8 @@ fn sweep() -> Command {
         ))
         .hide_possible_values(true)
         .help("Kind of figure, as in 'taxel figure'");
-    let picture = option("picture", "NAME|FILE", "Sweep a stored shape instead")
-        .value_parser(value_parser!(OsString));
+    let picture =
+        option("picture", "NAME|FILE", "Sweep a stored shape instead").value_parser(name_or_path());
     let sizes = parameters::figure_parameters()
         .filter(|&parameter| Axis::ALL.iter().all(|axis| axis.parameter() != parameter));
     let poses = option("poses", "FILE.npy", "Write which imprint each pose leaves")

@@ -10,7 +10,8 @@ use std::ops::{Bound, RangeBounds};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use clap::builder::{OsStringValueParser, TypedValueParser};
+use clap::{Arg, ArgAction, ArgMatches};
 
 use crate::cli::arguments::parameters;
 use crate::formats::{Name, NameError};
@@ -32,6 +33,16 @@ pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
 /// A flag with a value, `--NAME VALUE`. Without a parser of its own the value is a text.
 pub(super) fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value).help(help)
+}
+
+/// A parser of the name of something stored, of a file or of another source, which is not empty.
+pub(super) fn name_or_path() -> impl TypedValueParser<Value = OsString> {
+    OsStringValueParser::new().try_map(|name| {
+        let is_empty = name.is_empty();
+        (!is_empty)
+            .then_some(name)
+            .ok_or("expected a name or a path")
+    })
 }
 
 /// A parser of whole numbers within a range. It says what is expected in words, where clap's own would say
@@ -212,7 +223,7 @@ pub(super) fn what(help: &'static str) -> Arg {
     Arg::new("what")
         .value_name("NAME|FILE")
         .required(true)
-        .value_parser(value_parser!(OsString))
+        .value_parser(name_or_path())
         .help(help)
 }
 

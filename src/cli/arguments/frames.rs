@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
-use crate::cli::arguments::flags::{option, switch, whole};
+use crate::cli::arguments::flags::{name_or_path, option, switch, whole};
 use crate::cli::arguments::help::FRAMES_EXAMPLES;
 use crate::cli::arguments::recognise::parse_noise;
 use crate::cli::commands::naming::NamingArguments;
@@ -191,7 +191,7 @@ pub(crate) fn naming() -> [Arg; 2] {
     let model = Arg::new("model")
         .long("model")
         .value_name("MODEL")
-        .value_parser(value_parser!(OsString))
+        .value_parser(name_or_path())
         .help("Name the shape that left the imprint: a model's name\nor file, or 'figures'");
     let noise = Arg::new("noise")
         .long("noise")

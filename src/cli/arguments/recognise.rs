@@ -8,7 +8,7 @@
 
 use std::ffi::OsString;
 
-use clap::{ArgMatches, Command, value_parser};
+use clap::{ArgMatches, Command};
 
 use crate::cli::arguments::flags::{
     self, jobs, json, of_sensor, option, parse_probability, switch, what, whole,
@@ -53,7 +53,7 @@ pub(super) fn command() -> Command {
         "MODEL",
         "Name or file; figures (default), figures-30, shapes",
     )
-    .value_parser(value_parser!(OsString))
+    .value_parser(flags::name_or_path())
     .default_value(DEFAULT_MODEL)
     .hide_default_value(true);
     let top =
@@ -80,7 +80,7 @@ pub(super) fn command() -> Command {
         "NAME|FILE",
         "Imprint whose active taxels are dead, stuck on or off",
     )
-    .value_parser(value_parser!(OsString))
+    .value_parser(flags::name_or_path())
     .requires("noise");
     let pose = switch("pose", "Say where the shape lies and how it is turned");
     Command::new("recognise")

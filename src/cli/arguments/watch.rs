@@ -11,7 +11,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgMatches, Command};
 
 use crate::acquire::AcquireOptions;
 use crate::cli::arguments::flags::{self, option, switch, whole};
@@ -50,7 +50,7 @@ pub(crate) fn command() -> Command {
     let source = Arg::new("source")
         .value_name("SOURCE")
         .required(true)
-        .value_parser(value_parser!(OsString))
+        .value_parser(flags::name_or_path())
         .help("Serial line, FIFO, tcp://HOST:PORT, recording or file; '-' for\nstandard input");
     let names = StreamFormat::NAMES.map(|(name, _)| name);
     let format = Arg::new("format")

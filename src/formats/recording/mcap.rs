@@ -15,7 +15,7 @@
 //! Others are passed over. Time is that of the log, from the first message with a frame on.
 
 use std::collections::HashMap;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read, Take};
 use std::rc::Rc;
 
 use crate::formats::recording::cdr::CdrReader;
@@ -183,9 +183,21 @@ enum Ended {
     ByReader,
 }
 
-/// The error of a file that ends before its footer.
+/// What is wrong with a file that ends before its footer.
+const TORN: &str = "the file ends without a footer: it was not closed";
+
 fn torn() -> RecordingError {
-    RecordingError::damaged("the file ends without a footer: it was not closed")
+    RecordingError::damaged(TORN)
+}
+
+/// What is wrong with the records of a chunk, whose bytes are all there or not.
+fn within_chunk(error: RecordingError, is_whole: bool) -> RecordingError {
+    match error {
+        RecordingError::Damaged { message, .. } if is_whole && message == TORN => {
+            RecordingError::damaged("a record reaches beyond its chunk")
+        }
+        error => error,
+    }
 }
 
 /// Fills all bytes.
@@ -335,13 +347,10 @@ impl McapState<'_, '_> {
         let head = ChunkHead::read(input)?;
         let mut packed = Read::take(&mut *input, head.length);
         let ended = match head.compression.as_str() {
-            "" => self.records(&mut packed, Container::Chunk)?,
+            "" => self.records(&mut packed, Container::Chunk),
             "lz4" => {
                 let unpacked = lz4_flex::frame::FrameDecoder::new(&mut packed);
-                self.records(
-                    &mut BufReader::new(unpacked.take(head.size)),
-                    Container::Chunk,
-                )?
+                self.unpacked(unpacked.take(head.size))
             }
             "zstd" => {
                 let unpacked = ruzstd::decoding::StreamingDecoder::new_with_max_window_size(
@@ -350,10 +359,7 @@ impl McapState<'_, '_> {
                 );
                 let unpacked =
                     unpacked.map_err(|_| RecordingError::damaged("a chunk cannot be unpacked"))?;
-                self.records(
-                    &mut BufReader::new(unpacked.take(head.size)),
-                    Container::Chunk,
-                )?
+                self.unpacked(unpacked.take(head.size))
             }
             other => {
                 let message =
@@ -361,11 +367,20 @@ impl McapState<'_, '_> {
                 return Err(RecordingError::damaged(legible(&message)));
             }
         };
+        let ended = ended.map_err(|error| within_chunk(error, packed.limit() == 0))?;
         if ended == Ended::OfChunk {
             let left = packed.limit();
             pass_over(&mut packed, left)?;
         }
         Ok(ended)
+    }
+
+    /// Reads the records of a chunk from what unpacks it, which gives as many bytes as the chunk states.
+    fn unpacked(&mut self, unpacked: Take<impl Read>) -> Result<Ended, RecordingError> {
+        let mut unpacked = BufReader::new(unpacked);
+        let ended = self.records(&mut unpacked, Container::Chunk);
+        let is_whole = unpacked.get_ref().limit() == 0;
+        ended.map_err(|error| within_chunk(error, is_whole))
     }
 
     /// Takes a record; true if no more is wanted.

@@ -187,10 +187,10 @@ fn frames(
 fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), RecordingError> {
     let (rows, columns) = (frame.rows(), frame.columns());
     for row in frame.values_mut().chunks_mut(columns.into()) {
-        let content = lines.advance()? && !is_blank(lines.line());
-        if !content {
+        let is_end = !lines.advance()?;
+        if is_end || is_blank(lines.line()) {
             let message = format!("the frame ends here, expected {rows} rows");
-            let number = lines.number() + u64::from(lines.line().is_empty());
+            let number = lines.number() + u64::from(is_end);
             return Err(RecordingError::in_line(number, message));
         }
         let (line, number) = (lines.line(), lines.number());

@@ -119,7 +119,8 @@ impl StreamCounts {
             clippy::cast_sign_loss,
             reason = "a rate for a message"
         )]
-        let rate = grouped(bytes_per_second.round() as u64);
+        // A byte now and then is not none.
+        let rate = grouped(bytes_per_second.ceil() as u64);
         match (self.bytes, bytes_per_second > 0.0) {
             (_, true) => format!("{rate} B/s, none of it a frame; baud, rows, columns or format?"),
             (0, _) => "nothing has come yet; is it sending?".to_owned(),

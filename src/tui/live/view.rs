@@ -66,7 +66,8 @@ impl Page for Live {
         let panes = LivePanes::of(area, size, self.numbers());
         let map = reading.map(|reading| HeatMap::of(self, reading, theme, panes.map));
         let title = title(self, map.as_ref().and_then(HeatMap::window));
-        let pieces = title.iter().map(|(text, role)| (text.as_str(), *role));
+        let title = fitting_title(title, panes.title.width.into(), theme);
+        let pieces = title.iter().map(|piece| (piece.text.as_str(), piece.role));
         write::line(buffer, panes.title, theme, pieces);
         if let Some(map) = map {
             map.draw(buffer, panes.map);
@@ -97,9 +98,16 @@ impl Page for Live {
 
 /// What is shown, and how; `window`: which part of the taxels.
 /// What is the usual state, such as following the source, is not said; a channel is named only where there are several.
-fn title(live: &Live, window: Option<String>) -> Vec<(String, Role)> {
-    let mut pieces = vec![(live.request().name(), Role::Title)];
-    let mut say = |text: String, role| pieces.push((format!("  {text}"), role));
+fn title(live: &Live, window: Option<String>) -> Vec<TitlePiece> {
+    let mut pieces = vec![TitlePiece {
+        text: live.request().name(),
+        role: Role::Title,
+        rank: 0,
+    }];
+    let mut say = |rank, text: String, role| {
+        let text = format!("  {text}");
+        pieces.push(TitlePiece { text, role, rank });
+    };
     let status = live.status();
     if let Some(name) = status
         .channel
@@ -107,49 +115,79 @@ fn title(live: &Live, window: Option<String>) -> Vec<(String, Role)> {
         .and_then(|own| own.name.as_deref())
         && status.channels > 1
     {
-        say(format!("channel {name}"), Role::Text);
+        say(5, format!("channel {name}"), Role::Text);
     }
     match live.frame() {
         Some(frame) => {
             let label = frame
                 .label
                 .map_or(String::new(), |label| format!(" (label {label})"));
-            say(format!("frame {}{label}", frame.number), Role::Text);
+            say(2, format!("frame {}{label}", frame.number), Role::Text);
             if let Some(time) = frame.time {
-                say(format!("{} s", value::decimal(time, 3)), Role::Text);
+                say(6, format!("{} s", value::decimal(time, 3)), Role::Text);
             }
         }
-        None => say("no frame yet".to_owned(), Role::Quiet),
+        None => say(2, "no frame yet".to_owned(), Role::Quiet),
     }
     match live.frozen() {
-        Some(0) => say("frozen".to_owned(), Role::Focus),
+        Some(0) => say(1, "frozen".to_owned(), Role::Focus),
         Some(back) => {
             let behind = counted(back, "frame");
-            say(format!("frozen, {behind} behind"), Role::Focus);
+            say(1, format!("frozen, {behind} behind"), Role::Focus);
         }
         None => {}
     }
     match (&status.state, live.stopped()) {
-        (_, true) => say("stopped".to_owned(), Role::Quiet),
-        (SourceState::Ended, _) => say("ended".to_owned(), Role::Quiet),
+        (_, true) => say(3, "stopped".to_owned(), Role::Quiet),
+        (SourceState::Ended, _) => say(3, "ended".to_owned(), Role::Quiet),
         _ => {}
     }
     let layer = match live.layer() {
         HeatLayer::Tared if live.tare().is_none() => HeatLayer::Raw,
         layer => layer,
     };
-    say(layer.name().to_owned(), Role::Quiet);
+    say(8, layer.name().to_owned(), Role::Quiet);
     if live.tare_progress().is_some() {
-        say(format!("tare: {}", tare(live)), Role::Focus);
+        say(4, format!("tare: {}", tare(live)), Role::Focus);
     }
     if let Some(window) = window {
-        say(window, Role::Text);
+        say(7, window, Role::Text);
     }
     if live.holds_peak() {
-        say("peak held".to_owned(), Role::Focus);
+        say(4, "peak held".to_owned(), Role::Focus);
     }
     if live.is_marked() {
-        say("marked".to_owned(), Role::Focus);
+        say(4, "marked".to_owned(), Role::Focus);
+    }
+    pieces
+}
+
+/// A part of the title.
+struct TitlePiece {
+    /// What it says, after two blanks but for the name of the source.
+    text: String,
+    role: Role,
+    /// Where there is no room for all, those of the highest rank are left out first; the name never is.
+    rank: u8,
+}
+
+/// The title in a number of columns. The state of the source, such as that it is frozen, stays longest; then the name is
+/// shortened.
+fn fitting_title(mut pieces: Vec<TitlePiece>, room: usize, theme: &Theme) -> Vec<TitlePiece> {
+    let width = |pieces: &[TitlePiece]| -> usize {
+        let widths = pieces.iter().map(|piece| write::width(&piece.text));
+        widths.sum()
+    };
+    while width(&pieces) > room
+        && let Some(last) = (1..pieces.len()).max_by_key(|&index| pieces[index].rank)
+        && pieces[last].rank > 1
+    {
+        pieces.remove(last);
+    }
+    let others = width(&pieces[1..]);
+    if let Some(name) = pieces.first_mut() {
+        let room = room.saturating_sub(others);
+        name.text = write::fitted(&name.text, room, theme).into_owned();
     }
     pieces
 }

@@ -191,6 +191,13 @@ fn a_damage_is_reported_with_its_place_after_the_frames_before_it() {
     );
     damaged(
         "tekscan.asf",
+        "0,5,14,2,0\r\n",
+        "\r\n",
+        1,
+        "line 26: the frame ends here, expected 4 rows",
+    );
+    damaged(
+        "tekscan.asf",
         "ASCII_DATA @@",
         "ASCII @@",
         0,
@@ -345,5 +352,22 @@ fn topics_and_their_sensors_are_channels() {
             *byte ^= 0x55;
         }
         assert!(recorded(&broken, Some((4, 5))).error.is_some(), "{name}");
+    }
+    // A schema of 99 bytes in a chunk of 19, and much behind it; and in a file that ends there.
+    let record = |kind: u8, length: u64, content: &[u8]| {
+        [&[kind][..], &length.to_le_bytes(), content].concat()
+    };
+    let schema = record(3, 99, &[0; 10]);
+    let head = [&[0; 32][..], &(schema.len() as u64).to_le_bytes()].concat();
+    let chunk = [head, schema].concat();
+    let chunk = record(6, chunk.len() as u64, &chunk);
+    for (behind, expected) in [
+        (500, "a record reaches beyond its chunk"),
+        (0, "the file ends without a footer: it was not closed"),
+    ] {
+        let whole = chunk.len() - usize::from(behind == 0);
+        let file = [&bytes[..8], &chunk[..whole], &vec![0; behind]].concat();
+        let error = recorded(&file, None).error.map(|error| error.to_string());
+        assert_eq!(error.as_deref(), Some(expected));
     }
 }

@@ -13,7 +13,7 @@
 
 use std::ffi::OsString;
 
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgMatches, Command};
 
 use crate::cli::arguments::flags::{self, json, option, whole};
 use crate::cli::arguments::help::{
@@ -111,7 +111,7 @@ fn which_model() -> Arg {
     Arg::new("model")
         .value_name("MODEL")
         .required(true)
-        .value_parser(value_parser!(OsString))
+        .value_parser(flags::name_or_path())
         .help("Name of a model, or its file")
 }
 

@@ -10,9 +10,9 @@
 
 use std::ffi::OsString;
 
-use clap::{Arg, ArgAction, ArgGroup, ArgMatches, value_parser};
+use clap::{Arg, ArgAction, ArgGroup, ArgMatches};
 
-use crate::cli::arguments::flags::{option, switch};
+use crate::cli::arguments::flags::{name_or_path, option, switch};
 use crate::recognition::GridSteps;
 
 /// A set of shapes, not read yet.
@@ -44,7 +44,7 @@ pub(super) fn args(value: &'static str, help: &'static str) -> [Arg; 3] {
     let what = Arg::new("set")
         .value_name(value)
         .num_args(0..)
-        .value_parser(value_parser!(OsString))
+        .value_parser(name_or_path())
         .help(help);
     let shape = option(
         "shape",
