@@ -12,6 +12,8 @@ pub(crate) struct FirstErrorWriter<'a, W> {
     pub(crate) error: Option<io::Error>,
     place: u64,
     end: u64,
+    /// No more bytes are written.
+    most: u64,
 }
 
 impl<'a, W: Write + Seek> FirstErrorWriter<'a, W> {
@@ -22,7 +24,14 @@ impl<'a, W: Write + Seek> FirstErrorWriter<'a, W> {
             error: None,
             place: 0,
             end: 0,
+            most: u64::MAX,
         }
+    }
+
+    /// The same for a file of at most this many bytes; a longer one is an error.
+    pub(crate) fn up_to(mut self, most: u64) -> Self {
+        self.most = most;
+        self
     }
 
     fn attempt<T>(&mut self, act: impl FnOnce(&mut W) -> io::Result<T>) -> Option<T> {
@@ -40,8 +49,16 @@ impl<'a, W: Write + Seek> FirstErrorWriter<'a, W> {
 
 impl<W: Write + Seek> Write for FirstErrorWriter<'_, W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let _ = self.attempt(|output| output.write_all(bytes));
-        self.place += bytes.len() as u64;
+        let place = self.place + bytes.len() as u64;
+        let fits = place <= self.most;
+        let _ = self.attempt(|output| {
+            if fits {
+                output.write_all(bytes)
+            } else {
+                Err(io::ErrorKind::FileTooLarge.into())
+            }
+        });
+        self.place = place;
         self.end = self.end.max(self.place);
         Ok(bytes.len())
     }

@@ -61,8 +61,19 @@ pub fn save_model(
     existing: Existing,
     stopped: &AtomicBool,
 ) -> Result<(), ArchiveFileError> {
+    save_up_to(u64::MAX, model, path, existing, stopped)
+}
+
+/// The same; nothing either if it takes more than `most` bytes.
+fn save_up_to(
+    most: u64,
+    model: &Model,
+    path: &Path,
+    existing: Existing,
+    stopped: &AtomicBool,
+) -> Result<(), ArchiveFileError> {
     let mut file = UnfinishedFile::new(path, existing)?;
-    let mut output = FirstErrorWriter::new(&mut file.output, stopped);
+    let mut output = FirstErrorWriter::new(&mut file.output, stopped).up_to(most);
     let written = write_model(model, &mut output);
     let written = match output.error {
         Some(error) => Err(error.into()),
@@ -212,14 +223,13 @@ impl ModelCache {
     /// Keeps a model. A cache that cannot be written to is not an error: the model is trained again next time. One that
     /// takes more than 64 MB is not kept.
     pub fn keep(&self, path: &Path, model: &Model) {
+        self.keep_up_to(MAX_CACHED, path, model);
+    }
+
+    fn keep_up_to(&self, most: u64, path: &Path, model: &Model) {
         let going = AtomicBool::new(false);
-        if fs::create_dir_all(&self.0).is_err()
-            || save_model(model, path, Existing::Replaced, &going).is_err()
-        {
-            return;
-        }
-        if fs::metadata(path).is_ok_and(|file| file.len() > MAX_CACHED) {
-            let _ = fs::remove_file(path);
+        if fs::create_dir_all(&self.0).is_ok() {
+            let _ = save_up_to(most, model, path, Existing::Replaced, &going);
         }
     }
 }
@@ -283,7 +293,13 @@ mod tests {
         assert!(cache.load(&training(4.0)).is_none());
         let model = training(4.0).run().expect("not stopped");
         let path = cache.file(&training(4.0));
+        // One that is too large is not written.
+        cache.keep_up_to(99, &path, &model);
+        assert!(
+            fs::read_dir(folder.path().join("cache")).is_ok_and(|mut files| files.next().is_none())
+        );
         cache.keep(&path, &model);
+        cache.keep_up_to(99, &path, &model);
         let cached = cache.load(&training(4.0)).expect("it is there");
         assert_eq!(Evaluation::of(&cached), Evaluation::of(&model));
         assert!(cache.load(&training(4.1)).is_none());
