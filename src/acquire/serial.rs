@@ -15,7 +15,8 @@ use rustix::termios::{
 /// thrown away.
 ///
 /// # Errors
-/// [`io::ErrorKind::ResourceBusy`] if another program has it open; if it is another kind of device; else what the system reports.
+/// [`io::ErrorKind::ResourceBusy`] if another program has it open; [`io::ErrorKind::InvalidInput`] if it is another kind of
+/// device, which it will be next time, too; else what the system reports.
 pub(super) fn open_line(path: &Path, baud: u32) -> io::Result<File> {
     let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
     let busy = || io::Error::new(io::ErrorKind::ResourceBusy, "another program has it open");
@@ -28,7 +29,11 @@ pub(super) fn open_line(path: &Path, baud: u32) -> io::Result<File> {
         return Err(busy());
     }
     let mut settings = match tcgetattr(&line) {
-        Err(Errno::NOTTY) => return Err(io::Error::other("it is not a serial line")),
+        // Devices that know no such request say one or the other.
+        Err(Errno::NOTTY | Errno::INVAL) => {
+            let reason = "it is not a serial line; 'taxel watch -' reads it from standard input";
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
+        }
         settings => settings?,
     };
     settings.make_raw();

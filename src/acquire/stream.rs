@@ -173,7 +173,12 @@ fn first_input(
 ) -> Result<Option<ByteInput>, AcquireError> {
     match open(&mut || wait(stop, decoder, consumer)) {
         Ok(input) => Ok(input),
-        Err(error) if options.waits && source.comes_back() && source.check().is_ok() => {
+        // What is no such source now will not be one later.
+        Err(error)
+            if options.waits
+                && source.comes_back()
+                && error.kind() != io::ErrorKind::InvalidInput =>
+        {
             let absent = AcquireEvent::Absent(&error);
             Ok(again(open, absent, stop, decoder, consumer))
         }

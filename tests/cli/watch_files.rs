@@ -479,6 +479,12 @@ fn a_recording_without_frames_is_refused_and_not_repeated() {
     super::refused(&run, 1, &expected);
     let run = taxel("watch nowhere.npy --tare 3 --once", "");
     assert!(!run.stderr.contains("tare"), "{}", run.stderr);
+    // A device without an end that cannot be set up as a line.
+    for device in ["/dev/urandom", "/dev/zero"] {
+        let said = refused(&format!("watch {device}"), "");
+        let line = "it is not a serial line; 'taxel watch -' reads it";
+        assert!(said.contains(line), "{said}");
+    }
     for command in [
         "watch ''",
         "describe ''",

@@ -247,6 +247,17 @@ fn leaving_the_page_says_what_was_recorded() {
 }
 
 #[test]
+fn a_device_that_is_no_line_is_not_waited_for() {
+    let mut program = Program::start(&Start::default());
+    program.types(b":watch /dev/urandom\r");
+    program.shows("! cannot open it: it is not a serial line");
+    program.types(b"\x1b");
+    program.shows("? Help");
+    program.types(b"q");
+    program.ends_well(0);
+}
+
+#[test]
 fn frames_are_recorded_while_a_hanging_disk_takes_a_mark() {
     let Some(mut watched) = Watched::start() else {
         return;
