@@ -424,6 +424,25 @@ fn a_listing_is_of_the_channel_that_is_asked_for() {
     );
 }
 
+/// What is wrong at the beginning is said although the input has no end.
+#[test]
+fn an_input_without_an_end_is_refused_at_once() {
+    for (line, expected) in [
+        ("1 2 3", "3 values a frame, but no rows and columns"),
+        ("{\\\"frame\\\":[[1],[]]}", "line 1, column "),
+    ] {
+        let taxel = env!("CARGO_BIN_EXE_taxel");
+        let line = format!("yes \"{line}\" | timeout 5 '{taxel}' frames -");
+        let run = std::process::Command::new("sh")
+            .args(["-c", &line])
+            .output();
+        let run = run.expect("started");
+        let said = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert_eq!(run.status.code(), Some(1), "{said}");
+        assert!(said.contains(expected), "{said}");
+    }
+}
+
 /// What would change nothing in a listing is refused there.
 #[test]
 fn a_listing_has_no_threshold_and_no_tare() {

@@ -1,13 +1,16 @@
 //! What commands read: imprints and stored shapes, from files, standard input and the library.
 //!
 //! `shapes` decides what a `NAME|FILE` argument means; `content` reads a file and recognises its form;
-//! `lines` answers lines one by one; `recording` reads the frames of a sensor, which `processing` makes imprints of.
+//! `lines` answers lines one by one; `recording` reads the frames of a sensor, of a pipe by `spool`, which `processing` makes
+//! imprints of.
 
 pub(super) mod content;
 
 pub(super) mod lines;
 
 pub(super) mod processing;
+
+mod spool;
 
 pub(super) mod recording;
 

@@ -1,5 +1,6 @@
 //! Opens recordings: a file, or standard input kept in a temporary file, since a recording is read several times.
 
+use std::fmt::Debug;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
@@ -8,14 +9,12 @@ use crate::acquire::description_beside;
 use crate::cli::error::CliError;
 use crate::cli::input::content;
 use crate::cli::input::content::InputError;
+use crate::cli::input::spool::SpooledInput;
 use crate::formats::recording::{
-    LOOKED_AT, ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata,
-    read, recognised_input,
+    ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, read,
+    recognised_input,
 };
 use crate::imprint::Imprint;
-
-/// The most that is copied of standard input or a pipe, in bytes, so that an input without an end does not fill the disk.
-const MOST_SPOOLED: u64 = 4 << 30;
 
 /// The most that is read of a table. One of 64 × 64 factors is much smaller.
 const LARGEST_TABLE: u64 = 1 << 20;
@@ -25,8 +24,8 @@ const LARGEST_TABLE: u64 = 1 << 20;
 pub(crate) struct RecordingFile {
     /// The path, or `standard input`; for messages.
     name: String,
-    /// A file that can be read from its beginning again.
-    file: File,
+    /// What can be read from its beginning again.
+    file: Box<dyn ReadAgain>,
     /// Rows and columns, for forms that do not say them.
     options: ReadOptions,
     /// What lies beside it, of a recording of taxel's own.
@@ -51,14 +50,14 @@ impl RecordingFile {
         };
         let opened = || {
             if is_standard {
-                return spooled(&mut io::stdin().lock());
+                return spooled(io::stdin());
             }
-            let mut file = File::open(path)?;
+            let file = File::open(path)?;
             // A pipe cannot be read twice.
             if file.metadata()?.is_file() || file.metadata()?.is_dir() {
-                Ok(file)
+                Ok(Box::new(file))
             } else {
-                spooled(&mut file)
+                spooled(file)
             }
         };
         let (description, complaint) = match description_beside(path) {
@@ -207,23 +206,15 @@ fn unended(path: &Path, description: &RecordingMetadata) -> Option<String> {
     Some(format!("{beside}: the recording ended early: {reason}"))
 }
 
-/// A copy of all that comes, which has no name.
-/// Of an input that is no recording only the beginning is copied, which is enough to refuse it: it may have no end.
+/// What is read from its beginning as often as needed.
+trait ReadAgain: Read + Seek + Debug {}
+
+impl<T: Read + Seek + Debug> ReadAgain for T {}
+
+/// Standard input or a pipe, which is copied as it is read.
 ///
 /// # Errors
-/// If it cannot be read or written, or is longer than [`MOST_SPOOLED`].
-fn spooled(input: &mut dyn Read) -> io::Result<File> {
-    let mut file = tempfile::tempfile()?;
-    io::copy(&mut input.take(LOOKED_AT as u64), &mut file)?;
-    file.seek(SeekFrom::Start(0))?;
-    if recognised_input(&mut file)?.is_some() {
-        let copied = io::copy(&mut input.take(MOST_SPOOLED), &mut file)?;
-        if copied == MOST_SPOOLED {
-            return Err(io::Error::other(
-                "more than 4 GiB, save it to a file and name that; taxel watch reads what has no end",
-            ));
-        }
-    }
-    file.seek(SeekFrom::Start(0))?;
-    Ok(file)
+/// If there is no temporary file.
+fn spooled(input: impl Read + 'static) -> io::Result<Box<dyn ReadAgain>> {
+    Ok(Box::new(SpooledInput::new(input)?))
 }

@@ -20,7 +20,7 @@ use crate::formats::recording::{
 const MCAP: &[u8] = b"\x89MCAP0\r\n";
 
 /// Bytes at the start of a file that decide the form.
-pub(crate) const LOOKED_AT: usize = 1 << 16;
+const LOOKED_AT: usize = 1 << 16;
 
 /// Bytes read at a time.
 const CHUNK: usize = 1 << 16;

@@ -77,8 +77,6 @@ mod description;
 pub use answer::{FrameAnswer, RuleOrigin, SetRule};
 pub use channel_choice::ChannelChoice;
 pub use description::{FrameMark, RecordingMetadata};
-#[cfg(feature = "cli")]
-pub(crate) use detect::LOOKED_AT;
 #[cfg(all(feature = "acquire", unix))]
 pub(crate) use detect::read_as;
 pub use detect::{read, recognised, recognised_input};

@@ -1,0 +1,134 @@
+//! Standard input or a pipe as a file that can be read again: what is read is copied into a temporary file on the way.
+//!
+//! Nothing is read ahead, so that an input without an end is refused as soon as something in it is wrong.
+
+use std::fmt;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::os::unix::fs::FileExt;
+
+/// The most that is copied, in bytes, so that an input without an end does not fill the disk.
+const MOST: u64 = 4 << 30;
+
+/// Such an input.
+pub(crate) struct SpooledInput {
+    /// What has not been read yet; None at its end.
+    rest: Option<Box<dyn Read>>,
+    /// A copy of what has been, which has no name.
+    copy: File,
+    /// Its bytes.
+    length: u64,
+    /// Where reading goes on.
+    place: u64,
+    /// The most that is copied.
+    most: u64,
+}
+
+impl SpooledInput {
+    /// Before the first byte.
+    ///
+    /// # Errors
+    /// If there is no temporary file.
+    pub(crate) fn new(input: impl Read + 'static) -> io::Result<Self> {
+        Ok(Self {
+            rest: Some(Box::new(input)),
+            copy: tempfile::tempfile()?,
+            length: 0,
+            place: 0,
+            most: MOST,
+        })
+    }
+
+    /// Reads on, and keeps a copy. Returns how many bytes came.
+    fn advance(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let Some(rest) = &mut self.rest else {
+            return Ok(0);
+        };
+        let count = rest.read(bytes)?;
+        if count == 0 && !bytes.is_empty() {
+            self.rest = None;
+        }
+        self.copy.write_all_at(&bytes[..count], self.length)?;
+        self.length += count as u64;
+        if self.length > self.most {
+            return Err(io::Error::other(
+                "more than 4 GiB, save it to a file and name that; taxel watch reads what has no end",
+            ));
+        }
+        Ok(count)
+    }
+}
+
+impl fmt::Debug for SpooledInput {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SpooledInput")
+            .field("length", &self.length)
+            .field("place", &self.place)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Read for SpooledInput {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let count = if self.place < self.length {
+            self.copy.read_at(bytes, self.place)?
+        } else {
+            self.advance(bytes)?
+        };
+        self.place += count as u64;
+        Ok(count)
+    }
+}
+
+impl Seek for SpooledInput {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let present = self.place;
+        let place = |length: u64| match to {
+            SeekFrom::Start(place) => Some(place),
+            SeekFrom::Current(by) => present.checked_add_signed(by),
+            SeekFrom::End(by) => length.checked_add_signed(by),
+        };
+        let mut wanted = place(self.length);
+        let mut bytes = vec![0; 1 << 16];
+        while self.rest.is_some()
+            && (matches!(to, SeekFrom::End(_)) || wanted.is_some_and(|to| to > self.length))
+        {
+            self.advance(&mut bytes)?;
+            wanted = place(self.length);
+        }
+        self.place = wanted.ok_or(io::ErrorKind::InvalidInput)?;
+        Ok(self.place)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What comes in pieces is read again from any place, and no more is read than asked for.
+    #[test]
+    fn what_was_read_is_there_again() {
+        let input = (&b"abc"[..]).chain(&b"defg"[..]).chain(&b"hij"[..]);
+        let mut input = SpooledInput::new(input).expect("a file");
+        let mut read = |to: SeekFrom, count: usize| {
+            let place = input.seek(to).expect("sought");
+            let mut bytes = vec![0; count];
+            input.read_exact(&mut bytes).expect("read");
+            (place, String::from_utf8(bytes).expect("text"), input.length)
+        };
+        let start = SeekFrom::Start(0);
+        assert_eq!(read(start, 2), (0, "ab".to_owned(), 2));
+        assert_eq!(read(start, 4), (0, "abcd".to_owned(), 4));
+        assert_eq!(read(SeekFrom::Current(-1), 2), (3, "de".to_owned(), 5));
+        assert_eq!(read(SeekFrom::Start(8), 1), (8, "i".to_owned(), 10));
+        assert_eq!(read(SeekFrom::End(-3), 3), (7, "hij".to_owned(), 10));
+    }
+
+    #[test]
+    fn an_input_without_an_end_is_refused() {
+        let mut input = SpooledInput::new(io::repeat(b'1')).expect("a file");
+        input.most = 1 << 20;
+        let read = io::copy(&mut input, &mut io::sink());
+        assert!(read.is_err_and(|error| error.to_string().contains("more than 4 GiB")));
+    }
+}
