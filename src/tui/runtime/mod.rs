@@ -11,6 +11,7 @@
 //! models           models for recognition: trained, read, searched
 //! sizes            the limit of a set in several sizes
 //! frames           a source of frames: watched, recorded
+//! frame_feed       what it has brought and the screen has not taken
 //! recording        the file that frames are recorded in
 //! naming           the shapes that left the imprints of frames
 //! disk             work with the disk, which may answer late
@@ -34,6 +35,8 @@ pub mod workers;
 mod models;
 
 mod sizes;
+
+mod frame_feed;
 
 mod frames;
 
