@@ -292,10 +292,10 @@ impl Player<'_, '_> {
             flow
         });
         let unshaped = pace.unshaped;
-        let read = read.and_then(|()| match unshaped {
-            Some(values) => Err(RecordingError::Shape { values }),
-            None => Ok(flow),
-        });
+        let read = match unshaped {
+            Some(values) if read.is_ok() => Err(RecordingError::Shape { values }),
+            _ => read.map(|()| flow),
+        };
         (pace, read)
     }
 }

@@ -108,19 +108,7 @@ pub(crate) fn frames(
         return Err(damage.unwrap_or_else(|| recording.refused("no frames")));
     }
     let Some(choice) = asked.choice else {
-        if let Some(misfit) = scan.misfit {
-            return Err(recording.refused(&misfit));
-        }
-        let wanted = asked.processing.channel.as_deref();
-        let listed = match wanted {
-            Some(_) => slice::from_ref(&scan.channels[scan.channel(&recording, wanted)?]),
-            None => &scan.channels[..],
-        };
-        let text = match output.form {
-            Form::Json(_) => recording_list::json(scan.format, listed),
-            Form::Table(_) => recording_list::text(scan.format, listed, output.charset),
-        };
-        output.write(&text)?;
+        list(&scan, &recording, asked, &mut output)?;
         return damage.map_or(Ok(()), Err);
     };
     let channel = scan.channel(&recording, asked.processing.channel.as_deref())?;
@@ -143,6 +131,30 @@ pub(crate) fn frames(
         None if answered => Ok(()),
         None => Err(recording.refused(&missing(choice, listed))),
     }
+}
+
+/// Lists the channels, or the one that is asked for.
+///
+/// # Errors
+/// If there is none of that name, or the crop does not fit.
+fn list(
+    scan: &Scan,
+    recording: &RecordingFile,
+    asked: &FramesArguments,
+    output: &mut FramesOutput<'_>,
+) -> Result<(), CliError> {
+    if let Some(misfit) = &scan.misfit {
+        return Err(recording.refused(misfit));
+    }
+    let wanted = asked.processing.channel.as_deref();
+    let listed = match wanted {
+        Some(_) => slice::from_ref(&scan.channels[scan.channel(recording, wanted)?]),
+        None => &scan.channels[..],
+    };
+    output.write(match output.form {
+        Form::Json(_) => recording_list::json(scan.format, listed),
+        Form::Table(_) => recording_list::text(scan.format, listed, output.charset),
+    })
 }
 
 /// Answers which taxels flip or are stuck in a channel, if it has frames, and writes the mask of these if a file is named.

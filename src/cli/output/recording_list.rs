@@ -128,23 +128,24 @@ pub(crate) fn text(
         .collect()
 }
 
+/// Rows, columns and cells, and of how many where only some are seen.
+fn size(channel: &ListedChannel) -> String {
+    let Some((rows, columns)) = channel.seen else {
+        let values = counted(channel.values, "value");
+        return format!("{values} a frame; give --rows and --columns");
+    };
+    let whole = channel.info.shape.filter(|whole| *whole != (rows, columns));
+    let whole = whole.map_or(String::new(), |(rows, columns)| {
+        format!(" of {rows} × {columns}")
+    });
+    let cells = counted(channel.cells as u64, "cell");
+    format!("{rows} rows × {columns} columns{whole}, {cells}")
+}
+
 /// A name in ten columns, then the value; lines without a value are left out.
 fn channel_lines(channel: &ListedChannel) -> Vec<String> {
     let info = &channel.info;
     let row = |name: &str, value: Option<String>| value.map(|value| format!("{name:<10}{value}"));
-    let whole = info.shape.filter(|whole| Some(*whole) != channel.seen);
-    let whole = whole.map(|(rows, columns)| format!(" of {rows} × {columns}"));
-    let size = match channel.seen {
-        Some((rows, columns)) => format!(
-            "{rows} rows × {columns} columns{}, {}",
-            whole.unwrap_or_default(),
-            counted(channel.cells as u64, "cell")
-        ),
-        None => format!(
-            "{} a frame; give --rows and --columns",
-            counted(channel.values, "value")
-        ),
-    };
     let pitch = info.pitch_mm.map(|[x, y]| {
         if x == y {
             format!("{} mm", short(x))
@@ -162,7 +163,7 @@ fn channel_lines(channel: &ListedChannel) -> Vec<String> {
     [
         row("channel", info.name.clone()),
         row("frames", Some(channel.frames.to_string())),
-        row("size", Some(size)),
+        row("size", Some(size(channel))),
         row(
             "from",
             channel

@@ -440,8 +440,9 @@ impl FrameFields {
     /// Whether a line of commas is a frame without cells, if another frame follows. Spreadsheet programs write such lines in
     /// place of empty ones, but hardly between frames.
     fn may_be_commas(&self, line: &[u8]) -> bool {
-        let commas = line.iter().filter(|&&byte| byte == b',').count();
-        let is_frame = commas > 0 && (commas == self.count || commas + 1 == self.count);
+        // As many as part the fields, or one more at the end.
+        let fields = line.split(|&byte| byte == b',').count();
+        let is_frame = fields > 1 && (fields == self.count || fields == self.count + 1);
         is_frame && self.label.is_none() && self.time.is_none()
     }
 

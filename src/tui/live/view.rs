@@ -109,19 +109,16 @@ fn title(live: &Live, window: Option<String>) -> Vec<TitlePiece> {
         pieces.push(TitlePiece { text, role, rank });
     };
     let status = live.status();
-    if let Some(name) = status
-        .channel
-        .as_deref()
-        .and_then(|own| own.name.as_deref())
+    let channel = status.channel.as_deref();
+    if let Some(name) = channel.and_then(|own| own.name.as_deref())
         && status.channels > 1
     {
         say(5, format!("channel {name}"), Role::Text);
     }
     match live.frame() {
         Some(frame) => {
-            let label = frame
-                .label
-                .map_or(String::new(), |label| format!(" (label {label})"));
+            let label = frame.label.map(|label| format!(" (label {label})"));
+            let label = label.as_deref().unwrap_or("");
             say(2, format!("frame {}{label}", frame.number), Role::Text);
             if let Some(time) = frame.time {
                 say(6, format!("{} s", value::decimal(time, 3)), Role::Text);
@@ -250,18 +247,29 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
         let numbers: Vec<String> = numbers.take(20).collect();
         say("marked", format!("frame {}", numbers.join(", ")));
     }
-    if let Some(name) = live.recording() {
-        let recorded = live.status().recorded.unwrap_or_default();
-        let frames = counted(recorded.frames, "frame");
-        let left_out = match recorded.left_out {
-            0 => String::new(),
-            frames => format!("; {} of another size left out", grouped(frames)),
-        };
-        say("recording", format!("{name}, {frames}{left_out}"));
-    } else if let Some(reason) = live.not_recorded() {
-        say("recording", format!("none: {reason}"));
+    if let Some(text) = recording(live) {
+        say("recording", text);
     }
     lines
+}
+
+/// The file that is recorded in, and how much; or why there is none although it was asked for.
+fn recording(live: &Live) -> Option<String> {
+    let Some(name) = live.recording() else {
+        return live.not_recorded().map(|reason| format!("none: {reason}"));
+    };
+    let (frames, others) = match live.status().recorded {
+        Some(recorded) => (recorded.frames, recorded.left_out),
+        None => (0, 0),
+    };
+    let frames = counted(frames, "frame");
+    Some(match others {
+        0 => format!("{name}, {frames}"),
+        _ => format!(
+            "{name}, {frames}; {} of another size left out",
+            grouped(others)
+        ),
+    })
 }
 
 /// How many regions there are. If there are several, the largest is described, and the active taxels of all are

@@ -57,7 +57,8 @@ impl Reader {
     /// was waited for. Other answers go on being waited for, but for those to a page, which closes now.
     pub(super) fn give_up(&mut self, pages: usize) -> Option<String> {
         let is_of_page = |asked: &Option<usize>| asked.is_none_or(|asked| asked >= pages);
-        self.asked.pop_front_if(|asked| is_of_page(asked))?;
+        self.asked.front().filter(|asked| is_of_page(asked))?;
+        self.asked.pop_front();
         if pages > 0 {
             let others = self.asked.iter_mut();
             others

@@ -170,13 +170,7 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
             watched.map_err(|message| fails(session, line, message))?;
         }
         ScriptCommand::Frames(count) => {
-            let found = session.frames(*count);
-            if found < *count {
-                let expected = counted(*count as u64, "frame");
-                let why = session.end_of_frames();
-                let message = format!("expected {expected}, found {found}: {why}");
-                return Err(fails(session, line, message));
-            }
+            take_frames(session, *count).map_err(|message| fails(session, line, message))?;
         }
         ScriptCommand::Signal(name) if name == "TSTP" => session.send(Message::Redraw),
         // What is not saved is in the journal already; the program ends without a question.
@@ -189,6 +183,20 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
         }
     }
     Ok(())
+}
+
+/// Reads and draws the next frames.
+///
+/// # Errors
+/// How many there are, and why no more, where there are fewer.
+fn take_frames(session: &mut Session, count: usize) -> Result<(), String> {
+    let found = session.frames(count);
+    if found == count {
+        return Ok(());
+    }
+    let expected = counted(count as u64, "frame");
+    let why = session.end_of_frames();
+    Err(format!("expected {expected}, found {found}: {why}"))
 }
 
 /// Presses the mouse at the first of some places, moves it over the others and lets it go at the last one.
