@@ -491,14 +491,6 @@ fn recognise_goes_through_sets_and_takes_one_by_name() {
         ":reco<Tab>figures-<Tab><Enter>",
         &["the seven figures of 30 cells"],
     );
-    shows(
-        ":recognise nothing<Enter>",
-        &[
-            "Recognise: model nothing",
-            "not read; Enter reads it",
-            "no model or file \"nothing\"; there are figures, figures-30, shapes",
-        ],
-    );
     // The set in use stays, with the touches that were kept and their answer.
     let hexagon = ":figure hexagon --side 3.4 --x0 4.31 --y0 4.52 --angle 17<Enter>";
     shows(
@@ -509,10 +501,6 @@ fn recognise_goes_through_sets_and_takes_one_by_name() {
             "likely: hexagon",
             "1 touch kept",
         ],
-    );
-    shows(
-        ":recognise nothing<Enter><Esc>o",
-        &["Recognise: the seven figures", "Nothing is touched"],
     );
     shows(":seed x<Enter>", &["seed takes a whole number"]);
     shows(":touch<Enter>", &["Recognise: the seven figures"]);

@@ -83,6 +83,26 @@ fn a_stored_model_is_completed_answers_and_is_remembered() {
 }
 
 #[test]
+fn a_set_that_does_not_exist_changes_nothing() {
+    let refused = "no model or file \"nope\"; there are figures, figures-30, shapes";
+    let shows_no = |session: &Session, text: &str| {
+        let screen = session.screen();
+        assert!(!screen.contains(text), "{text:?} on\n{screen}");
+    };
+    let mut session = started(world(), ":recognise nope<Enter>");
+    shows(&session, &[refused, ":recognise nope", "Region 0 of 0"]);
+    shows_no(&session, "Recognise: model");
+    press(&mut session, "<Esc>r");
+    shows(&session, &["Recognise: the seven figures", "t quiz"]);
+    shows_no(&session, "not read");
+    // With the page open it stays open, with the set that it has.
+    press(&mut session, ":recognise nope<Enter>");
+    shows(&session, &[refused, "Recognise: the seven figures"]);
+    press(&mut session, "<Esc><Esc>:recognise nope<Enter><Esc>");
+    shows(&session, &["Region 0 of 0"]);
+}
+
+#[test]
 fn a_damaged_or_older_model_of_the_cache_is_made_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let cache = folder.path().join("cache");

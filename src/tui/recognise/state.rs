@@ -36,15 +36,28 @@ pub struct Preparation {
     pub done: u64,
     /// Whether a stop was requested.
     pub stopping: bool,
+    /// Whether the page was opened for it.
+    opened: bool,
     /// The set that comes back if this one cannot be read.
     before: Option<Box<SetBefore>>,
+}
+
+/// Why there is no model.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoModel {
+    /// In a sentence.
+    pub reason: String,
+    /// Whether the page closes: it was opened for a set that cannot be read.
+    pub closes: bool,
 }
 
 /// The set before another one was chosen.
 #[derive(Clone, Debug)]
 struct SetBefore {
-    /// Its model.
-    trained: Arc<TrainedModel>,
+    /// The set.
+    choice: ModelChoice,
+    /// Its model; None if it had none.
+    trained: Option<Arc<TrainedModel>>,
     /// The touches that were kept.
     kept: Vec<Imprint>,
     /// The score of its exercise.
@@ -150,8 +163,9 @@ impl Recognition {
     }
 
     /// Chooses a set, whose model is prepared by the piece of work of that number. Touches and score begin anew with
-    /// another set. A stored model may be missing or damaged; then the set before it comes back.
-    pub fn prepare(&mut self, choice: ModelChoice, number: u64) {
+    /// another set. A stored model may be missing or damaged; then the set before it comes back. `opened`: the page was
+    /// opened for it.
+    pub fn prepare(&mut self, choice: ModelChoice, number: u64, opened: bool) {
         let state = std::mem::replace(&mut self.state, ModelState::Missing);
         let (mut before, trained) = match state {
             ModelState::Preparing(preparation) => (preparation.before, None),
@@ -159,25 +173,22 @@ impl Recognition {
             ModelState::Missing => (None, None),
         };
         if choice != self.choice {
-            let kept = std::mem::take(&mut self.kept);
-            let score = std::mem::take(&mut self.score);
+            let set = SetBefore {
+                choice: std::mem::replace(&mut self.choice, choice),
+                trained,
+                kept: std::mem::take(&mut self.kept),
+                score: std::mem::take(&mut self.score),
+            };
             self.present_kept = false;
-            if let Some(trained) = trained {
-                let set = SetBefore {
-                    trained,
-                    kept,
-                    score,
-                };
-                before = Some(Box::new(set));
-            }
+            before = before.or_else(|| Some(Box::new(set)));
         }
-        before = before.filter(|_| choice.is_read());
-        self.choice = choice;
+        before = before.filter(|_| self.choice.is_read());
         self.state = ModelState::Preparing(Preparation {
             number,
             poses: None,
             done: 0,
             stopping: false,
+            opened,
             before,
         });
         self.look = None;
@@ -225,33 +236,39 @@ impl Recognition {
     }
 
     /// Takes a model. Returns why there is none.
-    pub fn take_model(&mut self, prepared: Prepared) -> Option<String> {
-        let before = self.preparation(prepared.number)?.before.take();
+    pub fn take_model(&mut self, prepared: Prepared) -> Option<NoModel> {
+        let preparation = self.preparation(prepared.number)?;
+        let (before, opened) = (preparation.before.take(), preparation.opened);
         self.stored = prepared.stored;
-        match (prepared.trained, before) {
-            (Ok(trained), _) => {
+        let reason = match prepared.trained {
+            Ok(trained) => {
                 self.state = ModelState::Ready(trained);
                 self.ask();
-                None
+                return None;
             }
-            (Err(reason), None) => {
-                self.state = ModelState::Missing;
-                Some(reason)
-            }
-            (Err(reason), Some(before)) => {
-                let SetBefore {
-                    trained,
-                    kept,
-                    score,
-                } = *before;
-                self.choice = trained.choice.clone();
-                self.present_kept = kept.last() == Some(&self.present);
-                (self.kept, self.score) = (kept, score);
-                self.state = ModelState::Ready(trained);
-                self.ask();
-                Some(reason)
-            }
+            Err(reason) => reason,
+        };
+        self.state = ModelState::Missing;
+        let closes = opened && before.is_some();
+        if let Some(before) = before {
+            self.take_back(*before);
         }
+        Some(NoModel { reason, closes })
+    }
+
+    /// Goes back to the set before.
+    fn take_back(&mut self, before: SetBefore) {
+        let SetBefore {
+            choice,
+            trained,
+            kept,
+            score,
+        } = before;
+        self.choice = choice;
+        self.present_kept = kept.last() == Some(&self.present);
+        (self.kept, self.score) = (kept, score);
+        self.state = trained.map_or(ModelState::Missing, ModelState::Ready);
+        self.ask();
     }
 
     /// The touches that the answer is to: those kept, and the one on the matrix unless it is the last of them or empty.

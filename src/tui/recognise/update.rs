@@ -22,7 +22,7 @@ use crate::tui::recognise::reach::{put, state};
 use crate::tui::recognise::separate;
 use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::sets::ModelChoice;
-use crate::tui::recognise::state::{ModelState, Recognition};
+use crate::tui::recognise::state::{ModelState, NoModel, Recognition};
 use crate::tui::runtime::effect::{Effect, Work};
 
 /// Handles what is asked for over the matrix, with the page open or not.
@@ -89,7 +89,9 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
 /// A training may take long: the set that is there or on its way is not prepared again.
 /// The model comes as an event with the number given here; one of another number is out of date.
 fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
-    if let Some(page) = app.recognition.take() {
+    let closed = app.recognition.take();
+    let opened = closed.is_some();
+    if let Some(page) = closed {
         app.dialogs.push(Dialog::Recognition(page));
         app.page = NarrowPage::Panel;
     }
@@ -101,7 +103,7 @@ fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
     }
     app.works += 1;
     let number = app.works;
-    state(app)?.prepare(choice.clone(), number);
+    state(app)?.prepare(choice.clone(), number, opened);
     Some(Effect::Work(Work::Prepare(number, choice)))
 }
 
@@ -205,9 +207,7 @@ pub(in crate::tui) fn in_recognition(
                 inform(app, "stopping");
                 return Some(Effect::Work(Work::StopPreparing));
             }
-            app.recognition = Some(page);
-            app.page = NarrowPage::Matrix;
-            let_go(app);
+            close(app, page);
             None
         }
         message => {
@@ -218,6 +218,13 @@ pub(in crate::tui) fn in_recognition(
             }
         }
     }
+}
+
+/// Keeps the page, which was taken off the stack, until it is opened again.
+fn close(app: &mut App, page: Box<Recognition>) {
+    app.recognition = Some(page);
+    app.page = NarrowPage::Matrix;
+    let_go(app);
 }
 
 /// Handles a message in the exercise.
@@ -313,9 +320,8 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
             inform(app, format!("{what}: stopped waiting"));
         }
         RecognitionEvent::Prepared(prepared) => {
-            if let Some(reason) = page.take_model(*prepared) {
-                refuse(app, reason);
-            }
+            let failed = page.take_model(*prepared);
+            without_model(app, failed);
         }
         RecognitionEvent::Looked(look) => page.take_look(*look),
         RecognitionEvent::Sizes(found) => separate::update::on_found(app, *found),
@@ -339,9 +345,23 @@ pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) {
         stored: Vec::new(),
         trained: Err(reason.to_owned()),
     };
-    if let Some(reason) = state(app).and_then(|page| page.take_model(prepared)) {
-        refuse(app, reason);
+    let failed = state(app).and_then(|page| page.take_model(prepared));
+    without_model(app, failed);
+}
+
+/// Says why there is no model, if there is none. A page that was opened for it closes.
+fn without_model(app: &mut App, failed: Option<NoModel>) {
+    let Some(NoModel { reason, closes }) = failed else {
+        return;
+    };
+    let open = |dialog: &Dialog| matches!(dialog, Dialog::Recognition(_));
+    if closes
+        && let Some(at) = app.dialogs.iter().position(open)
+        && let Dialog::Recognition(page) = app.dialogs.remove(at)
+    {
+        close(app, page);
     }
+    refuse(app, reason);
 }
 
 /// Takes how far a training is.
