@@ -262,6 +262,12 @@ fn commands_do_what_keys_do() {
     );
     then(
         &mut session,
+        ":figure hexagon --side=3.5 --x0=-1<Enter>",
+        &["hexagon side 3.50 at -1.00, 4.00"],
+    );
+    then(&mut session, ":undo<Enter>", &["hexagon side 3.00"]);
+    then(
+        &mut session,
         ":turn -20<Enter>:undo<Enter>:save mine<Enter>:new<Enter>:load mine<Enter>",
         &["mine loaded", "hexagon side 3.00"],
     );
@@ -288,7 +294,13 @@ fn commands_do_what_keys_do() {
             "figure blob",
             "! figure: \"blob\" is unknown, expected one of ellipse,",
         ),
-        ("figure hexagon --side", "! --side needs a number"),
+        ("figure hexagon --side", "! --side needs a value"),
+        ("figure hexagon --side=", "! --side needs a value"),
+        (
+            "figure hexagon --side=3 --side 4",
+            "! --side is given twice",
+        ),
+        ("explore --x0=5 --x0=6", "! --x0 is given twice"),
         ("figure hexagon --side 99", "! Side: 99 is out of range"),
         (
             "figure hexagon --length 2",

@@ -23,6 +23,7 @@ use crate::tui::app::message::Message;
 use crate::tui::keys::action::{ACTIONS, Action, Arguments};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::default_keys::DEFAULT_KEYS;
+use crate::tui::prompt::flags::{is_given, lacks_value};
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::request::SeparationFlags;
 
@@ -213,14 +214,11 @@ pub fn complete(line: &str, names: &[String]) -> (String, Vec<String>) {
 fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
     let said: Vec<&str> = before.split_whitespace().collect();
     let words = |flags: Vec<String>, said: &[&str]| {
-        // A flag is followed by its value.
-        if said.len() % 2 == 1 {
+        if lacks_value(said) {
             return Vec::new();
         }
         let unsaid = flags.into_iter();
-        unsaid
-            .filter(|flag| !said.contains(&flag.as_str()))
-            .collect()
+        unsaid.filter(|flag| !is_given(flag, said)).collect()
     };
     let flags = |parameters: Vec<Parameter>, said: &[&str]| {
         let flags = parameters.iter();
@@ -333,6 +331,16 @@ mod tests {
                 "figure hexagon --side 3 --s",
                 "figure hexagon --side 3 --s",
                 0,
+            ),
+            (
+                "figure hexagon --side=3 --s",
+                "figure hexagon --side=3 --s",
+                0,
+            ),
+            (
+                "figure hexagon --side=3 --an",
+                "figure hexagon --side=3 --angle ",
+                1,
             ),
             (
                 "figure hexagon --side 3 --an",

@@ -2,9 +2,11 @@
 //!
 //! ```text
 //! commands   the table of commands, and completion     view     impl Page for both prompts
-//! read       a line becomes a message                  update   keys
-//! state      the fields, and earlier commands
+//! flags      `--side 3` and `--side=3`                 update   keys
+//! read       a line becomes a message                  state    the fields, and earlier commands
 //! ```
+
+pub mod flags;
 
 pub mod commands;
 

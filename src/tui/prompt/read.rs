@@ -27,6 +27,7 @@ use crate::tui::keys::action::{self, Arguments, FilePurpose};
 use crate::tui::keys::binding::Context;
 use crate::tui::live::message::LiveMessage;
 use crate::tui::prompt::commands::{PromptCommand, find};
+use crate::tui::prompt::flags::{self, Flag};
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::sets::ModelChoice;
@@ -96,9 +97,9 @@ fn with_arguments(
             Err("nothing to save: the matrix is empty".to_owned())
         }
         (Arguments::Name, _) => Ok(app.storing(name_of(rest)?)),
-        (Arguments::Figure, [kind, pairs @ ..]) => figure(kind, pairs, app),
-        (Arguments::Sensor, pairs) => sensor(pairs, app),
-        (Arguments::Ranges, pairs) => explore(pairs, app),
+        (Arguments::Figure, [kind, words @ ..]) => figure(kind, words, app),
+        (Arguments::Sensor, words) => sensor(words, app),
+        (Arguments::Ranges, words) => explore(words, app),
         (Arguments::Model, _) => {
             let choice = ModelChoice::from_name(name_of(rest)?);
             Ok(Message::Recognise(RecogniseMessage::Choose(choice)))
@@ -184,31 +185,27 @@ fn name_of(text: &str) -> Result<Name, String> {
     Name::new(text).map_err(|error| error.to_string())
 }
 
-/// The numbers of `--key value` pairs, each key once.
-fn numbers(pairs: &[&str], sensor: &Sensor) -> Result<Vec<(Parameter, f64)>, String> {
-    let mut numbers: Vec<(Parameter, f64)> = Vec::new();
-    for pair in pairs.chunks(2) {
-        let flag = pair[0];
-        let key = flag
-            .strip_prefix("--")
-            .ok_or_else(|| format!("expected a flag like --side, found {}", shortened(flag)))?;
-        let parameter =
-            Parameter::from_flag(key).ok_or_else(|| format!("{} is unknown", shortened(flag)))?;
-        if numbers.iter().any(|(given, _)| *given == parameter) {
-            return Err(format!("{flag} is given twice"));
-        }
-        let text = pair
-            .get(1)
-            .ok_or_else(|| format!("{flag} needs a number"))?;
+/// The numbers of flags; `example` is one of them.
+fn numbers(
+    words: &[&str],
+    example: &str,
+    sensor: &Sensor,
+) -> Result<Vec<(Parameter, f64)>, String> {
+    let known = |flag: &str| {
+        let parameter = Parameter::from_flag(flag.trim_start_matches("--"));
+        parameter.ok_or_else(|| format!("{} is unknown", shortened(flag)))
+    };
+    let number = |(_, parameter, text): Flag<'_, Parameter>| {
         let value = sensor.read(parameter, text);
-        numbers.push((parameter, value.map_err(|error| error.labelled())?));
-    }
-    Ok(numbers)
+        Ok((parameter, value.map_err(|error| error.labelled())?))
+    };
+    let flags = flags::read(words, example, known)?.into_iter();
+    flags.map(number).collect()
 }
 
 /// `figure KIND --side 3 …`. Parameters that are not given have their defaults; one that the figure does not have is an
 /// error.
-fn figure(kind: &str, pairs: &[&str], app: &App) -> Result<Message, String> {
+fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
     let sensor = app.shown().sensor;
     let kind = FigureKind::from_name(kind).ok_or_else(|| {
         format!(
@@ -217,7 +214,7 @@ fn figure(kind: &str, pairs: &[&str], app: &App) -> Result<Message, String> {
             FigureKind::ALL.map(FigureKind::name).join(", ")
         )
     })?;
-    let values = numbers(pairs, &sensor)?;
+    let values = numbers(words, "--side", &sensor)?;
     if let Some((foreign, _)) = values
         .iter()
         .find(|(parameter, _)| !kind.parameters().contains(parameter))
@@ -240,9 +237,9 @@ fn figure(kind: &str, pairs: &[&str], app: &App) -> Result<Message, String> {
 }
 
 /// `sensor --columns 32 …`. Parameters that are not given keep their values.
-fn sensor(pairs: &[&str], app: &App) -> Result<Message, String> {
+fn sensor(words: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
-    let values = numbers(pairs, &Sensor::LARGEST)?;
+    let values = numbers(words, "--columns", &Sensor::LARGEST)?;
     let sensor = values
         .into_iter()
         .try_fold(document.sensor, |sensor, (parameter, value)| {
@@ -261,36 +258,33 @@ fn explore(words: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
     let source = explored(app).ok_or_else(|| app.nothing_to_explore())?;
     let (mut ranges, mut anchor) = (GivenRanges::default(), Anchor::default());
-    let mut given: Vec<&str> = Vec::new();
-    for pair in words.chunks(2) {
-        let flag = pair[0];
-        let name = flag
-            .strip_prefix("--")
-            .ok_or_else(|| format!("expected a flag like --x0, found {}", shortened(flag)))?;
-        let text = pair
-            .get(1)
-            .ok_or_else(|| format!("{} needs a value", shortened(flag)))?;
-        if given.contains(&flag) {
-            return Err(format!("{flag} is given twice"));
-        }
-        given.push(flag);
-        if name == "anchor" {
-            anchor = Anchor::from_name(text).ok_or_else(|| {
-                let names = Anchor::NAMES.join(" or ");
-                format!("--anchor takes {names}, found {}", shortened(text))
-            })?;
-            continue;
-        }
+    // An axis, or None for the anchor.
+    let known = |flag: &str| {
+        let name = flag.trim_start_matches("--");
         let mut axes = Axis::ALL.into_iter();
         let axis = axes.find(|axis| axis.parameter().flag() == name);
-        let axis = axis.ok_or_else(|| {
-            format!(
-                "{} is unknown, expected --x0, --y0, --angle, --zoom-x, --zoom-y or --anchor",
-                shortened(flag)
-            )
-        })?;
-        let range = text.parse();
-        ranges[axis] = Some(range.map_err(|error: RangeError| format!("{flag}: {error}"))?);
+        (axis.is_some() || name == "anchor")
+            .then_some(axis)
+            .ok_or_else(|| {
+                format!(
+                    "{} is unknown, expected --x0, --y0, --angle, --zoom-x, --zoom-y or --anchor",
+                    shortened(flag)
+                )
+            })
+    };
+    for (flag, axis, text) in flags::read(words, "--x0", known)? {
+        match axis {
+            Some(axis) => {
+                let range = text.parse();
+                ranges[axis] = Some(range.map_err(|error: RangeError| format!("{flag}: {error}"))?);
+            }
+            None => {
+                anchor = Anchor::from_name(text).ok_or_else(|| {
+                    let names = Anchor::NAMES.join(" or ");
+                    format!("--anchor takes {names}, found {}", shortened(text))
+                })?;
+            }
+        }
     }
     let ranges = default_ranges(&source, &document.sensor, anchor, &ranges);
     let ranges = ranges.map_err(|error| error.to_string())?;

@@ -6,6 +6,7 @@ use crate::formats::separation::short;
 use crate::pose::{Axis, DecimalRange, RangeError};
 use crate::quote::shortened;
 use crate::recognition::{Separation, SizeAxis, TrainingError};
+use crate::tui::prompt::flags;
 use crate::tui::recognise::sets::TrainedModel;
 
 /// The sizes that are looked at unless others are asked for: half as large to three times as large.
@@ -89,23 +90,20 @@ impl SeparationFlags {
     /// # Errors
     /// What is wrong with them, in a sentence.
     pub fn read(words: &[&str]) -> Result<Self, String> {
-        let mut flags = Self::NONE;
-        let mut given: Vec<&str> = Vec::new();
-        for pair in words.chunks(2) {
-            let flag = pair[0];
-            if !Self::NAMES.contains(&flag) {
+        let known = |flag: &str| {
+            let own = Self::NAMES.into_iter().find(|own| *own == flag);
+            own.ok_or_else(|| {
                 let expected = Self::NAMES.join(", ");
-                let found = shortened(flag);
-                return Err(format!("{found} is unknown, expected {expected}"));
-            }
-            let text = pair.get(1).ok_or_else(|| format!("{flag} needs a value"))?;
-            if given.contains(&flag) {
-                return Err(format!("{flag} is given twice"));
-            }
-            given.push(flag);
+                format!("{} is unknown, expected {expected}", shortened(flag))
+            })
+        };
+        let mut flags = Self::NONE;
+        let given = flags::read(words, "--scale", known)?;
+        for (flag, _, text) in &given {
             flags.take(flag, text)?;
         }
-        if given.contains(&"--scale") && given.contains(&"--pitch") {
+        let is_given = |name: &str| given.iter().any(|(flag, ..)| *flag == name);
+        if is_given("--scale") && is_given("--pitch") {
             return Err("--scale and --pitch do not go together".to_owned());
         }
         Ok(flags)

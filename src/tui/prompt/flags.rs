@@ -1,0 +1,94 @@
+//! Flags of a `:` command, as on the command line: `--side 3` or `--side=3`.
+//!
+//! ```
+//! use taxel::tui::prompt::flags::read;
+//! let sides = |flag: &str| (flag == "--side").then_some(1).ok_or(format!("{flag} is unknown"));
+//! assert_eq!(read(&["--side=3"], "--side", sides), Ok(vec![("--side", 1, "3")]));
+//! assert_eq!(read(&["--side"], "--side", sides), Err("--side needs a value".to_owned()));
+//! ```
+
+use crate::quote::shortened;
+
+/// A flag as it was typed, what it stands for, and its value.
+pub type Flag<'a, T> = (&'a str, T, &'a str);
+
+/// Reads flags, each with its value and none twice. `known` says what a flag stands for, or that there is none of that
+/// name; `example` is one that there is.
+///
+/// # Errors
+/// What is wrong with them, in a sentence.
+pub fn read<'a, T: PartialEq>(
+    words: &[&'a str],
+    example: &str,
+    known: impl Fn(&str) -> Result<T, String>,
+) -> Result<Vec<Flag<'a, T>>, String> {
+    let mut flags: Vec<Flag<'a, T>> = Vec::new();
+    let mut words = words.iter().copied().peekable();
+    while let Some(word) = words.next() {
+        if !word.starts_with("--") {
+            let found = shortened(word);
+            return Err(format!("expected a flag like {example}, found {found}"));
+        }
+        let (flag, value) = match word.split_once('=') {
+            Some((flag, value)) => (flag, Some(value)),
+            None => (word, None),
+        };
+        let what = known(flag)?;
+        if flags.iter().any(|(_, own, _)| *own == what) {
+            return Err(format!("{flag} is given twice"));
+        }
+        // A number may begin with a minus; a flag in place of the value means that it was left out.
+        let value = value.or_else(|| words.next_if(|next| !next.starts_with("--")));
+        let value = value.filter(|value| !value.is_empty());
+        let value = value.ok_or_else(|| format!("{flag} needs a value"))?;
+        flags.push((flag, what, value));
+    }
+    Ok(flags)
+}
+
+/// Whether the value of the last flag is still to come.
+pub(super) fn lacks_value(words: &[&str]) -> bool {
+    words
+        .iter()
+        .fold(false, |lacks, word| !lacks && !word.contains('='))
+}
+
+/// Whether a flag is among these words.
+pub(super) fn is_given(flag: &str, words: &[&str]) -> bool {
+    words
+        .iter()
+        .any(|word| word.split('=').next() == Some(flag))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags_are_read_with_a_blank_or_an_equals_sign() {
+        let all = ["--side", "--x0"];
+        let known = |flag: &str| {
+            let index = all.iter().position(|own| *own == flag);
+            index.ok_or_else(|| format!("{} is unknown", shortened(flag)))
+        };
+        let read = |line: &'static str| {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            super::read(&words, "--side", known)
+        };
+        let both = Ok(vec![("--side", 0, "3.5"), ("--x0", 1, "-2")]);
+        assert_eq!(read("--side=3.5 --x0=-2"), both);
+        assert_eq!(read("--side 3.5 --x0 -2"), both);
+        assert_eq!(read(""), Ok(Vec::new()));
+        for (line, error) in [
+            ("--side", "--side needs a value"),
+            ("--side=", "--side needs a value"),
+            ("--side --x0 3", "--side needs a value"),
+            ("--side=1 --side 2", "--side is given twice"),
+            ("--sid=3", "--sid is unknown"),
+            ("side=3", "expected a flag like --side, found side=3"),
+        ] {
+            assert_eq!(read(line), Err(error.to_owned()), "{line}");
+        }
+        assert!(lacks_value(&["--side=3", "--x0"]) && !lacks_value(&["--side=3"]));
+    }
+}
