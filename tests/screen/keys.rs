@@ -448,6 +448,14 @@ fn wide_characters_in_a_number_are_seen() {
     shows("f<Tab>字字字字字字1", &["… 字字1"]);
     shows("f<Enter>e字字字字字字字字1", &["… 字字字字字字1"]);
 }
+    // Without the cursor a number is read from its start, and with it the digit under the cursor is seen.
+    let long = "f<Tab>3.2109876543";
+    shows(long, &["Radius x  …9876543 "]);
+    shows(&format!("{long}<Tab>"), &["Radius x  3.210987… "]);
+    shows(
+        &format!("{long}<Home><Right><Right><Right><Right><Right><Right><Right><Right>"),
+        &["Radius x  …2109876… "],
+    );
 
 #[test]
 fn recognise_names_the_shape_and_follows_the_matrix() {

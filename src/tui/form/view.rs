@@ -165,7 +165,9 @@ fn draw_field(
     row: Rect,
 ) -> Position {
     let label = format!("{:LABEL$}", field.parameter().row().label);
-    let (shown, cursor) = write::field_columns(field.text(), field.cursor(), INPUT, theme);
+    // A field is read from its start; what is typed must be seen.
+    let at = if focused { field.cursor() } else { 0 };
+    let (shown, cursor) = write::field_columns(field.text(), at, INPUT, theme);
     let role = if focused { Role::Focus } else { Role::Text };
     write::line(
         buffer,

@@ -112,15 +112,20 @@ pub fn right_of(area: Rect, x: u16) -> Rect {
 }
 
 /// The part of a text in a field of `room` columns that has the cursor in sight, and the column of the cursor in it. An
-/// ellipsis at its start stands for what is hidden there.
+/// ellipsis at its start stands for what is hidden there. The part goes on to the end of the text: whoever writes it marks
+/// what has no room there, which is never under the cursor.
 pub fn field_text<'a>(
     text: &'a str,
     cursor: usize,
     room: usize,
     theme: &Theme,
 ) -> (Cow<'a, str>, usize) {
-    let (shown, column) = window(text, cursor, room);
     let ellipsis = theme.text("…");
+    let (mut shown, mut column) = window(text, cursor, room);
+    let before_mark = room.saturating_sub(width(&ellipsis));
+    if width(shown) > room && column >= before_mark && before_mark > width(&ellipsis) {
+        (shown, column) = window(text, cursor, before_mark);
+    }
     if shown.len() == text.len() || width(&ellipsis) > column {
         return (Cow::Borrowed(shown), column);
     }
@@ -227,6 +232,9 @@ mod tests {
             ("12345", 5, ("…345", 4)),
             ("12345", 0, ("12345", 0)),
             ("字字字", 6, ("… 字", 4)),
+            // The character under the cursor is seen, though more follows.
+            ("1234567", 3, ("1234567", 3)),
+            ("1234567", 4, ("…34567", 3)),
         ] {
             let (shown, column) = field_text(text, cursor, 5, &unicode);
             assert_eq!((&*shown, column), expected, "{text} at {cursor}");
