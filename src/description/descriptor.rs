@@ -243,6 +243,15 @@ pub struct Descriptor {
     pub in_answer: bool,
     /// What changes it. One that changes with shifts says nothing of the shape by itself.
     pub changes_under: ChangesUnder,
+    /// What it is where there is nothing to describe: 0 for counts and sums of taxels; the others do not exist.
+    ///
+    /// ```
+    /// use taxel::description::{DESCRIPTORS, Value};
+    /// let zeros = DESCRIPTORS.iter().filter(|descriptor| descriptor.of_nothing != Value::None);
+    /// let zeros: Vec<&str> = zeros.map(|descriptor| descriptor.key).collect();
+    /// assert_eq!(zeros, ["na", "nae", "ce", "num_x", "num_y", "area"]);
+    /// ```
+    pub of_nothing: Value,
     /// How it follows from the counts and sums.
     pub measure: fn(&Description) -> Value,
     /// Two imprints have the same value just where this is the same; what [`Self::measure`] rounds is not rounded here.
@@ -265,6 +274,7 @@ impl Descriptor {
             dimension,
             in_answer: true,
             changes_under: ChangesUnder::NOTHING,
+            of_nothing: Value::None,
             measure,
             exact,
         }
@@ -274,6 +284,14 @@ impl Descriptor {
     const fn of_place(self) -> Self {
         Self {
             changes_under: ChangesUnder::SHIFTS,
+            ..self
+        }
+    }
+
+    /// One that counts or sums up taxels, and so is 0 without any.
+    const fn zero_of_nothing(self, zero: Value) -> Self {
+        Self {
+            of_nothing: zero,
             ..self
         }
     }
@@ -369,7 +387,8 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         Dimension::Count,
         |d| Value::Count(d.na),
         |d| Some(whole([d.na])),
-    ),
+    )
+    .zero_of_nothing(Value::Count(0)),
     Descriptor::new(
         "nae",
         "NAE",
@@ -377,7 +396,8 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         Dimension::Count,
         |d| Value::Count(d.nae),
         |d| Some(whole([d.nae])),
-    ),
+    )
+    .zero_of_nothing(Value::Count(0)),
     Descriptor::new(
         "ce",
         "CE",
@@ -385,7 +405,8 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         Dimension::Count,
         |d| Value::Count(d.ce),
         |d| Some(whole([d.ce])),
-    ),
+    )
+    .zero_of_nothing(Value::Count(0)),
     Descriptor::new(
         "num_x",
         "NumX",
@@ -394,7 +415,8 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         |d| Value::Number(d.num_x),
         |d| Some(ratios([d.doubled_sums()[0], 0], 2)),
     )
-    .of_place(),
+    .of_place()
+    .zero_of_nothing(Value::Number(0.0)),
     Descriptor::new(
         "num_y",
         "NumY",
@@ -403,7 +425,8 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         |d| Value::Number(d.num_y),
         |d| Some(ratios([d.doubled_sums()[1], 0], 2)),
     )
-    .of_place(),
+    .of_place()
+    .zero_of_nothing(Value::Number(0.0)),
     Descriptor::new(
         "cg",
         "CG",
@@ -466,7 +489,8 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         Dimension::Area,
         |d| Value::Count(d.rect.area()),
         |d| Some(whole([d.rect.area()])),
-    ),
+    )
+    .zero_of_nothing(Value::Count(0)),
     Descriptor::new(
         "diagonals",
         "Diag",

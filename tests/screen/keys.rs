@@ -336,7 +336,9 @@ fn the_screen_of_a_lone_or_full_or_empty_matrix_has_no_impossible_numbers() {
     ] {
         hides(keys, &["NaN", "inf"]);
     }
-    shows("", &["NA     –", "F      –"]);
+    let counts = ["NA     0 ", "NumX   0 ", "Area   0 "];
+    shows("", &counts);
+    shows("", &["CG     –", "P      –", "F      –"]);
     shows(
         "<Space>",
         &["P      0 ", "F      0 ", "Round  –", "dir    –"],

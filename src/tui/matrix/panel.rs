@@ -11,7 +11,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use crate::description::{DESCRIPTORS, Description, Descriptor, Value};
+use crate::description::{DESCRIPTORS, Description, Descriptor};
 use crate::formats::value;
 use crate::tui::matrix::view::MatrixView;
 use crate::tui::widget::number::narrow;
@@ -69,7 +69,7 @@ fn draw_descriptor(
     buffer: &mut Buffer,
     row: Rect,
 ) {
-    let measured = description.map_or(Value::None, descriptor.measure);
+    let measured = description.map_or(descriptor.of_nothing, descriptor.measure);
     let text = value::text(measured, descriptor.dimension);
     let text = text
         .as_deref()
