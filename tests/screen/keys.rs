@@ -646,6 +646,10 @@ fn esc_takes_a_count_back() {
 }
 
 /// On the page of recognition the keys that hold a shape are in force, not those of the page.
+    shows("1", &["1 time"]);
+    shows("999", &["999 times"]);
+    shows("1000", &["999 times: a key is repeated no more often"]);
+    shows("0", &["a count begins with 1 to 9"]);
 #[test]
 fn help_lists_the_keys_of_a_held_shape() {
     shows("f<Enter>rg?", &["While a shape is held"]);

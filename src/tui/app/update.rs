@@ -3,6 +3,7 @@
 //! The top page receives the message, or the matrix if there is none. A notice stays until the next message from the
 //! user.
 
+use crate::formats::value::counted;
 use crate::tui::app::change::{compare_with, inform, refuse, settle};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Reading;
@@ -87,16 +88,24 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
         _ => {}
     }
     if let Message::Count(digit) = message {
-        let before = app.count.unwrap_or_default();
-        app.count = Some((before * 10 + digit).min(MOST_TIMES)).filter(|&count| count > 0);
-        app.notice = app
-            .count
-            .map(|count| Notice::Info(format!("{count} times")));
+        take_digit(app, digit);
         return None;
     }
     let times = app.count.take().filter(|_| message.repeats());
     repeat(app, &message, times.unwrap_or(1))
 }
+/// Takes a digit of a count, and shows the count. One that is too large says that it was cut.
+fn take_digit(app: &mut App, digit: u16) {
+    let count = app.count.unwrap_or_default() * 10 + digit;
+    app.count = Some(count.min(MOST_TIMES)).filter(|&count| count > 0);
+    let text = match count {
+        0 => "a count begins with 1 to 9".to_owned(),
+        1..=MOST_TIMES => counted(count.into(), "time"),
+        _ => format!("{MOST_TIMES} times: a key is repeated no more often"),
+    };
+    inform(app, text);
+}
+
 
 /// Does what a message of the user says so often, or until there is an effect.
 fn repeat(app: &mut App, message: &Message, times: u16) -> Option<Effect> {
