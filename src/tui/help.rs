@@ -4,6 +4,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
+use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
@@ -176,6 +177,10 @@ impl Page for Help {
 
     fn scrolls(&self) -> bool {
         true
+    }
+
+    fn has_use_for(&self, message: &Message) -> bool {
+        self.search.is_some() || !matches!(message, Message::Match(_))
     }
 
     /// Its update leaves the search first.

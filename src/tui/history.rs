@@ -174,6 +174,10 @@ impl Page for HistoryDialog {
         true
     }
 
+    fn has_use_for(&self, message: &Message) -> bool {
+        self.search.is_some() || !matches!(message, Message::Match(_))
+    }
+
     /// Its update leaves the search first.
     fn cancels_itself(&self) -> bool {
         self.search.is_some()

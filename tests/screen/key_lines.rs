@@ -42,7 +42,17 @@ fn the_menu_names_the_keys_of_the_page() {
             "Ctrl-U clear",
         ),
         (":", "Enter run   Esc cancel   F1 help", "Tab complete"),
-        ("<Space>q", "y yes   n no   Esc not now   ? help", ""),
+        (
+            "<Space>q",
+            "y yes   n no   s save first   Esc not now   ? help",
+            "",
+        ),
+        // Nothing can be saved there.
+        (
+            "f<CR>:save mine<CR>:delete mine<CR>",
+            "y yes   n no   Esc not now   ? help",
+            "",
+        ),
         ("?", "q close", "Up Down scroll"),
         ("f<CR>e", "Enter start   Esc cancel   ? help", "Tab field"),
         (
@@ -57,6 +67,34 @@ fn the_menu_names_the_keys_of_the_page() {
         assert!(
             !last.contains("Esc cancel"),
             "{keys}: once is enough: {last}"
+        );
+    }
+    // Keys that can do nothing at the moment are not named.
+    for (keys, has, lacks) in [
+        ("?", "/ search", "n N match"),
+        ("?/zoom<CR>", "n N match", "nothing"),
+        ("H", "/ search", "n N match"),
+        ("H/start<CR>", "n N match", "nothing"),
+        (
+            "f<CR>:explore --angle 0<CR>",
+            "Enter to matrix  / filter",
+            "nothing",
+        ),
+        (
+            "f<CR>:explore --angle 0<CR>/na>=999<CR>",
+            "/ filter",
+            "to matrix",
+        ),
+        (
+            "f<CR>:explore --angle 0<CR>/na>=999<CR>",
+            "j find",
+            "compare",
+        ),
+    ] {
+        let (_, last) = lines(keys);
+        assert!(
+            last.contains(has) && !last.contains(lacks),
+            "{keys}: {last}"
         );
     }
     let (menu, hints) = lines("f<CR>r");

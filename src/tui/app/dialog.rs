@@ -118,8 +118,8 @@ pub struct Question {
     pub yes: Message,
     /// What no does, None for nothing.
     pub no: Option<Message>,
-    /// What else may be answered than yes and no, as `, s: save first`; empty if nothing.
-    pub more: String,
+    /// Whether what is on the matrix may be saved first.
+    pub saves_first: bool,
 }
 
 impl Question {
@@ -129,7 +129,7 @@ impl Question {
             text: text.into(),
             yes,
             no: None,
-            more: String::new(),
+            saves_first: false,
         }
     }
 }
@@ -148,12 +148,18 @@ impl Page for Question {
         None
     }
 
+    fn has_use_for(&self, message: &Message) -> bool {
+        self.saves_first || *message != Message::Save
+    }
+
     fn remark(&self, keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
         let key = |answer| keymap.label(Context::Question, answer);
         let (yes, no) = (key(&action::ACCEPT), key(&action::DECLINE));
+        let save = Some(key(&action::SAVE)).filter(|key| self.saves_first && !key.is_empty());
+        let save = save.map_or(String::new(), |key| format!(", {key}: save first"));
         let answers = match self.no {
             Some(_) => String::new(),
-            None => format!(" ({yes}/{no}{})", self.more),
+            None => format!(" ({yes}/{no}{save})"),
         };
         Some((format!("{}{answers}", self.text), Role::Error))
     }

@@ -13,6 +13,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
+use crate::tui::app::dialog::Dialog;
 use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, NarrowPage};
@@ -97,7 +98,9 @@ pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
         all.map(|row| (row, option(row))).collect()
     } else {
         let own = of_menu(context, keymap).into_iter();
-        own.map(|row| (row, row.hint)).collect()
+        own.filter(|row| useful(app, row))
+            .map(|row| (row, row.hint))
+            .collect()
     };
     let brief = options && area.width < WIDE;
     placed(area, gap, Role::Text, brief, rows)
@@ -121,6 +124,7 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
         .chain(line)
         .flat_map(|screen| keymap.of(screen));
     let all = keymap.of(context).chain(outer).filter(free);
+    let all = all.filter(|row| useful(app, row));
     let menu = menu(app, panes.menu);
     let rest = all.filter(|row| {
         !row.hint.is_empty() && menu.iter().all(|item| !std::ptr::eq(item.binding, *row))
@@ -136,6 +140,15 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
     };
     let rows = first.chain(others).map(|row| (row, name(row))).collect();
     placed(panes.hints, 2, Role::Quiet, false, rows)
+}
+
+/// Whether the top page can do something with one of the keys of a row now.
+fn useful(app: &App, row: &Binding) -> bool {
+    let Some(page) = app.dialogs.last().map(Dialog::page) else {
+        return true;
+    };
+    let mut messages = row.keys.iter().filter_map(|(_, action)| action.message());
+    messages.any(|message| page.has_use_for(message))
 }
 
 /// The rows of the menu of a page other than the matrix: those of the screen that it is a page of, or its own; of a form,
@@ -158,9 +171,10 @@ fn of_menu(context: Context, keymap: &Keymap) -> Vec<&Binding> {
 }
 
 /// What leads on from a page, out of it, or to its keys.
-const LEADING: [Message; 7] = [
+const LEADING: [Message; 8] = [
     Message::Accept,
     Message::Decline,
+    Message::Save,
     Message::Cancel,
     Message::Quit,
     Message::Help,

@@ -75,6 +75,12 @@ pub trait Page {
         false
     }
 
+    /// Whether it can do something with a message now. Hints leave out keys whose messages it has no use for; whoever
+    /// presses one all the same is told why it does nothing.
+    fn has_use_for(&self, _message: &Message) -> bool {
+        true
+    }
+
     /// The imprint that the matrix is compared with: taxels that differ have marks. None for no comparison.
     fn compared_with(&self) -> Option<&Imprint> {
         None

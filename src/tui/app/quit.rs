@@ -3,8 +3,6 @@
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, RunState};
-use crate::tui::keys::action;
-use crate::tui::keys::binding::Context;
 
 /// Quits, after a question if work would be lost.
 /// The imprint on the matrix can be saved from the question; an earlier drawing must be brought back first, so there
@@ -23,15 +21,14 @@ pub(in crate::tui) fn quit(app: &mut App) {
         }
     };
     let text = format!("{what} not saved. Quit anyway?");
-    let key = app.keymap().label(Context::Question, &action::SAVE);
-    let mut question = Question::new(text, Message::QuitNow);
-    if can_save_first(app) && !key.is_empty() {
-        question.more = format!(", {key}: save first");
-    }
+    let question = Question {
+        saves_first: can_save_first(app),
+        ..Question::new(text, Message::QuitNow)
+    };
     app.dialogs.push(Dialog::Question(question));
 }
 
 /// Whether there is something on the matrix that can be saved before the end.
-pub(in crate::tui) fn can_save_first(app: &App) -> bool {
+fn can_save_first(app: &App) -> bool {
     app.unsaved() && !app.is_being_saved() && !app.reading().imprint.is_empty()
 }

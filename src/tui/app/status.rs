@@ -23,6 +23,7 @@ use crate::tui::app::page::{Page, Slot};
 use crate::tui::app::state::{App, Mode, Notice};
 use crate::tui::app::title::name;
 use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
 
@@ -85,14 +86,24 @@ fn source(app: &App, panes: &Panes) -> String {
     let Some(source) = &document.source else {
         // The same before and after the first taxel: that saves a dozen bytes then.
         let (draw, figure) = (app.key_of(&action::TOGGLE), app.key_of(&action::FIGURE));
-        if app.loaded_imprint().is_some() {
-            let place = app.key_of(&action::PICTURE);
-            return format!("{name}stored shape: {place} moves and turns it, {draw} draws");
-        }
+        let place = app.key_of(&action::PICTURE);
         let origin = app.history.origin();
-        let brought_by = origin.brought_by.as_deref();
-        let made = brought_by.unwrap_or("drawn by hand");
-        return format!("{name}{made}: {draw} draws, {figure} places a figure");
+        let (made, keys) = match origin.brought_by.as_deref() {
+            _ if app.loaded_imprint().is_some() => (
+                "stored shape",
+                format!("{place} moves and turns it, {draw} draws"),
+            ),
+            brought_by => (
+                brought_by.unwrap_or("drawn by hand"),
+                format!("{draw} draws, {figure} places a figure"),
+            ),
+        };
+        // Over most pages these keys do something else.
+        return if app.context().leads_to(Context::Matrix) {
+            format!("{name}{made}: {keys}")
+        } else {
+            name + made
+        };
     };
     let mut text = name + &source.to_string();
     if by_hand > 0 {

@@ -9,7 +9,6 @@ use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Reading;
 use crate::tui::app::message::{FileEvent, Message};
 use crate::tui::app::mouse;
-use crate::tui::app::quit::can_save_first;
 use crate::tui::app::state::{App, Mode, Notice, RunState};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::help::Help;
@@ -94,6 +93,7 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
     let times = app.count.take().filter(|_| message.repeats());
     repeat(app, &message, times.unwrap_or(1))
 }
+
 /// Takes a digit of a count, and shows the count. One that is too large says that it was cut.
 fn take_digit(app: &mut App, digit: u16) {
     let count = app.count.unwrap_or_default() * 10 + digit;
@@ -105,7 +105,6 @@ fn take_digit(app: &mut App, digit: u16) {
     };
     inform(app, text);
 }
-
 
 /// Does what a message of the user says so often, or until there is an effect.
 fn repeat(app: &mut App, message: &Message, times: u16) -> Option<Effect> {
@@ -318,10 +317,13 @@ fn in_history(app: &mut App, mut list: HistoryDialog, message: &Message) -> Opti
 
 /// Handles the answer to a question. Without an answer the question stays.
 fn at_question(app: &mut App, question: Question, message: &Message) -> Option<Effect> {
-    if *message == Message::Save && question.yes == Message::QuitNow && can_save_first(app) {
+    if *message == Message::Save && question.saves_first {
         let effect = matrix::update::act(app, Message::Save);
         app.quits_when_saved = true;
         return effect;
+    }
+    if *message == Message::Save {
+        refuse(app, "there is nothing to save first");
     }
     match (message, question.no) {
         (Message::Accept, _) => matrix::update::act(app, question.yes),

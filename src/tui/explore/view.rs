@@ -73,6 +73,15 @@ impl Page for Results {
         true
     }
 
+    /// An empty list has nothing to compare, to put onto the matrix or to go to.
+    fn has_use_for(&self, message: &Message) -> bool {
+        let of_selected = matches!(
+            message,
+            Message::Accept | Message::Compare | Message::Explore(ExploreMessage::Follow)
+        );
+        !of_selected || self.pose().is_some()
+    }
+
     /// Its update keeps what was found.
     fn cancels_itself(&self) -> bool {
         true

@@ -140,6 +140,11 @@ impl Context {
         own.filter(|_| self != Self::Grab)
     }
 
+    /// Whether a key that means nothing here is looked up in this place, at once or at last.
+    pub(in crate::tui) fn leads_to(self, place: Self) -> bool {
+        std::iter::successors(Some(self), |context| context.outer()).any(|own| own == place)
+    }
+
     /// Whether a character that is not bound is typed into a field.
     pub(in crate::tui) fn takes_text(self) -> bool {
         self.unbound() == Typed

@@ -112,7 +112,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     Question {
         [Char('y') => ACCEPT] "yes" "yes";
         [Char('n') => DECLINE] "no" "no";
-        [Char('s') => SAVE] "" "at the end: save first, then quit";
+        [Char('s') => SAVE] "save first" "at the end: save first, then quit";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "not now" "no answer now";
         [Char('?') => HELP] "help" "these keys";
     }

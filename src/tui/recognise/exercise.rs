@@ -96,7 +96,10 @@ impl Exercise {
     }
 
     /// Handles what selects a row; `true` if it names a shape by its number at once.
-    pub fn take(&mut self, message: &Message) -> bool {
+    ///
+    /// # Errors
+    /// A character that no shape has, in a sentence.
+    pub fn take(&mut self, message: &Message) -> Result<bool, String> {
         let last = self.count() - 1;
         match *message {
             Message::Scroll(lines) => {
@@ -111,28 +114,27 @@ impl Exercise {
             Message::Type(character) => return self.type_character(character),
             _ => {}
         }
-        false
+        Ok(false)
     }
 
     /// A digit names one of the first nine shapes; a letter selects the next shape whose name begins with it.
-    fn type_character(&mut self, character: char) -> bool {
+    fn type_character(&mut self, character: char) -> Result<bool, String> {
         if let Some(number) = character.to_digit(10) {
             let row = (number as usize).checked_sub(1);
-            if let Some(row) = row.filter(|&row| row < self.count()) {
-                self.selected = row;
-                return true;
-            }
-            return false;
+            let row = row.filter(|&row| row < self.count());
+            let last = self.count().min(9);
+            self.selected =
+                row.ok_or_else(|| format!("no shape {number}: they are 1 to {last}"))?;
+            return Ok(true);
         }
         let begins = |row: &usize| {
             let first = self.name(*row).chars().next();
             first.is_some_and(|first| first.to_lowercase().eq(character.to_lowercase()))
         };
         let rows = (self.selected + 1..self.count()).chain(0..=self.selected);
-        if let Some(row) = rows.clone().find(begins) {
-            self.selected = row;
-        }
-        false
+        let row = rows.clone().find(begins);
+        self.selected = row.ok_or_else(|| format!("no shape begins with {character:?}"))?;
+        Ok(false)
     }
 }
 

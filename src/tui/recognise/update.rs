@@ -213,11 +213,22 @@ pub(in crate::tui) fn in_recognition(
         message => {
             app.dialogs.push(Dialog::Recognition(page));
             match message {
-                Message::Accept => open(app, None),
+                Message::Accept => prepare_again(app),
                 message => matrix::update::act(app, message),
             }
         }
     }
+}
+
+/// Prepares the set again after a stop. One that is there, or on its way, has no need of it.
+fn prepare_again(app: &mut App) -> Option<Effect> {
+    let text = match state(app)?.state() {
+        ModelState::Missing => return open(app, None),
+        ModelState::Preparing(_) => "the set is on its way",
+        ModelState::Ready(_) => "the set is ready: nothing was stopped",
+    };
+    inform(app, text);
+    None
 }
 
 /// Keeps the page, which was taken off the stack, until it is opened again.
@@ -242,13 +253,15 @@ pub(in crate::tui) fn in_exercise(
             app.dialogs.push(Dialog::Exercise(exercise));
             return matrix::update::act(app, message);
         }
-        message => {
-            if exercise.take(&message) {
-                guess(app, *exercise, true);
-            } else {
+        message => match exercise.take(&message) {
+            Ok(true) => guess(app, *exercise, true),
+            taken => {
                 app.dialogs.push(Dialog::Exercise(exercise));
+                if let Err(reason) = taken {
+                    refuse(app, reason);
+                }
             }
-        }
+        },
     }
     None
 }

@@ -198,10 +198,8 @@ fn offer(app: &mut App, before: &str, left: &Leftover) {
         left.what
     );
     let question = Question {
-        text,
-        yes: Message::Recover,
         no: Some(Message::GiveUp),
-        more: String::new(),
+        ..Question::new(text, Message::Recover)
     };
     app.dialogs.push(Dialog::Question(question));
 }
