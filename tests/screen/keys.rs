@@ -513,7 +513,7 @@ fn recognise_goes_through_sets_and_takes_one_by_name() {
         ],
     );
     shows(":seed x<Enter>", &["seed takes a whole number"]);
-    shows(":touch<Enter>", &["Recognise: the seven figures"]);
+    shows(":quiz<Enter>", &["Recognise: the seven figures"]);
     shows("r<Enter>", &["the set is ready: nothing was stopped"]);
 }
 
@@ -563,10 +563,16 @@ fn a_random_touch_is_named_by_row_letter_or_number_and_scored() {
     );
     shows(
         &format!("{touch}<Down><Enter>"),
-        &["no: ellipse, not rectangle", "0 of 1 right"],
+        &["wrong: it was ellipse, not rectangle", "0 of 1 right"],
     );
-    shows(&format!("{touch}o<Enter>"), &["no: ellipse, not octagon"]);
-    shows(&format!("{touch}5"), &["no: ellipse, not hexagon"]);
+    shows(
+        &format!("{touch}o<Enter>"),
+        &["wrong: it was ellipse, not octagon"],
+    );
+    shows(
+        &format!("{touch}5"),
+        &["wrong: it was ellipse, not hexagon"],
+    );
     for (key, refused) in [
         ("9", "no shape 9: they are 1 to 7"),
         ("x", "no shape begins with 'x'"),

@@ -24,7 +24,7 @@ use crate::tui::keys::keymap::Keymap;
 use crate::tui::live::state::Live;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::recognise::confusion::Confusion;
-use crate::tui::recognise::exercise::Exercise;
+use crate::tui::recognise::quiz::Quiz;
 use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::state::Recognition;
 use crate::tui::search::SearchDialog;
@@ -67,7 +67,7 @@ pub enum Dialog {
     /// Recognition of the shape on the matrix.
     Recognition(Box<Recognition>),
     /// A random touch that is to be named.
-    Exercise(Box<Exercise>),
+    Quiz(Box<Quiz>),
     /// The confusion matrix of a model.
     Confusion(Box<Confusion>),
     /// The limit of a set against the size of its shapes.
@@ -96,7 +96,7 @@ impl Dialog {
             Self::Filter(page) => page,
             Self::Mark(page) => page,
             Self::Recognition(page) => &**page,
-            Self::Exercise(page) => &**page,
+            Self::Quiz(page) => &**page,
             Self::Confusion(page) => &**page,
             Self::Separate(page) => &**page,
             Self::Live(page) => &**page,

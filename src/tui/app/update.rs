@@ -200,7 +200,7 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Filter(dialog) => explore::prompts::in_filter(app, dialog, &message),
         Dialog::Mark(dialog) => explore::prompts::in_mark(app, dialog, &message),
         Dialog::Recognition(page) => recognise::update::in_recognition(app, page, message),
-        Dialog::Exercise(page) => recognise::update::in_exercise(app, page, message),
+        Dialog::Quiz(page) => recognise::update::in_quiz(app, page, message),
         Dialog::Confusion(page) => recognise::update::in_confusion(app, page, &message),
         Dialog::Separate(page) => recognise::separate::update::in_separate(app, page, &message),
         Dialog::Live(page) => live::update::in_live(app, page, message),

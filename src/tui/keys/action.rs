@@ -291,7 +291,7 @@ actions! {
         NEXT_ZOOM_Y "next-zoom-y" [] Explore(Zoomed(Zoom::Y, 1));
         PREVIOUS_ZOOM_Y "previous-zoom-y" [] Explore(Zoomed(Zoom::Y, -1));
         RECOGNISE "recognise" [] Recognise(RecogniseMessage::Open);
-        TOUCH "touch" [] Recognise(RecogniseMessage::Touch);
+        QUIZ "quiz" [] Recognise(RecogniseMessage::Touch);
         KEEP "keep" [] Recognise(RecogniseMessage::Keep), "keep this touch as one of several";
         FORGET "forget" [] Recognise(RecogniseMessage::Forget), "forget the touches that were kept";
         NEXT_SET "next-set" [] Recognise(RecogniseMessage::NextSet(1)), "the next set of shapes";

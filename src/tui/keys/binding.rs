@@ -112,8 +112,8 @@ contexts! {
     Export "export" "Exporting" Typed, LINE;
     /// On the matrix, with recognition beside it.
     Recognise "recognise" "Recognising" Ignored, Some(Self::Matrix);
-    /// In the exercise.
-    Guess "guess" "Naming a random touch" Typed, EVERYWHERE;
+    /// In the quiz.
+    Quiz "quiz" "In the quiz" Typed, EVERYWHERE;
     /// On the confusion matrix.
     Confusion "confusion" "At the confusion matrix" Ignored, EVERYWHERE;
     /// On the page of sizes.

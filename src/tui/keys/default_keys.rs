@@ -305,7 +305,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
 
     /// What has no row goes to the matrix: one draws, moves and turns while the answer follows.
     Recognise {
-        [Char('t') => TOUCH] "quiz" "a random shape of the set touches: name it";
+        [Char('t') => QUIZ] "quiz" "a random shape of the set touches: name it";
         [Char('a') => KEEP, Char('x') => FORGET]
             "keep, forget" "keep this touch as one of several; forget them";
         [Char('o') => NEXT_SET, Char('O') => PREVIOUS_SET]
@@ -319,12 +319,12 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     }
 
     /// Letters choose a shape by the beginning of its name, and digits name one at once; so help is F1.
-    Guess {
+    Quiz {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "previous, next shape, or by its first letter";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, on";
         [Home => FIRST, End => LAST] "" "first, last shape";
         [Enter => ACCEPT] "name it" "name the shape, or 1 to 9";
-        [Char(' ') => TOUCH] "again" "touch again, in another pose";
+        [Char(' ') => QUIZ] "again" "touch again, in another pose";
         [Tab => PANEL] "list" "on a narrow screen: list or matrix";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "give up" "show which shape it was";
         [F1 => HELP] "help" "these keys";

@@ -7,7 +7,7 @@
 //! state       the set, its model, the touches, the answer
 //! view        the panel beside the matrix: shapes with bars, the nearest imprint, the pose
 //! update      what messages do; the answer follows the matrix
-//! exercise    a random touch to name, and the score
+//! quiz        a random touch to name, and the score
 //! confusion   which shapes are taken for which, with an imprint that two share
 //! separate    the limit of the set against the size of its shapes
 //! reach       the state wherever it is; imprints onto the matrix
@@ -23,7 +23,7 @@ pub mod state;
 
 pub mod view;
 
-pub mod exercise;
+pub mod quiz;
 
 pub mod confusion;
 

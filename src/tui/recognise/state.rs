@@ -1,4 +1,4 @@
-//! The state of recognition: the set and its model, the touches, the answer to them, the exercise's score.
+//! The state of recognition: the set and its model, the touches, the answer to them, the quiz's score.
 
 use std::sync::Arc;
 
@@ -60,11 +60,11 @@ struct SetBefore {
     trained: Option<Arc<TrainedModel>>,
     /// The touches that were kept.
     kept: Vec<Imprint>,
-    /// The score of its exercise.
+    /// The score of its quiz.
     score: Score,
 }
 
-/// How the exercise goes.
+/// How the quiz goes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Score {
     /// Shapes that were to be named.
@@ -100,7 +100,7 @@ pub struct Recognition {
     outlines: Option<bool>,
     /// The page of sizes, while it is closed.
     pub(super) separate: Option<Box<Separate>>,
-    /// The score of the exercise.
+    /// The score of the quiz.
     pub(super) score: Score,
     /// Where random touches come from.
     pub(super) random: Pcg64,

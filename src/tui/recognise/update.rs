@@ -1,4 +1,4 @@
-//! What messages do on the page of recognition and in its exercise. The answer follows the matrix: `follow` is called
+//! What messages do on the page of recognition and in its quiz. The answer follows the matrix: `follow` is called
 //! after every message.
 
 use std::sync::Arc;
@@ -16,8 +16,8 @@ use crate::tui::matrix;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::recognise::confusion::Confusion;
-use crate::tui::recognise::exercise::Exercise;
 use crate::tui::recognise::message::{Prepared, RecogniseMessage, RecognitionEvent};
+use crate::tui::recognise::quiz::Quiz;
 use crate::tui::recognise::reach::{put, state};
 use crate::tui::recognise::separate;
 use crate::tui::recognise::separate::request::SeparationFlags;
@@ -107,7 +107,7 @@ fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
     Some(Effect::Work(Work::Prepare(number, choice)))
 }
 
-/// Says that what was asked for needs a model: the confusion matrix, the sizes, or an exercise.
+/// Says that what was asked for needs a model: the confusion matrix, the sizes, or a quiz.
 fn not_trained(app: &mut App) {
     refuse(app, "the set is not trained yet");
 }
@@ -136,7 +136,7 @@ fn show_poses(app: &mut App) {
     );
 }
 
-/// Begins an exercise.
+/// Begins a quiz.
 /// Touches kept before are forgotten: they were of another shape, and the answer is about one shape only.
 fn touch(app: &mut App) {
     let Some(page) = state(app) else { return };
@@ -144,20 +144,20 @@ fn touch(app: &mut App) {
         return not_trained(app);
     };
     page.forget();
-    let exercise = Exercise::new(trained, &mut page.random);
-    touch_again(app, exercise);
+    let quiz = Quiz::new(trained, &mut page.random);
+    touch_again(app, quiz);
 }
 
 /// Puts another touch of the shape onto the matrix, and goes on asking for its name.
 /// The shape stays, and its pose is another one: further touches narrow down what it may be.
-fn touch_again(app: &mut App, mut exercise: Exercise) {
+fn touch_again(app: &mut App, mut quiz: Quiz) {
     let sensor = app.history.present().sensor;
     let Some(page) = state(app) else { return };
-    if let Some((sensor, imprint)) = exercise.touch(sensor, &mut page.random) {
+    if let Some((sensor, imprint)) = quiz.touch(sensor, &mut page.random) {
         put(app, sensor, &imprint, "random touch");
     }
     let_go(app);
-    app.dialogs.push(Dialog::Exercise(Box::new(exercise)));
+    app.dialogs.push(Dialog::Quiz(Box::new(quiz)));
 }
 
 /// Opens the page of sizes.
@@ -238,25 +238,25 @@ fn close(app: &mut App, page: Box<Recognition>) {
     let_go(app);
 }
 
-/// Handles a message in the exercise.
+/// Handles a message in the quiz.
 /// Enter or a digit names the shape; to close the page is to give up, which counts as asked and not as right.
-pub(in crate::tui) fn in_exercise(
+pub(in crate::tui) fn in_quiz(
     app: &mut App,
-    mut exercise: Box<Exercise>,
+    mut quiz: Box<Quiz>,
     message: Message,
 ) -> Option<Effect> {
     match message {
-        Message::Accept => guess(app, *exercise, true),
-        Message::Cancel | Message::Quit => guess(app, *exercise, false),
-        Message::Recognise(RecogniseMessage::Touch) => touch_again(app, *exercise),
+        Message::Accept => guess(app, *quiz, true),
+        Message::Cancel | Message::Quit => guess(app, *quiz, false),
+        Message::Recognise(RecogniseMessage::Touch) => touch_again(app, *quiz),
         Message::SwitchPage => {
-            app.dialogs.push(Dialog::Exercise(exercise));
+            app.dialogs.push(Dialog::Quiz(quiz));
             return matrix::update::act(app, message);
         }
-        message => match exercise.take(&message) {
-            Ok(true) => guess(app, *exercise, true),
+        message => match quiz.take(&message) {
+            Ok(true) => guess(app, *quiz, true),
             taken => {
-                app.dialogs.push(Dialog::Exercise(exercise));
+                app.dialogs.push(Dialog::Quiz(quiz));
                 if let Err(reason) = taken {
                     refuse(app, reason);
                 }
@@ -266,18 +266,21 @@ pub(in crate::tui) fn in_exercise(
     None
 }
 
-/// Ends the exercise with the selected shape as its name, or without one.
+/// Ends the quiz with the selected shape as its name, or without one.
 /// Its touches become the kept ones, so that the panel shows what could be known of them. `best` counts how often the
 /// most probable shape was the right one: nobody is right more often in the long run.
-fn guess(app: &mut App, exercise: Exercise, named: bool) {
-    let (shape, selected) = (exercise.shape(), exercise.selected());
-    let (right, name) = (named && shape == selected, exercise.name(shape).to_owned());
+fn guess(app: &mut App, quiz: Quiz, named: bool) {
+    let (shape, selected) = (quiz.shape(), quiz.selected());
+    let (right, name) = (named && shape == selected, quiz.name(shape).to_owned());
     let touch = action_key(app);
     let text = match (named, right) {
         (true, true) => format!("right: {name}; {touch} touches another shape"),
-        (true, false) => format!("no: {name}, not {}", exercise.name(selected)),
+        (true, false) => format!(
+            "wrong: it was {name}, not {}; {touch} touches another shape",
+            quiz.name(selected)
+        ),
         (false, _) => {
-            let touch = if exercise.touched() > 1 {
+            let touch = if quiz.touched() > 1 {
                 "last touch"
             } else {
                 "touch"
@@ -287,7 +290,7 @@ fn guess(app: &mut App, exercise: Exercise, named: bool) {
         }
     };
     if let Some(page) = state(app) {
-        page.set_touches(exercise.into_touches());
+        page.set_touches(quiz.into_touches());
         let best = page.answer().and_then(|answer| answer.shape);
         page.score.asked += 1;
         page.score.right += u32::from(right);
@@ -297,10 +300,10 @@ fn guess(app: &mut App, exercise: Exercise, named: bool) {
     inform(app, text);
 }
 
-/// The key that begins an exercise, for the notice at the end of one.
+/// The key that begins a quiz, for the notice at the end of one.
 fn action_key(app: &App) -> String {
     let context = crate::tui::keys::binding::Context::Recognise;
-    app.keymap().label(context, &action::TOUCH)
+    app.keymap().label(context, &action::QUIZ)
 }
 
 /// Handles a message over the confusion matrix.

@@ -197,7 +197,7 @@ impl Panel<'_> {
     /// The answer, every shape that it may be, and what was searched.
     fn answer(&mut self, page: &Recognition, trained: &TrainedModel) {
         let Some(answer) = page.answer() else {
-            let touch = self.key(&action::TOUCH);
+            let touch = self.key(&action::QUIZ);
             let text =
                 format!("Nothing is touched. {touch} touches at random; draw, or place a shape.");
             return self.wrapped(&text, Role::Text);
@@ -277,7 +277,7 @@ impl Panel<'_> {
         if score.asked > 0 {
             self.gap();
             let text = format!(
-                "exercise: {} of {} right, best possible {}",
+                "quiz: {} of {} right, best possible {}",
                 score.right, score.asked, score.best
             );
             self.text(&text, Role::Text);

@@ -1,4 +1,4 @@
-//! The exercise: a random shape of the set touches the matrix, and the user names it.
+//! The quiz: a random shape of the set touches the matrix, and the user names it.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ use crate::tui::widget::write;
 
 /// A shape that is to be named.
 #[derive(Clone, Debug)]
-pub struct Exercise {
+pub struct Quiz {
     /// The set that it is of.
     trained: Arc<TrainedModel>,
     /// Its number, which is not shown.
@@ -33,7 +33,7 @@ pub struct Exercise {
     selected: usize,
 }
 
-impl Exercise {
+impl Quiz {
     /// A random shape of a set, as likely as its weight says; not touched yet.
     pub fn new(trained: Arc<TrainedModel>, random: &mut Pcg64) -> Self {
         let shapes = trained.model.shapes();
@@ -169,15 +169,15 @@ fn moved_onto(imprint: &Imprint, sensor: &Sensor) -> Option<Imprint> {
 const HEAD: u16 = 3;
 
 /// The rows of the list, and the number of the first one.
-fn rows(exercise: &Exercise, area: Rect) -> (Rect, usize) {
+fn rows(quiz: &Quiz, area: Rect) -> (Rect, usize) {
     let rows = write::below(area, HEAD);
-    let first = write::first_of(rows.height, exercise.count(), exercise.selected);
+    let first = write::first_of(rows.height, quiz.count(), quiz.selected);
     (rows, first)
 }
 
-impl Page for Exercise {
+impl Page for Quiz {
     fn context(&self) -> Context {
-        Context::Guess
+        Context::Quiz
     }
 
     fn slot(&self) -> Slot {
@@ -197,11 +197,11 @@ impl Page for Exercise {
             count => format!("Which shape is this? Touch {count}"),
         };
         write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
-        let key = |action| keymap.label(Context::Guess, action);
+        let key = |action| keymap.label(Context::Quiz, action);
         let how = format!(
             "{} names it, {} touches it again",
             key(&action::ACCEPT),
-            key(&action::TOUCH)
+            key(&action::QUIZ)
         );
         write::line(
             buffer,
