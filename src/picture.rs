@@ -275,7 +275,7 @@ impl std::fmt::Display for Picture {
         }
         write!(
             f,
-            " at {}, {}, {}°, zoom {} x {}",
+            " at {}, {}, {}°, zoom {} × {}",
             text(0),
             text(1),
             text(2),

@@ -33,14 +33,14 @@ pub(crate) enum CliError {
         reason: String,
     },
     /// A number out of range.
-    #[error("--{flag} {text}: out of range, {expected}")]
+    #[error("--{flag} {text} {complaint}")]
     Range {
         /// The flag without its dashes.
         flag: String,
         /// What was given.
         text: String,
-        /// What is allowed.
-        expected: String,
+        /// Which bound it misses, and what is allowed: "is above 16 (allowed: above 0, up to 16)".
+        complaint: String,
     },
     /// An invalid input file.
     #[error("{name}: {error}")]
@@ -115,7 +115,7 @@ pub(crate) enum CliError {
     #[error("{0}")]
     NoSet(String),
     /// A matrix on which none of a shape's imprints fits.
-    #[error("{name}: none of its imprints fits on {columns} x {rows} taxels")]
+    #[error("{name}: none of its imprints fits on {columns} × {rows} taxels")]
     NoTouch {
         /// The first such shape.
         name: String,
@@ -134,7 +134,7 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Noise(#[from] NoiseError),
     /// A mask of another size than the imprint.
-    #[error("--mask has {} x {} taxels, the imprint {} x {}", mask.0, mask.1, imprint.0, imprint.1)]
+    #[error("--mask has {} × {} taxels, the imprint {} × {}", mask.0, mask.1, imprint.0, imprint.1)]
     Mask {
         /// Columns and rows of the mask.
         mask: (u8, u8),

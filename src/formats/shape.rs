@@ -66,7 +66,7 @@ pub enum ShapeError {
     #[error("source: {0}")]
     Source(RecordError),
     /// An imprint of another size than the sensor's.
-    #[error("imprint: {} x {} taxels, expected {} x {} as the sensor has", found.0, found.1, expected.0, expected.1)]
+    #[error("imprint: {} × {} taxels, expected {} × {} as the sensor has", found.0, found.1, expected.0, expected.1)]
     Size {
         /// Columns and rows of the imprint.
         found: (u8, u8),

@@ -69,8 +69,8 @@ impl ParameterError {
     /// ```
     /// use taxel::prelude::*;
     /// let error = Sensor::default().read(Parameter::ZoomX, "65").unwrap_err();
-    /// assert_eq!(error.to_string(), "zoom_x: 65 is out of range, expected above 0, up to 64");
-    /// assert_eq!(error.labelled(), "Zoom x: 65 is out of range, expected above 0, up to 64");
+    /// assert_eq!(error.to_string(), "zoom_x: 65 is above 64 (allowed: above 0, up to 64)");
+    /// assert_eq!(error.labelled(), "Zoom x: 65 is above 64 (allowed: above 0, up to 64)");
     /// ```
     pub fn labelled(&self) -> String {
         self.about(self.parameter().row().label)
@@ -79,14 +79,7 @@ impl ParameterError {
     fn about(&self, name: &str) -> String {
         match self {
             Self::Number { text, .. } => format!("{name}: {text:?} is {}", complaint(text)),
-            Self::Range {
-                parameter,
-                value,
-                range,
-            } => {
-                let (value, whole) = (short(*value), whole(*parameter));
-                format!("{name}: {value} is out of range, expected {range}{whole}")
-            }
+            Self::Range { value, .. } => format!("{name}: {} {}", short(*value), self.complaint()),
             Self::Missing { range, .. } => format!("{name}: missing, expected a number {range}"),
             Self::Foreign {
                 owner, expected, ..
@@ -94,6 +87,29 @@ impl ParameterError {
                 "{name}: a parameter that the {owner} does not have, expected {}",
                 keys(expected)
             ),
+        }
+    }
+
+    /// Returns what is wrong with the value, to be put after it.
+    ///
+    /// ```
+    /// use taxel::prelude::*;
+    /// let complaint = |parameter, text| Sensor::default().read(parameter, text).unwrap_err().complaint();
+    /// assert_eq!(complaint(Parameter::Angle, "360"), "is not below 360 (allowed: 0 to below 360)");
+    /// assert_eq!(complaint(Parameter::Rows, "2.5"), "is not a whole number (allowed: 1 to 64)");
+    /// assert_eq!(complaint(Parameter::X0, "left"), "is not a number");
+    /// ```
+    pub fn complaint(&self) -> String {
+        match self {
+            Self::Number { text, .. } => format!("is {}", complaint(text)),
+            Self::Range { value, range, .. } => {
+                let missed = range.missed_by(*value);
+                // The only other reason why a number is refused.
+                let missed = missed.unwrap_or_else(|| "is not a whole number".to_owned());
+                format!("{missed} (allowed: {range})")
+            }
+            Self::Missing { .. } => "is missing".to_owned(),
+            Self::Foreign { owner, .. } => format!("is a parameter that the {owner} does not have"),
         }
     }
 

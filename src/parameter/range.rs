@@ -42,6 +42,24 @@ impl Range {
         (value > low || with_low && value == low) && (value < high || with_high && value == high)
     }
 
+    /// Says which bound keeps a number out: "is below -16", "is not above 0". None for one that is allowed.
+    pub(super) fn missed_by(&self, value: f64) -> Option<String> {
+        let ((low, with_low), (high, with_high)) = (self.bound(self.low), self.bound(self.high));
+        if value.is_nan() {
+            Some("is not a number".to_owned())
+        } else if value < low {
+            Some(format!("is below {low}"))
+        } else if value > high {
+            Some(format!("is above {high}"))
+        } else if value == low && !with_low {
+            Some(format!("is not above {low}"))
+        } else if value == high && !with_high {
+            Some(format!("is not below {high}"))
+        } else {
+            None
+        }
+    }
+
     /// Returns the allowed number nearest to `value`; at a bound that is not allowed itself, one `step` inside.
     pub(crate) fn nearest(&self, value: f64, step: f64) -> f64 {
         let ((low, with_low), (high, with_high)) = (self.bound(self.low), self.bound(self.high));

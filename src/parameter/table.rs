@@ -104,14 +104,30 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// As written after a number; empty for a pure number.
-    pub fn symbol(self) -> &'static str {
+    /// Its name; empty for a pure number.
+    pub fn name(self) -> &'static str {
         match self {
             Self::Cells => "cells",
-            Self::Degrees => "deg",
+            Self::Degrees => "degrees",
             Self::Ratio => "",
             Self::Taxels => "taxels",
             Self::Millimetres => "mm",
+        }
+    }
+
+    /// A number, or a range of numbers, with the unit after it.
+    ///
+    /// ```
+    /// use taxel::parameter::Unit;
+    /// assert_eq!(Unit::Cells.after("-16 to 16"), "-16 to 16 cells");
+    /// assert_eq!(Unit::Degrees.after("0 to below 360"), "0 to below 360°");
+    /// assert_eq!(Unit::Ratio.after("0.5"), "0.5");
+    /// ```
+    pub fn after(self, number: &str) -> String {
+        match self {
+            Self::Degrees => format!("{number}°"),
+            Self::Ratio => number.to_owned(),
+            _ => format!("{number} {}", self.name()),
         }
     }
 }

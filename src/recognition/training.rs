@@ -72,7 +72,7 @@ pub enum TrainingError {
     },
     /// Poses that the sensor cuts off, which would tell of its rim.
     #[error(
-        "{name}: the {columns} x {rows} sensor cuts off {} of {} poses; use a larger sensor or other positions, or allow it",
+        "{name}: the {columns} × {rows} sensor cuts off {} of {} poses; use a larger sensor or other positions, or allow it",
         grouped(*cut), grouped(*poses)
     )]
     Cut {
@@ -88,7 +88,7 @@ pub enum TrainingError {
         poses: u64,
     },
     /// Shapes that no sensor holds in every angle.
-    #[error("the shapes do not fit on 64 x 64 taxels in every angle")]
+    #[error("the shapes do not fit on 64 × 64 taxels in every angle")]
     Large,
     /// Half a step has too many decimals.
     #[error("half a step of this grid has more decimals than a range can have")]

@@ -88,7 +88,7 @@ fn bad_lines_are_answered_in_their_places() {
         error(
             "2: column 2: expected a value: a text in double quotes, a number, a list or an object",
         ),
-        error("4: side: 99 is out of range, expected above 0, up to 16"),
+        error("4: side: 99 is above 16 (allowed: above 0, up to 16)"),
         error("5: picture: no shape is called \\\"gasket\\\""),
         error("6: column 12: not UTF-8, or an escape of no character"),
         error(
@@ -100,7 +100,7 @@ fn bad_lines_are_answered_in_their_places() {
         POINT_ANSWER.to_owned(),
         error("11: imprint: row 2 has 1 character, expected 2 as in the first row"),
         error("12: column 33: imprint: given twice"),
-        error("13: side: 1e300 is out of range, expected above 0, up to 16"),
+        error("13: side: 1e300 is above 16 (allowed: above 0, up to 16)"),
         POINT_ANSWER.to_owned(),
     ];
     assert_eq!(run.stdout, expected.concat());

@@ -76,11 +76,11 @@ fn what_is_unknown_or_unfit_is_refused_with_its_place() {
         ),
         (
             "[sensor]\nrows = 65\n",
-            "2:8: rows: 65 is out of range, expected 1 to 64, a whole number",
+            "2:8: rows: 65 is above 64 (allowed: 1 to 64)",
         ),
         (
             "[sensor]\npitch = nan\n",
-            "2:9: pitch_mm: NaN is out of range, expected above 0, up to 1000",
+            "2:9: pitch_mm: NaN is not a number (allowed: above 0, up to 1000)",
         ),
         (
             "[sensor]\ncolumns = 0x10\n",

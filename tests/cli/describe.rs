@@ -191,7 +191,7 @@ fn a_bad_shape_is_told_by_line_and_column() {
     bad(
         "\"side\": 2",
         "\"side\": 20",
-        "source: side: 20 is out of range, expected above 0, up to 3",
+        "source: side: 20 is above 3 (allowed: above 0, up to 3)",
     );
     bad(
         "corner\"",

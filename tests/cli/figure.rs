@@ -125,39 +125,39 @@ fn a_number_out_of_range_is_status_1_and_the_range_is_told() {
     let out = |line: &str, message: &str| refused(&taxel(line, ""), 1, message);
     out(
         "figure hexagon --side 99",
-        "--side 99: out of range, expected above 0, up to 16",
+        "--side 99 is above 16 (allowed: above 0, up to 16)",
     );
     out(
         "figure hexagon --side 0",
-        "--side 0: out of range, expected above 0, up to 16",
+        "--side 0 is not above 0 (allowed: above 0, up to 16)",
     );
     out(
         "figure hexagon --side 17 --rows 8",
-        "--side 17: out of range, expected above 0, up to 16",
+        "--side 17 is above 16 (allowed: above 0, up to 16)",
     );
     out(
         "figure ellipse --angle 360",
-        "--angle 360: out of range, expected 0 to below 360",
+        "--angle 360 is not below 360 (allowed: 0 to below 360)",
     );
     out(
         "figure ellipse --x0 -16.5",
-        "--x0 -16.5: out of range, expected -16 to 16",
+        "--x0 -16.5 is below -16 (allowed: -16 to 16)",
     );
     out(
         "figure ellipse --columns 1e3",
-        "--columns 1e3: out of range, expected 1 to 64, a whole number",
+        "--columns 1e3 is above 64 (allowed: 1 to 64)",
     );
     out(
         "batch --columns 2.5",
-        "--columns 2.5: out of range, expected 1 to 64, a whole number",
+        "--columns 2.5 is not a whole number (allowed: 1 to 64)",
     );
     out(
         "describe - --pitch -1 --json",
-        "--pitch -1: out of range, expected above 0, up to 1000",
+        "--pitch -1 is below 0 (allowed: above 0, up to 1000)",
     );
     out(
         "--threshold 0",
-        "--threshold 0: out of range, expected above 0, up to 1",
+        "--threshold 0 is not above 0 (allowed: above 0, up to 1)",
     );
     assert_eq!(
         taxel("figure hexagon --side 20 --columns 32", "").status,

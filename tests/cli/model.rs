@@ -247,7 +247,7 @@ fn what_is_said_and_written_fits_what_is_asked() {
     refused(
         &run,
         1,
-        "--dead 257: out of range, expected 0 to 256, the taxels of the matrix",
+        "--dead 257 is above 256 (allowed: 0 to 256, the taxels of the matrix)",
     );
     let (whole, given) = (right(""), right("--given na,p"));
     assert!(given[0] <= whole[0] + 0.1 && given[1] < whole[1] - 0.05);
@@ -349,7 +349,7 @@ fn models_have_names_and_cards() {
     assert_eq!(names(&place.0.path().join("models")), ["parts.npz"]);
     let card = place.done("model show parts");
     for line in [
-        "16 x 16 sensor, threshold 0.4, centre at x0 7:7.9:0.1, y0 7:7.9:0.1, angle 0:355:5",
+        "16 × 16 sensor, threshold 0.4, centre at x0 7:7.9:0.1, y0 7:7.9:0.1, angle 0:355:5",
         "  d: rectangle length 4.20, width 4.20, recognised in 100.0 %",
         "7,200 poses each",
     ] {
@@ -459,14 +459,14 @@ fn sets_that_make_no_sense_are_refused_in_one_sentence() {
     refused(
         &place.run(cut, ""),
         1,
-        "t: the 16 x 16 sensor cuts off 3,600 of 3,600 poses; use a larger sensor or other positions, \
+        "t: the 16 × 16 sensor cuts off 3,600 of 3,600 poses; use a larger sensor or other positions, \
          or allow it with --allow-cut",
     );
     place.done(&format!("{cut} --allow-cut"));
     refused(
         &train("--shape 'huge=ellipse radius_x=40 radius_y=40'", ""),
         1,
-        "huge: the 64 x 64 sensor cuts off 7,200 of 7,200 poses; use a larger sensor or other positions, \
+        "huge: the 64 × 64 sensor cuts off 7,200 of 7,200 poses; use a larger sensor or other positions, \
          or allow it with --allow-cut",
     );
     refused(
@@ -836,11 +836,11 @@ fn what_cannot_work_is_refused_with_its_reason() {
     for (line, message) in [
         (
             "model separate parts --pitch 0:2:1",
-            "--pitch 0: out of range, expected above 0",
+            "--pitch 0 is out of range (allowed: above 0)",
         ),
         (
             "model confusion parts --noise 0.01 --matrix 3x3",
-            "disc: none of its imprints fits on 3 x 3 taxels",
+            "disc: none of its imprints fits on 3 × 3 taxels",
         ),
     ] {
         refused(&place.run(line, ""), 1, message);

@@ -12,7 +12,7 @@ fn without_flags_a_picture_is_the_shape_itself() {
         assert_eq!(shown, touched, "{name}");
     }
     let text = shelf.does("picture|washer", "");
-    assert!(text.contains("\npicture of washer at 2.00, 2.00, 0°, zoom 1.00 x 1.00\n16 × 16 taxels, threshold 0.5, NA 36 in all\n"), "{text}");
+    assert!(text.contains("\npicture of washer at 2.00, 2.00, 0°, zoom 1.00 × 1.00\n16 × 16 taxels, threshold 0.5, NA 36 in all\n"), "{text}");
 }
 
 #[test]
@@ -79,11 +79,11 @@ fn a_name_of_the_library_goes_before_a_file() {
         ),
         (
             "picture|washer|--zoom-x|0",
-            "--zoom-x 0: out of range, expected above 0, up to 64",
+            "--zoom-x 0 is not above 0 (allowed: above 0, up to 64)",
         ),
         (
             "picture|washer|--x0|17",
-            "--x0 17: out of range, expected -16 to 16",
+            "--x0 17 is above 16 (allowed: -16 to 16)",
         ),
     ] {
         refused(&shelf.run(arguments, ""), 1, message);

@@ -16,7 +16,7 @@ fn messages_name_the_script_and_the_line() {
     for (script, status, message) in [
         ("Keys f\nExpect /zzz/", 1, "line 2: no /zzz/ on the screen"),
         ("Keys f\nFly", 2, "line 2: \"Fly\" is unknown"),
-        ("Set columns 99", 2, "line 1: columns: 99 is out of range"),
+        ("Set columns 99", 2, "line 1: columns: 99 is above 64"),
         ("Keys q\nKeys f", 3, "line 2: the program had already ended"),
         (
             "Source nofile.csv",

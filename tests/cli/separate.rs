@@ -174,11 +174,11 @@ fn sizes_that_fit_on_no_sensor_are_refused_before_the_work() {
     refused(
         &place.run("model separate rectangles.jsonl --scale 1:20:1 --quiet", ""),
         1,
-        "scale 10, threshold 0.5: the shapes do not fit on 64 x 64 taxels in every angle",
+        "scale 10, threshold 0.5: the shapes do not fit on 64 × 64 taxels in every angle",
     );
     for (range, value) in [("0:0.5:0.1", "0"), ("0.5:1.5:0.5", "1.5")] {
         let line = format!("model separate rectangles.jsonl --threshold {range} --quiet");
-        let expected = format!("--threshold {value}: out of range, expected above 0, up to 1");
+        let expected = format!("--threshold {value} is out of range (allowed: above 0, up to 1)");
         refused(&place.run(&line, ""), 1, &expected);
     }
     let run = place.run(

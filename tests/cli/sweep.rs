@@ -260,7 +260,7 @@ fn a_study_is_taken_up_where_it_was_left() {
     assert_eq!(of(&again), of(&first), "it is summed up as if it had run");
     for (more, reason) in [
         ("--shard 3/3", "its shard is 2/3, not 3/3"),
-        ("--shard 2/3 --columns 20", "its sensor is 16 x 16 with"),
+        ("--shard 2/3 --columns 20", "its sensor is 16 × 16 with"),
         (
             "--shard 2/3 --anchor centre",
             "its anchor is corner, not centre",
@@ -436,7 +436,7 @@ fn what_is_no_sweep_is_refused() {
     refused(
         &taxel("sweep hexagon --x0 1:20:1", ""),
         1,
-        "x0: 20 is out of range, expected -16 to 16",
+        "x0: 20 is above 16 (allowed: -16 to 16)",
     );
     refused(
         &taxel(

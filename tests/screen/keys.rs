@@ -235,7 +235,7 @@ fn a_shape_is_nudged_and_turned() {
         "f<Enter>g++<40x:Left>",
         &[
             "at -16.0, 4.00",
-            "! x0: -17 is out of range, expected -16 to 16",
+            "! x0: -17 is below -16 (allowed: -16 to 16)",
         ],
     );
     shows("g", &["nothing to move"]);

@@ -152,7 +152,7 @@ fn frames_are_shown_while_a_threshold_by_noise_has_no_tare() {
     page.frames(3);
     shows(
         &page,
-        &["frame 2", "4 x noise", "tare: 3 of 6 frames", "peak  "],
+        &["frame 2", "4 × noise", "tare: 3 of 6 frames", "peak  "],
     );
     hides(&page, &["no frame yet", "needs a tare"]);
     let not_yet = "! no imprint before the tare: 3 of 6 frames";

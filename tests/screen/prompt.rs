@@ -55,7 +55,7 @@ fn the_cursor_and_the_shape_are_moved_by_words() {
         ),
         ("nudge right", "at 4.01, 4.00"),
         ("move 0.5 -1.25", "at 4.50, 2.75"),
-        ("move 0 -100", "! y0: -96 is out of range"),
+        ("move 0 -100", "! y0: -96 is below -16"),
         ("move 1", "! move takes DX DY, found \"1\""),
         ("move far away", "! move takes DX DY, found \"far away\""),
         ("step larger", "ellipse"),
@@ -301,7 +301,7 @@ fn commands_do_what_keys_do() {
             "! --side is given twice",
         ),
         ("explore --x0=5 --x0=6", "! --x0 is given twice"),
-        ("figure hexagon --side 99", "! Side: 99 is out of range"),
+        ("figure hexagon --side 99", "! Side: 99 is above 16 (allowed: above 0, up to 16)"),
         (
             "figure hexagon --length 2",
             "! --length: the hexagon has none",
@@ -345,7 +345,7 @@ fn the_shape_is_turned_and_zoomed_by_commands() {
     then(
         &mut session,
         ":picture washer<Enter><Enter>:zoom in<Enter>:zoom in<Enter>:zoom out<Enter>",
-        &["zoom 1.01 x 1.01"],
+        &["zoom 1.01 × 1.01"],
     );
 }
 
@@ -360,7 +360,7 @@ fn a_refused_prompt_stays_open() {
             "delete arrow",
             "! \"arrow\" comes with the program; it can be copied under another name",
         ),
-        ("move 0 -100", "! y0: -96 is out of range"),
+        ("move 0 -100", "! y0: -96 is below -16"),
         (
             "save arrow",
             "! arrow is the name of a shipped shape; choose another",

@@ -175,7 +175,7 @@ fn a_list_tells_what_is_out_of_sight() {
     let screen = session.screen();
     assert!(screen.contains("\n  0 above, 12 below"), "{screen}");
     assert!(
-        screen.contains("> a name of more than twe… 16 x 16"),
+        screen.contains("> a name of more than twe… 16 × 16"),
         "{screen}"
     );
     assert!(joined(&screen).contains(" a name of more than twenty-four"));

@@ -155,7 +155,7 @@ fn what_does_not_hold_is_told_with_its_line() {
         ),
         (
             "Size 80x24\nSet columns 65",
-            "line 2: columns: 65 is out of range",
+            "line 2: columns: 65 is above 64",
         ),
         ("Set shape {}", "line 1: Set shape: format: missing"),
         (

@@ -389,14 +389,14 @@ fn rule(matches: &ArgMatches) -> Result<Option<Rule>, CliError> {
     let out_of_range = |flag: &str, value: f64| {
         let (flag, text) = (flag.to_owned(), value.to_string());
         move |error: FrameError| {
-            let expected = match error {
-                FrameError::Rule { expected, .. } => format!("expected {expected}"),
-                error => error.to_string(),
+            let complaint = match error {
+                FrameError::Rule { expected, .. } => format!("is not allowed: expected {expected}"),
+                error => format!("is not allowed: {error}"),
             };
             CliError::Range {
                 flag,
                 text,
-                expected,
+                complaint,
             }
         }
     };

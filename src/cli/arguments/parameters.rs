@@ -69,7 +69,7 @@ fn arg_with(parameter: Parameter, default: &str) -> Arg {
     let row = parameter.row();
     let unit = match row.unit {
         Unit::Ratio => String::new(),
-        unit => format!("{}, ", unit.symbol()),
+        unit => format!("{}, ", unit.name()),
     };
     let also = match parameter {
         Parameter::Pitch => "; tables and drawings are in mm too",
@@ -82,7 +82,7 @@ fn arg_with(parameter: Parameter, default: &str) -> Arg {
         .long(parameter.flag())
         .value_name(match row.unit {
             Unit::Ratio => "NUMBER".to_owned(),
-            unit => unit.symbol().to_ascii_uppercase(),
+            unit => unit.name().to_ascii_uppercase(),
         })
         .help(wrapped(&help, HELP_WIDTH))
         // A minus sign begins a number here, not a flag.
@@ -157,7 +157,7 @@ impl Given {
                 thing = with(thing, *parameter, number.value).map_err(|error| CliError::Range {
                     flag: parameter.flag(),
                     text: number.text.clone(),
-                    expected: error.expected(),
+                    complaint: error.complaint(),
                 })?;
             }
         }

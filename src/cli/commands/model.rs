@@ -3,7 +3,7 @@
 //! A model is the file of a training: every imprint that some shapes leave on a grid of poses, and how often each shape
 //! leaves it. `show` prints its card:
 //! ```text
-//! 16 x 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5
+//! 16 × 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5
 //!   disc: ellipse radius_x 2.40, radius_y 2.40, recognised in 96.0 %
 //!   block: rectangle length 4.50, width 4.30, recognised in 99.1 %
 //! 1800 poses each
@@ -134,13 +134,13 @@ fn path_of(target: &ModelTarget, shelf: &Shelf) -> Result<PathBuf, CliError> {
 }
 
 /// What was chosen for a training, in a line.
-/// `16 x 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5`. Zooms are left out: a training
+/// `16 × 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5`. Zooms are left out: a training
 /// has one of each.
 fn grid_text(sensor: &Sensor, anchor: Anchor, ranges: &Ranges) -> String {
     let axes = Axis::ALL.into_iter().filter(|axis| !axis.is_zoom());
     let axes = axes.map(|axis| format!("{} {}", axis.name(), ranges[axis]));
     format!(
-        "{} x {} sensor, threshold {}, {} at {}",
+        "{} × {} sensor, threshold {}, {} at {}",
         sensor.columns(),
         sensor.rows(),
         sensor.threshold(),

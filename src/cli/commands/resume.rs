@@ -155,10 +155,10 @@ impl Poses {
     }
 }
 
-/// A sensor in a few words: `16 x 16 with threshold 0.5 and pitch 1 mm`.
+/// A sensor in a few words: `16 × 16 with threshold 0.5 and pitch 1 mm`.
 fn sensor(sensor: &Sensor) -> String {
     format!(
-        "{} x {} with threshold {} and pitch {} mm",
+        "{} × {} with threshold {} and pitch {} mm",
         sensor.columns(),
         sensor.rows(),
         sensor.threshold(),

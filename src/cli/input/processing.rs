@@ -102,7 +102,7 @@ pub(crate) fn unused_tare(
     let tare = info.tare.as_ref()?;
     let baseline = tare.baseline();
     Some(format!(
-        "the recording's tare of {} x {} cells is left out; it fits with the --crop and --turn of the recording",
+        "the recording's tare of {} × {} cells is left out; it fits with the --crop and --turn of the recording",
         baseline.columns(),
         baseline.rows()
     ))

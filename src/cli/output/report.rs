@@ -131,7 +131,7 @@ fn table_rows(pitch: Option<f64>, holes: bool) -> Vec<TableRow> {
             Dimension::Count | Dimension::Ratio => (1.0, ""),
             Dimension::Length => (1.0, ", cells"),
             Dimension::Area => (1.0, ", cells²"),
-            Dimension::Direction => (1.0, ", deg"),
+            Dimension::Direction => (1.0, ", degrees"),
             Dimension::Share => (100.0, ", %"),
         };
         let name = if holes && descriptor.key == "na" {

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! scale     threshold    error  certain       keys  sensor
-//! 0.5             0.5   44.9 %   12.5 %         20  16 x 16
-//! 1               0.5    6.0 %   77.3 %        117  16 x 16
+//! 0.5             0.5   44.9 %   12.5 %         20  16 × 16
+//! 1               0.5    6.0 %   77.3 %        117  16 × 16
 //! ```
 //! Each row is a training of its own: all shapes at that scale, or in cells of that pitch, on the smallest sensor that
 //! holds them. Plots have the size on the x axis, or the threshold where there is one size only, and the error on the
@@ -48,7 +48,7 @@ pub(crate) fn text(
         // Cannot fail: the text is kept in memory.
         let _ = writeln!(
             text,
-            "{:<9} {:>9}  {:>7}  {:>7}  {:>9}  {side} x {side}",
+            "{:<9} {:>9}  {:>7}  {:>7}  {:>9}  {side} × {side}",
             short(point.value),
             short(point.threshold),
             percent(point.error()),

@@ -40,7 +40,7 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
     let buffer = frame.buffer_mut();
     let Some(panes) = Panes::of(area, &app.reading().imprint, app.halves()) else {
         let (width, height) = SMALLEST;
-        let needed = format!("{width} x {height}");
+        let needed = format!("{width} × {height}");
         for (index, text) in ["too small,", "need", &needed].into_iter().enumerate() {
             write::line(
                 buffer,

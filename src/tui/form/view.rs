@@ -204,8 +204,7 @@ fn draw_range(
     under: Option<Rect>,
 ) {
     let bare = sensor.range(field.parameter()).to_string();
-    let unit = field.parameter().row().unit.symbol();
-    let range = format!("{bare} {unit}").trim_end().to_owned();
+    let range = field.parameter().row().unit.after(&bare);
     let mut write = |area: Rect, texts: &[&str]| {
         let text = write::first_fitting(texts, usize::from(area.width));
         write::line(buffer, area, theme, [(text, Role::Quiet)]);

@@ -344,7 +344,7 @@ fn threshold(live: &Live, keymap: &Keymap) -> String {
         Rule::Hysteresis { low, high } => {
             format!("{} to {}{unit}", measured(low, 7), measured(high, 7))
         }
-        Rule::Noise(deviations) => format!("{} x noise", fitting(deviations, 5)),
+        Rule::Noise(deviations) => format!("{} × noise", fitting(deviations, 5)),
     };
     match set.from {
         RuleOrigin::File => format!("{text}, of the file"),

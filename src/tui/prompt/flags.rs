@@ -71,14 +71,14 @@ mod tests {
             let index = all.iter().position(|own| *own == flag);
             index.ok_or_else(|| format!("{} is unknown", shortened(flag)))
         };
-        let read = |line: &'static str| {
+        let given = |line: &'static str| {
             let words: Vec<&str> = line.split_whitespace().collect();
-            super::read(&words, "--side", known)
+            read(&words, "--side", known)
         };
         let both = Ok(vec![("--side", 0, "3.5"), ("--x0", 1, "-2")]);
-        assert_eq!(read("--side=3.5 --x0=-2"), both);
-        assert_eq!(read("--side 3.5 --x0 -2"), both);
-        assert_eq!(read(""), Ok(Vec::new()));
+        assert_eq!(given("--side=3.5 --x0=-2"), both);
+        assert_eq!(given("--side 3.5 --x0 -2"), both);
+        assert_eq!(given(""), Ok(Vec::new()));
         for (line, error) in [
             ("--side", "--side needs a value"),
             ("--side=", "--side needs a value"),
@@ -87,7 +87,7 @@ mod tests {
             ("--sid=3", "--sid is unknown"),
             ("side=3", "expected a flag like --side, found side=3"),
         ] {
-            assert_eq!(read(line), Err(error.to_owned()), "{line}");
+            assert_eq!(given(line), Err(error.to_owned()), "{line}");
         }
         assert!(lacks_value(&["--side=3", "--x0"]) && !lacks_value(&["--side=3"]));
     }

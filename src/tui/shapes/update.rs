@@ -290,7 +290,7 @@ fn place(app: &mut App, loaded: &LoadedShape) -> Result<(), String> {
         if imprint.count() < shape.imprint.count() {
             let change = app.key_of(&action::SENSOR);
             return Err(format!(
-                "{} is {} x {} and does not fit on {} x {} taxels; {change} changes the sensor",
+                "{} is {} × {} and does not fit on {} × {} taxels; {change} changes the sensor",
                 shape.name, own.0, own.1, here.0, here.1
             ));
         }

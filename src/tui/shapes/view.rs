@@ -3,9 +3,9 @@
 //! ```text
 //! Load  filter: le   4 of 28                   clover               what for, filter, how many match | name
 //!   0 above, 1 below                           NA 97, pieces 1, …   rows out of sight                | facts
-//!   letter A                 16 x 16 shipped   drawn by hand        sign, name, size, origin         | source
-//! > letter B                 16 x 16 shipped
-//!   my letter                16 x 16           ··██··               the selected row is reversed     | imprint
+//!   letter A                 16 × 16 shipped   drawn by hand        sign, name, size, origin         | source
+//! > letter B                 16 × 16 shipped
+//!   my letter                16 × 16           ··██··               the selected row is reversed     | imprint
 //! ```
 //! Below 66 columns there is no preview. A row shows the size once its shape has been read; one that cannot be read is
 //! `broken`, and the preview says why.
@@ -155,7 +155,7 @@ fn draw_row(
     let gap = " ".repeat(columns + 1 - write::width(&name).min(columns));
     let size = match read {
         Some(Ok(loaded)) => format!(
-            "{:>2} x {:<2} ",
+            "{:>2} × {:<2} ",
             loaded.shape.imprint.columns(),
             loaded.shape.imprint.rows()
         ),

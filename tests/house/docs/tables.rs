@@ -76,7 +76,7 @@ pub(crate) fn parameters() -> String {
             "| `{}` | `--{flag}` | {} | {range} | {} | {default} |\n",
             row.key,
             row.meaning,
-            row.unit.symbol()
+            row.unit.name()
         )
     };
     let rows: String = PARAMETERS.iter().map(row).collect();

@@ -100,14 +100,14 @@ fn grids_are_in_range_or_refused() {
     let far = paper.with(Axis::X0, read("10:17:1"));
     assert_eq!(
         grid(ring(), far).expect_err("no grid").to_string(),
-        "x0: 17 is out of range, expected -16 to 16"
+        "x0: 17 is above 16 (allowed: -16 to 16)"
     );
     let round = paper.with(Axis::Angle, read("0:360:1"));
     assert!(
         grid(ring(), round)
             .expect_err("no grid")
             .to_string()
-            .starts_with("angle: 360 is out of range")
+            .starts_with("angle: 360 is not below 360")
     );
     let zoomed = paper.with(Axis::ZoomX, read("1:2:0.5"));
     assert_eq!(

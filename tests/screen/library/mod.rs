@@ -171,7 +171,7 @@ fn a_picture_starts_where_it_is_and_follows() {
         &mut session,
         "2<Enter>",
         &[
-            "picture of pair at 2.00, 8.00, 0°, zoom 1.00 x 1.00",
+            "picture of pair at 2.00, 8.00, 0°, zoom 1.00 × 1.00",
             "NA 2 in all",
         ],
     );
@@ -185,7 +185,7 @@ fn a_picture_starts_where_it_is_and_follows() {
         "z",
         &[
             "· pair*\n",
-            "\npicture of pair at 2.00, 9.00, 0°, zoom 2.00 x 2.00; reaches beyond the sensor",
+            "\npicture of pair at 2.00, 9.00, 0°, zoom 2.00 × 2.00; reaches beyond the sensor",
             "NA 0 in all",
         ],
     );
@@ -234,7 +234,7 @@ fn a_shape_of_another_sensor_is_placed_where_it_fits() {
     then(
         &mut session,
         "S4<Tab>4<Enter>lmiddle<Enter>",
-        &["! middle is 16 x 16 and does not fit on 4 x 4 taxels"],
+        &["! middle is 16 × 16 and does not fit on 4 × 4 taxels"],
     );
 }
 

@@ -208,7 +208,7 @@ fn a_terminal_without_a_size_gets_one() {
     program.shows("Quit");
     let script = session(false, (60, 20));
     let rows = script.screen();
-    program.until("60 x 20", |program| program.rows() == rows.trim_end());
+    program.until("60 × 20", |program| program.rows() == rows.trim_end());
 }
 
 /// The terminal is opened by its name where the standard files are others.

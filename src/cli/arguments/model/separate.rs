@@ -134,15 +134,10 @@ impl SeparateArguments {
     /// [`CliError::Range`] for sizes that are not above 0, and thresholds that are not above 0 or above 1.
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let range = |id: &str| matches.get_one::<DecimalRange>(id).copied();
-        for (id, flag, most, expected) in [
-            ("range_scale", "scale", f64::MAX, "expected above 0"),
-            ("range_pitch", "pitch", f64::MAX, "expected above 0"),
-            (
-                "range_threshold",
-                "threshold",
-                1.0,
-                "expected above 0, up to 1",
-            ),
+        for (id, flag, most, allowed) in [
+            ("range_scale", "scale", f64::MAX, "above 0"),
+            ("range_pitch", "pitch", f64::MAX, "above 0"),
+            ("range_threshold", "threshold", 1.0, "above 0, up to 1"),
         ] {
             let ends = range(id).map(|range| [range.value(0), range.last()]);
             let wrong = |value: &f64| *value <= 0.0 || *value > most;
@@ -150,7 +145,7 @@ impl SeparateArguments {
                 return Err(CliError::Range {
                     flag: flag.to_owned(),
                     text: short(value),
-                    expected: expected.to_owned(),
+                    complaint: format!("is out of range (allowed: {allowed})"),
                 });
             }
         }

@@ -48,7 +48,7 @@ fn meaning(theme: &Theme, pane: &MapPane) -> String {
         (true, false) => "shade",
     };
     let part = if pane.stride > 1 {
-        format!("; 1 pose in {0} x {0}", pane.stride)
+        format!("; 1 pose in {0} × {0}", pane.stride)
     } else {
         String::new()
     };

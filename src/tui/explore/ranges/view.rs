@@ -82,11 +82,8 @@ fn draw(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Op
         cursor = cursor.or(marked.then_some(at));
         let under = write::right_of(write::row(area, usize::from(line) + 1), area.x + 2);
         let beside = write::right_of(row, area.x.saturating_add(narrow(LABEL + input(row) + 1)));
-        let allowed = format!(
-            "{} {}",
-            form.allowed(field),
-            field.parameter().row().unit.symbol()
-        );
+        let unit = field.parameter().row().unit;
+        let allowed = unit.after(&form.allowed(field).to_string());
         let allowed = (allowed, Role::Quiet);
         let error = form.trouble(index);
         let error = error.map(|trouble| (format!("! {}", trouble.brief), Role::Error));
