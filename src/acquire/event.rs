@@ -12,7 +12,7 @@ use crate::frame::Frame;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AcquireOptions {
-    /// The form of a stream; found by looking where there is none. With one a file is a stream, not a recording.
+    /// The format of a stream; found by looking where there is none. With one a file is a stream, not a recording.
     pub format: Option<StreamFormat>,
     /// Rows and columns, of streams and of recordings that do not say them.
     pub shape: Option<(u16, u16)>,

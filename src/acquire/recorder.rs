@@ -4,7 +4,7 @@
 //! counts the records that are in the file already: they are written first, the count after them, at least twice a second,
 //! so a killed program loses less than half a second. A thread syncs the file each second and never holds up the frames: a
 //! power cut loses hardly more. It may leave a count beyond the records; then taxel reads the whole records, and
-//! numpy refuses the file. Values are f64, as every form of frame is read: nothing is rounded.
+//! numpy refuses the file. Values are f64, as every format of frame is read: nothing is rounded.
 //! Beside `touch.npy` lies `touch.json`, which says where the frames are from and how they were looked at. The two get
 //! their names together, so there is never one of these beside an older one of the other. `touch.json` says whether the
 //! recording was ended; that of a killed program does not.

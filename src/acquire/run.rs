@@ -8,7 +8,7 @@ use crate::acquire::stream::Consumer;
 use crate::acquire::{playback, stream};
 
 /// Reads a source until it ends, `stop` is set, or the consumer breaks off. A file that is a recording is played back, and
-/// followed if it grows meanwhile; any other file, or one for which the form of a stream is given, is read as it grows.
+/// followed if it grows meanwhile; any other file, or one for which the format of a stream is given, is read as it grows.
 ///
 /// # Errors
 /// If the source cannot be opened at first, cannot be read on and does not come back, or is a damaged recording.

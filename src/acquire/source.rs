@@ -46,7 +46,7 @@ impl FrameSource {
         }
     }
 
-    /// Returns the file if it is played as a recording: of a known form, and no form of a stream was asked for.
+    /// Returns the file if it is played as a recording: of a known format, and no format of a stream was asked for.
     ///
     /// # Errors
     /// If the file cannot be read.

@@ -146,7 +146,7 @@ fn feature_columns(atlas: &Atlas) -> Vec<Vec<u8>> {
 pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
-    // First: an archive of another form has other keys.
+    // First: an archive of another format has other keys.
     let found = format_in(&header)?;
     if found != FORMAT {
         return Err(ArchiveError::Format {

@@ -1,4 +1,4 @@
-//! An imprint in any form, or a stored shape: which of the two shows in the first character.
+//! An imprint in any format, or a stored shape: which of the two shows in the first character.
 
 use crate::formats::imprint_file::{self, ImprintFormatError};
 use crate::formats::shape::{ShapeError, StoredShape};
@@ -27,7 +27,7 @@ impl Content {
 /// Why bytes are neither.
 #[derive(Debug, thiserror::Error)]
 pub enum ContentError {
-    /// They are not an imprint in any known form.
+    /// They are not an imprint in any known format.
     #[error(transparent)]
     Imprint(#[from] ImprintFormatError),
     /// They start like JSON, but are not a stored shape.

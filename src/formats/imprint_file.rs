@@ -1,6 +1,6 @@
-//! The forms in which an imprint alone goes to other programs and comes from them.
+//! The formats in which an imprint alone goes to other programs and comes from them.
 //!
-//! The content of a file decides its form when it is read, the ending of its name when it is written.
+//! The content of a file decides its format when it is read, the ending of its name when it is written.
 //!
 //! ```
 //! use taxel::formats::imprint_file::{ImprintFormat, read};
@@ -56,7 +56,7 @@ impl ImprintFormat {
         }
     }
 
-    /// The form of a file whose name ends like this, in upper or lower case; none of another ending.
+    /// The format of a file whose name ends like this, in upper or lower case; none of another ending.
     pub fn of_ending(ending: &str) -> Option<Self> {
         // The plain bitmap has no ending of its own.
         let formats = Self::ALL.iter().copied();
@@ -119,7 +119,7 @@ impl fmt::Display for ImprintFormatError {
 
 impl std::error::Error for ImprintFormatError {}
 
-/// The imprint in any bytes, of any form.
+/// The imprint in any bytes, of any format.
 ///
 /// A bitmap or greymap begins with `P` and a digit, an array with its magic bytes. Images and archives of other kinds
 /// are refused by name. All else is a text of `#` and `.` or a table of numbers; a byte order mark before it is passed

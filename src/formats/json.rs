@@ -70,7 +70,7 @@ pub(crate) fn pretty(value: &(impl Serialize + ?Sized)) -> String {
     serde_json::to_string_pretty(value).unwrap_or_else(|error| failure(&error))
 }
 
-/// What is written for a value that has no JSON form. All of ours have one: their keys are texts and their numbers
+/// What is written for a value that has no form in JSON. All of ours have one: their keys are texts and their numbers
 /// finite. Should one not, the error stands in its place, as in the answers of a batch, and is not mistaken for an
 /// empty answer.
 fn failure(error: &serde_json::Error) -> String {

@@ -1,4 +1,4 @@
-//! The forms in which imprints, poses and answers leave the program and come back.
+//! The formats in which imprints, poses and answers leave the program and come back.
 //!
 //! Every reader is strict and total: it takes any bytes, and answers with a value in range or with one error that
 //! says what was found, where, and what was expected.

@@ -4,7 +4,7 @@
 //! order, and allocates nothing per frame:
 //!
 //! 1. [`View`]: crop, flip, turn by quarters, and the mask of dead cells; what is left has at most 64 × 64 cells.
-//! 2. [`Tare`]: the median of each cell over the first frames is taken off.
+//! 2. [`Tare`]: the median of each cell over the first frames is subtracted.
 //! 3. Gain: each cell is multiplied by a factor of its own, if there are such.
 //! 4. [`Rule`]: which values make a taxel active; then pieces that are too small are dropped.
 //!

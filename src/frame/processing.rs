@@ -13,7 +13,7 @@ use crate::matrix::Matrix;
 pub struct Processing {
     /// Crop, flip, turn, mask.
     pub view: View,
-    /// What is taken off each cell.
+    /// What is subtracted from each cell.
     pub tare: Option<Tare>,
     /// What each cell is multiplied by.
     pub gain: Option<Matrix<f64>>,

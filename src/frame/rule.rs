@@ -79,7 +79,7 @@ impl Rule {
         Ok(Self::Noise(checked("noise", deviations, fits, expected)?))
     }
 
-    /// The imprint of values from which the tare was taken off and which were then multiplied by the gain. A margin of noise,
+    /// The imprint of values from which the tare was subtracted and which were then multiplied by the gain. A margin of noise,
     /// which is measured before the gain, is multiplied as well.
     ///
     /// # Errors

@@ -122,7 +122,7 @@ fn step(mut values: Vec<f64>) -> f64 {
     if least.is_finite() { least } else { 1.0 }
 }
 
-/// What is taken off each cell.
+/// What is subtracted from each cell.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tare {
     baseline: Matrix<f64>,
@@ -183,7 +183,7 @@ impl Tare {
         (k * MAD_TO_DEVIATION * deviation).max(self.step)
     }
 
-    /// Takes it off.
+    /// Subtracts it.
     ///
     /// # Errors
     /// If the values are of another size.

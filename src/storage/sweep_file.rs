@@ -1,4 +1,4 @@
-//! What a sweep leaves as files: its atlas, in the form that the name's ending decides, and the atlas number of every
+//! What a sweep leaves as files: its atlas, in the format that the name's ending decides, and the atlas number of every
 //! pose.
 //!
 //! At every time there is all of a file or what was there before ([`crate::storage::atomic_file`]).
@@ -276,7 +276,7 @@ mod tests {
         let result = result();
         for name in ["a.csv", "a.jsonl", "a.npz"] {
             let path = folder.path().join(name);
-            let file = AtlasFile::new(&path).expect("a form");
+            let file = AtlasFile::new(&path).expect("a format");
             let stopped = AtomicBool::new(true);
             let refused = file.write(&result, Existing::Kept, &stopped);
             let refused = refused.expect_err("stopped").to_string();
@@ -295,7 +295,7 @@ mod tests {
         }
         assert!(AtlasFile::new("a.txt").is_err() && AtlasFile::new("csv").is_err());
         let nowhere = folder.path().join("nowhere/a.csv");
-        let nowhere = AtlasFile::new(nowhere).expect("a form");
+        let nowhere = AtlasFile::new(nowhere).expect("a format");
         let going = AtomicBool::new(false);
         let error = nowhere.write(&result, Existing::Kept, &going);
         let error = error.expect_err("there is no such folder").to_string();
@@ -312,7 +312,7 @@ mod tests {
         let going = AtomicBool::new(false);
         let (atlas, poses) = (folder.path().join("a.csv"), folder.path().join("a.npy"));
         let pair = |existing| {
-            let file = AtlasFile::new(&atlas).expect("a form");
+            let file = AtlasFile::new(&atlas).expect("a format");
             let first = file.prepare(&result, existing, &going).expect("written");
             let second = PoseFile::new(&poses, &result.grid, existing).expect("begun");
             (first, second.finish().expect("written"))

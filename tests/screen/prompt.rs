@@ -301,7 +301,10 @@ fn commands_do_what_keys_do() {
             "! --side is given twice",
         ),
         ("explore --x0=5 --x0=6", "! --x0 is given twice"),
-        ("figure hexagon --side 99", "! Side: 99 is above 16 (allowed: above 0, up to 16)"),
+        (
+            "figure hexagon --side 99",
+            "! Side: 99 is above 16 (allowed: above 0, up to 16)",
+        ),
         (
             "figure hexagon --length 2",
             "! --length: the hexagon has none",

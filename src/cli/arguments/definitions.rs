@@ -159,7 +159,7 @@ fn export() -> Command {
         .arg(replace())
 }
 
-/// `--format`, for names whose ending does not show the form.
+/// `--format`, for names whose ending does not show the format.
 fn format() -> Arg {
     let names = export::names();
     let help = format!(
@@ -270,12 +270,12 @@ fn merge() -> Command {
 }
 
 /// `--atlas`, the file that a sweep or a merge writes.
-/// Its ending decides the form, and there is no flag for it: only `.npz` can be read again.
+/// Its ending decides the format, and there is no flag for it: only `.npz` can be read again.
 fn atlas() -> Arg {
     option("atlas", "FILE", "Write the atlas, as .csv, .jsonl or .npz").value_parser(parse_atlas)
 }
 
-/// The file of an atlas; its ending must be that of one of the forms.
+/// The file of an atlas; its ending must be that of one of the formats.
 fn parse_atlas(text: &str) -> Result<AtlasFile, &'static str> {
     AtlasFile::new(text)
 }

@@ -4,7 +4,7 @@
 //! pages are made from the same texts. No line is wider than 80 columns. A test runs every example
 //! (`tests/cli/shell.rs`).
 //!
-//! What belongs here: what a value means and what happens if it is missing, the forms of input, one line each on what
+//! What belongs here: what a value means and what happens if it is missing, the formats of input, one line each on what
 //! may surprise; not what a flag's own help says. Commands are indented by two spaces, and long ones continue after a
 //! `\`.
 
@@ -55,7 +55,7 @@ Examples:
   taxel picture key --angle 30 --zoom-x 0.8 --zoom-y 0.8 --json
   taxel picture imprint.txt --x0 2 --save \"moved imprint\"";
 
-/// `taxel describe`: the forms that can be read.
+/// `taxel describe`: the formats that can be read.
 pub(crate) const DESCRIBE_EXAMPLES: &str = "\
 An imprint is text, a line a row, '#' for an active taxel and '.' for an
 inactive one; or a table of numbers (CSV), a bitmap (PBM), a grey image of two
@@ -70,7 +70,7 @@ Examples:
   taxel describe ./washer.json --json
   printf '.##.\\n#..#\\n.##.\\n' | taxel describe -";
 
-/// `taxel export`: the forms that can be written.
+/// `taxel export`: the formats that can be written.
 pub(crate) const EXPORT_EXAMPLES: &str = "\
 The extension of TO decides the format:
   .txt  rows of '#' and '.'         .svg  a drawing: matrix, outline where it is
@@ -86,7 +86,7 @@ Examples:
   taxel export key - --format pbm-plain
   taxel figure hexagon --angle 17 --export hexagon.png";
 
-/// `taxel batch`: the form of a line, and what becomes of a wrong one.
+/// `taxel batch`: the format of a line, and what becomes of a wrong one.
 pub(crate) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:
   {"figure":"hexagon","side":3,"x0":2.1,"y0":1.35,"angle":17,"thickness":1}
   {"picture":["##","#."],"x0":5,"y0":3,"angle":10,"zoom_x":1.5,"zoom_y":1}
@@ -306,8 +306,8 @@ Examples:
 
 /// `taxel recognise`: input and answers.
 pub(crate) const RECOGNISE_EXAMPLES: &str = "\
-Reads an imprint in any form that 'taxel describe' reads, or lines of JSON, each
-{\"imprint\":[\"..##\",...]} or, for several touches of one shape,
+Reads an imprint in any format that 'taxel describe' reads, or lines of JSON,
+each {\"imprint\":[\"..##\",...]} or, for several touches of one shape,
 {\"touches\":[[...],[...]]}. Each line gets one line back; other keys are ignored,
 except frame, label, time and channel, which are copied. An imprint at the rim
 may be cut off and is never 'certain'. With --noise an imprint that no shape
@@ -395,7 +395,7 @@ Examples:
   taxel library check --json
   taxel library check --library ./shapes"#;
 
-/// `taxel frames`: the forms of recordings, the order of processing, and what happens to a damaged one.
+/// `taxel frames`: the formats of recordings, the order of processing, and what happens to a damaged one.
 pub(crate) const FRAMES_EXAMPLES: &str = "\
 A recording is a file of Tekscan, XSENSOR, emed or zebris, PoPu, MCAP, NPY, NPZ,
 JSON lines, what 'ros2 topic echo' prints, or a table of numbers; its content
@@ -422,7 +422,7 @@ On a terminal the frames are shown on a page, which stays open when the source
 has ended, even with --once. With --json, or in a pipeline, each frame is
 answered by one line, as of 'taxel frames --all --json'; without a threshold its
 imprint is null. Streams are numbers in lines, JSON lines, what
-'ros2 topic echo' prints, FlexiTac's and MatSense's bytes; the form is
+'ros2 topic echo' prints, FlexiTac's and MatSense's bytes; the format is
 recognised from the content. A recording is played at its own rate. A serial
 line or connection that is lost is tried again each second, unless --once is
 given; on a terminal, taxel also waits for one that is not there yet. Torn,

@@ -453,7 +453,7 @@ fn kept(matches: &ArgMatches, command: &mut clap::Command, name: &str) -> Result
     })
 }
 
-/// The file to write, in the form given by `--format` or by its ending.
+/// The file to write, in the format given by `--format` or by its ending.
 fn export(
     matches: &ArgMatches,
     path: &Path,

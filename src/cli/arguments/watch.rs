@@ -45,7 +45,7 @@ pub(crate) struct WatchArguments {
     pub(crate) json: bool,
 }
 
-/// `taxel watch SOURCE`. Without `--format` the first bytes tell the form of a stream.
+/// `taxel watch SOURCE`. Without `--format` the first bytes tell the format of a stream.
 pub(crate) fn command() -> Command {
     let source = Arg::new("source")
         .value_name("SOURCE")
@@ -61,7 +61,7 @@ pub(crate) fn command() -> Command {
         ))
         .hide_possible_values(true)
         .help(parameters::wrapped(
-            &format!("Form of the stream: auto, {}", names.join(", ")),
+            &format!("Format of the stream: auto, {}", names.join(", ")),
             52,
         ));
     let baud = option("baud", "BAUD", "Speed of a serial line; default 115200")

@@ -1,4 +1,4 @@
-//! `taxel export`, and `--export` of a touch: writes an imprint in a form for other programs, or draws it.
+//! `taxel export`, and `--export` of a touch: writes an imprint in a format for other programs, or draws it.
 //!
 //! A file is complete or not there at all: it is written under another name in the same folder and renamed. Standard
 //! output, given as `-`, gets the same bytes.
@@ -16,7 +16,7 @@ use crate::matrix::Matrix;
 use crate::source::Source;
 use crate::storage::{Existing, FileError, FinishedFile, UnfinishedFile};
 
-/// The form of a file.
+/// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
     /// The imprint, as text, PBM, CSV or NPY.
@@ -28,7 +28,7 @@ enum Format {
 }
 
 impl Format {
-    /// The form of that name, as in `--format`.
+    /// The format of that name, as in `--format`.
     fn of(name: &str) -> Option<Self> {
         match name {
             "svg" => Some(Self::Svg),
@@ -40,7 +40,7 @@ impl Format {
         }
     }
 
-    /// The form that a file's ending stands for.
+    /// The format that a file's ending stands for.
     fn of_ending(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         let format = ImprintFormat::of_ending(&ending).map(Self::Imprint);
@@ -48,7 +48,7 @@ impl Format {
     }
 }
 
-/// The names of all forms, for `--format`.
+/// The names of all formats, for `--format`.
 pub(crate) fn names() -> Vec<&'static str> {
     let imprints = ImprintFormat::ALL.iter().map(|format| format.name());
     imprints.chain(["svg", "png"]).collect()
@@ -66,10 +66,10 @@ pub(crate) struct Export {
 }
 
 impl Export {
-    /// A file at `path`, or standard output for `-`, in the form named by `format`, or else by the ending of the path.
+    /// A file at `path`, or standard output for `-`, in the format named by `format`, or else by the ending of the path.
     ///
     /// # Errors
-    /// A message, if neither names a form.
+    /// A message, if neither names a format.
     pub(crate) fn new(
         path: &Path,
         format: Option<&str>,

@@ -117,7 +117,9 @@ fn check_dead(dead: &[u32], sensor: &Sensor) -> Result<(), CliError> {
         Some(dead) => Err(CliError::Range {
             flag: "dead".to_owned(),
             text: dead.to_string(),
-            complaint: format!("is above {cells} (allowed: 0 to {cells}, the taxels of the matrix)"),
+            complaint: format!(
+                "is above {cells} (allowed: 0 to {cells}, the taxels of the matrix)"
+            ),
         }),
     }
 }

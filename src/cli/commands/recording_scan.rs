@@ -20,7 +20,7 @@ const MOST_WARNINGS: usize = 20;
 /// What one reading of a recording finds.
 #[derive(Debug, Default)]
 pub(crate) struct Scan {
-    /// None if damage comes before the form is certain.
+    /// None if damage comes before the format is certain.
     pub(super) format: Option<RecordingFormat>,
     /// In the order in which the recording names them; a frame's channel is an index here.
     pub(super) channels: Vec<ListedChannel>,

@@ -196,7 +196,7 @@ fn summary(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Chars
 /// The atlas of an earlier run of this shard, for `--resume`.
 ///
 /// # Errors
-/// If there is a file that is not that, or if its form could not be read again.
+/// If there is a file that is not that, or if its format could not be read again.
 fn kept(file: &AtlasFile, grid: &PoseGrid, shard: Shard) -> Result<Option<SweepResult>, CliError> {
     if !file.is_archive() {
         return Err(CliError::Ending {

@@ -1,6 +1,6 @@
-//! Reads an imprint in any form, or a stored shape, from a file or from standard input.
+//! Reads an imprint in any format, or a stored shape, from a file or from standard input.
 //!
-//! The form is recognised from the content, never from the file's name ([`read_content`]). At most [`MAX_BYTES`] are read.
+//! The format is recognised from the content, never from the file's name ([`read_content`]). At most [`MAX_BYTES`] are read.
 
 use std::io::{self, Read};
 use std::path::PathBuf;

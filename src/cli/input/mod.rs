@@ -1,6 +1,6 @@
 //! What commands read: imprints and stored shapes, from files, standard input and the library.
 //!
-//! `shapes` decides what a `NAME|FILE` argument means; `content` reads a file and recognises its form;
+//! `shapes` decides what a `NAME|FILE` argument means; `content` reads a file and recognises its format;
 //! `lines` answers lines one by one; `recording` reads the frames of a sensor, of a pipe by `spool`, which `processing` makes
 //! imprints of.
 

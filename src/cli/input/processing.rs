@@ -38,7 +38,7 @@ pub(crate) fn mask(asked: &ProcessingArguments) -> Result<Option<Imprint>, CliEr
     asked.mask.as_deref().map(dead_cells).transpose()
 }
 
-/// A table of factors, in any form that a recording of one frame may have.
+/// A table of factors, in any format that a recording of one frame may have.
 /// The first frame counts; further ones are not read. Its size must be that of the cropped frames, which is checked
 /// when the first of them is processed.
 ///
@@ -118,7 +118,7 @@ pub(crate) fn own_tare(info: &ChannelInfo, view: &View) -> Option<Tare> {
 }
 
 /// Gathers the tare of the channel's first frames.
-/// The median of each cell over these frames is its value at rest, and is taken off from then on.
+/// The median of each cell over these frames is its value at rest, and is subtracted from then on.
 ///
 /// # Errors
 /// If the channel has fewer frames than wanted: `frames for the tare: found 3, expected 5`.

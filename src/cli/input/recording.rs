@@ -26,7 +26,7 @@ pub(crate) struct RecordingFile {
     name: String,
     /// What can be read from its beginning again.
     file: Box<dyn ReadAgain>,
-    /// Rows and columns, for forms that do not say them.
+    /// Rows and columns, for formats that do not say them.
     options: ReadOptions,
     /// What lies beside it, of a recording of taxel's own.
     description: Option<RecordingMetadata>,
@@ -155,7 +155,7 @@ impl RecordingFile {
         }
     }
 
-    /// Its form, as far as its beginning tells; also that of a damaged one.
+    /// Its format, as far as its beginning tells; also that of a damaged one.
     pub(crate) fn format(&mut self) -> Option<RecordingFormat> {
         self.file.seek(SeekFrom::Start(0)).ok()?;
         recognised_input(&mut self.file).ok()?

@@ -37,7 +37,7 @@ pub(crate) enum SensorKey {
 /// What a setting may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SettingKind {
-    /// The name of a form of streams, or `auto`.
+    /// The name of a format of streams, or `auto`.
     Format,
     /// A whole number in a range.
     Whole(u64, u64),
@@ -101,7 +101,7 @@ pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
 /// A value of the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SettingValue {
-    /// The form of a stream; None is `auto`.
+    /// The format of a stream; None is `auto`.
     Format(Option<StreamFormat>),
     /// A whole number.
     Whole(u64),

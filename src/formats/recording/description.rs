@@ -22,7 +22,7 @@ use crate::frame::{LARGEST_VALUE, Rule, Tare};
 use crate::matrix::Matrix;
 use crate::quote::legible;
 
-/// The name of the form.
+/// The name of the format.
 const FORMAT: &str = "taxel-touch/1";
 
 /// A frame that was marked while it was recorded.
@@ -47,7 +47,7 @@ pub struct RecordingMetadata {
     pub seconds_per_frame: Option<f64>,
     /// The rule of the imprints that were shown meanwhile.
     pub rule: Option<SetRule>,
-    /// What was taken off each cell meanwhile. The recorded values are those before that.
+    /// What was subtracted from each cell meanwhile. The recorded values are those before that.
     pub tare: Option<Tare>,
     /// Frames that were marked.
     pub marks: Vec<FrameMark>,
@@ -107,7 +107,7 @@ fn rule_or_null<S: Serializer>(
 
 impl RecordingMetadata {
     /// Reads the description. None if the bytes are something else, which may well lie beside an array; a torn one is
-    /// told by the name of its form.
+    /// told by the name of its format.
     ///
     /// # Errors
     /// What is wrong with it, in one sentence.

@@ -1,4 +1,4 @@
-//! Which form a recording has, by its content.
+//! Which format a recording has, by its content.
 //!
 //! Tested in this order, from what cannot be mistaken to what is left: magic bytes, then JSON, then words that only one
 //! vendor writes, then ROS, then a table. A `.csv` of XSENSOR or Tekscan would pass for a table, and is therefore
@@ -19,13 +19,13 @@ use crate::formats::recording::{
 /// What an MCAP file begins with.
 const MCAP: &[u8] = b"\x89MCAP0\r\n";
 
-/// Bytes at the start of a file that decide the form.
+/// Bytes at the start of a file that decide the format.
 const LOOKED_AT: usize = 1 << 16;
 
 /// Bytes read at a time.
 const CHUNK: usize = 1 << 16;
 
-/// The form of a recording, by its first 64 KiB; None of what is not a recording. A text of numbers counts as a table.
+/// The format of a recording, by its first 64 KiB; None of what is not a recording. A text of numbers counts as a table.
 pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
     let start = &start[..start.len().min(LOOKED_AT)];
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);

@@ -9,10 +9,10 @@ pub enum RecordingError {
     /// The system refuses.
     #[error("cannot read: {0}")]
     Io(#[from] io::Error),
-    /// None of the forms that are known.
-    #[error("not a recording of a known form: expected {FORMS}")]
+    /// None of the formats that are known.
+    #[error("not a recording of a known format: expected {FORMS}")]
     Unknown,
-    /// The file does not follow its form from here on. Lines and columns count from 1; a column is a field of the line.
+    /// The file does not follow its format from here on. Lines and columns count from 1; a column is a field of the line.
     #[error("{}{message}", place(*line, *column))]
     Damaged {
         /// Which line, in a text.
@@ -31,7 +31,7 @@ pub enum RecordingError {
     },
 }
 
-/// The forms for a file whose content is none of them.
+/// The formats for a file whose content is none of them.
 const FORMS: &str = "Tekscan ASCII, XSENSOR CSV, emed .lst, zebris .apd, CSV, NPY, NPZ, JSON lines, PoPu JSON, MCAP, \
                      ros2 topic echo";
 

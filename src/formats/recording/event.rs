@@ -7,7 +7,7 @@ use crate::formats::recording::answer::{RuleOrigin, SetRule};
 use crate::formats::recording::description::{FrameMark, RecordingMetadata};
 use crate::frame::{Frame, Rule, Tare};
 
-/// The forms of recordings.
+/// The formats of recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum RecordingFormat {
@@ -105,7 +105,7 @@ pub struct ChannelInfo {
     pub threshold: Option<f64>,
     /// The rule of the imprints while it was recorded.
     pub rule: Option<SetRule>,
-    /// What was taken off each cell then, after crop, flip and turn; the values are those before that.
+    /// What was subtracted from each cell then, after crop, flip and turn; the values are those before that.
     pub tare: Option<Tare>,
     /// Frames that were marked then.
     pub marks: Vec<FrameMark>,

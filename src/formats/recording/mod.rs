@@ -1,6 +1,6 @@
 //! Recordings of real tactile and pressure sensors: files of any length in, frames out, one after the other.
 //!
-//! What form a file has is found by its content. Nothing is cut or padded: where the number of values does not fit the
+//! What format a file has is found by its content. Nothing is cut or padded: where the number of values does not fit the
 //! rows and columns, that is an error, and where a file does not say how many there are, they are asked for. Every
 //! whole frame before a damage is given, then the error with line and column. Memory does not grow with the length of a
 //! recording.

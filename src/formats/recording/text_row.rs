@@ -1,7 +1,7 @@
 //! A row of values in a line of text.
 //!
 //! Whether a field is a value is the reader's to say ([`Field`]): what stands for a cell without a value differs from
-//! form to form. The messages are the same in all: `line 7, column 3: found "x", expected a number`.
+//! format to format. The messages are the same in all: `line 7, column 3: found "x", expected a number`.
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::lines::text;

@@ -1,8 +1,8 @@
-//! A decoder of any stream; which form it has, it finds from the first bytes.
+//! A decoder of any stream; which format it has, it finds from the first bytes.
 //! ```text
-//! bytes -> State::Looking until the form is certain -> the decoder of that form -> frames
+//! bytes -> State::Looking until the format is certain -> the decoder of that format -> frames
 //! ```
-//! Forms of text are decoded line by line, and a line that is not ended is never read. Bytes come in pieces of any
+//! Formats of text are decoded line by line, and a line that is not ended is never read. Bytes come in pieces of any
 //! size: the frames are the same however the stream is cut. What is dropped is counted in [`StreamCounts`], with a
 //! sample of it.
 
@@ -34,7 +34,7 @@ pub struct StreamDecoder {
     counts: StreamCounts,
     /// The decoder in use.
     state: State,
-    /// What is not decoded yet: the beginning, until the form is known, and then the line that is not ended.
+    /// What is not decoded yet: the beginning, until the format is known, and then the line that is not ended.
     bytes: Vec<u8>,
     /// Inside of a line that is too long.
     skipping: bool,
@@ -49,8 +49,8 @@ pub struct StreamDecoder {
 /// What decodes the next bytes.
 #[derive(Debug)]
 enum State {
-    /// Nothing yet: the form is not certain.
-    Looking(FormSearch),
+    /// Nothing yet: the format is not certain.
+    Looking(FormatSearch),
     /// Numbers in lines.
     Lines(LinesDecoder),
     /// JSON lines.
@@ -71,7 +71,7 @@ impl StreamDecoder {
         let mut decoder = Self {
             options,
             counts: StreamCounts::default(),
-            state: State::Looking(FormSearch::default()),
+            state: State::Looking(FormatSearch::default()),
             bytes: Vec::new(),
             skipping: false,
             first: true,
@@ -84,7 +84,7 @@ impl StreamDecoder {
         decoder
     }
 
-    /// The form of the stream; None as long as it is not known.
+    /// The format of the stream; None as long as it is not known.
     pub fn format(&self) -> Option<StreamFormat> {
         match self.state {
             State::Looking(_) | State::Unshaped => self.options.format,
@@ -104,13 +104,13 @@ impl StreamDecoder {
     /// Ends what came before as [`Self::finish`] does and begins anew in the middle of the stream, as after a line was
     /// unplugged. Frames are counted on, and times count from the first frame of all.
     pub fn restart(&mut self, sink: &mut StreamSink<'_>) {
-        // A form that `finish` has to guess from a few bytes does not hold for what comes next.
+        // A format that `finish` has to guess from a few bytes does not hold for what comes next.
         let format = self.format();
         self.finish(sink);
         self.reset(format, false);
     }
 
-    /// Begins anew with the first byte of another stream, whose form may be another one; frames and times are counted on.
+    /// Begins anew with the first byte of another stream, whose format may be another one; frames and times are counted on.
     pub fn begin_anew(&mut self) {
         self.reset(self.options.format, true);
     }
@@ -121,14 +121,14 @@ impl StreamDecoder {
         if let State::Json(decoder) = &self.state {
             self.start = decoder.start();
         }
-        self.state = State::Looking(FormSearch::default());
+        self.state = State::Looking(FormatSearch::default());
         self.options.from_start = from_start;
         if let Some(format) = format {
             self.begin(format, from_start);
         }
     }
 
-    /// Starts the decoder of a form. `from_start`: whether the first byte to come begins a frame.
+    /// Starts the decoder of a format. `from_start`: whether the first byte to come begins a frame.
     fn begin(&mut self, format: StreamFormat, from_start: bool) {
         let shape = self.options.shape;
         self.state = match (format, shape) {
@@ -231,12 +231,12 @@ impl StreamDecoder {
         line.strip_prefix(MARK).filter(|_| first).unwrap_or(line)
     }
 
-    /// Finds the form if it is not known, and decodes what has come so far.
+    /// Finds the format if it is not known, and decodes what has come so far.
     fn look(&mut self, ended: bool, sink: &mut StreamSink<'_>) {
         let State::Looking(search) = &mut self.state else {
             return;
         };
-        let Some(format) = search.form(&self.bytes, self.options.shape, ended) else {
+        let Some(format) = search.format(&self.bytes, self.options.shape, ended) else {
             return;
         };
         let mut lines = self.bytes.split(|&byte| byte == b'\n');
@@ -251,14 +251,14 @@ impl StreamDecoder {
     }
 }
 
-/// The search for the form of a stream. It goes on where it was when more bytes come, and the answer does not depend on
+/// The search for the format of a stream. It goes on where it was when more bytes come, and the answer does not depend on
 /// the pieces in which they arrive.
 ///
-/// Bytes that are not text are `FlexiTac` if two markers are a frame apart, otherwise `MatSense`. The form of text
-/// is decided by the first line that only one form can have: an object, what `ros2 topic echo` prints, or numbers. The
+/// Bytes that are not text are `FlexiTac` if two markers are a frame apart, otherwise `MatSense`. The format of text
+/// is decided by the first line that only one format can have: an object, what `ros2 topic echo` prints, or numbers. The
 /// first line may be the end of another one, so numbers in it decide nothing. Text without such a line is numbers, too.
 #[derive(Clone, Debug, Default)]
-struct FormSearch {
+struct FormatSearch {
     /// Up to where the bytes have been looked at.
     seen: usize,
     /// Where the line begins that is not ended there.
@@ -271,9 +271,9 @@ struct FormSearch {
     unmarked: usize,
 }
 
-impl FormSearch {
-    /// The form of what begins with these bytes; None if more are needed.
-    fn form(
+impl FormatSearch {
+    /// The format of what begins with these bytes; None if more are needed.
+    fn format(
         &mut self,
         bytes: &[u8],
         shape: Option<(u16, u16)>,
@@ -308,7 +308,7 @@ impl FormSearch {
         ended.then(|| last().unwrap_or(StreamFormat::Lines))
     }
 
-    /// The form of bytes that are not text.
+    /// The format of bytes that are not text.
     fn form_of_bytes(
         &mut self,
         bytes: &[u8],
@@ -344,7 +344,7 @@ impl FormSearch {
     }
 }
 
-/// The form of text that has such a line; None if others may have it, too.
+/// The format of text that has such a line; None if others may have it, too.
 fn form_of_line(line: &[u8], after_first: bool) -> Option<StreamFormat> {
     match line.trim_ascii() {
         [b'{', ..] => Some(StreamFormat::JsonLines),
@@ -401,9 +401,9 @@ mod tests {
         // Bytes without a marker are judged at last.
         let shape = Some((512, 512));
         let bytes = vec![7; MARKERS_IN];
-        let mut search = FormSearch::default();
-        assert_eq!(search.form(&bytes[1..], shape, false), None);
-        let found = search.form(&bytes, shape, false);
+        let mut search = FormatSearch::default();
+        assert_eq!(search.format(&bytes[1..], shape, false), None);
+        let found = search.format(&bytes, shape, false);
         assert_eq!(found, Some(StreamFormat::Matsense));
     }
 
@@ -448,17 +448,17 @@ mod tests {
         ];
         for stream in streams {
             for shape in [None, Some((2, 3))] {
-                let mut search = FormSearch::default();
+                let mut search = FormatSearch::default();
                 for end in 0..=stream.len() {
-                    let found = search.form(&stream[..end], shape, false);
-                    let anew = |ended| FormSearch::default().form(&stream[..end], shape, ended);
+                    let found = search.format(&stream[..end], shape, false);
+                    let anew = |ended| FormatSearch::default().format(&stream[..end], shape, ended);
                     assert_eq!(found, anew(false), "{end} of {stream:?}");
                     if found.is_some() {
                         assert_eq!(found, anew(true), "{end} of {stream:?}");
                         break;
                     }
                     // The input may end here.
-                    let found = search.clone().form(&stream[..end], shape, true);
+                    let found = search.clone().format(&stream[..end], shape, true);
                     assert_eq!(found, anew(true), "{end} of {stream:?}");
                 }
             }

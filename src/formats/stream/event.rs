@@ -3,7 +3,7 @@
 use crate::formats::value::grouped;
 use crate::frame::Frame;
 
-/// The forms of streams.
+/// The formats of streams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum StreamFormat {
@@ -46,7 +46,7 @@ impl StreamFormat {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct StreamOptions {
-    /// Its form; found by looking where there is none.
+    /// Its format; found by looking where there is none.
     pub format: Option<StreamFormat>,
     /// Rows and columns; bytes and frames of a line each do not say them.
     pub shape: Option<(u16, u16)>,
@@ -55,7 +55,7 @@ pub struct StreamOptions {
 }
 
 impl StreamOptions {
-    /// With a form.
+    /// With a format.
     #[must_use]
     pub fn with_format(mut self, format: StreamFormat) -> Self {
         self.format = Some(format);
@@ -81,7 +81,7 @@ impl StreamOptions {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum StreamEvent<'a> {
-    /// A whole frame, confirmed by what follows it where its form needs that.
+    /// A whole frame, confirmed by what follows it where its format needs that.
     Frame(&'a Frame),
     /// A frame whose last byte is here, though what follows it is not: to be shown, not to be kept.
     Provisional(&'a Frame),
@@ -104,7 +104,7 @@ pub struct StreamCounts {
     pub unshaped: Option<u64>,
     /// Whether messages were cut by `ros2 topic echo` without `--full-length`.
     pub cut: bool,
-    /// Whether nothing at its beginning tells its form: text without a line of numbers.
+    /// Whether nothing at its beginning tells its format: text without a line of numbers.
     pub unknown: bool,
 }
 

@@ -11,16 +11,16 @@
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::frame::Frame;
 
-/// Ends a frame of the first form; no cell has this value there.
+/// Ends a frame of the first format; no cell has this value there.
 const END: u8 = 0xff;
-/// Begins a frame of the second form.
+/// Begins a frame of the second format.
 const OPEN: u8 = 0x5b;
 /// Ends it.
 const CLOSE: u8 = 0x5d;
 /// Stands before the number of a byte that would otherwise begin, end or escape.
 const ESCAPE: u8 = 0x5c;
 
-/// Frames of the right length that decide the form.
+/// Frames of the right length that decide the format.
 const SURE: usize = 2;
 /// Frames between `FF` that decide it against signs of brackets, beyond those between brackets.
 const SURE_IN_DOUBT: usize = 4;
@@ -34,10 +34,10 @@ enum Framing {
     Bracketed,
 }
 
-/// Parts bytes into frames of one form.
+/// Parts bytes into frames of one format.
 #[derive(Debug)]
 struct Parts {
-    /// The form.
+    /// The format.
     framing: Framing,
     /// How many cells a frame has.
     cells: usize,
@@ -49,7 +49,7 @@ struct Parts {
     escaped: bool,
     /// Whether the frame has more cells or an unknown escape.
     broken: bool,
-    /// Frames of another length, counted as soon as the form is known.
+    /// Frames of another length, counted as soon as the format is known.
     dropped: u64,
 }
 
@@ -158,14 +158,14 @@ impl Parts {
 pub(super) struct MatsenseDecoder {
     /// Those that it may still be.
     candidates: Vec<(Parts, Vec<Vec<u8>>)>,
-    /// Whether a frame of the first form looked like parts of bracketed ones.
+    /// Whether a frame of the first format looked like parts of bracketed ones.
     doubted: bool,
     /// The frame that is given.
     frame: Frame,
 }
 
 impl MatsenseDecoder {
-    /// Either form is still possible.
+    /// Either format is still possible.
     pub(super) fn new((rows, columns): (u16, u16), from_start: bool) -> Self {
         let cells = usize::from(rows) * usize::from(columns);
         let of = |framing| (Parts::new(framing, cells, from_start), Vec::new());
@@ -224,7 +224,7 @@ impl MatsenseDecoder {
         (ended.len() >= enough).then_some(0)
     }
 
-    /// Gives the frames that were waiting for the decision, and forgets the other form.
+    /// Gives the frames that were waiting for the decision, and forgets the other format.
     fn decide(&mut self, index: usize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let (parts, waiting) = self.candidates.swap_remove(index);
         if parts.dropped > 0 {
@@ -236,7 +236,7 @@ impl MatsenseDecoder {
         self.candidates = vec![(parts, Vec::new())];
     }
 
-    /// The end of the input: of a single frame the form is that in which it has the right length.
+    /// The end of the input: of a single frame the format is that in which it has the right length.
     pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         if let [(_, ended), (_, bracketed)] = self.candidates.as_slice() {
             let brackets = !bracketed.is_empty() && (self.doubted || ended.is_empty());

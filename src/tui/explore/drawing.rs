@@ -11,27 +11,27 @@ pub enum PageDrawing {
     Map(PoseMap),
 }
 
-/// The form that the ending of a name asks for, in small letters; None where no drawing has it.
-pub fn drawn_form(name: &str) -> Option<&'static str> {
+/// The format that the ending of a name asks for, in small letters; None where no drawing has it.
+pub fn drawn_format(name: &str) -> Option<&'static str> {
     let ending = std::path::Path::new(name).extension()?.to_str()?;
-    let mut forms = FORMS.iter().copied();
-    forms.find(|form| form.eq_ignore_ascii_case(ending))
+    let mut formats = FORMATS.iter().copied();
+    formats.find(|format| format.eq_ignore_ascii_case(ending))
 }
 
-/// The forms of drawings, by the endings of names.
-const FORMS: &[&str] = if cfg!(feature = "png") {
+/// The formats of drawings, by the endings of names.
+const FORMATS: &[&str] = if cfg!(feature = "png") {
     &["svg", "png"]
 } else {
     &["svg"]
 };
 
 impl PageDrawing {
-    /// The content of a file in a form.
+    /// The content of a file in a format.
     ///
     /// # Errors
     /// Those of the encoder.
-    pub fn content(&self, form: &str) -> Result<Vec<u8>, String> {
-        match (self, form) {
+    pub fn content(&self, format: &str) -> Result<Vec<u8>, String> {
+        match (self, format) {
             #[cfg(feature = "png")]
             (Self::Points(plot), "png") => plot.png().map_err(|error| error.to_string()),
             #[cfg(feature = "png")]

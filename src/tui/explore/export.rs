@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use crate::quote::shortened;
 use crate::storage::{AtlasFile, is_poses};
 use crate::tui::app::line_prompt::LinePrompt;
-use crate::tui::explore::drawing::drawn_form;
+use crate::tui::explore::drawing::drawn_format;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::text_field::TextField;
 
@@ -37,7 +37,7 @@ impl ExportKind {
     fn takes(self, name: &str) -> bool {
         match self {
             Self::Imprints | Self::Drawing => {
-                is_poses(name) || drawn_form(name).is_some() || AtlasFile::new(name).is_ok()
+                is_poses(name) || drawn_format(name).is_some() || AtlasFile::new(name).is_ok()
             }
             Self::Curve => {
                 let ending = std::path::Path::new(name).extension();
@@ -115,13 +115,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ending_tells_the_form() {
+    fn the_ending_tells_the_format() {
         let name = |text: &str| ExportDialog::new(text, ExportKind::Drawing).name();
         for good in ["a.csv", " a/b.jsonl ", "./c.npz", "poses.npy", "map.SVG"] {
             assert_eq!(name(good).as_deref(), Ok(good.trim()));
         }
         for bad in ["", "a", "a.txt", ".csv", "csv", "npy"] {
-            let error = name(bad).expect_err("no form");
+            let error = name(bad).expect_err("no format");
             assert!(
                 error.contains("expected a name that ends in .csv"),
                 "{error}"

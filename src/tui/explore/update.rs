@@ -15,7 +15,7 @@ use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
-use crate::tui::explore::drawing::drawn_form;
+use crate::tui::explore::drawing::drawn_format;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::filter::FilterDialog;
 use crate::tui::explore::mark::MarkPurpose;
@@ -250,7 +250,7 @@ pub(crate) fn in_export(
             }
             Ok(name) => match missing(app, &name) {
                 // The export of a sweep shows its progress, and opens this prompt again itself.
-                None if drawn_form(&name).is_some() => {
+                None if drawn_format(&name).is_some() => {
                     return from_prompt(app, Dialog::Export(dialog), |app| {
                         act(app, ExploreMessage::Write(name, Existing::Kept))
                     });
@@ -271,7 +271,7 @@ pub(crate) fn in_export(
 fn missing(app: &App, name: &str) -> Option<String> {
     let results = app.results_below()?;
     let result = results.sweep();
-    if let Some(form) = drawn_form(name) {
+    if let Some(format) = drawn_format(name) {
         let drawn = |row: &&&ResultsPage| row.drawing.is_some();
         let titles: Vec<&str> = pages::PAGES
             .iter()
@@ -279,7 +279,7 @@ fn missing(app: &App, name: &str) -> Option<String> {
             .map(|row| row.title)
             .collect();
         let reason = format!(
-            "this page has no drawing for .{form}; {} have one",
+            "this page has no drawing for .{format}; {} have one",
             titles.join(", ")
         );
         return pages::row(results.page())

@@ -19,7 +19,7 @@ use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Mode};
-use crate::tui::explore::drawing::drawn_form;
+use crate::tui::explore::drawing::drawn_format;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress};
 use crate::tui::explore::pages;
@@ -34,14 +34,14 @@ pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
         ExploreMessage::Open => open(app),
         ExploreMessage::Ranges => open_ranges(app),
         ExploreMessage::Start(grid) => Some(start(app, *grid)),
-        ExploreMessage::Write(name, existing) if drawn_form(&name).is_some() => {
-            let form = drawn_form(&name)?;
+        ExploreMessage::Write(name, existing) if drawn_format(&name).is_some() => {
+            let format = drawn_format(&name)?;
             let results = app.results_below()?;
             let Some(drawing) = (pages::row(results.page()).drawing?)(results) else {
                 refuse(app, "there is nothing to draw");
                 return None;
             };
-            match drawing.content(form) {
+            match drawing.content(format) {
                 Ok(content) => Some(Effect::File(FileRequest::Write(name, content, existing))),
                 Err(error) => {
                     refuse(app, error);
@@ -239,7 +239,7 @@ pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> bo
 /// and where nothing is filtered.
 fn filter_remark(app: &App, name: &str) -> String {
     match app.results_below() {
-        Some(results) if !results.filter().is_empty() && drawn_form(name).is_none() => {
+        Some(results) if !results.filter().is_empty() && drawn_format(name).is_none() => {
             let imprints = counted(results.sweep().atlas.len() as u64, "imprint");
             format!(", all {imprints} (the filter does not apply)")
         }

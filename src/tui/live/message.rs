@@ -16,7 +16,7 @@ pub enum LiveMessage {
     Watch(Arc<WatchRequest>),
     /// To watch the source of that name, with the user's settings.
     Source(String),
-    /// To take off the median of the frames up to the one that is shown.
+    /// To subtract the median of the frames up to the one that is shown.
     Tare,
     /// To take nothing off.
     NoTare,

@@ -8,7 +8,7 @@
 //! reading    what is read off one frame: values, imprint, descriptors
 //! marks      frames that were marked
 //! refusal    why something cannot be done with the frame that is shown
-//! tare       what is taken off, and how it is made
+//! tare       what is subtracted, and how it is made
 //! threshold  what keys make of a threshold
 //! range      between which values shades are spread
 //! state      which frame is shown and how

@@ -192,7 +192,7 @@ impl Live {
         self.tare.progress()
     }
 
-    /// What is taken off each cell; None without a tare.
+    /// What is subtracted from each cell; None without a tare.
     pub fn tare_values(&self) -> Option<&Tare> {
         self.processing.tare.as_ref()
     }
@@ -393,7 +393,7 @@ impl Live {
         self.tare.add(frame, &mut self.processing);
     }
 
-    /// Takes off the median of the frames up to the one that is shown. Returns of how many.
+    /// Subtracts the median of the frames up to the one that is shown. Returns of how many.
     ///
     /// # Errors
     /// Before the first frame, for a frame that has left the history, and if the frames are of different sizes.

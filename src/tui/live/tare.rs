@@ -19,14 +19,14 @@ pub struct TareMark {
     pub time: Option<f64>,
 }
 
-/// How the tare of the page is made. What is taken off stands in the [`Processing`] of the page.
+/// How the tare of the page is made. What is subtracted stands in the [`Processing`] of the page.
 #[derive(Clone, Debug)]
 pub(super) struct LiveTare {
-    /// Of how many of the first frames it is to be made, until a key has made or taken off one; 0 for none.
+    /// Of how many of the first frames it is to be made, until a key has made or removed one; 0 for none.
     wanted: u64,
     /// The first frames, until they are enough for the tare that was asked for.
     first: Option<TareFrames>,
-    /// How the tare was made; None if nothing is taken off.
+    /// How the tare was made; None if nothing is subtracted.
     mark: Option<TareMark>,
     /// Whether the tare that a recording's own description names is taken once that is known.
     takes_own: bool,
@@ -185,7 +185,7 @@ mod tests {
             tare.add(&frame, &mut processing);
         }
         assert_eq!((tare.progress(), processing.tare.is_some()), (None, true));
-        // One that is there stays; one that was taken off does not come back.
+        // One that is there stays; one that was removed does not come back.
         tare.restart();
         assert!(tare.progress().is_none() && processing.tare.is_some());
         assert!(tare.give_up(&mut processing));

@@ -20,7 +20,7 @@ use crate::tui::runtime::effect::{Effect, FileRequest};
 /// What a name can end in.
 const ENDINGS: &str = ".txt .csv .npy .pbm .json .svg .png";
 
-/// The request to write a file; None where there is nothing to write, or no form has that ending, which a
+/// The request to write a file; None where there is nothing to write, or no format has that ending, which a
 /// notice says.
 pub(in crate::tui) fn write(app: &mut App, name: String) -> Option<Effect> {
     if app.reading().imprint.is_empty() {

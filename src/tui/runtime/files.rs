@@ -1,4 +1,4 @@
-//! Files that the screen opens and writes: imprints in any form, shapes, drawings; sources of frames before they are watched;
+//! Files that the screen opens and writes: imprints in any format, shapes, drawings; sources of frames before they are watched;
 //! and paths for completion.
 
 use std::fs::{self, File};
@@ -37,7 +37,7 @@ pub(in crate::tui) fn perform(request: FileRequest, access: &WriteAccess) -> Fil
     }
 }
 
-/// A shape, or an imprint in any form.
+/// A shape, or an imprint in any format.
 fn open(name: &str) -> Result<OpenedFile, String> {
     let path = location::below_home(name).ok_or("no home folder, so ~ cannot be used")?;
     let sentence = |error: std::io::Error| error.to_string();
