@@ -65,7 +65,7 @@ impl SizeAxis {
 ///     NamedShape::new("square", Figure::rectangle(2.0, 2.0).on(&sensor)?),
 ///     NamedShape::new("disc", Figure::ellipse(1.13, 1.13).on(&sensor)?),
 /// ];
-/// let separation = Separation::new(shapes)?.positions(10).angles("0:350:10".parse()?);
+/// let separation = Separation::new(shapes)?.positions(10)?.angles("0:350:10".parse()?);
 /// let scales = "1:5:1".parse()?;
 /// let points = separation.scan(SizeAxis::Scale, &scales, 0.5, &|_| true)?;
 /// assert!(points[0].error() > 0.3 && points[4].error() < 0.05);
@@ -138,15 +138,16 @@ impl Separation {
         })
     }
 
-    /// Touches at that many positions of a cell in each direction: a divisor of 100, others are taken down to one.
-    #[must_use]
-    pub fn positions(mut self, positions: u8) -> Self {
-        let fitting = (1..=positions.clamp(1, 100)).rev();
-        self.positions = fitting
-            .into_iter()
-            .find(|count| 100_u8.is_multiple_of(*count))
-            .unwrap_or(1);
-        self
+    /// Touches at that many positions of a cell in each direction.
+    ///
+    /// # Errors
+    /// [`TrainingError::Positions`] if it is not a divisor of 100.
+    pub fn positions(mut self, positions: u8) -> Result<Self, TrainingError> {
+        if positions == 0 || !100_u8.is_multiple_of(positions) {
+            return Err(TrainingError::Positions { found: positions });
+        }
+        self.positions = positions;
+        Ok(self)
     }
 
     /// Touches at these angles.
@@ -373,6 +374,7 @@ mod tests {
         let separation = Separation::new(shapes).expect("a set");
         separation
             .positions(10)
+            .expect("a divisor")
             .angles("0:355:5".parse().expect("a range"))
     }
 
@@ -486,7 +488,9 @@ mod tests {
         let stopped = separation.at(SizeAxis::Scale, 1.0, 0.5, &|_| false);
         assert_eq!(stopped, Err(TrainingError::Stopped));
         assert_eq!(separation.touches(), 7 * 100 * 72);
-        assert_eq!(separation.clone().positions(33).positions, 25);
-        assert_eq!(separation.positions(0).positions, 1);
+        for found in [0, 33, 101] {
+            let refused = separation.clone().positions(found);
+            assert_eq!(refused.err(), Some(TrainingError::Positions { found }));
+        }
     }
 }

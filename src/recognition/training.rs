@@ -90,6 +90,12 @@ pub enum TrainingError {
     /// Shapes that no sensor holds in every angle.
     #[error("the shapes do not fit on 64 × 64 taxels in every angle")]
     Large,
+    /// Positions of a cell that are no divisor of 100.
+    #[error("{found} positions in a cell: expected a divisor of 100")]
+    Positions {
+        /// What was given.
+        found: u8,
+    },
     /// Half a step has too many decimals.
     #[error("half a step of this grid has more decimals than a range can have")]
     Steps,

@@ -149,14 +149,14 @@ fn set(asked: &SeparateArguments, shelf: &Shelf) -> Result<(Separation, f64), Cl
                 asked
                     .positions
                     .map_or(positions(&model), GridSteps::positions),
-            )
+            )?
             .angles(asked.angles.unwrap_or(model.ranges()[Axis::Angle]));
         return Ok((separation, model.sensor().threshold()));
     }
     let mut separation = Separation::new(shape_set::read(&asked.set, shelf)?)?
         .angles(asked.angles.unwrap_or(Ranges::default()[Axis::Angle]));
     if let Some(steps) = asked.positions {
-        separation = separation.positions(steps.positions());
+        separation = separation.positions(steps.positions())?;
     }
     Ok((separation, Sensor::default().threshold()))
 }

@@ -187,7 +187,7 @@ impl SeparationRequest {
     /// Those of [`Separation::new`], which a trained set has none of.
     pub fn separation(&self) -> Result<Separation, TrainingError> {
         let separation = Separation::new(self.trained.model.shapes().to_vec())?;
-        Ok(separation.positions(self.positions).angles(self.angles))
+        Ok(separation.positions(self.positions)?.angles(self.angles))
     }
 
     /// The sizes, the smallest first.
