@@ -72,7 +72,7 @@ fn arg_with(parameter: Parameter, default: &str) -> Arg {
         unit => format!("{}, ", unit.name()),
     };
     let also = match parameter {
-        Parameter::Pitch => "; tables and drawings are in mm too",
+        Parameter::Pitch => "; tables and drawings are in mm too, JSON stays in cells",
         _ => "",
     };
     let range = Sensor::default().range(parameter);
