@@ -6,6 +6,8 @@ use crate::quote::shortened;
 use crate::storage::{AtlasFile, is_poses};
 use crate::tui::app::line_prompt::LinePrompt;
 use crate::tui::explore::drawing::drawn_format;
+use crate::tui::explore::pages;
+use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::text_field::TextField;
 
@@ -15,28 +17,42 @@ const LONGEST: usize = 4096;
 /// What is exported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportKind {
-    /// The imprints and poses of a sweep, from a page that has no drawing.
-    Imprints,
-    /// The same and the drawing of a page.
-    Drawing,
+    /// The imprints of a sweep.
+    Sweep {
+        /// Whether all poses were swept, so that they can be written too.
+        poses: bool,
+        /// Whether the page has a drawing.
+        drawing: bool,
+    },
     /// The error of a set against size.
     Curve,
 }
 
 impl ExportKind {
+    /// What the results of a sweep can be written as from the page that is open.
+    pub fn of(results: &Results) -> Self {
+        Self::Sweep {
+            poses: results.sweep().complete(),
+            drawing: pages::row(results.page()).drawing.is_some(),
+        }
+    }
+
     /// What a name can end in.
-    fn endings(self) -> &'static str {
+    fn endings(self) -> Vec<&'static str> {
         match self {
-            Self::Imprints => ".csv, .jsonl, .npz or .npy",
-            Self::Drawing => ".csv, .jsonl, .npz, .npy, .svg or .png",
-            Self::Curve => ".csv, .svg or .png",
+            Self::Sweep { poses, drawing } => {
+                let poses: &[&str] = if poses { &[".npy"] } else { &[] };
+                let drawings: &[&str] = if drawing { &[".svg", ".png"] } else { &[] };
+                [&[".csv", ".jsonl", ".npz"], poses, drawings].concat()
+            }
+            Self::Curve => vec![".csv", ".svg", ".png"],
         }
     }
 
     /// Whether a file of that name can be made, on some page at least.
     fn takes(self, name: &str) -> bool {
         match self {
-            Self::Imprints | Self::Drawing => {
+            Self::Sweep { .. } => {
                 is_poses(name) || drawn_format(name).is_some() || AtlasFile::new(name).is_ok()
             }
             Self::Curve => {
@@ -87,7 +103,11 @@ impl ExportDialog {
         } else {
             format!("{:?}: ", shortened(name))
         };
-        let endings = self.what.endings();
+        let all = self.what.endings().join(", ");
+        let endings = match all.rsplit_once(", ") {
+            Some((others, last)) => format!("{others} or {last}"),
+            None => all,
+        };
         Err(format!("{found}expected a name that ends in {endings}"))
     }
 }
@@ -105,8 +125,7 @@ impl LinePrompt for ExportDialog {
 
     /// What a name can end in.
     fn behind(&self, _columns: u16) -> Cow<'_, str> {
-        let short = self.what.endings().replace(", ", " ").replace(" or ", " ");
-        format!("   ({short})").into()
+        format!("   ({})", self.what.endings().join(" ")).into()
     }
 }
 
@@ -116,7 +135,11 @@ mod tests {
 
     #[test]
     fn the_ending_tells_the_format() {
-        let name = |text: &str| ExportDialog::new(text, ExportKind::Drawing).name();
+        let all = ExportKind::Sweep {
+            poses: true,
+            drawing: true,
+        };
+        let name = |text: &str| ExportDialog::new(text, all).name();
         for good in ["a.csv", " a/b.jsonl ", "./c.npz", "poses.npy", "map.SVG"] {
             assert_eq!(name(good).as_deref(), Ok(good.trim()));
         }

@@ -106,12 +106,12 @@ fn export_of(results: &Results) -> ExportDialog {
     // A path has other uses for a slash.
     let name = name_of(results.sweep().grid.source()).replace('/', "-");
     let row = pages::row(results.page());
-    if row.drawing.is_some() {
-        let name = format!("{name}-{}.svg", row.title);
-        ExportDialog::proposing(&name, ExportKind::Drawing)
+    let name = if row.drawing.is_some() {
+        format!("{name}-{}.svg", row.title)
     } else {
-        ExportDialog::proposing(&format!("{name}.csv"), ExportKind::Imprints)
-    }
+        format!("{name}.csv")
+    };
+    ExportDialog::proposing(&name, ExportKind::of(results))
 }
 
 /// What changes only what is looked at.

@@ -224,12 +224,9 @@ pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> bo
     let Some(place) = finish(app, number) else {
         return false;
     };
-    if let Some(name) = name {
-        ask(
-            app,
-            place,
-            Dialog::Export(ExportDialog::new(&name, ExportKind::Imprints)),
-        );
+    let kind = app.results_below().map(ExportKind::of);
+    if let Some((name, kind)) = name.zip(kind) {
+        ask(app, place, Dialog::Export(ExportDialog::new(&name, kind)));
     }
     refuse(app, reason);
     true

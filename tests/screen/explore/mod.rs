@@ -88,7 +88,9 @@ fn work_is_shown_and_stopped_and_what_is_complete_is_kept() {
         &program.session,
         &["a part: ", " of 36,000,000,000 poses", "stopped after "],
     );
-    program.then("xposes.npy<Enter>", &[".npy needs all poses: only "]);
+    // What cannot be written is not offered.
+    program.then("x", &["Export to: rectangle.csv   (.csv .jsonl .npz)"]);
+    program.then("poses.npy<Enter>", &[".npy needs all poses: only "]);
     program.then("<Esc>4))", &["not swept"]);
     program.then("g", &["this pose was not swept"]);
 }
