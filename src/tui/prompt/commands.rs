@@ -313,6 +313,15 @@ mod tests {
     }
 
     #[test]
+    fn each_command_says_what_it_alone_does() {
+        let mut helps: Vec<&str> = commands().iter().map(|command| command.help).collect();
+        assert!(helps.iter().all(|help| !help.is_empty()));
+        helps.sort_unstable();
+        let twice = helps.windows(2).find(|pair| pair[0] == pair[1]);
+        assert_eq!(twice, None);
+    }
+
+    #[test]
     fn lines_are_completed_as_far_as_it_is_certain() {
         for (line, expected, candidates) in [
             ("fi", "figure ", 1),
