@@ -320,10 +320,10 @@ actions! {
     }
 
     with_arguments {
-        "compare" Arguments::Shape(Purpose::Compare), "compare with a stored shape; alone, with the state before the last step";
+        "compare" Arguments::Shape(Purpose::Compare), "compare with a stored shape; alone, with the step before";
         "cursor" Arguments::Taxel, "move the cursor, or put it on a taxel";
         "delete" Arguments::Shape(Purpose::Delete), "Delete: move a stored shape to the trash";
-        "explore" Arguments::Ranges, "Explore: all imprints of the shape in these ranges";
+        "explore" Arguments::Ranges, "Explore: all imprints in these ranges";
         "export" Arguments::File(FilePurpose::Write), "the same as :write";
         "figure" Arguments::Figure, "Figure: place one of the seven figures";
         "load" Arguments::Shape(Purpose::Load), "Load: bring a stored shape onto the matrix";
@@ -336,9 +336,9 @@ actions! {
         "seed" Arguments::Seed, "begin the random touches of the quiz at a seed";
         "sensor" Arguments::Sensor, "Sensor: columns, rows, threshold, pitch";
         "separate" Arguments::Sizes, "the error against the size of the shapes";
-        "turn" Arguments::Degrees, "turn the shape to the right; negative degrees: to the left";
+        "turn" Arguments::Degrees, "turn the shape right; negative degrees: left";
         "watch" Arguments::FrameSource, "Watch: the frames of a sensor, live or recorded";
-        "write" Arguments::File(FilePurpose::Write), "write the matrix to a file: imprint, shape or drawing, by its ending";
+        "write" Arguments::File(FilePurpose::Write), "write an imprint, shape or drawing, by the file's ending";
     }
 }
 

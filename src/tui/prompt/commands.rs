@@ -319,6 +319,14 @@ mod tests {
         helps.sort_unstable();
         let twice = helps.windows(2).find(|pair| pair[0] == pair[1]);
         assert_eq!(twice, None);
+        // A line of the list fits on a screen of 80 columns: two blanks, the command, two blanks, the rest.
+        let offers = offers("", &[]);
+        let widest = offers.iter().map(|offer| offer.line.len()).max();
+        let room = 80 - 4 - widest.expect("there are commands");
+        for Offer { line, help } in &offers {
+            let length = help.as_deref().map_or(0, str::len);
+            assert!(length <= room, "{line}: {length} of {room} columns");
+        }
     }
 
     #[test]
