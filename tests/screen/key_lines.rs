@@ -69,6 +69,21 @@ fn the_menu_names_the_keys_of_the_page() {
             "{keys}: once is enough: {last}"
         );
     }
+    // The way out is named on a narrow screen, too.
+    for (keys, menu) in [
+        (
+            "f<CR>:explore --angle 0<CR>",
+            "Tab page  d D descriptor  x export  e ranges  Esc close",
+        ),
+        ("r", "t quiz  a x keep, forget  o O other set  Esc close"),
+    ] {
+        let (first, _) = lines(&sized((60, 20), false, keys));
+        assert_eq!(first, menu, "{keys}");
+    }
+    let (_, hints) = lines(&sized((60, 20), false, "r"));
+    assert!(hints.starts_with("i matrix"), "{hints}");
+    let (_, hints) = lines(&sized((60, 20), false, "ri"));
+    assert!(hints.starts_with("i answer"), "{hints}");
     // Keys that can do nothing at the moment are not named.
     for (keys, has, lacks) in [
         ("?", "/ search", "n N match"),

@@ -103,7 +103,21 @@ pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
             .collect()
     };
     let brief = options && area.width < WIDE;
-    placed(area, gap, Role::Text, brief, rows)
+    let all = placed(area, gap, Role::Text, brief, &rows);
+    if options || all.len() == rows.len() {
+        return all;
+    }
+    // The first row and the way out stay, as long as they fit together; what gives way is among the hints.
+    let mut rows = rows;
+    let gives_way = |(row, _): &(&Binding, &str)| !row.does(&Message::Cancel);
+    while let Some(at) = rows.iter().rposition(gives_way).filter(|&at| at > 0) {
+        rows.remove(at);
+        let fitting = placed(area, gap, Role::Text, brief, &rows);
+        if fitting.len() == rows.len() {
+            return fitting;
+        }
+    }
+    all
 }
 
 /// The hints: the keys that mean something now and are not in the menu, as many as fit.
@@ -138,8 +152,8 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
         NarrowPage::Panel if row.does(&Message::SwitchPage) => "matrix",
         _ => row.hint,
     };
-    let rows = first.chain(others).map(|row| (row, name(row))).collect();
-    placed(panes.hints, 2, Role::Quiet, false, rows)
+    let rows: Vec<_> = first.chain(others).map(|row| (row, name(row))).collect();
+    placed(panes.hints, 2, Role::Quiet, false, &rows)
 }
 
 /// Whether the top page can do something with one of the keys of a row now.
@@ -204,11 +218,11 @@ fn placed<'a>(
     gap: u16,
     role: Role,
     brief: bool,
-    rows: Vec<(&'a Binding, &'a str)>,
+    rows: &[(&'a Binding, &'a str)],
 ) -> Vec<Item<'a>> {
     let mut x = area.x;
     let mut items = Vec::new();
-    for (binding, name) in rows {
+    for &(binding, name) in rows {
         let mut keys = binding.short_labels();
         if brief && name.to_lowercase().starts_with(&keys) {
             keys.clear();

@@ -312,6 +312,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "other set" "next, previous set of shapes";
         [Char('v') => CONFUSION] "confusion" "which shapes are taken for which";
         [Char('V') => SEPARATE] "" "the error against the size of the shapes";
+        [Char('i') => PANEL] "answer" "on a narrow screen: the answer or the matrix";
         [Char('P') => POSES] "" "outlines of the likeliest pose and of others";
         [Enter => ACCEPT] "" "train the set after a stop";
         [Esc => CANCEL, Char('r') => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
