@@ -29,15 +29,27 @@ fn set(change: impl FnOnce(&mut WatchRequest)) -> Session {
     session
 }
 
-/// A threshold by noise, with a tare of the first frames.
-fn by_noise(request: &mut WatchRequest, tare: u64) {
-    let rule = Rule::noise(4.0).expect("in range");
+/// Sets a threshold, as a flag does.
+fn ruled(request: &mut WatchRequest, rule: Rule) {
     request.rule = Some(SetRule {
         rule,
         least: 0,
         from: RuleOrigin::Flag,
     });
+}
+
+/// A threshold by noise, with a tare of the first frames.
+fn by_noise(request: &mut WatchRequest, tare: u64) {
+    ruled(request, Rule::noise(4.0).expect("in range"));
     request.tare = tare;
+}
+
+#[test]
+fn an_imprint_without_taxels_has_none_and_no_imprint_has_no_count() {
+    let mut page = set(|request| ruled(request, Rule::at_least(999.0).expect("in range")));
+    page.frames(1);
+    shows(&page, &["NA         0\n", "NAE        0\n", "P          –"]);
+    shows(&watched(1, ""), &["NA         –", "NAE        –"]);
 }
 
 #[test]
@@ -99,7 +111,7 @@ fn the_unit_changes_by_the_values_that_the_threshold_goes_by() {
 }
 
 #[test]
-fn a_tare_is_taken_off_and_given_up() {
+fn a_tare_is_subtracted_and_given_up() {
     shows(
         &watched(6, "t"),
         &["tare of the last 6 frames", "tare       6 frames"],

@@ -206,7 +206,10 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
     if let Some(reading) = live.reading() {
         for key in SHOWN {
             if let Some(descriptor) = Descriptor::from_key(key) {
-                let measured = reading.description.as_ref().map(descriptor.measure);
+                // An imprint without active taxels has counts; where there is no imprint, there is nothing to count.
+                let of_nothing = reading.imprint.map(|_| descriptor.of_nothing);
+                let described = reading.description.as_ref().map(descriptor.measure);
+                let measured = described.or(of_nothing);
                 let text =
                     measured.and_then(|measured| value::text(measured, descriptor.dimension));
                 let text = text.unwrap_or_else(|| theme.none().to_owned());
