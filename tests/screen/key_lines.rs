@@ -89,6 +89,7 @@ fn the_menu_names_the_keys_of_the_page() {
         ("?", "/ search", "n N match"),
         ("?/zoom<CR>", "n N match", "nothing"),
         ("H", "/ search", "n N match"),
+        ("lzzz", "/ new search", "choose"),
         ("H/start<CR>", "n N match", "nothing"),
         (
             "f<CR>:explore --angle 0<CR>",

@@ -444,6 +444,12 @@ fn what_is_copied_is_said() {
     );
 }
 
+#[test]
+fn a_list_without_a_row_has_nothing_to_choose() {
+    shows("lzzz<Enter>", &["! there is no shape to choose", "0 of 28"]);
+    shows("d<Enter>", &["! there is no shape to choose"]);
+}
+
 /// What is typed is seen, however many columns its characters have.
 #[test]
 fn wide_characters_in_a_number_are_seen() {

@@ -236,8 +236,12 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
         .map(|(entry, read)| (entry.name.clone(), read.cloned()));
     match (chosen, purpose) {
         (None, _) => {
-            list.accept(!list.is_listed());
+            let listed = list.is_listed();
+            list.accept(!listed);
             app.dialogs.push(Dialog::List(list));
+            if listed {
+                refuse(app, "there is no shape to choose");
+            }
         }
         (Some((name, _)), Purpose::Delete) => ask_removal(app, name),
         (Some((_, Some(Ok(loaded)))), Purpose::Load) => {

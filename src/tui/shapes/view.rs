@@ -64,6 +64,15 @@ impl Page for ListDialog {
         Some(Message::Scroll(to - from))
     }
 
+    /// An empty list has nothing to choose from. One that is still being read may have.
+    fn has_use_for(&self, message: &Message) -> bool {
+        let of_rows = matches!(
+            message,
+            Message::Accept | Message::Scroll(_) | Message::ScrollTo(_)
+        );
+        !of_rows || !self.is_listed() || self.choice().is_some()
+    }
+
     fn scrolls(&self) -> bool {
         true
     }
