@@ -88,7 +88,7 @@ fn title(results: &Results) -> String {
     if let Some(curve) = results.angle_curve() {
         for (every, what) in [(curve.every_angle, "angle"), (curve.every_row, "y0")] {
             if every > 1 {
-                text += &format!(", from 1 {what} in {every}");
+                text += &format!(", from 1 in {every} values of {what}");
             }
         }
     }
