@@ -102,7 +102,7 @@ impl FigureKind {
 /// assert_eq!(ring.to_string(), "ellipse rx 4.00 ry 4.00 at 1.99, 1.47, 0°, wall 2.00");
 ///
 /// let error = Figure::hexagon(16.5).on(&sensor).unwrap_err();
-/// assert_eq!(error.to_string(), "side: 16.5 is out of range, expected above 0, up to 16");
+/// assert_eq!(error.to_string(), "side: 16.5 is above 16 (allowed: above 0, up to 16)");
 /// # Ok::<(), ParameterError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

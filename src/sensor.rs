@@ -26,7 +26,7 @@ pub const SENSOR_PARAMETERS: [Parameter; 4] = [
 /// let sensor = Sensor::new(12, 8)?.with(Parameter::Threshold, 0.7)?;
 /// assert_eq!((sensor.columns(), sensor.rows(), sensor.threshold()), (12, 8, 0.7));
 /// let error = sensor.check(Parameter::X0, 12.5).unwrap_err();
-/// assert_eq!(error.to_string(), "x0: 12.5 is out of range, expected -12 to 12");
+/// assert_eq!(error.to_string(), "x0: 12.5 is above 12 (allowed: -12 to 12)");
 /// # Ok::<(), ParameterError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
