@@ -3,6 +3,7 @@
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
+use zip::read::ZipFile;
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
@@ -89,6 +90,7 @@ impl<R: Read + Seek> ArrayReader<R> {
             Err(ZipError::FileNotFound) => return Err(ArchiveError::Array(name)),
             file => file?,
         };
+        is_stored(&file, name)?;
         let most = if name == HEADER {
             MAX_HEADER
         } else {
@@ -112,6 +114,7 @@ impl<R: Read + Seek> ArrayReader<R> {
         for index in 0..self.archive.len() {
             let mut file = self.archive.by_index(index)?;
             let name = file.name()?.trim_end_matches(".npy").to_owned();
+            is_stored(&file, &name)?;
             if self.read.contains(&name.as_str()) {
                 continue;
             }
@@ -147,6 +150,14 @@ impl<R: Read + Seek> ArrayReader<R> {
     pub(crate) fn header(&mut self) -> Result<Vec<u8>, ArchiveError> {
         self.bytes(HEADER, Dtype::U8)
     }
+}
+
+/// Holds that an array is not compressed: unpacked, a short file might take all memory.
+fn is_stored(file: &ZipFile<'_, impl Read>, name: &str) -> Result<(), ArchiveError> {
+    if file.compression() == CompressionMethod::Stored {
+        return Ok(());
+    }
+    Err(ArchiveError::Compressed(shortened(name)))
 }
 
 /// Why an array cannot be read to its end: the system's reason, or its checksum.
@@ -222,6 +233,9 @@ pub enum ArchiveError {
     /// An array whose bytes are not those that were written.
     #[error("array {0:?} is damaged")]
     Damaged(String),
+    /// An array that another program has compressed.
+    #[error("array {0:?} is compressed, expected one as taxel writes it, without compression")]
+    Compressed(String),
     /// An array that is not what it should be.
     #[error("array {0:?} is not as taxel writes it")]
     Array(&'static str),

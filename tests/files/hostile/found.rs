@@ -1,9 +1,14 @@
 //! What was found, by the targets and while they were written.
 
+use std::io::Cursor;
+
 use taxel::atlas::features;
+use taxel::formats::archive::read as read_atlas;
+use taxel::formats::read_model;
 use taxel::pose::DecimalRange;
 
 use super::bodies::{body, session_of, with_spread};
+use super::malice;
 
 /// A form that shows a smaller sensor: the cursor stood beside it, and the coverage of another taxel was told.
 #[test]
@@ -49,6 +54,18 @@ fn directions_that_contradict_each_other_have_a_finite_deviation() {
         words.fill(0);
     });
     body("archive")(&archive);
+}
+
+/// A mebibyte of compressed arrays could unpack to a gibibyte in memory.
+#[test]
+fn compressed_arrays_of_an_archive_are_refused() {
+    let message =
+        "array \"rows\" is compressed, expected one as taxel writes it, without compression";
+    let what = "rows that unpack to much";
+    let atlas = read_atlas(Cursor::new(malice::of("archive", what)));
+    assert_eq!(atlas.expect_err("it is compressed").to_string(), message);
+    let model = read_model(Cursor::new(malice::of("model", what)));
+    assert_eq!(model.expect_err("it is compressed").to_string(), message);
 }
 
 /// Reading a pattern of a mebibyte took 138 MiB.

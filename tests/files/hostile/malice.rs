@@ -1,10 +1,19 @@
 //! A mebibyte of input, each of another kind of malice.
 
+mod archives;
+
+mod frames;
+
+mod packed;
+
 /// How long an input is, and a file may be.
 pub(crate) const SIZE: usize = 1 << 20;
 
 /// What it is, and its bytes.
 pub(crate) type Malice = (&'static str, fn() -> Vec<u8>);
+
+/// What the reader of recordings unpacks as a whole, up to 256 MiB: the values of a frame are all over the array.
+pub(crate) const UNPACKED: &str = "an array in the other order that unpacks to much";
 
 /// Those for a body.
 pub(crate) fn all(body: &str) -> Vec<Malice> {
@@ -26,16 +35,57 @@ pub(crate) fn all(body: &str) -> Vec<Malice> {
         "keys" => &KEYS,
         "terminal" => &TERMINALS,
         "script" | "play" => &SCRIPTS,
+        "archive" => archives::ATLASES,
+        "model" => archives::MODELS,
+        "recording" => &frames::of_recordings(),
+        "stream" => &frames::of_streams(),
         // What is general is all that these can be told at such length.
         _ => &[],
     };
     [&general[..], own].concat()
 }
 
+/// The bytes of the one with that name.
+pub(crate) fn of(body: &str, what: &str) -> Vec<u8> {
+    let mut all = all(body).into_iter();
+    let found = all.find(|(name, _)| *name == what);
+    found.expect("there is one of that name").1()
+}
+
+/// The bytes of one of them, as the body takes them.
+pub(crate) fn bytes(body: &str, index: usize) -> Vec<u8> {
+    let mut bytes = all(body)[index].1();
+    if body == "stream" {
+        // Nothing is known of it but that it is read from its start.
+        bytes.insert(0, b'd');
+        bytes.truncate(SIZE);
+    }
+    bytes
+}
+
 /// A beginning, something again and again, an end: as many times as fit.
 fn filled(start: &str, again: &str, end: &str) -> Vec<u8> {
     let times = (SIZE - start.len() - end.len()) / again.len();
     [start, &again.repeat(times), end].concat().into_bytes()
+}
+
+/// The same of bytes.
+fn repeated(start: &[u8], again: &[u8], end: &[u8]) -> Vec<u8> {
+    let times = (SIZE - start.len() - end.len()) / again.len();
+    [start, &again.repeat(times), end].concat()
+}
+
+/// A beginning, then pieces with numbers from 0 on, as many as fit.
+fn numbered(start: &str, piece: &dyn Fn(u32) -> String) -> Vec<u8> {
+    let mut text = start.to_owned();
+    for number in 0.. {
+        let next = piece(number);
+        if text.len() + next.len() > SIZE {
+            break;
+        }
+        text += &next;
+    }
+    text.into_bytes()
 }
 
 /// A shape up to what is filled.

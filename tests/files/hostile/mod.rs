@@ -118,7 +118,7 @@ fn one() {
     let asked = std::env::var(VARIABLE).expect("a body and a malice");
     let (name, malice) = asked.split_once(':').expect("a body and a malice");
     let index: usize = malice.parse().expect("a number");
-    let bytes = malice::all(name)[index].1();
+    let bytes = malice::bytes(name, index);
     assert!(bytes.len() >= malice::SIZE / 2 && bytes.len() <= malice::SIZE);
     let start = Instant::now();
     body(name)(&bytes);
@@ -172,7 +172,12 @@ fn all_malice(name: &str) {
         slowest = slowest.max((took, what));
         // Only where the system tells.
         let kibibytes = number(&said, "VmHWM:").unwrap_or_default();
-        assert!(kibibytes <= 64 << 10, "{name}, {what}: {kibibytes} KiB");
+        let most = if what == malice::UNPACKED {
+            320 << 10
+        } else {
+            64 << 10
+        };
+        assert!(kibibytes <= most, "{name}, {what}: {kibibytes} KiB");
         largest = largest.max((kibibytes, what));
     }
     eprintln!(

@@ -1,0 +1,97 @@
+//! Malice for atlases and models: zip entries that claim terabytes or unpack to much, headers without an end.
+
+use std::io::{Cursor, Read};
+
+use zip::ZipArchive;
+
+use super::packed::{Packing, Zip, zeros_after};
+use super::{Malice, SIZE, filled};
+
+/// A sound atlas and a sound model.
+const SOUND: [&[u8]; 2] = [
+    include_bytes!("../seeds/archive/ellipse.npz"),
+    include_bytes!("../seeds/model/bar.npz"),
+];
+
+/// Both, with an array in place of one of theirs.
+fn with(name: &str, packing: Packing, content: &[u8], claimed: u64) -> [Zip; 2] {
+    SOUND.map(|sound| {
+        let mut archive = ZipArchive::new(Cursor::new(sound)).expect("a sound archive");
+        let mut zip = Zip::default().with(name, packing, content, claimed);
+        for index in 0..archive.len() {
+            let mut file = archive.by_index(index).expect("an array");
+            let own = file.name().expect("UTF-8").into_owned();
+            if own != name {
+                let mut array = Vec::new();
+                file.read_to_end(&mut array).expect("sound");
+                zip = zip.with(&own, Packing::Stored, &array, array.len() as u64);
+            }
+        }
+        zip
+    })
+}
+
+/// An array of numpy's with this header.
+fn array(kind: &str, shape: &str) -> Vec<u8> {
+    let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
+    [
+        b"\x93NUMPY\x01\0\x76\0".to_vec(),
+        format!("{header:<117}\n").into_bytes(),
+    ]
+    .concat()
+}
+
+/// A header in JSON.
+fn header(start: &str, again: &str) -> [Zip; 2] {
+    let json = filled(start, again, "");
+    let json = &json[..SIZE - 20_000];
+    let content = [&array("|u1", &format!("({},)", json.len())), json].concat();
+    with(
+        "header.npy",
+        Packing::Stored,
+        &content,
+        content.len() as u64,
+    )
+}
+
+/// An array that begins like this, unpacked from almost a mebibyte to 158 times as many bytes.
+fn unpacking(name: &str, start: &[u8]) -> [Zip; 2] {
+    let content = zeros_after(start, SIZE - 20_000);
+    with(name, Packing::Deflated, &content, 1 << 26)
+}
+
+/// Malice for both, under a name each.
+macro_rules! both {
+    ($($what:literal => $zips:expr;)+) => {
+        /// For atlases.
+        pub(super) const ATLASES: &[Malice] = &[$(($what, || finished::<0>($zips))),+];
+
+        /// For models.
+        pub(super) const MODELS: &[Malice] = &[$(($what, || finished::<1>($zips))),+];
+    };
+}
+
+/// The atlas or the model.
+fn finished<const WHICH: usize>(zips: [Zip; 2]) -> Vec<u8> {
+    zips.into_iter().nth(WHICH).expect("there are two").finish()
+}
+
+both! {
+    "a header of deep lists" => header("{\"format\":", "[");
+    "a header of deep objects" => header("", "{\"format\":");
+    "a header of one key" => header("{\"format\":\"taxel-model/1\"", ",\"format\":\"a\"");
+    "a header of shapes" => header("{\"format\":\"taxel-model/1\",\"shapes\":[{}", ",{}");
+    "a header of blanks" => header("{", " ");
+    "rows that claim terabytes" => {
+        let content = [array("<u8", "(1000000000000,)"), vec![0; SIZE - 20_000]].concat();
+        with("rows.npy", Packing::Stored, &content, 8 << 40)
+    };
+    "rows that unpack to much" => unpacking("rows.npy", &array("<u8", "(20000000,)"));
+    "rows that unpack to another array" => unpacking("rows.npy", b"no array");
+    "a header that unpacks to much" => unpacking("header.npy", &array("|u1", "(160000000,)"));
+    "another array that unpacks to much" => unpacking("other.npy", b"\x93NUMPY");
+    "arrays that share their bytes" => {
+        let one = zeros_after(b"\x93NUMPY", 50_000);
+        with("other.npy", Packing::Deflated, &one, 8 << 20).map(|zip| zip.with_shared(9_000, &one))
+    };
+}

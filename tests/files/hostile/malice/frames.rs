@@ -1,0 +1,391 @@
+//! Malice for recordings and streams: lines and marks without end, sizes that are not there, channels without number.
+
+use super::packed::{Packing, Zip, zeros_after};
+use super::{Malice, SIZE, filled, numbered, repeated};
+
+/// An array of numpy with this header, and what follows it.
+fn array(header: &str, content: &[u8]) -> Vec<u8> {
+    let length = u16::try_from(header.len()).expect("short");
+    let start = [&b"\x93NUMPY\x01\0"[..], &length.to_le_bytes()].concat();
+    [&start, header.as_bytes(), content].concat()
+}
+
+/// The same, filled up with zeros.
+fn long_array(header: &str) -> Vec<u8> {
+    let mut array = array(header, &[]);
+    array.resize(SIZE, 0);
+    array
+}
+
+/// A header of an array of 64-bit numbers with that shape.
+fn shaped(kind: &str, fortran: &str, shape: &str) -> String {
+    format!("{{'descr': '{kind}', 'fortran_order': {fortran}, 'shape': {shape}, }}\n")
+}
+
+/// Text that goes on, in the forms of each vendor.
+const TEXTS: [Malice; 35] = [
+    ("deep JSON", || filled("{\"frame\":", "[", "")),
+    ("deep objects", || filled("", "{\"frame\":", "")),
+    ("deep snapshots", || filled("", "{\"snapshots\":", "")),
+    ("a long row of JSON", || {
+        filled("{\"frame\":[[", "1,", "1]]}\n")
+    }),
+    ("many rows of JSON", || {
+        filled("{\"frame\":[", "[1],", "[1]]}\n")
+    }),
+    ("empty rows of JSON", || {
+        filled("{\"frame\":[", "[],", "[]]}\n")
+    }),
+    ("many frames of JSON", || {
+        filled("", "{\"frame\":[[1]]}\n", "")
+    }),
+    ("frames of no size", || filled("", "{\"frame\":[]}\n", "")),
+    ("a long number of JSON", || {
+        filled("{\"frame\":[[", "9", "]]}\n")
+    }),
+    ("a long key of JSON", || filled("{\"", "a", "\":1}\n")),
+    ("keys of JSON", || {
+        filled("{", "\"t\":1,", "\"frame\":[[1]]}\n")
+    }),
+    ("snapshots of one name", || {
+        filled(
+            "{\"a_columns\":1,\"a_rows\":1,\"snapshots\":{",
+            "\"0\":{\"a_readings\":[1]},",
+            "\"1\":{}}}",
+        )
+    }),
+    ("a long snapshot", || {
+        filled(
+            "{\"a_columns\":512,\"a_rows\":512,\"snapshots\":{\"0\":{\"a_readings\":[",
+            "1,",
+            "1]}}}",
+        )
+    }),
+    ("a header of Tekscan without an end", || {
+        filled("DATA_TYPE MOVIE\n", "COMMENTS a\n", "")
+    }),
+    ("a large frame of Tekscan", || {
+        filled(
+            "DATA_TYPE MOVIE\nROWS 65535\nCOLS 65535\nASCII_DATA @@\nFrame 1\n",
+            "1,",
+            "",
+        )
+    }),
+    ("frames of Tekscan", || {
+        filled(
+            "DATA_TYPE MOVIE\nROWS 1\nCOLS 1\nASCII_DATA @@\n",
+            "Frame 1\n",
+            "@@\n",
+        )
+    }),
+    ("sensors of XSENSOR", || {
+        numbered("FRAME,1\nSENSOR,a\n", &|n| {
+            format!("SENSOR,{n}\nRows,1\nColumns,1\nSENSELS\n1\n")
+        })
+    }),
+    ("frames of XSENSOR", || {
+        filled("SENSOR,a\n", "FRAME,1\n", "")
+    }),
+    ("a large frame of XSENSOR", || {
+        filled(
+            "FRAME,1\nSENSOR,a\nRows,99999\nColumns,99999\nSENSELS\n",
+            "1,",
+            "",
+        )
+    }),
+    ("a large picture of zebris", || {
+        filled(
+            "[Technical]\nSensCountX=65535\nSensCountY=65535\n[Data]\n",
+            "1\t",
+            "",
+        )
+    }),
+    ("keys of zebris", || {
+        filled("SensCountX=4\n", "SensCountX=4\n", "")
+    }),
+    ("pages of emed", || {
+        filled("Pict-No.: 1 Matrix: 20x30\n", "\t\t\tPage 1\n", "")
+    }),
+    ("a wide page of emed", || {
+        filled(
+            "File: a Matrix: 512x512\nPict-No.: 1\n\n\t",
+            "1\t",
+            "Force\n",
+        )
+    }),
+    ("dimensions of ROS", || {
+        filled(
+            "layout:\n  dim:\n",
+            "  - size: 4294967295\n",
+            "data:\n- 1\n---\n",
+        )
+    }),
+    ("an element a line", || filled("data:\n", "- 1\n", "---\n")),
+    ("ends of messages", || filled("data:\n- 1\n", "---\n", "")),
+    ("a long message", || {
+        filled("array('H', [", "1, ", "1])\n---\n")
+    }),
+    ("deep messages", || filled("array('H', ", "[", "")),
+    ("dimensions in a line", || filled("", "a,1,1,", "0,1\n")),
+    ("many columns", || numbered("t", &|n| format!(",r0c{n}"))),
+    ("columns far away", || {
+        filled("t", ",r4294967295c4294967295", "\n1")
+    }),
+    ("many channels", || {
+        numbered("t", &|n| format!(",a{n}_r0c0"))
+    }),
+    ("fields of a table", || filled("t,r0c0\n", "1,", "1\n")),
+    ("rows of a table", || filled("t,r0c0\n", "1,1\n", "")),
+    ("numbers in a line", || filled("1 1\n", "1 ", "\n")),
+];
+
+/// Bytes, in the forms of recordings only.
+const FILES: [Malice; 16] = [
+    ("an array of more than all memory", || {
+        long_array(&shaped("<f8", "False", "(18446744073709551615, 64, 64)"))
+    }),
+    ("frames of no size in an array", || {
+        long_array(&shaped("<f8", "False", "(18446744073709551615, 0, 0)"))
+    }),
+    ("an array in the other order", || {
+        long_array(&shaped("<f8", "True", "(4000000, 4, 2)"))
+    }),
+    ("an array of many axes", || {
+        let mut array = filled(
+            "0123456789ab{'descr': '<f8', 'fortran_order': False, 'shape': (",
+            "1, ",
+            ")}\n",
+        );
+        array[..12].copy_from_slice(b"\x93NUMPY\x02\x00\xf4\xff\x0f\x00");
+        array
+    }),
+    ("an array of many fields", || {
+        let mut array = filled(
+            "0123456789ab{'descr': [",
+            "('a', '<f8'), ",
+            "], 'shape': (1,)}\n",
+        );
+        array[..12].copy_from_slice(b"\x93NUMPY\x02\x00\xf4\xff\x0f\x00");
+        array
+    }),
+    ("a header of deep lists", || {
+        let mut array = filled("0123456789ab{'descr': ", "[", "");
+        array[..12].copy_from_slice(b"\x93NUMPY\x02\x00\xf4\xff\x0f\x00");
+        array
+    }),
+    ("arrays that claim terabytes", || {
+        let one = array(
+            &shaped("<f8", "False", "(1000000000000, 1, 1)"),
+            &[0; SIZE / 300],
+        );
+        let zip = (0..256).fold(Zip::default(), |zip, number| {
+            zip.with(&format!("{number}.npy"), Packing::Stored, &one, 8 << 40)
+        });
+        zip.finish()
+    }),
+    ("an array that unpacks to much", || {
+        let frames = array(&shaped("<f8", "False", "(1000000000000, 64, 64)"), &[]);
+        packed("a.npy", &frames)
+    }),
+    ("times that unpack to much", || {
+        let start = |kind, shape| array(&shaped(kind, "False", shape), &[]);
+        let times = zeros_after(&start("<f8", "(4194304,)"), SIZE - 2000);
+        let frames = zeros_after(&start("|u1", "(4194304, 1, 1)"), 1000);
+        Zip::default()
+            .with("t.npy", Packing::Deflated, &times, 1 << 25)
+            .with("a.npy", Packing::Deflated, &frames, 1 << 22)
+            .finish()
+    }),
+    (super::UNPACKED, || {
+        packed(
+            "a.npy",
+            &array(&shaped("<f8", "True", "(1000000, 8, 4)"), &[]),
+        )
+    }),
+    ("a header that unpacks to much", || {
+        packed(
+            "a.npy",
+            b"\x93NUMPY\x02\0\xff\xff\xff\xff{'descr': '<f8', 'shape': (",
+        )
+    }),
+    ("many long headers", || {
+        // Each has a mebibyte of blanks when it is unpacked.
+        let one = zeros_after(b"\x93NUMPY\x02\0\xf0\xff\x0f\0{'descr': [('a', '<f8", 3900);
+        let zip = (0..250).fold(Zip::default(), |zip, number| {
+            zip.with(&format!("{number}.npy"), Packing::Deflated, &one, 1 << 20)
+        });
+        zip.finish()
+    }),
+    ("entries that share their bytes", || {
+        let one = zeros_after(b"\x93NUMPY", 1000);
+        Zip::default()
+            .with("a.npy", Packing::Deflated, &one, 1 << 20)
+            .with_shared(10_000, &one)
+            .finish()
+    }),
+    ("marks of FlexiTac", || repeated(&[], b"\xaa\x55", &[])),
+    ("a long frame of FlexiTac", || {
+        repeated(b"\xaa\x55", &[1], &[])
+    }),
+    ("frames of FlexiTac of many sizes", || {
+        let sizes = (1..).map(|size| [&b"\xaa\x55"[..], &vec![1; size % 1000]].concat());
+        let mut bytes: Vec<u8> = sizes.take(2000).flatten().collect();
+        bytes.truncate(SIZE);
+        bytes
+    }),
+];
+
+/// An archive of one entry that begins with some bytes and goes on with zeros, 158 for each byte of the archive.
+fn packed(name: &str, start: &[u8]) -> Vec<u8> {
+    let content = zeros_after(start, SIZE - 1000);
+    Zip::default()
+        .with(name, Packing::Deflated, &content, 1 << 40)
+        .finish()
+}
+
+/// A record of an MCAP file.
+fn record(kind: u8, content: &[u8]) -> Vec<u8> {
+    [&[kind][..], &(content.len() as u64).to_le_bytes(), content].concat()
+}
+
+/// A text of an MCAP file.
+fn text(text: &str) -> Vec<u8> {
+    let length = u32::try_from(text.len()).expect("short");
+    [&length.to_le_bytes()[..], text.as_bytes()].concat()
+}
+
+/// A topic with a number, of arrays of bytes.
+fn topic(number: u16, name: &str) -> Vec<u8> {
+    let id = number.to_le_bytes();
+    record(
+        4,
+        &[&id[..], &[1, 0], &text(name), &text("cdr"), &text("")].concat(),
+    )
+}
+
+/// The beginning of an MCAP file whose first schema has arrays of bytes.
+fn mcap() -> Vec<u8> {
+    let schema = [
+        text("std_msgs/msg/UInt8MultiArray"),
+        text("ros2msg"),
+        text(""),
+    ]
+    .concat();
+    [
+        &b"\x89MCAP0\r\n"[..],
+        &record(3, &[&[1, 0][..], &schema].concat()),
+    ]
+    .concat()
+}
+
+/// A message of topic 1 with an array that claims to have this many bytes.
+fn message(claimed: u32) -> Vec<u8> {
+    let data = [
+        &[0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0][..],
+        &claimed.to_le_bytes(),
+        &[1],
+    ]
+    .concat();
+    record(5, &[&[1, 0][..], &[0; 20], &data].concat())
+}
+
+/// The head of a chunk: times, the size unpacked, no checksum, how it is packed, the size.
+fn chunk(unpacked: u64, packing: &str, content: &[u8]) -> Vec<u8> {
+    let size = (content.len() as u64).to_le_bytes();
+    let parts = [
+        &[0; 16][..],
+        &unpacked.to_le_bytes(),
+        &[0; 4],
+        &text(packing),
+        &size,
+        content,
+    ];
+    record(6, &parts.concat())
+}
+
+/// MCAP files.
+const TOPICS: [Malice; 9] = [
+    ("a record of exabytes", || {
+        repeated(
+            &[mcap(), vec![5], u64::MAX.to_le_bytes().to_vec()].concat(),
+            &[1],
+            &[],
+        )
+    }),
+    ("many topics", || {
+        let all = (1..=u16::MAX).flat_map(|number| topic(number, "a"));
+        let mut bytes: Vec<u8> = mcap().into_iter().chain(all).collect();
+        bytes.truncate(SIZE);
+        bytes
+    }),
+    ("topics with long names", || {
+        let all = (1..1000).flat_map(|number| topic(number, &"a".repeat(1024)));
+        let mut bytes: Vec<u8> = mcap().into_iter().chain(all).collect();
+        bytes.truncate(SIZE);
+        bytes
+    }),
+    ("messages that claim to be long", || {
+        repeated(&[mcap(), topic(1, "a")].concat(), &message(u32::MAX), &[])
+    }),
+    ("short messages", || {
+        repeated(&[mcap(), topic(1, "a")].concat(), &message(1), &[])
+    }),
+    ("a chunk that claims exabytes", || {
+        [mcap(), chunk(u64::MAX, "", &vec![5; SIZE - 1000])].concat()
+    }),
+    ("a chunk by Zstandard", || {
+        // The largest window, then blocks of one byte that is repeated 128 Ki times.
+        let frame = b"\x28\xb5\x2f\xfd\x00\xf8";
+        let block = [&(((128_u32 << 10) << 3) | 2).to_le_bytes()[..3], &[5]].concat();
+        let content = repeated(frame, &block, &[]);
+        [mcap(), chunk(1 << 40, "zstd", &content[..SIZE - 1000])].concat()
+    }),
+    ("a chunk by LZ4", || {
+        // Blocks that say that they have four megabytes.
+        let frame = b"\x04\x22\x4d\x18\x60\x70\x73";
+        let content = repeated(
+            frame,
+            &[0x00, 0x00, 0x40, 0x00, 0x1f, 0x05, 0x01, 0x00],
+            &[0xff],
+        );
+        [mcap(), chunk(1 << 40, "lz4", &content[..SIZE - 1000])].concat()
+    }),
+    ("chunks in chunks", || {
+        let mut inner = vec![5; SIZE / 2];
+        for _ in 0..1000 {
+            inner = chunk(inner.len() as u64, "", &inner);
+        }
+        [mcap(), inner].concat()
+    }),
+];
+
+/// Bytes, in the forms of streams only.
+const STREAMS: [Malice; 6] = [
+    ("marks", || repeated(&[], b"\xaa\x55", &[])),
+    ("a mark, then nothing", || repeated(b"\xaa\x55", &[1], &[])),
+    ("brackets", || repeated(&[], b"[]", &[])),
+    ("brackets that open", || repeated(&[], b"[", &[])),
+    ("ends at every other place", || {
+        repeated(&[], b"\xff\x01", &[])
+    }),
+    ("frames of many sizes", || {
+        let sizes = (1..).map(|size| [&b"\xaa\x55"[..], &vec![1; size % 1000]].concat());
+        let mut bytes: Vec<u8> = sizes.take(2000).flatten().collect();
+        bytes.truncate(SIZE);
+        bytes
+    }),
+];
+
+/// For recordings.
+pub(super) fn of_recordings() -> Vec<Malice> {
+    let mut all = [&TEXTS[..], &FILES].concat();
+    if cfg!(feature = "mcap") {
+        all.extend(TOPICS);
+    }
+    all
+}
+
+/// For streams, whose first byte says what is known of them: nothing here, but that they are read from their start.
+pub(super) fn of_streams() -> Vec<Malice> {
+    [&TEXTS[..], &STREAMS].concat()
+}
