@@ -4,6 +4,7 @@ use std::io::Write;
 
 use serde_json::Value;
 
+use super::array::array;
 use super::{Run, misused, taxel};
 
 /// A sample of the tests of recordings.
@@ -501,26 +502,16 @@ fn imprints_of(name: &str, content: &[u8], flags: &str) -> Vec<Value> {
         .collect()
 }
 
-/// An array of numpy's in the first axis' order.
-fn fortran(shape: &str, values: &[f64]) -> Vec<u8> {
-    let header = format!("{{'descr': '<f8', 'fortran_order': True, 'shape': {shape}, }}");
-    let mut array = b"\x93NUMPY\x01\x00".to_vec();
-    array.extend(118_u16.to_le_bytes());
-    array.extend(format!("{header:<117}\n").bytes());
-    array.extend(values.iter().flat_map(|value| value.to_le_bytes()));
-    array
-}
-
 #[test]
 fn cells_are_where_the_file_says_in_less_usual_tables() {
     let two_rows = serde_json::json!(["..#", "###"]);
     // Two frames of six cells each, the frames next to each other.
     let flat: Vec<f64> = (1..=6).flat_map(|cell| [f64::from(cell), 0.0]).collect();
     let flags = "--rows 2 --columns 3 --at-least 3";
-    let found = imprints_of("flat.npy", &fortran("(2, 6)", &flat), flags);
+    let found = imprints_of("flat.npy", &array("(2, 6)", true, &flat), flags);
     assert_eq!(found[0], two_rows);
     let square = [1.0, 4.0, 2.0, 5.0, 3.0, 6.0];
-    let found = imprints_of("one.npy", &fortran("(2, 3)", &square), "--at-least 3");
+    let found = imprints_of("one.npy", &array("(2, 3)", true, &square), "--at-least 3");
     assert_eq!(found[0], two_rows);
     for (text, flags) in [
         // What is said of the frame after its cells.

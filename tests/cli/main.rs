@@ -3,8 +3,14 @@
 #[path = "../common/paper.rs"]
 mod paper;
 
+#[path = "../common/array.rs"]
+mod array;
+
 #[path = "../common/skip.rs"]
 mod skip;
+
+#[path = "../common/wait.rs"]
+mod wait;
 
 mod config;
 

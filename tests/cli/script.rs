@@ -3,6 +3,7 @@
 use super::Run;
 use super::run_in;
 use super::taxel;
+use super::wait;
 
 #[test]
 fn messages_name_the_script_and_the_line() {
@@ -143,9 +144,11 @@ fn a_script_changes_nothing_outside_its_folder() {
     assert!(folder.join("own.svg").exists(), "{own:?}");
     // A device would be set up, a connection made, a pipe waited for.
     let pipe = place.path().join("pipe");
-    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
-    assert!(made.expect("started").success());
-    for source in ["tcp://127.0.0.1:9", pipe.to_str().expect("text"), "-"] {
+    let mut sources = vec!["tcp://127.0.0.1:9", "-"];
+    if wait::fifo(&pipe) {
+        sources.push(pipe.to_str().expect("text"));
+    }
+    for source in sources {
         let script = format!("Source {source}\nFrames 1\nScreen\n");
         let refused = run("d.taxel", &script, &[]);
         let refusal = "a script reads frames from files only";

@@ -6,6 +6,7 @@ use std::process::Command;
 
 use super::Run;
 use super::program;
+use super::wait;
 
 /// A file that says something of everything.
 const FILE: &str = "theme = \"light\"\ncolor = \"256\"\nmouse = false\nlibrary = \"~/shapes\"\n\n\
@@ -243,8 +244,9 @@ fn flags_of_the_screen_do_not_stand_before_a_command() {
 fn a_settings_file_that_is_a_pipe_is_refused_at_once() {
     let folder = tempfile::tempdir().expect("a folder");
     let pipe = folder.path().join("pipe");
-    let made = Command::new("mkfifo").arg(&pipe).status();
-    assert!(made.is_ok_and(|status| status.success()));
+    if !wait::fifo(&pipe) {
+        return;
+    }
     let mut command = taxel("config");
     let run = run(command.arg("--config").arg(&pipe));
     assert_eq!(run.status, Some(2));

@@ -10,7 +10,7 @@ use std::time::Duration;
 use serde_json::Value;
 
 use super::skip::lacking;
-use super::{misused, program, python_has, taxel, until};
+use super::{misused, program, python_has, taxel, until, wait};
 
 pub(super) fn sample(name: &str) -> String {
     format!(
@@ -203,19 +203,11 @@ fn after_a_kill_the_recording_opens_and_every_frame_is_right() {
 fn a_fifo_is_read_until_its_writer_closes_it() {
     let folder = tempfile::tempdir().expect("a folder");
     let fifo = folder.path().join("frames");
-    if !Command::new("mkfifo")
-        .arg(&fifo)
-        .status()
-        .is_ok_and(|status| status.success())
-    {
-        lacking("mkfifo");
+    if !wait::fifo(&fifo) {
         return;
     }
     let child = started(&["watch", fifo.to_str().expect("UTF-8")]);
-    let mut writer = fs::File::options()
-        .write(true)
-        .open(&fifo)
-        .expect("it is read");
+    let mut writer = wait::writer_of(&fifo);
     // Torn anywhere.
     for piece in stream(0..40).as_bytes().chunks(7) {
         writer.write_all(piece).expect("it is read");
@@ -397,14 +389,14 @@ fn a_connection_that_is_lost_is_made_again() {
         output.read_line(&mut answer).expect("it answers");
         assert_eq!(lines(&answer)[0]["sum"], 9 + expected);
     };
-    let (mut first, _) = listener.accept().expect("it connects");
+    let mut first = wait::connection(&listener);
     // What comes first may be torn.
     first
         .write_all(("3 4\n\n".to_owned() + &stream(0..5) + "1 ").as_bytes())
         .expect("it reads");
     (0..5).for_each(&mut number);
     drop(first);
-    let (mut second, _) = listener.accept().expect("it connects again");
+    let mut second = wait::connection(&listener);
     second
         .write_all(("3 4\n\n".to_owned() + &stream(7..12)).as_bytes())
         .expect("it reads");
@@ -505,7 +497,7 @@ fn times_count_on_when_a_connection_is_made_again() {
     let mut output = BufReader::new(child.stdout.take().expect("piped"));
     let mut times = Vec::new();
     for from in [100.0, 103.5, 200.0, 1.0] {
-        let (mut connection, _) = listener.accept().expect("it connects");
+        let mut connection = wait::connection(&listener);
         let sent = connection.write_all(clocked(from, 24).as_bytes());
         sent.expect("it reads");
         for _ in 0..24 {

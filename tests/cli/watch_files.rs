@@ -11,6 +11,7 @@ use taxel::formats::recording::RecordingMetadata;
 use taxel::frame::Frame;
 use taxel::storage::Existing;
 
+use super::array::{self, array};
 use super::watch::{lines, sample, started, stream};
 use super::{finish, program, taxel};
 
@@ -307,11 +308,7 @@ fn a_recording_that_has_no_more_room_ends_with_its_last_whole_record() {
     let bytes = fs::read(&file).expect("it is there");
     let records = (bytes.len() - 256) / 48;
     assert_eq!(bytes.len(), 256 + 48 * records);
-    let header = String::from_utf8_lossy(&bytes[..256]).into_owned();
-    assert!(
-        header.contains(&format!("'shape': ({records},)")),
-        "{header}"
-    );
+    assert_eq!(array::records(&bytes), Some(records));
     let beside = fs::read(file.with_extension("json")).expect("it is there");
     let beside: Value = serde_json::from_slice(&beside).expect("JSON");
     assert_eq!(beside["ended"], true);
@@ -364,19 +361,10 @@ fn dots_mean_that_values_were_left_out_only_where_they_stand_for_values() {
 fn what_is_wrong_with_a_recording_is_called_by_its_name() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
-    let header = format!(
-        "{:<117}\n",
-        "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 1, 1), }"
-    );
-    let array = |value: f64| {
-        let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
-        bytes.extend(header.bytes());
-        bytes.extend(value.to_le_bytes());
-        bytes
-    };
+    let one = |value: f64| array("(1, 1, 1)", false, &[value]);
     let large = "is too large, expected at most 1e300";
     for (name, content, expected) in [
-        ("large.npy", array(1e308), large),
+        ("large.npy", one(1e308), large),
         ("large.jsonl", b"{\"frame\":[[1e308]]}\n".to_vec(), large),
         (
             "large.csv",
@@ -385,7 +373,7 @@ fn what_is_wrong_with_a_recording_is_called_by_its_name() {
         ),
         (
             "infinite.npy",
-            array(f64::INFINITY),
+            one(f64::INFINITY),
             "infinite, expected a number",
         ),
     ] {
@@ -448,11 +436,7 @@ fn a_channel_whose_rows_and_columns_are_unknown_is_refused() {
 fn a_recording_without_frames_is_refused_and_not_repeated() {
     let folder = tempfile::tempdir().expect("a folder");
     let empty = folder.path().join("empty.npy");
-    let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (0, 4, 4), }";
-    let mut array = b"\x93NUMPY\x01\x00".to_vec();
-    array.extend(118_u16.to_le_bytes());
-    array.extend(format!("{header:<117}\n").bytes());
-    fs::write(&empty, array).expect("written");
+    fs::write(&empty, array("(0, 4, 4)", false, &[])).expect("written");
     let name = empty.to_str().expect("UTF-8");
     for more in ["--once", "--loop"] {
         let run = taxel(&format!("watch {name} {more} --json --at-least 1"), "");

@@ -6,6 +6,9 @@
 //! does it 2,000 times. The seed of a run is printed, and `TAXEL_SEED` sets it. What the machine does not allow is skipped
 //! and reported.
 
+#[path = "../common/array.rs"]
+mod array;
+
 #[path = "../common/skip.rs"]
 mod skip;
 

@@ -6,6 +6,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::Command;
 
+use super::array;
 use super::state::{each, program};
 use super::strace;
 
@@ -34,26 +35,21 @@ fn record(folder: &Path, source: &str) -> Command {
 
 /// What is there: of which source, how many frames, ended or not; None without the description or the array. Both are of the
 /// same source, as far as the array has frames.
-fn found(folder: &Path) -> Option<(bool, u32, bool)> {
-    let array = fs::read(folder.join("touch.npy")).ok()?;
-    let header = String::from_utf8_lossy(&array[..256]).into_owned();
-    let frames = header.split("'shape': (").nth(1).expect("a header");
-    let frames = frames
-        .split(',')
-        .next()
-        .and_then(|frames| frames.parse().ok());
+fn found(folder: &Path) -> Option<(bool, usize, bool)> {
+    let recording = fs::read(folder.join("touch.npy")).ok()?;
+    let frames = array::records(&recording).expect("a header");
     let text = fs::read_to_string(folder.join("touch.json")).ok()?;
     let json: serde_json::Value = serde_json::from_str(&text).expect("whole");
     let source = json["source"].as_str().expect("a source");
     let ended = json["ended"].as_bool().expect("said");
     let is_new = source.ends_with("new.txt");
     // A record begins with its time and its number.
-    let start = 10 + usize::from(u16::from_le_bytes([array[8], array[9]])) + 16;
-    if let Some(value) = array.get(start..start + 8) {
+    let start = array::start(&recording).expect("a header") + 16;
+    if let Some(value) = recording.get(start..start + 8) {
         let first = f64::from_le_bytes(value.try_into().expect("eight bytes"));
         assert_eq!(first, if is_new { 0.0 } else { 1.0 }, "of two recordings");
     }
-    Some((is_new, frames.expect("a number"), ended))
+    Some((is_new, frames, ended))
 }
 
 pub(crate) fn killed() -> String {

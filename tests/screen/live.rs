@@ -10,6 +10,7 @@ use taxel::tui::live::message::LiveMessage;
 use taxel::tui::live::request::WatchRequest;
 use taxel::tui::script::Session;
 
+use crate::array::{self, array};
 use crate::session::{hides, session, shows, sized, started, then, world};
 
 /// The page after this number of frames, and then these keys.
@@ -335,11 +336,10 @@ fn a_script_records_each_frame_once() {
         shows(&page, &["ended", "recording  touch-1.npy, 6 frames"]);
     }
     then(&mut page, "r", &["touch-1.npy: 6 frames recorded"]);
-    let array = std::fs::read(folder.path().join("touch-1.npy")).expect("written");
-    let text = String::from_utf8_lossy(&array[..256]).into_owned();
-    assert!(text.contains("'shape': (6,)"), "{text}");
+    let recording = std::fs::read(folder.path().join("touch-1.npy")).expect("written");
+    assert_eq!(array::records(&recording), Some(6));
     assert_eq!(
-        array[256 + 8..256 + 16],
+        recording[256 + 8..256 + 16],
         2_u64.to_le_bytes(),
         "the third frame"
     );
@@ -449,11 +449,7 @@ fn values_far_below_1_have_shades_and_fine_steps() {
 fn a_broken_description_beside_a_recording_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.npy");
-    let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 1, 2), }";
-    let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
-    bytes.extend(format!("{header:<117}\n").bytes());
-    bytes.extend([9.0_f64, 1.0].iter().flat_map(|value| value.to_le_bytes()));
-    std::fs::write(&path, bytes).expect("written");
+    std::fs::write(&path, array("(1, 1, 2)", false, &[9.0, 1.0])).expect("written");
     let broken = "{\"format\":\"taxel-touch/1\",\"unit\":3}";
     std::fs::write(path.with_extension("json"), broken).expect("written");
     // The path goes first, and its end may not fit.

@@ -1,7 +1,13 @@
 //! The program's screen: in memory, driven by keys and scripts, and the real program in a pseudo-terminal.
 
+#[path = "../common/array.rs"]
+mod array;
+
 #[path = "../common/skip.rs"]
 mod skip;
+
+#[path = "../common/wait.rs"]
+mod wait;
 
 mod session;
 

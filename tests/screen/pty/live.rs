@@ -4,7 +4,6 @@
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::time::{Duration, Instant};
 
 use rustix::process::Signal;
@@ -13,18 +12,8 @@ use taxel::storage::{Journal, Library};
 use super::program::{Program, Start, TAXEL};
 use super::record::shape;
 use super::tracer::Tracer;
-use crate::skip;
-
-/// A pipe with a name in a folder; None where there is no mkfifo.
-fn fifo(folder: &Path) -> Option<PathBuf> {
-    let path = folder.join("frames");
-    let made = Command::new("mkfifo").arg(&path).status();
-    if made.is_ok_and(|status| status.success()) {
-        return Some(path);
-    }
-    skip::lacking("mkfifo");
-    None
-}
+use crate::array;
+use crate::wait::{connection, fifo, writer_of};
 
 /// Frames of 4 x 4, of which the first value counts.
 fn frames(numbers: std::ops::Range<u32>) -> String {
@@ -47,7 +36,8 @@ impl Watched {
     /// Starts it; None where there is no mkfifo.
     fn start() -> Option<Self> {
         let folder = tempfile::tempdir().expect("a folder");
-        let fifo = fifo(folder.path())?;
+        let pipe = folder.path().join("frames");
+        fifo(&pipe).then_some(())?;
         let line = format!(
             "cd '{}' && exec '{TAXEL}' watch frames --format lines --at-least 9",
             folder.path().display()
@@ -62,10 +52,10 @@ impl Watched {
             ..Start::default()
         });
         // Waits until the program reads it.
-        let pipe = fs::File::options().write(true).open(fifo);
+        let pipe = writer_of(&pipe);
         Some(Self {
             program,
-            pipe: pipe.expect("the pipe opens"),
+            pipe,
             folder,
         })
     }
@@ -99,11 +89,8 @@ impl Watched {
 }
 
 /// The number of records that an array counts.
-fn records(path: &Path) -> Option<u64> {
-    let bytes = fs::read(path).ok()?;
-    let text = String::from_utf8_lossy(bytes.get(..256)?).into_owned();
-    let (_, rest) = text.split_once("'shape': (")?;
-    rest.split(',').next()?.parse().ok()
+fn records(path: &Path) -> Option<usize> {
+    array::records(&fs::read(path).ok()?)
 }
 
 #[test]
@@ -176,7 +163,7 @@ fn ctrl_z_and_fg_leave_a_source_and_its_recording_as_they_are() {
         command: &["sh", "-c", &line],
         ..Start::default()
     });
-    let shows_recorded = |program: &mut Program, name: &str, least: u64| {
+    let shows_recorded = |program: &mut Program, name: &str, least: usize| {
         let before = format!("recording  {name}, ");
         program.until("a longer recording", |program| {
             let screen = program.screen().contents();
@@ -507,7 +494,7 @@ fn a_connection_that_is_not_there_yet_is_waited_for() {
     let mut program = watching(folder.path(), &format!("tcp://{address} --at-least 9"));
     program.shows(&format!("waiting for tcp://{address}, trying again each"));
     let listener = std::net::TcpListener::bind(address).expect("the same port");
-    let (mut connection, _) = listener.accept().expect("it tries again");
+    let mut connection = connection(&listener);
     let sent = connection.write_all(frames(0..3).as_bytes());
     sent.expect("it reads");
     // What came first may have been torn.

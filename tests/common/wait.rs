@@ -1,0 +1,48 @@
+//! Pipes and connections that the program opens: the test waits for it, but not for ever.
+#![allow(dead_code, reason = "every test file uses its own part of this one")]
+
+use std::fs::File;
+use std::net::{TcpListener, TcpStream};
+use std::path::Path;
+use std::process::Command;
+use std::sync::mpsc::channel;
+use std::time::Duration;
+
+use crate::skip;
+
+/// Nothing is waited for longer, however busy the machine is.
+const DEADLINE: Duration = Duration::from_secs(60);
+
+/// Makes a pipe with a name. Where there is no `mkfifo`, says so and returns false.
+pub(crate) fn fifo(path: &Path) -> bool {
+    let Ok(made) = Command::new("mkfifo").arg(path).status() else {
+        skip::lacking("mkfifo");
+        return false;
+    };
+    assert!(made.success(), "mkfifo {}: {made}", path.display());
+    true
+}
+
+/// The end of a pipe to write to, once the program reads from it.
+pub(crate) fn writer_of(fifo: &Path) -> File {
+    let path = fifo.to_owned();
+    let opened = within_deadline("reader of the pipe", move || {
+        File::options().write(true).open(path)
+    });
+    opened.expect("the pipe opens")
+}
+
+/// The next connection that the program makes.
+pub(crate) fn connection(listener: &TcpListener) -> TcpStream {
+    let listener = listener.try_clone().expect("a second handle");
+    let accepted = within_deadline("connection", move || listener.accept());
+    accepted.expect("it connects").0
+}
+
+/// Does what may wait for ever on a thread of its own. The thread is left behind where the test fails.
+fn within_deadline<T: Send + 'static>(what: &str, wait: impl FnOnce() -> T + Send + 'static) -> T {
+    let (done, waits) = channel();
+    std::thread::spawn(move || drop(done.send(wait())));
+    let found = waits.recv_timeout(DEADLINE);
+    found.unwrap_or_else(|_| panic!("no {what} within {} seconds", DEADLINE.as_secs()))
+}
