@@ -37,6 +37,7 @@ pub const LEAST_SIDE: u8 = 16;
 /// assert_eq!(model.posterior(&touch), Some(vec![1.0, 0.0]));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[derive(Clone)]
 pub struct Training<'a> {
     grids: Vec<PoseGrid>,
     shapes: Vec<NamedShape>,

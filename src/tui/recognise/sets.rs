@@ -3,6 +3,7 @@
 use std::ffi::OsStr;
 use std::fmt;
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
@@ -58,18 +59,21 @@ impl ModelChoice {
         }
     }
 
-    /// The training of a built-in set; None of a stored model.
+    /// The training of a built-in set; None of a stored model. How far its shapes reach is computed once.
     ///
     /// # Errors
     /// Why it cannot be trained.
     pub fn training(&self) -> Option<Result<Training<'static>, TrainingError>> {
-        let (shapes, steps) = match self {
-            Self::Figures => (default_figures(), GridSteps::FINE),
-            Self::EqualFigures => (equal_figures(), GridSteps::FINE),
-            Self::Shipped => (shipped_shapes(), SHIPPED_STEPS),
+        static FITTED: [OnceLock<Result<Training<'static>, TrainingError>>; 3] =
+            [const { OnceLock::new() }; 3];
+        let (number, shapes, steps): (_, fn() -> Vec<NamedShape>, _) = match self {
+            Self::Figures => (0, default_figures, GridSteps::FINE),
+            Self::EqualFigures => (1, equal_figures, GridSteps::FINE),
+            Self::Shipped => (2, shipped_shapes, SHIPPED_STEPS),
             Self::Stored(_) | Self::File(_) => return None,
         };
-        Some(Training::fitting(shapes, steps))
+        let fitted = FITTED[number].get_or_init(|| Training::fitting(shapes(), steps));
+        Some(fitted.clone())
     }
 }
 
