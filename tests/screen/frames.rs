@@ -46,7 +46,9 @@ fn own(before: &Session, after: Option<&Session>) -> usize {
     let Ok(mut terminal) = Terminal::new(Screen::new(Size::new(80, 24), abilities));
     let mut bytes = 0;
     for session in [Some(before), after].into_iter().flatten() {
-        let Ok(_) = terminal.draw(|frame| view(session.app(), frame));
+        let Ok(_) = terminal.draw(|frame| {
+            view(session.app(), frame);
+        });
         bytes = terminal.backend_mut().take_frame().len();
     }
     bytes
@@ -64,7 +66,9 @@ fn stock(before: &Session, after: Option<&Session>) -> usize {
     for session in [Some(before), after].into_iter().flatten() {
         written.set(0);
         terminal
-            .draw(|frame| view(session.app(), frame))
+            .draw(|frame| {
+                view(session.app(), frame);
+            })
             .expect("a counter takes it all");
     }
     written.get()

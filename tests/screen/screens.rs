@@ -52,6 +52,8 @@ fn every_size_of_every_screen_is_drawn() {
             for width in (0..=120).step_by(7).chain(17..=24).chain(58..70) {
                 for height in (0..=50).step_by(3) {
                     session.resize(width, height);
+                    // Who looks at it has it drawn.
+                    let _ = session.cursor();
                 }
             }
             assert!(

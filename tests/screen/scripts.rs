@@ -75,6 +75,30 @@ fn a_script_answers_alike_every_time() {
     }
 }
 
+/// Where a page hides the cursor, it has no place: not that where an earlier screen had it.
+#[test]
+fn a_hidden_cursor_has_no_place() {
+    let script = "Keys f\nScreen\nKeys <Esc>?\nScreen\n";
+    let plain = output(script, false).expect("it holds");
+    assert!(
+        plain.contains("--- screen 80x24 cursor 36,3 ---\n"),
+        "{plain}"
+    );
+    assert!(
+        plain.contains("--- screen 80x24 no cursor ---\n"),
+        "{plain}"
+    );
+    let json = output(script, true).expect("it holds");
+    let cursors: Vec<serde_json::Value> = json
+        .lines()
+        .map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON")["cursor"].take())
+        .collect();
+    assert_eq!(
+        cursors,
+        [serde_json::json!([36, 3]), serde_json::Value::Null]
+    );
+}
+
 #[test]
 fn what_does_not_hold_is_told_with_its_line() {
     let told = |script: &str| {

@@ -21,7 +21,7 @@
 
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::layout::{Panes, SMALLEST};
 use crate::tui::app::page::{Page, Slot};
@@ -30,26 +30,17 @@ use crate::tui::app::title::title;
 use crate::tui::app::{menu, status};
 use crate::tui::matrix::panel;
 use crate::tui::matrix::view::MatrixView;
-use crate::tui::widget::theme::Role;
+use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Draws the whole screen.
-pub fn view(app: &App, frame: &mut Frame<'_>) {
+/// Draws the whole screen. Returns where the terminal's cursor is; None where it is hidden.
+pub fn view(app: &App, frame: &mut Frame<'_>) -> Option<Position> {
     let area = frame.area();
     let theme = app.theme();
     let buffer = frame.buffer_mut();
     let Some(panes) = Panes::of(area, &app.reading().imprint, app.halves()) else {
-        let (width, height) = SMALLEST;
-        let needed = format!("{width} × {height}");
-        for (index, text) in ["too small,", "need", &needed].into_iter().enumerate() {
-            write::line(
-                buffer,
-                write::row(area, index),
-                theme,
-                [(text, Role::Error)],
-            );
-        }
-        return;
+        too_small(theme, buffer, area);
+        return None;
     };
     menu::draw(theme, buffer, &menu::menu(app, panes.menu));
     let matrix = MatrixView::of(app);
@@ -90,7 +81,19 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
     // A name and a command are typed in the line of notices.
     cursor = status::draw(app, buffer, &panes).or(cursor);
     // The terminal's own cursor shows the place where there are neither colours nor reversed characters.
-    if let Some(position) = cursor.filter(|&position| area.contains(position)) {
+    let cursor = cursor.filter(|&position| area.contains(position));
+    if let Some(position) = cursor {
         frame.set_cursor_position(position);
+    }
+    cursor
+}
+
+/// Says on a screen that is too small for anything what it would need.
+fn too_small(theme: &Theme, buffer: &mut Buffer, area: Rect) {
+    let (width, height) = SMALLEST;
+    let needed = format!("{width} × {height}");
+    for (index, text) in ["too small,", "need", &needed].into_iter().enumerate() {
+        let row = write::row(area, index);
+        write::line(buffer, row, theme, [(text, Role::Error)]);
     }
 }

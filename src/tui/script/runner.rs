@@ -356,7 +356,8 @@ fn screen(session: &Session, name: &str, settings: &ScriptOptions) -> String {
     if settings.json {
         let lines = |grid: String| grid.lines().map(str::to_owned).collect::<Vec<_>>();
         let object = json!({
-            "screen": name, "size": [columns, rows], "cursor": [cursor.x, cursor.y],
+            "screen": name, "size": [columns, rows],
+            "cursor": cursor.map(|cursor| [cursor.x, cursor.y]),
             "rows": lines(session.screen()), "styles": lines(session.styles()),
         });
         return format!("{object}\n");
@@ -366,10 +367,10 @@ fn screen(session: &Session, name: &str, settings: &ScriptOptions) -> String {
     } else {
         format!(" {name}")
     };
-    let header = format!(
-        "--- screen{name} {columns}x{rows} cursor {},{} ---\n",
-        cursor.x, cursor.y
-    );
+    let cursor = cursor.map_or("no cursor".to_owned(), |cursor| {
+        format!("cursor {},{}", cursor.x, cursor.y)
+    });
+    let header = format!("--- screen{name} {columns}x{rows} {cursor} ---\n");
     let styles = if settings.styles {
         format!("--- styles ---\n{}", session.styles())
     } else {

@@ -1,6 +1,7 @@
 //! The program without a terminal: keys in as text, the screen out as text, the same on every machine.
 //!
-//! Keys go through the same table, the same update and the same view as in a terminal.
+//! Keys go through the same table, the same update and the same view as in a terminal. The screen is drawn when it is
+//! looked at: a terminal, too, shows what many keys at once have led to only when all of them are handled.
 //!
 //! ```
 //! use taxel::tui::app::state::Options;
@@ -12,9 +13,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use std::cell::{Ref, RefCell};
+
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
-use ratatui::layout::Position;
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Notice, Options};
@@ -37,7 +41,32 @@ pub struct Session {
     /// Library, journal and workers.
     world: World,
     /// A screen in memory.
+    screen: RefCell<DrawnScreen>,
+}
+
+/// A screen in memory, drawn when it is looked at.
+#[derive(Debug)]
+struct DrawnScreen {
+    /// The screen.
     terminal: Terminal<TestBackend>,
+    /// Where its cursor is; None where it is hidden.
+    cursor: Option<Position>,
+    /// Whether the state has changed since it was drawn.
+    is_stale: bool,
+}
+
+impl DrawnScreen {
+    /// Its cells.
+    fn buffer(&self) -> &Buffer {
+        self.terminal.backend().buffer()
+    }
+
+    /// Draws the state onto the screen unless it shows it already.
+    fn draw(&mut self, app: &App) {
+        if std::mem::take(&mut self.is_stale) {
+            let Ok(_) = self.terminal.draw(|frame| self.cursor = view(app, frame));
+        }
+    }
 }
 
 impl Session {
@@ -50,10 +79,15 @@ impl Session {
     pub fn of(app: App, world: World, width: u16, height: u16) -> Self {
         // A buffer in memory cannot fail: its error type has no values.
         let Ok(terminal) = Terminal::new(TestBackend::new(width, height));
+        let screen = DrawnScreen {
+            terminal,
+            cursor: None,
+            is_stale: true,
+        };
         let mut session = Self {
             app,
             world,
-            terminal,
+            screen: RefCell::new(screen),
         };
         session.world.remind(&mut session.app);
         let greeting = session.world.greeting();
@@ -77,16 +111,16 @@ impl Session {
         Ok(())
     }
 
-    /// Presses a key and draws the screen.
+    /// Presses a key.
     pub fn press(&mut self, key: Key) {
         self.send(self.app.meaning(key));
     }
 
-    /// Sends a message and draws the screen.
+    /// Sends a message.
     pub fn send(&mut self, message: Message) {
         // What is left to do is for a real terminal.
         let _ = self.world.handle(&mut self.app, message);
-        self.draw();
+        self.screen.get_mut().is_stale = true;
     }
 
     /// Watches a source of frames; none is read yet.
@@ -106,7 +140,7 @@ impl Session {
         })
     }
 
-    /// Reads the next frames of the source that is watched, at most `count`, and draws each. Returns how many there were.
+    /// Reads the next frames of the source that is watched, at most `count`. Returns how many there were.
     pub fn frames(&mut self, count: usize) -> usize {
         let mut frames = 0;
         for message in self.world.next_frames(count) {
@@ -130,13 +164,17 @@ impl Session {
 
     /// Gives the screen another size.
     pub fn resize(&mut self, width: u16, height: u16) {
-        self.terminal.backend_mut().resize(width, height);
+        let terminal = &mut self.screen.get_mut().terminal;
+        terminal.backend_mut().resize(width, height);
+        // Also where the size is soon the old one again: what was drawn is gone.
+        let Ok(()) = terminal.resize(Rect::new(0, 0, width, height));
         self.send(Message::Resized(width, height));
     }
 
-    /// Draws the state onto the screen.
-    fn draw(&mut self) {
-        let Ok(_) = self.terminal.draw(|frame| view(&self.app, frame));
+    /// The screen as it is now.
+    fn drawn(&self) -> Ref<'_, DrawnScreen> {
+        self.screen.borrow_mut().draw(&self.app);
+        self.screen.borrow()
     }
 
     /// The state of the program.
@@ -146,40 +184,41 @@ impl Session {
 
     /// Columns and rows of the screen.
     pub fn size(&self) -> (u16, u16) {
-        let area = self.terminal.backend().buffer().area;
+        let area = self.screen.borrow().buffer().area;
         (area.width, area.height)
     }
 
-    /// Where the terminal's cursor is.
-    pub fn cursor(&self) -> Position {
-        self.terminal.backend().cursor_position()
+    /// Where the terminal's cursor is; None where it is hidden.
+    pub fn cursor(&self) -> Option<Position> {
+        self.drawn().cursor
     }
 
     /// The screen, a line a row, blanks at the end cut off.
     pub fn screen(&self) -> String {
-        self.rows(|cell| cell.symbol().to_owned())
+        self.rows(|cell, row| row.push_str(cell.symbol()))
     }
 
     /// The styles of the screen, a letter a character: `R` reversed, `B` bold, `D` dim, `.` plain.
     pub fn styles(&self) -> String {
-        self.rows(|cell| letter(&cell.style()).to_string())
+        self.rows(|cell, row| row.push(letter(&cell.style())))
     }
 
     /// The screen as SVG, with a title. Its colours are those of a theme that has all of them, as it is where
     /// [`crate::tui::widget::theme::ColorDepth::True`].
     pub fn svg(&self, title: &str) -> String {
-        drawing::svg(self.terminal.backend().buffer(), *self.app.theme(), title)
+        drawing::svg(self.drawn().buffer(), *self.app.theme(), title)
     }
 
-    /// The rows of the screen, each cell shown by a function.
-    fn rows(&self, show: impl Fn(&ratatui::buffer::Cell) -> String) -> String {
-        let buffer = self.terminal.backend().buffer();
+    /// The rows of the screen; a function adds a cell to its row.
+    fn rows(&self, add: impl Fn(&Cell, &mut String)) -> String {
+        let drawn = self.drawn();
+        let buffer = drawn.buffer();
         let width = usize::from(buffer.area.width).max(1);
         let rows = buffer.content.chunks(width).map(|row| {
             let mut text = String::new();
             let mut cells = row.iter();
             while let Some(cell) = cells.next() {
-                text += &show(cell);
+                add(cell, &mut text);
                 // What stands behind a wide character is covered by it.
                 for _ in 1..write::width(cell.symbol()) {
                     cells.next();

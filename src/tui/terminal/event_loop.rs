@@ -372,7 +372,9 @@ impl<'a> EventLoop<'a> {
 
     /// Writes what has changed on the screen, in one piece.
     fn draw(&mut self) -> io::Result<()> {
-        let Ok(_) = self.screen.draw(|frame| view(&self.app, frame));
+        let Ok(_) = self.screen.draw(|frame| {
+            view(&self.app, frame);
+        });
         let frame = self.screen.backend_mut().take_frame();
         self.send(&frame)
     }

@@ -23,8 +23,8 @@ pub(crate) fn of_session(session: &Session) -> String {
         let cells: Vec<(char, char)> = row.zip(styles.chars()).collect();
         write_row(&mut text, &cells);
     }
-    let cursor = session.cursor();
-    write!(text, "cursor {},{}", cursor.x, cursor.y).expect("a string");
+    let cursor = session.cursor().map(|cursor| (cursor.x, cursor.y));
+    write!(text, "cursor {cursor:?}").expect("a string");
     text
 }
 
@@ -40,7 +40,8 @@ pub(crate) fn of_emulator(screen: &vt100::Screen) -> String {
         write_row(&mut text, &cells);
     }
     let (row, column) = screen.cursor_position();
-    write!(text, "cursor {column},{row}").expect("a string");
+    let cursor = (!screen.hide_cursor()).then_some((column, row));
+    write!(text, "cursor {cursor:?}").expect("a string");
     text
 }
 
