@@ -18,7 +18,7 @@ use taxel::tui::app::worker_event::WorkerEvent;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
-use crate::session::{press, started, world};
+use crate::session::{press, started, untrained, world};
 
 /// The longest time that work may take.
 const DEADLINE: Duration = Duration::from_secs(120);
@@ -142,7 +142,7 @@ struct Beside {
 impl Beside {
     fn new(keys: &str) -> Self {
         let (post, told) = channel();
-        let world = world().with_workers(Arc::new(move |told| {
+        let world = untrained().with_workers(Arc::new(move |told| {
             // The test may be over.
             let _ = post.send(told);
         }));

@@ -1,12 +1,33 @@
 //! The program on a screen in memory, with a library of its own.
 
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use taxel::storage::ModelCache;
 use taxel::tui::app::state::Options;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
-/// An empty library in a temporary folder, which is deleted with the session.
+/// An empty library in a temporary folder, which is deleted with the session. A set that any of these tests has trained is
+/// not trained again.
 pub(crate) fn world() -> World {
+    untrained().with_model_cache(Some(models()))
+}
+
+/// The same where every set has to be trained.
+pub(crate) fn untrained() -> World {
     World::scratch().expect("a temporary folder can be made")
+}
+
+/// The models of these tests. The first one to ask throws away those of an earlier build.
+fn models() -> ModelCache {
+    static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("screen-models");
+        // There is none in a new checkout.
+        let _ = std::fs::remove_dir_all(&folder);
+        folder
+    });
+    ModelCache::in_folder(&*FOLDER)
 }
 
 /// 16 × 16 taxels on 80 × 24, after these keys.
