@@ -18,7 +18,7 @@ use taxel::tui::app::worker_event::WorkerEvent;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
-use crate::session::{press, started, untrained, world};
+use crate::session::{hides, press, started, untrained, world};
 
 /// The longest time that work may take.
 const DEADLINE: Duration = Duration::from_secs(120);
@@ -158,6 +158,24 @@ impl Beside {
             self.session.send(Message::Worker(told));
         }
     }
+}
+
+#[test]
+fn an_impatient_world_stops_what_has_more_poses_than_it_waits_for() {
+    let of_eleven = "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0<Enter>";
+    let stopped = "stopped before anything was complete";
+    let looks = |poses| started(untrained().impatient(poses), of_eleven);
+    hides(&looks(11), &[stopped]);
+    shows(&looks(10), &[stopped]);
+    shows(
+        &started(untrained().impatient(10), "r"),
+        &["training was stopped"],
+    );
+    let sizes = ":separate --scale 1 --positions 10 --angle 0<Enter>";
+    let asked = started(world(), "r").app().clone();
+    let mut session = Session::of(asked, untrained().impatient(10), 80, 24);
+    press(&mut session, sizes);
+    shows(&session, &["stopped; what was found stays"]);
 }
 
 #[test]

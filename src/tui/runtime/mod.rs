@@ -233,6 +233,13 @@ impl World {
         self
     }
 
+    /// Stops each sweep and each training at once that has more poses, as a user would who does not wait for it.
+    #[must_use]
+    pub fn impatient(mut self, poses: u64) -> Self {
+        self.workers.stop_after(poses);
+        self
+    }
+
     /// Keeps models that can be trained again in a cache.
     #[must_use]
     pub fn with_model_cache(mut self, cache: Option<ModelCache>) -> Self {

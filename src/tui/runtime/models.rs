@@ -24,7 +24,7 @@ use crate::tui::recognise::message::{Look, Prepared, RecognitionEvent};
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel, unknown_set};
 use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::progress::{
-    ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
+    PoseLimit, ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
 };
 use crate::tui::runtime::slow_work::SlowWork;
 
@@ -57,12 +57,12 @@ impl ModelStore {
         self.folder.iter().flat_map(names).collect()
     }
 
-    /// Reads or trains the model of a set. `begun` is called with the number of poses before a training, `progress`
-    /// during it, as by a sweep.
+    /// Reads or trains the model of a set. `begins` is called with the number of poses before a training, which it may
+    /// refuse; `progress` during it, as by a sweep.
     pub(super) fn model(
         &self,
         choice: &ModelChoice,
-        begun: &dyn Fn(u64),
+        begins: &dyn Fn(u64) -> bool,
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Result<Model, String> {
         let training = match (choice.training(), choice) {
@@ -82,7 +82,9 @@ impl ModelStore {
         {
             return Ok(model);
         }
-        begun(training.poses());
+        if !begins(training.poses()) {
+            return Err("training was stopped".to_owned());
+        }
         let memory = MemoryGuard::new(
             None,
             "take fewer shapes or coarser steps, or train it in shards on the command line (taxel model train --shard)",
@@ -135,6 +137,8 @@ impl ModelReading {
 pub(super) struct ModelWorker {
     /// Where models are.
     pub(super) store: ModelStore,
+    /// When a training that is done at once is stopped.
+    pub(super) limit: PoseLimit,
     /// The number of the work.
     number: u64,
     /// What it reads.
@@ -160,21 +164,24 @@ impl ModelWorker {
         let (store, stop) = (self.store.clone(), Arc::clone(&self.stop));
         let reading = self.reading.clone();
         let Some(post) = post else {
-            let event = prepare(&store, number, choice, &reading, (&|_| (), &|_| true));
+            let begins = |poses| self.limit.allows(poses);
+            let calls: Calls<'_> = (&begins, &|_| true);
+            let event = prepare(&store, number, choice, &reading, calls);
             return Some(WorkerEvent::Recognition(event));
         };
         reading.begin(&format!("Reading {choice}"));
         let thread = on_a_thread(number, &post, move |post| {
             let clock = ProgressReporter::new(number, post);
-            let begun = |poses| {
+            let begins = |poses| {
                 reading.end();
                 post(WorkerEvent::Recognition(RecognitionEvent::Begun(
                     number, poses,
                 )));
+                true
             };
             let progress = |poses| proceed(poses, &stop, Some(&clock));
             let event = guarded(number, || {
-                let calls: Calls<'_> = (&begun, &progress);
+                let calls: Calls<'_> = (&begins, &progress);
                 WorkerEvent::Recognition(prepare(&store, number, choice, &reading, calls))
             });
             reading.end();
@@ -222,8 +229,9 @@ impl ModelWorker {
     }
 }
 
-/// What is called with the number of poses before a training, and with those that are done during it, as by a sweep.
-type Calls<'a> = (&'a dyn Fn(u64), &'a (dyn Fn(u64) -> bool + Sync));
+/// What is called with the number of poses before a training, and returns whether to begin it; and with those that are
+/// done during it, as by a sweep.
+type Calls<'a> = (&'a dyn Fn(u64) -> bool, &'a (dyn Fn(u64) -> bool + Sync));
 
 /// Reads a model from the cache or trains it, and evaluates it. The event also has the names of stored models, which
 /// may have changed.
@@ -232,9 +240,9 @@ fn prepare(
     number: u64,
     choice: ModelChoice,
     reading: &ModelReading,
-    (begun, progress): Calls<'_>,
+    (begins, progress): Calls<'_>,
 ) -> RecognitionEvent {
-    let model = store.model(&choice, begun, progress);
+    let model = store.model(&choice, begins, progress);
     reading.begin("Listing the models");
     let stored = store.names();
     reading.end();

@@ -19,7 +19,7 @@ use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::live::naming::{NamedImprint, NamingRequest};
 use crate::tui::runtime::models::ModelStore;
-use crate::tui::runtime::progress::{WorkerEventSink, caught};
+use crate::tui::runtime::progress::{PoseLimit, WorkerEventSink, caught};
 use crate::tui::runtime::threads;
 
 /// A model that is asked on the thread that waits for its answer.
@@ -40,6 +40,8 @@ pub(super) struct ShapeNamer {
     number: u64,
     /// What is named by, where there is no thread; the model is prepared when the first imprint comes.
     here: Option<OwnModel>,
+    /// When a training there is stopped.
+    pub(super) limit: PoseLimit,
     /// The way to the thread; dropped to end it. None without a thread.
     imprints: Option<Sender<Imprint>>,
     /// Set to break off a training, and to say nothing any more.
@@ -108,7 +110,10 @@ impl ShapeNamer {
             choice,
             noise,
         } = &own.naming;
-        let train = || own.store.model(choice, &|_| (), &|_| true);
+        let train = || {
+            own.store
+                .model(choice, &|poses| self.limit.allows(poses), &|_| true)
+        };
         let event = match own.model.get_or_init(train) {
             Ok(model) => {
                 let named = named(model, noise.as_ref(), imprint);
@@ -147,7 +152,7 @@ fn answer(
     say: &dyn Fn(LiveEvent),
 ) -> Result<(), String> {
     let progress = |_: u64| !stop.load(Ordering::Relaxed);
-    let model = store.model(&naming.choice, &|_| (), &progress)?;
+    let model = store.model(&naming.choice, &|_| true, &progress)?;
     while let Ok(imprint) = imprints.recv() {
         let named = named(&model, naming.noise.as_ref(), &imprint);
         say(LiveEvent::Named(naming.number, Box::new(named)));

@@ -88,6 +88,24 @@ pub(super) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     done.map_err(|_| "the work failed; this is a bug".to_owned())
 }
 
+/// How many poses a piece of work may have that is done at once; None for any number.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PoseLimit(pub(super) Option<u64>);
+
+impl PoseLimit {
+    /// Whether work with this number of poses is begun.
+    pub(super) fn allows(self, poses: u64) -> bool {
+        self.0.is_none_or(|most| poses <= most)
+    }
+
+    /// For work whose poses are not counted beforehand: is called with the number of poses done since the last call, and
+    /// returns whether to go on.
+    pub(super) fn count(self) -> impl Fn(u64) -> bool + Sync {
+        let done = AtomicU64::new(0);
+        move |poses| self.allows(done.fetch_add(poses, Ordering::Relaxed) + poses)
+    }
+}
+
 /// Counts poses that are done, and returns whether to go on.
 pub(super) fn proceed(poses: u64, stop: &AtomicBool, clock: Option<&ProgressReporter<'_>>) -> bool {
     if let Some(clock) = clock {

@@ -12,7 +12,7 @@ use crate::tui::recognise::message::RecognitionEvent;
 use crate::tui::recognise::separate::found::{SizeFound, SizesFound};
 use crate::tui::recognise::separate::request::SeparationRequest;
 use crate::tui::runtime::progress::{
-    ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
+    PoseLimit, ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
 };
 
 /// The work in progress.
@@ -20,6 +20,8 @@ use crate::tui::runtime::progress::{
 pub(super) struct SizeWorker {
     /// Set to stop it.
     stop: Arc<AtomicBool>,
+    /// When work that is done at once is stopped.
+    pub(super) limit: PoseLimit,
 }
 
 impl SizeWorker {
@@ -36,7 +38,8 @@ impl SizeWorker {
         self.stop = Arc::default();
         let Some(post) = post else {
             let mut sizes = Vec::new();
-            let end = scan(&request, known, &mut |size| sizes.push(size), &|_| true);
+            let progress = self.limit.count();
+            let end = scan(&request, known, &mut |size| sizes.push(size), &progress);
             return Some(event(number, sizes, Some(end)));
         };
         let stop = Arc::clone(&self.stop);

@@ -27,7 +27,7 @@ use crate::tui::runtime::frames::FrameWatcher;
 use crate::tui::runtime::models::{self, ModelStore, ModelWorker};
 use crate::tui::runtime::naming::ShapeNamer;
 use crate::tui::runtime::progress::{
-    ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
+    PoseLimit, ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
 };
 use crate::tui::runtime::sizes::SizeWorker;
 use crate::tui::runtime::threads;
@@ -63,6 +63,8 @@ pub(in crate::tui) struct Workers {
     namer: ShapeNamer,
     /// Where files may be written.
     pub(super) access: Arc<WriteAccess>,
+    /// When work that is done at once is stopped.
+    limit: PoseLimit,
 }
 
 impl std::fmt::Debug for Workers {
@@ -84,6 +86,14 @@ impl Workers {
     /// Has work done on threads of their own.
     pub(super) fn post_to(&mut self, post: WorkerEventSink) {
         self.post = Some(post);
+    }
+
+    /// Stops work that is done at once after this many poses.
+    pub(super) fn stop_after(&mut self, poses: u64) {
+        self.limit = PoseLimit(Some(poses));
+        self.models.limit = self.limit;
+        self.sizes.limit = self.limit;
+        self.namer.limit = self.limit;
     }
 
     /// Keeps trained models in a cache.
@@ -198,13 +208,16 @@ impl Workers {
     fn sweep(&mut self, number: u64, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
         let stop = self.begin();
         let Some(post) = self.post.clone() else {
-            return Some(sweep(number, &grid, &stop, None));
+            return Some(if self.limit.allows(grid.poses()) {
+                sweep(number, &grid, &|_| true)
+            } else {
+                WorkerEvent::Failed(number, "stopped before anything was complete".to_owned())
+            });
         };
         let thread = on_a_thread(number, &post, move |post| {
             let clock = ProgressReporter::new(number, post);
-            post(guarded(number, || {
-                sweep(number, &grid, &stop, Some(&clock))
-            }));
+            let progress = |poses| proceed(poses, &stop, Some(&clock));
+            post(guarded(number, || sweep(number, &grid, &progress)));
         });
         thread.err()
     }
@@ -275,12 +288,7 @@ fn measure(grid: &PoseGrid, stop: &AtomicBool) -> Option<Duration> {
 }
 
 /// Sweeps a grid and sends what was found, also after a stop.
-fn sweep(
-    number: u64,
-    grid: &PoseGrid,
-    stop: &AtomicBool,
-    clock: Option<&ProgressReporter<'_>>,
-) -> WorkerEvent {
+fn sweep(number: u64, grid: &PoseGrid, progress: &(dyn Fn(u64) -> bool + Sync)) -> WorkerEvent {
     let memory = MemoryGuard::new(
         None,
         "take coarser steps, or sweep it in shards on the command line (taxel sweep --shard)",
@@ -288,7 +296,7 @@ fn sweep(
     if let Err(message) = memory.check(grid) {
         return WorkerEvent::Failed(number, message);
     }
-    let progress = |poses: u64| proceed(poses, stop, clock) && memory.allows();
+    let progress = |poses: u64| progress(poses) && memory.allows();
     let result = Sweep::new(grid).progress(&progress).run();
     if memory.exceeded() {
         // What was found is given up: there is no memory to show it.

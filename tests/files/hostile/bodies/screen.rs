@@ -1,10 +1,13 @@
 //! The program on a screen in memory: its command line, its scripts, and all that a user can do.
 //!
 //! The world is a library in a scratch folder, which is emptied before each input. No journal is kept, whose thread
-//! would make a run depend on the clock.
+//! would make a run depend on the clock. Sweeps and trainings are stopped early, as by a user who does not wait for them:
+//! what they compute is tested elsewhere.
 
-use std::cell::RefCell;
+use std::cell::LazyCell;
+use std::io;
 use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 
 use taxel::storage::Library;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
@@ -12,6 +15,7 @@ use taxel::tui::app::state::{App, Options};
 use taxel::tui::app::update::update;
 use taxel::tui::keys::key::{Arrow, Key};
 use taxel::tui::keys::keymap::Keymap;
+use taxel::tui::live::message::LiveMessage;
 use taxel::tui::prompt::commands::complete;
 use taxel::tui::prompt::read::read as read_command;
 use taxel::tui::runtime::World;
@@ -23,21 +27,52 @@ use tempfile::TempDir;
 
 use super::refused;
 
-/// An empty library in this thread's scratch folder.
-fn world() -> World {
+/// This thread's scratch folder. The files are in it.
+fn folder() -> PathBuf {
     thread_local! {
-        static SCRATCH: RefCell<Option<TempDir>> = const { RefCell::new(None) };
+        static SCRATCH: LazyCell<TempDir> = LazyCell::new(|| {
+            let scratch = tempfile::tempdir().expect("a folder for temporary files");
+            for (name, content) in FILES {
+                std::fs::write(scratch.path().join(name), content).expect("it is ours");
+            }
+            scratch
+        });
     }
-    SCRATCH.with_borrow_mut(|scratch| {
-        let scratch = scratch
-            .get_or_insert_with(|| tempfile::tempdir().expect("a folder for temporary files"));
-        let folder = scratch.path().join("library");
-        if folder.exists() {
-            std::fs::remove_dir_all(&folder).expect("it is ours");
-        }
-        World::quiet(Library::open(folder))
-    })
+    SCRATCH.with(|scratch| scratch.path().to_owned())
 }
+
+/// A recording that can be watched and a small model that can be asked.
+const FILES: [(&str, &[u8]); 2] = [
+    (
+        "touch.jsonl",
+        include_bytes!("../seeds/recording/frames_jsonl"),
+    ),
+    ("bar.npz", include_bytes!("../seeds/model/bar.npz")),
+];
+
+/// An empty library in the scratch folder, below which files are written. What the last input has left there is removed.
+fn world() -> World {
+    let folder = folder();
+    for entry in std::fs::read_dir(&folder).expect("it is ours") {
+        let entry = entry.expect("it is ours");
+        if FILES.iter().all(|(name, _)| entry.file_name() != *name) {
+            remove(&entry.path()).expect("it is ours");
+        }
+    }
+    World::quiet(Library::open(folder.join("library"))).confined_to(folder)
+}
+
+/// Removes a file or a folder.
+fn remove(path: &Path) -> io::Result<()> {
+    if path.is_dir() {
+        std::fs::remove_dir_all(path)
+    } else {
+        std::fs::remove_file(path)
+    }
+}
+
+/// The most poses of a sweep or a training here.
+const MOST_POSES: u64 = 5_000;
 
 fn options() -> Options {
     Options::plain(false)
@@ -58,7 +93,8 @@ fn is_sound(app: &App) {
     let seen = app.reading();
     assert_eq!(seen.imprint.columns(), shown.sensor.columns());
     assert_eq!(seen.imprint.rows(), shown.sensor.rows());
-    assert!(app.chosen().is_none() || seen.region(app.chosen()).is_some());
+    // A form may show nothing for a while; the region that was chosen is there again without it.
+    assert!(seen.regions.is_empty() || seen.region(app.chosen()).is_some());
 }
 
 /// What must hold of every screen: as many rows as it has, each of what can be seen.
@@ -111,9 +147,12 @@ pub(crate) fn script(bytes: &[u8]) -> bool {
     read(text).map_or_else(|error| refused(&error.to_string()), |_| true)
 }
 
-/// The most cells that a script may draw here, so that no input takes long. A script that is longer is none that the
-/// program must refuse: it takes as long as it says.
-const MOST_DRAWN: u64 = 2_000_000;
+/// The most keys and drawn cells of a script here, a key counted as many cells, so that no input takes long. A script
+/// that is longer is none that the program must refuse: it takes as long as it says.
+const MOST_WORK: u64 = 200_000;
+
+/// About as many cells are drawn in the time that a key takes.
+const CELLS_OF_A_KEY: u64 = 100;
 
 /// A script that is run, to its end if it is read.
 pub(crate) fn play(bytes: &[u8]) -> bool {
@@ -128,7 +167,7 @@ pub(crate) fn play(bytes: &[u8]) -> bool {
     let outside = |(_, command): &(usize, ScriptCommand)| {
         matches!(command, ScriptCommand::Set(ScriptSetting::Library(_)))
     };
-    if drawn(&commands) > MOST_DRAWN || commands.iter().any(outside) {
+    if work(&commands) > MOST_WORK || commands.iter().any(outside) {
         return false;
     }
     let settings = ScriptOptions {
@@ -140,10 +179,16 @@ pub(crate) fn play(bytes: &[u8]) -> bool {
         json: text.len() % 2 == 0,
     };
     let mut printed = String::new();
-    let result = run(text, &[], &settings, world(), |text| {
-        printed.push_str(text);
-        ControlFlow::Continue(())
-    });
+    let result = run(
+        text,
+        &[],
+        &settings,
+        world().impatient(MOST_POSES),
+        |text| {
+            printed.push_str(text);
+            ControlFlow::Continue(())
+        },
+    );
     let ended = match result {
         Ok(()) => true,
         Err(ScriptFailure::Expectation { message, .. }) => refused(&message),
@@ -154,80 +199,117 @@ pub(crate) fn play(bytes: &[u8]) -> bool {
     ended
 }
 
-/// How many cells a script draws.
-fn drawn(commands: &[(usize, ScriptCommand)]) -> u64 {
+/// About how much a script does, in cells that are drawn.
+fn work(commands: &[(usize, ScriptCommand)]) -> u64 {
     let mut cells = 80 * 24;
     let mut all = 0;
     for (_, command) in commands {
-        let times = match command {
+        all += match command {
             ScriptCommand::Set(ScriptSetting::Size(columns, rows))
             | ScriptCommand::Resize(columns, rows) => {
                 cells = u64::from(*columns) * u64::from(*rows);
-                1
+                cells
             }
-            ScriptCommand::Keys(keys) => keys.len() as u64,
-            ScriptCommand::Type(text) => text.chars().count() as u64,
+            ScriptCommand::Keys(keys) => keys.len() as u64 * CELLS_OF_A_KEY,
+            ScriptCommand::Type(text) => text.chars().count() as u64 * CELLS_OF_A_KEY,
             ScriptCommand::Drag(places) => {
                 let way = |pair: &[(u16, u16)]| {
                     let [from, to] = [pair[0], pair[1]];
                     u64::from(from.0.abs_diff(to.0).max(from.1.abs_diff(to.1)))
                 };
-                2 + places.windows(2).map(way).sum::<u64>()
+                (2 + places.windows(2).map(way).sum::<u64>()) * CELLS_OF_A_KEY
             }
-            ScriptCommand::Scroll(_, turns) => turns.unsigned_abs().into(),
-            _ => 2,
+            ScriptCommand::Scroll(_, turns) => u64::from(turns.unsigned_abs()) * CELLS_OF_A_KEY,
+            _ => 2 * cells,
         };
-        all += times * cells;
     }
     all
 }
 
-/// Keys, pastes, the mouse and new sizes, as bytes say; the state and the screen must hold throughout. Any bytes are some
-/// input.
+/// How the program may have come so far, after a small model was asked once: from nothing; with a figure, the results of a
+/// small sweep and its ranges remembered; on a small sensor; with a picture that is held.
+const STARTS: [&str; 4] = [
+    "",
+    "f<Enter>:explore --x0 5:5.5:0.25 --y0 5:5.5:0.5 --angle 0:90:45<Enter><Esc>",
+    "S<C-u>8<Tab><C-u>8<Enter>f<Enter>",
+    ":picture washer<Enter><Enter>g",
+];
+
+/// A program that has come so far. It holds what it has found, so that no input has to find it again.
+fn start(number: u8) -> App {
+    thread_local! {
+        static APPS: [App; 4] = STARTS.map(|keys| {
+            let model = folder().join(FILES[1].0).display().to_string();
+            session_of(&format!(":recognise {model}<Enter><Esc>{keys}")).app().clone()
+        });
+    }
+    APPS.with(|apps| apps[usize::from(number) % apps.len()].clone())
+}
+
+/// Keys, pastes, the mouse, new sizes and frames of a source, as bytes say; the state must hold throughout, and the screen
+/// whenever it is drawn. Any bytes are some input.
 pub(crate) fn session(bytes: &[u8]) -> bool {
     let mut bytes = Bytes(bytes);
-    let (columns, rows) = bytes.size();
-    let mut session = Session::new(&options(), world(), columns, rows);
-    for _ in 0..300 {
+    let first = bytes.next().unwrap_or_default();
+    let (columns, rows) = bytes.size(first / 4);
+    let app = start(first);
+    let world = world().impatient(MOST_POSES);
+    let mut session = Session::of(app, world, columns, rows);
+    for number in 0..300 {
         let Some(byte) = bytes.next() else {
             break;
         };
-        match byte {
-            b' '..=b'~' => session.press(Key::Char(byte.into())),
-            0..0x20 => session.press(NAMED[usize::from(byte) % NAMED.len()]),
-            0x7f..0x99 => session.press(Key::Ctrl((b'a' + byte - 0x7f).into())),
-            0x99..0xa0 => session.press(Key::Char(FOREIGN[usize::from(byte - 0x99)])),
-            0xa0..0xb0 => {
-                let (columns, rows) = bytes.size();
-                session.resize(columns, rows);
-            }
-            0xb0..0xe0 => {
-                let kind = MOUSE[usize::from(byte) % MOUSE.len()];
-                let (column, row) = (bytes.number(), bytes.number());
-                session.send(Message::Mouse(Mouse { kind, column, row }));
-            }
-            0xe0..0xf0 => {
-                let length = bytes.number();
-                let text = bytes.take(length.into());
-                session.send(Message::Paste(String::from_utf8_lossy(text).into_owned()));
-            }
-            0xf0..0xf8 => session.send(Message::Redraw),
-            0xf8..0xfc => session.send(Message::Suspend),
-            _ => session.send(Message::Terminate),
-        }
+        act(&mut session, byte, &mut bytes);
         is_sound(session.app());
         if session.app().ended() {
             break;
+        }
+        // As in a terminal: what comes at once is drawn at once.
+        if number % 16 == 15 || matches!(byte, 0xf0..0xf2) {
+            shows_text(&session);
         }
     }
     shows_text(&session);
     // Whatever is open, there is a way out of it.
     for _ in 0..4 {
         session.press(Key::Esc);
+        is_sound(session.app());
     }
-    is_sound(session.app());
     shows_text(&session);
     true
+}
+
+/// Does what a byte says, perhaps with more of them.
+fn act(session: &mut Session, byte: u8, bytes: &mut Bytes<'_>) {
+    match byte {
+        b' '..=b'~' => session.press(Key::Char(byte.into())),
+        0..0x20 => session.press(NAMED[usize::from(byte) % NAMED.len()]),
+        0x7f..0x99 => session.press(Key::Ctrl((b'a' + byte - 0x7f).into())),
+        0x99..0xa0 => session.press(Key::Char(FOREIGN[usize::from(byte - 0x99)])),
+        0xa0..0xb0 => {
+            let number = bytes.next().unwrap_or_default();
+            let (columns, rows) = bytes.size(number / 4);
+            session.resize(columns, rows);
+        }
+        0xb0..0xe0 => {
+            let kind = MOUSE[usize::from(byte) % MOUSE.len()];
+            let (column, row) = (bytes.number(), bytes.number());
+            session.send(Message::Mouse(Mouse { kind, column, row }));
+        }
+        0xe0..0xf0 => {
+            let length = bytes.number();
+            let text = bytes.take(length.into());
+            session.send(Message::Paste(String::from_utf8_lossy(text).into_owned()));
+        }
+        0xf0..0xf2 => session.send(Message::Redraw),
+        0xf2..0xf4 => {
+            let recording = folder().join(FILES[0].0).display().to_string();
+            session.send(Message::Live(LiveMessage::Source(recording)));
+        }
+        0xf4..0xf8 => session.frames((byte - 0xf3).into()),
+        0xf8..0xfc => session.send(Message::Suspend),
+        _ => session.send(Message::Terminate),
+    }
 }
 
 const NAMED: [Key; 16] = [
@@ -260,6 +342,22 @@ const MOUSE: [MouseKind; 5] = [
     MouseKind::ScrollDown,
 ];
 
+/// Sizes of terminals: usual ones, narrow and low ones, and those at which what is shown changes.
+const SIZES: [(u16, u16); 12] = [
+    (80, 24),
+    (100, 30),
+    (80, 25),
+    (132, 43),
+    (60, 20),
+    (40, 24),
+    (80, 12),
+    (40, 12),
+    (50, 16),
+    (120, 20),
+    (30, 40),
+    (24, 10),
+];
+
 /// Bytes that are used up one by one; after the last one there are zeros.
 struct Bytes<'a>(&'a [u8]);
 
@@ -274,12 +372,15 @@ impl<'a> Bytes<'a> {
         self.next().unwrap_or(0).into()
     }
 
-    /// Columns and rows, 1 to 256 each; a first byte of 0 stands for 80 × 24.
-    fn size(&mut self) -> (u16, u16) {
-        match self.number() {
-            0 => (80, 24),
-            columns => (columns, self.number() + 1),
-        }
+    /// Columns and rows by a number up to 63: mostly those of terminals, now and then any from 1 to 64, 128 or 256.
+    fn size(&mut self, number: u8) -> (u16, u16) {
+        let most = match number {
+            0..48 => return SIZES[usize::from(number) % SIZES.len()],
+            48..60 => 64,
+            60..63 => 128,
+            _ => 256,
+        };
+        (self.number() % most + 1, self.number() % most + 1)
     }
 
     fn take(&mut self, count: usize) -> &'a [u8] {
