@@ -158,45 +158,55 @@ pub(super) fn started(arguments: &[&str]) -> Child {
 fn after_a_kill_the_recording_opens_and_every_frame_is_right() {
     let folder = tempfile::tempdir().expect("a folder");
     let has_numpy = python_has("numpy");
-    for round in 0..12_u32 {
-        let file = folder.path().join(format!("touch-{round}.npy"));
-        let path = file.to_str().expect("UTF-8");
-        let mut child = started(&["watch", "-", "--format", "lines", "--write", path]);
-        let mut input = child.stdin.take().expect("piped");
-        let mut output = BufReader::new(child.stdout.take().expect("piped"));
-        // Longer than the records wait, in some rounds.
-        let mut answer = String::new();
-        for piece in 0..=round / 3 {
-            let frames = stream(piece * 100..(piece + 1) * 100);
-            input.write_all(frames.as_bytes()).expect("it reads");
-            for _ in 0..99 {
-                answer.clear();
-                output.read_line(&mut answer).expect("it answers");
-            }
-            std::thread::sleep(Duration::from_millis(u64::from(round) * 40));
+    // Together: most of their time they wait.
+    std::thread::scope(|scope| {
+        for round in 0..12 {
+            let file = folder.path().join(format!("touch-{round}.npy"));
+            scope.spawn(move || {
+                is_right_after_a_kill(round, &file);
+                if has_numpy {
+                    numpy(&file);
+                }
+            });
         }
-        child.kill().expect("it is killed");
-        child.wait().expect("it ends");
-        let run = taxel(&format!("frames {path} --all --at-least 1 --json"), "");
-        for (number, frame) in lines(&run.stdout).iter().enumerate() {
-            assert_eq!(frame["sum"], 9 + number, "{frame}");
+    });
+}
+
+/// Kills a recording after more frames and a longer time in each round.
+fn is_right_after_a_kill(round: u32, file: &Path) {
+    let path = file.to_str().expect("UTF-8");
+    let mut child = started(&["watch", "-", "--format", "lines", "--write", path]);
+    let mut input = child.stdin.take().expect("piped");
+    let mut output = BufReader::new(child.stdout.take().expect("piped"));
+    // Longer than the records wait, in some rounds.
+    let mut answer = String::new();
+    for piece in 0..=round / 3 {
+        let frames = stream(piece * 100..(piece + 1) * 100);
+        input.write_all(frames.as_bytes()).expect("it reads");
+        for _ in 0..99 {
+            answer.clear();
+            output.read_line(&mut answer).expect("it answers");
         }
-        if lines(&run.stdout).is_empty() {
-            assert!(
-                run.stderr.is_empty() || run.stderr.contains("no frames"),
-                "{}",
-                run.stderr
-            );
-        }
-        // A second and more after the first hundred they are in the file.
-        assert!(
-            round < 9 || lines(&run.stdout).len() >= 100,
-            "round {round}"
-        );
-        if has_numpy {
-            numpy(&file);
-        }
+        std::thread::sleep(Duration::from_millis(u64::from(round) * 40));
     }
+    child.kill().expect("it is killed");
+    child.wait().expect("it ends");
+    let run = taxel(&format!("frames {path} --all --at-least 1 --json"), "");
+    for (number, frame) in lines(&run.stdout).iter().enumerate() {
+        assert_eq!(frame["sum"], 9 + number, "{frame}");
+    }
+    if lines(&run.stdout).is_empty() {
+        assert!(
+            run.stderr.is_empty() || run.stderr.contains("no frames"),
+            "{}",
+            run.stderr
+        );
+    }
+    // A second and more after the first hundred they are in the file.
+    assert!(
+        round < 9 || lines(&run.stdout).len() >= 100,
+        "round {round}"
+    );
 }
 
 #[test]

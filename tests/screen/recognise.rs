@@ -18,7 +18,7 @@ use taxel::tui::app::worker_event::WorkerEvent;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
-use crate::session::{hides, press, started, untrained, world};
+use crate::session::{hides, models, press, started, untrained, world};
 
 /// The longest time that work may take.
 const DEADLINE: Duration = Duration::from_secs(120);
@@ -57,7 +57,8 @@ fn shows(session: &Session, texts: &[&str]) {
 fn a_stored_model_is_completed_answers_and_is_remembered() {
     let folder = tempfile::tempdir().expect("a folder");
     let library = with_model(folder.path());
-    let begin = |keys: &str| started(World::new(library.clone()), keys);
+    let world = || World::new(library.clone()).with_model_cache(Some(models()));
+    let begin = |keys: &str| started(world(), keys);
     let mut session = begin(":recognise my<Tab><Enter>");
     shows(&session, &["Recognise: model my parts"]);
     press(

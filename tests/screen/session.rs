@@ -20,7 +20,7 @@ pub(crate) fn untrained() -> World {
 }
 
 /// The models of these tests. The first one to ask throws away those of an earlier build.
-fn models() -> ModelCache {
+pub(crate) fn models() -> ModelCache {
     static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("screen-models");
         // There is none in a new checkout.
