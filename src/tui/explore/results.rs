@@ -15,6 +15,7 @@ use crate::sweep::SweepResult;
 use crate::touch::Plane;
 use crate::tui::explore::angles::curve::AngleCurve;
 use crate::tui::explore::column::ListColumn;
+use crate::tui::explore::map::sight::MapSight;
 use crate::tui::explore::message::{ExplorePage, Findings, Zoom, name_of};
 use crate::tui::widget::number::around;
 
@@ -36,6 +37,8 @@ pub struct Results {
     across: (usize, Vec<Option<f64>>),
     /// The imprints of each angle, once the page of angles was looked at.
     angle_curve: Option<Arc<AngleCurve>>,
+    /// The imprints that the map shows.
+    map_sight: MapSight,
     /// How often the map was zoomed in, from its whole range on.
     closer: u8,
     /// What rows are sorted by, and whether the largest comes first.
@@ -69,6 +72,7 @@ impl Results {
             values: findings.sweep.atlas.values(0),
             across: (ACROSS, findings.sweep.atlas.values(ACROSS)),
             angle_curve: None,
+            map_sight: MapSight::default(),
             closer: 0,
             findings,
             sort: (ListColumn::Poses, true),
@@ -168,6 +172,11 @@ impl Results {
         if self.page == ExplorePage::Angles && self.angle_curve().is_none() {
             self.angle_curve = Some(Arc::new(AngleCurve::of(self.sweep(), self.place)));
         }
+    }
+
+    /// The imprints that the map showed last.
+    pub(super) fn map_sight(&self) -> &MapSight {
+        &self.map_sight
     }
 
     /// How often the map was zoomed in.

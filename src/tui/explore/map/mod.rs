@@ -3,12 +3,15 @@
 //! ```text
 //! letters   a letter, colour or shade for each imprint, different ones for neighbours
 //! layout    cells, rulers, the pose at the cursor
+//! sight     the imprints in sight, kept while the same poses are
 //! view      draws them
 //! ```
 
 pub mod letters;
 
 pub mod layout;
+
+pub mod sight;
 
 pub mod view;
 

@@ -13,6 +13,8 @@
 //! A map that does not fit in letters is a picture first, with a colour for each imprint in each half of a character;
 //! without colours with a shade in each character. Six colours and five shades seldom have to repeat beside each other.
 
+use std::sync::Arc;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
@@ -26,6 +28,7 @@ use crate::touch::Plane;
 use crate::tui::explore::drawing::PageDrawing;
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::map::letters::{LETTERS, letter, signs};
+use crate::tui::explore::map::sight::PosesInSight;
 use crate::tui::explore::results::Results;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
@@ -117,8 +120,15 @@ fn heading(results: &Results) -> String {
 }
 
 /// The imprints of the poses in sight, row by row.
-fn ids(results: &Results, pane: &MapPane) -> Vec<Option<u32>> {
-    sampled(results, pane.first, pane.count, pane.stride)
+fn ids(results: &Results, pane: &MapPane) -> Arc<[Option<u32>]> {
+    let (x, y) = pane.first;
+    let poses = PosesInSight {
+        first: results.place().with(Axis::X0, x).with(Axis::Y0, y),
+        count: pane.count,
+        stride: pane.stride,
+    };
+    let find = || sampled(results, pane.first, pane.count, pane.stride);
+    results.map_sight().of(poses, find)
 }
 
 /// The imprints of a number of poses across and down, from a first one on, one in `stride` along both axes.
