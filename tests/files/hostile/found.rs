@@ -20,6 +20,19 @@ fn the_cursor_is_on_the_sensor_that_a_form_shows() {
     assert!(accepted.screen().contains("column 7, row 7"));
 }
 
+/// A form shows a figure that covers no taxel by half: the region that was chosen before is there again without it.
+#[test]
+fn a_chosen_region_outlasts_a_form_that_shows_none() {
+    let form = "<Space><Right><Right><Space><Tab>f<Tab><C-u>0.1<Tab><C-u>0.1";
+    let session = session_of(form);
+    let app = session.app();
+    assert!(app.reading().regions.is_empty() && app.chosen().is_some());
+    let session = session_of(&format!("{form}<Esc>"));
+    let app = session.app();
+    assert!(app.chosen().is_some() && app.reading().region(app.chosen()).is_some());
+    body("session")(b"\0 \x01\x01 \x0cf\x0c\x930.1\x0c\x930.1");
+}
+
 /// Two decimals of 16 digits can be one `f64`: they were taken, and written as another range.
 #[test]
 fn ranges_come_back_as_they_were() {
