@@ -194,13 +194,22 @@ fn frame(criterion: &mut Criterion) {
     let options = Options::plain(false);
     let mut group = criterion.benchmark_group("frame");
     // Two keys, two frames, and all is as before; undone, so that no history grows.
-    for (name, keys) in [("move", "<Right><Left>"), ("toggle", "<Space>u")] {
+    for (name, keys) in [
+        ("move", ["<Right>", "<Left>"]),
+        ("toggle", ["<Space>", "u"]),
+    ] {
         let world = World::scratch().expect("a folder for the time being");
         let mut session = Session::new(&options, world, 80, 24);
         session.keys("f<Enter>").expect("keys that exist");
         group.throughput(Throughput::Elements(2));
         group.bench_function(name, |bencher| {
-            bencher.iter(|| session.keys(black_box(keys)).expect("keys that exist"));
+            bencher.iter(|| {
+                for key in keys {
+                    session.keys(black_box(key)).expect("keys that exist");
+                    // The screen is drawn where it is asked about.
+                    black_box(session.cursor());
+                }
+            });
         });
     }
     group.finish();

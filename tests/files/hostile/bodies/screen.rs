@@ -306,7 +306,9 @@ fn act(session: &mut Session, byte: u8, bytes: &mut Bytes<'_>) {
             let recording = folder().join(FILES[0].0).display().to_string();
             session.send(Message::Live(LiveMessage::Source(recording)));
         }
-        0xf4..0xf8 => session.frames((byte - 0xf3).into()),
+        0xf4..0xf8 => {
+            let _ = session.frames((byte - 0xf3).into());
+        }
         0xf8..0xfc => session.send(Message::Suspend),
         _ => session.send(Message::Terminate),
     }
