@@ -17,21 +17,16 @@ pub(crate) struct FirstErrorWriter<'a, W> {
 }
 
 impl<'a, W: Write + Seek> FirstErrorWriter<'a, W> {
-    pub(crate) fn new(output: W, stopped: &'a AtomicBool) -> Self {
+    /// A writer of a file of at most `most` bytes; a longer one is an error.
+    pub(crate) fn new(output: W, most: u64, stopped: &'a AtomicBool) -> Self {
         Self {
             output,
             stopped,
             error: None,
             place: 0,
             end: 0,
-            most: u64::MAX,
+            most,
         }
-    }
-
-    /// The same for a file of at most this many bytes; a longer one is an error.
-    pub(crate) fn up_to(mut self, most: u64) -> Self {
-        self.most = most;
-        self
     }
 
     fn attempt<T>(&mut self, act: impl FnOnce(&mut W) -> io::Result<T>) -> Option<T> {

@@ -73,7 +73,7 @@ fn save_up_to(
     stopped: &AtomicBool,
 ) -> Result<(), ArchiveFileError> {
     let mut file = UnfinishedFile::new(path, existing)?;
-    let mut output = FirstErrorWriter::new(&mut file.output, stopped).up_to(most);
+    let mut output = FirstErrorWriter::new(&mut file.output, most, stopped);
     let written = write_model(model, &mut output);
     let written = match output.error {
         Some(error) => Err(error.into()),

@@ -130,7 +130,7 @@ impl AtlasFile {
         stopped: &AtomicBool,
     ) -> Result<FinishedFile, ArchiveFileError> {
         let mut file = UnfinishedFile::new(&self.path, existing)?;
-        let mut output = FirstErrorWriter::new(&mut file.output, stopped);
+        let mut output = FirstErrorWriter::new(&mut file.output, u64::MAX, stopped);
         let written = match self.format {
             AtlasFormat::Csv => write_csv(result, &mut output).map_err(ArchiveError::from),
             AtlasFormat::JsonLines => write_jsonl(result, &mut output).map_err(ArchiveError::from),
