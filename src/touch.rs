@@ -7,7 +7,7 @@
 //! computed in `f64` first, with an error below 1e-11 ([`crate::geometry::cell_area`]). One that lies within 1e-10 of
 //! the threshold is computed again with 32 digits ([`Double`]), and is active unless it falls short by more than 1e-20
 //! ([`Real::TIE`]). Of ellipses at a threshold of one half hardly any coverage needs to be computed at all: where the
-//! cells' centres lie decides ([`CentreSampling`]).
+//! cells' centres lie decides.
 //!
 //! Whether two algebraic expressions of the input are *equal* cannot be decided by any number of digits: what falls
 //! short by less than 1e-20 is taken for a tie. For an upright rectangle whose numbers have at most nine decimals that
