@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 use std::fs::File;
-use std::io::{self, Read, Seek};
+use std::io;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,7 +14,7 @@ use crate::acquire::recorder::description_beside;
 use crate::acquire::stream::Consumer;
 use crate::formats::recording::{
     ChannelChoice, ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingFormat,
-    RecordingMetadata, RecordingNote, read_as, recognised_input,
+    RecordingInput, RecordingMetadata, RecordingNote, read_as, recognised_input,
 };
 use crate::formats::stream::StreamCounts;
 use crate::frame::Frame;
@@ -249,7 +249,7 @@ impl Player<'_, '_> {
     fn round<'r>(
         &self,
         format: RecordingFormat,
-        input: impl Read + Seek,
+        input: &mut dyn RecordingInput,
         round: Round<'r>,
     ) -> (Pace<'r>, Result<ControlFlow<()>, RecordingError>) {
         let reading = ReadOptions {

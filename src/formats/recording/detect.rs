@@ -107,14 +107,19 @@ pub fn read(
 ) -> Result<RecordingFormat, RecordingError> {
     input.seek(SeekFrom::Start(0))?;
     let format = recognised_input(&mut input)?.ok_or(RecordingError::Unknown)?;
-    read_as(format, input, options, sink)?;
+    read_as(format, &mut input, options, sink)?;
     Ok(format)
 }
 
-/// The same for a recording whose form is known.
+/// What recordings are read from. Bytes come in large pieces, so the readers need not be compiled for each kind of input.
+pub(crate) trait RecordingInput: Read + Seek {}
+
+impl<T: Read + Seek> RecordingInput for T {}
+
+/// The same for a recording whose format is known.
 pub(crate) fn read_as(
     format: RecordingFormat,
-    mut input: impl Read + Seek,
+    input: &mut dyn RecordingInput,
     options: ReadOptions,
     sink: &mut Sink<'_>,
 ) -> Result<(), RecordingError> {

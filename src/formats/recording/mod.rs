@@ -78,7 +78,7 @@ pub use answer::{FrameAnswer, RuleOrigin, SetRule};
 pub use channel_choice::ChannelChoice;
 pub use description::{FrameMark, RecordingMetadata};
 #[cfg(all(feature = "acquire", unix))]
-pub(crate) use detect::read_as;
+pub(crate) use detect::{RecordingInput, read_as};
 pub use detect::{read, recognised, recognised_input};
 pub use error::RecordingError;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};
