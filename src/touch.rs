@@ -92,6 +92,7 @@ impl Plane {
     /// Activates the taxels that are covered enough, most of them by where their centres lie.
     fn activate_by_centres(&mut self, solid: &impl Solid, rows: Range<i32>, imprint: &mut Imprint) {
         let columns = imprint.mask();
+        let words = imprint.words_mut();
         for row in rows {
             let (mut active, open) = self.ellipses.row(row);
             let (mut open, mut doubtful) = (open & columns, 0);
@@ -105,7 +106,7 @@ impl Plane {
             if doubtful != 0 {
                 active = self.decide(solid, from_first(row), active, doubtful);
             }
-            imprint.set_word(from_first(row), active);
+            words[from_first(row)] = active & columns;
         }
     }
 

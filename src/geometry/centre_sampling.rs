@@ -144,10 +144,10 @@ impl Curve {
         let (top, bottom) = (self.cuts.top.y, self.cuts.bottom.y);
         let farthest = max(max(left, right), max(top.abs(), bottom.abs()));
         let moment = 0.5 * max(left, right) * (bottom - top);
-        // The smaller radius over the square of the larger one.
+        // The least curvature is the smaller radius over the square of the larger one; here squared.
         let (square, span) = (self.radius_squared, self.cuts.span());
-        let flattest = square * square.sqrt() / (span * span);
-        farthest < FAR && moment < FAR && flattest > FLAT
+        let flat = FLAT * span * span;
+        farthest < FAR && moment < FAR && square * square * square > flat * flat
     }
 
     /// Adds itself to the rows from `first` on. Returns whether it is material in material, or a hole elsewhere.

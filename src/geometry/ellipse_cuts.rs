@@ -66,7 +66,12 @@ impl<T: Real> EllipseCuts<T> {
             shear: Point::new(skew.x * inverse.y, skew.y * inverse.x),
             extent,
             half_area: area * T::HALF,
-            tilt: T::angle(skew.y * inverse.y, extent.y * inverse.y),
+            // Of circles and upright ellipses there is none to be computed.
+            tilt: if mixed == T::ZERO {
+                T::ZERO
+            } else {
+                T::angle(skew.y * inverse.y, extent.y * inverse.y)
+            },
             left: Point::new(centre.x - reach.x, centre.y - skew.y),
             top: Point::new(centre.x - skew.x, centre.y - reach.y),
             right: Point::new(centre.x + reach.x, centre.y + skew.y),
