@@ -23,7 +23,7 @@ const MOMENT: Timespec = Timespec {
     tv_nsec: 100_000_000,
 };
 
-/// How long it takes until one asks again whether a connection is still wanted.
+/// How often to check whether a connection is still wanted.
 const ASKED: Duration = Duration::from_millis(100);
 
 /// How long a connection may take.
@@ -136,8 +136,8 @@ fn open_fifo(path: &Path) -> io::Result<File> {
     Ok(open(path, flags, Mode::empty())?.into())
 }
 
-/// Connects, on a thread that is left to itself where that is not wanted any more: to find the addresses of a name, and to
-/// wait for an answer from each of them, cannot be broken off.
+/// Connects on a thread of its own, which is abandoned if the connection is no longer wanted: finding the addresses of a name
+/// and waiting for an answer cannot be interrupted.
 ///
 /// # Errors
 /// As of [`connect`].

@@ -167,7 +167,7 @@ struct Player<'a, 'b> {
     stop: &'a AtomicBool,
     /// What lies beside it.
     description: Option<RecordingMetadata>,
-    /// Takes what is read, and is told that time goes by where more is waited for.
+    /// Takes what is read, and a tick now and then while more is waited for.
     consumer: RefCell<&'a mut Consumer<'b>>,
 }
 

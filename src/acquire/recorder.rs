@@ -7,7 +7,8 @@
 //! numpy refuses the file. Values are f64, as every format of frame is read: nothing is rounded.
 //! Beside `touch.npy` lies `touch.json`, which says where the frames are from and how they were looked at. The two get
 //! their names together, so there is never one of these beside an older one of the other. `touch.json` says whether the
-//! recording was ended; that of a killed program does not.
+//! recording was ended; that of a killed program does not. The file is long because the array, its description and their
+//! names change together.
 //!
 //! Nothing appears, and nothing is replaced, until the first frame comes. A disk that is full ends a recording after its last whole record,
 //! and the description says why.

@@ -11,7 +11,7 @@
 //!
 //! So it is enough to find where the ellipses meet the lines through the centres of the rows. What this leaves *open* is
 //! computed from areas: cells whose centre lies just inside an ellipse, and cells that two ellipses cross. Of a circle of
-//! radius 4 those are 2 % of the cells that it crosses.
+//! radius 4 those are fewer than 4 % of the cells that it crosses.
 //!
 //! No other cell is near to one half: where the centre lies on an ellipse, its area in the cell falls short of one half by
 //! a 24th of its least curvature. Ellipses that are too flat for that are left to [`super::overlap`].
@@ -138,7 +138,7 @@ impl CentreSampling {
 }
 
 impl Curve {
-    /// Whether centres decide of an ellipse of this size and form.
+    /// Whether centres decide about an ellipse of this size and shape.
     fn is_fit(&self) -> bool {
         let (left, right) = (self.cuts.left.x.abs(), self.cuts.right.x.abs());
         let (top, bottom) = (self.cuts.top.y, self.cuts.bottom.y);

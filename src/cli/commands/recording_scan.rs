@@ -30,7 +30,7 @@ pub(crate) struct Scan {
     more_notes: u64,
     /// The damage at which it ended.
     pub(super) error: Option<RecordingError>,
-    /// Why the first frame that cannot be cropped as wanted cannot be.
+    /// Why a frame could not be cropped as asked: the first such error.
     pub(super) misfit: Option<FrameError>,
 }
 

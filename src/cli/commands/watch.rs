@@ -12,7 +12,8 @@
 //! Without a threshold frames are answered all the same, with `"imprint":null`. With a tare the first frames wait until
 //! it is complete and are then answered together. What is odd goes to standard error, a line each, headed by the
 //! source: `/dev/ttyUSB0: 12 torn, short, long or garbled frames so far, the last: \x00\x07\xff`. On a terminal the
-//! screen's live page opens instead ([`request`]).
+//! screen's live page opens instead ([`request`]). The file is long because a frame is recorded, kept for the tare, named
+//! and answered in one pass.
 
 use std::ops::ControlFlow;
 use std::path::Path;

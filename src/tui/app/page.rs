@@ -75,8 +75,8 @@ pub trait Page {
         false
     }
 
-    /// Whether it can do something with a message now. Hints leave out keys whose messages it has no use for; whoever
-    /// presses one all the same is told why it does nothing.
+    /// Whether it can do something with a message now. Hints leave out keys whose messages it has no use for;
+    /// pressing one shows why it does nothing.
     fn has_use_for(&self, _message: &Message) -> bool {
         true
     }

@@ -13,7 +13,7 @@ pub(super) struct PosesInSight {
     pub(super) first: PoseIndex,
     /// How many are shown across and down.
     pub(super) count: (u64, u64),
-    /// One in so many is shown, along both axes.
+    /// The step from one shown pose to the next, along both axes.
     pub(super) stride: u64,
 }
 
