@@ -18,8 +18,8 @@ use rayon::prelude::*;
 
 use crate::atlas::feature::{Feature, features};
 use crate::atlas::sums::{Wide, mean, signed_mean};
-use crate::atlas::values::{NONE, Table, columns};
-use crate::atlas::variance::{Sum, VarianceParts};
+use crate::atlas::values::{Row, RowSums, Sum, Table, columns};
+use crate::atlas::variance::VarianceParts;
 use crate::index::lower_word;
 
 /// The statistics of a feature over all poses that have it. Values are None if no pose has it.
@@ -81,43 +81,54 @@ const fn column(
 }
 
 /// What is summed up over all imprints.
-#[derive(Clone, Copy, Debug)]
-struct Total {
-    sum: Sum,
-    /// The squares of the values, as the sums of their lower and of their upper words: all poses together are below 2⁴⁰,
-    /// so neither overflows.
-    squares: [u128; 2],
+#[derive(Clone, Debug)]
+struct Totals {
+    rows: RowSums,
+    /// The squares of the values of each column.
+    squares: Vec<Squares>,
 }
 
-const NOTHING: Total = Total {
-    sum: Sum {
-        poses: 0,
-        x: 0,
-        y: 0,
-    },
-    squares: [0; 2],
-};
+/// A sum of squares, as the sums of their lower and of their upper words: all poses together are below 2⁴⁰, so neither
+/// overflows.
+type Squares = [u128; 2];
 
-impl Total {
-    fn add(&mut self, values: &[i64], circular: bool, poses: u64) {
-        self.sum.add(values, circular, poses);
-        if !circular && values[0] != NONE {
-            let value = u128::from(values[0].unsigned_abs());
+impl Totals {
+    fn new(columns: usize) -> Self {
+        Self {
+            rows: RowSums::new(),
+            squares: vec![[0; 2]; columns],
+        }
+    }
+
+    fn add(&mut self, row: Row, poses: u64) {
+        self.rows.add(row, poses);
+        for (sums, value) in self.squares.iter_mut().zip(row.values) {
+            let value = u128::from(value.unsigned_abs());
             let square = value * value;
-            for (sum, word) in self.squares.iter_mut().zip([square, square >> 64]) {
+            for (sum, word) in sums.iter_mut().zip([square, square >> 64]) {
                 *sum += u128::from(lower_word(word)) * u128::from(poses);
             }
         }
     }
 
     fn merged(mut self, other: &Self) -> Self {
-        self.sum.merge(&other.sum);
-        for (sum, other) in self.squares.iter_mut().zip(other.squares) {
+        self.rows.merge(&other.rows);
+        let sums = self.squares.iter_mut().flatten();
+        for (sum, other) in sums.zip(other.squares.iter().flatten()) {
             *sum += other;
         }
         self
     }
+}
 
+/// What is summed up of one feature.
+#[derive(Clone, Copy, Debug)]
+struct Total {
+    sum: Sum,
+    squares: Squares,
+}
+
+impl Total {
     /// The statistics of a feature whose smallest and largest values are `extremes`.
     fn statistic(
         &self,
@@ -189,24 +200,21 @@ pub(crate) fn statistics(
     ideal: impl Fn(&str) -> Option<f64>,
 ) -> Vec<Statistic> {
     let columns = columns();
-    let nothing = || vec![NOTHING; columns.len()];
+    let nothing = || Totals::new(table.width());
     let totals = (0..counts.len())
         .into_par_iter()
         .with_min_len(1024)
         .fold(nothing, |mut totals, index| {
-            let row = table.row(index);
-            for (total, &(column, circular)) in totals.iter_mut().zip(&columns) {
-                total.add(&row[column..], circular, counts[index]);
-            }
+            totals.add(table.row(index), counts[index]);
             totals
         })
-        .reduce(nothing, |one, other| {
-            one.iter()
-                .zip(&other)
-                .map(|(one, other)| one.merged(other))
-                .collect()
-        });
-    let parts = totals.iter().zip(features()).zip(variance_parts.closed());
+        .reduce(nothing, |one, other| one.merged(&other));
+    let sums = totals.rows.sums().into_iter().zip(&columns);
+    let of_features = sums.map(|(sum, &(column, _))| Total {
+        sum,
+        squares: totals.squares[column],
+    });
+    let parts = of_features.zip(features()).zip(variance_parts.closed());
     parts
         .enumerate()
         .map(|(index, ((total, feature), between))| {

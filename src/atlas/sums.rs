@@ -6,6 +6,7 @@
 
 use std::ops::{AddAssign, Sub};
 
+use crate::geometry::Real;
 use crate::index::lower_word;
 
 /// One, as a fixed-point number.
@@ -15,7 +16,7 @@ const ONE: f64 = 1_099_511_627_776.0;
 #[expect(clippy::cast_possible_truncation, reason = "below 2^63")]
 pub(crate) fn fixed(value: f64) -> i64 {
     // Not `round`, which is a call where the processor is not known to have the instruction.
-    (value * ONE + 0.5).max(0.0) as i64
+    Real::max(value * ONE + 0.5, 0.0) as i64
 }
 
 /// The same of a number in [−1, 1].

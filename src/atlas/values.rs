@@ -6,6 +6,8 @@ use rayon::prelude::*;
 
 use crate::atlas::feature::{ImprintSummary, feature_values, features};
 use crate::atlas::sums::{fixed, signed};
+use crate::geometry::Real;
+use crate::index::wide;
 
 /// Rows in a part of a table. One vector of all rows would be copied whenever it grows, and fill pages on one thread.
 const PART: usize = 256;
@@ -15,17 +17,29 @@ const PART: usize = 256;
 pub(crate) struct Table {
     /// The length of a row.
     width: usize,
-    /// A row per imprint: each feature, [`NONE`] where it does not exist; of a direction its cosine and sine. All parts
-    /// but the last have [`PART`] rows.
-    parts: Vec<Vec<i64>>,
+    /// A row per imprint. All parts but the last have [`PART`] rows.
+    parts: Vec<Part>,
     /// The number of rows.
     imprints: usize,
     /// The smallest and the largest value of each feature; infinity and minus infinity where none exists.
     extremes: Vec<(f64, f64)>,
 }
 
-/// No value.
-pub(crate) const NONE: i64 = i64::MIN;
+/// Some rows of a table.
+#[derive(Clone, Debug)]
+struct Part {
+    values: Vec<i64>,
+    missing: Vec<u32>,
+}
+
+/// The values of an imprint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row<'a> {
+    /// Each feature, 0 where it does not exist; of a direction its cosine and sine.
+    pub(crate) values: &'a [i64],
+    /// Bit `i` is set where feature `i` does not exist.
+    pub(crate) missing: u32,
+}
 
 /// Nothing yet between the smallest and the largest value.
 const NOTHING: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -70,7 +84,10 @@ impl Table {
             note(first, &columns, width, part, &mut self.extremes);
         }
         let parts = rest.par_chunks(PART).map(|summaries| {
-            let mut part = Vec::with_capacity(width * PART);
+            let mut part = Part {
+                values: Vec::with_capacity(width * PART),
+                missing: Vec::with_capacity(PART),
+            };
             let mut extremes = vec![NOTHING; columns.len()];
             note(summaries, &columns, width, &mut part, &mut extremes);
             (part, extremes)
@@ -85,8 +102,17 @@ impl Table {
     }
 
     /// The values of an imprint.
-    pub(crate) fn row(&self, index: usize) -> &[i64] {
-        &self.parts[index / PART][index % PART * self.width..][..self.width]
+    pub(crate) fn row(&self, index: usize) -> Row<'_> {
+        let (part, row) = (&self.parts[index / PART], index % PART);
+        Row {
+            values: &part.values[row * self.width..][..self.width],
+            missing: part.missing[row],
+        }
+    }
+
+    /// The length of a row.
+    pub(crate) fn width(&self) -> usize {
+        self.width
     }
 
     /// The smallest and the largest value of a feature; None if no imprint has one.
@@ -101,17 +127,16 @@ fn note(
     summaries: &[ImprintSummary],
     columns: &[(usize, bool)],
     width: usize,
-    part: &mut Vec<i64>,
+    part: &mut Part,
     extremes: &mut [(f64, f64)],
 ) {
     for summary in summaries {
-        let start = part.len();
-        part.resize(start + width, NONE);
-        let Some(description) = &summary.description else {
-            continue;
-        };
-        let row = &mut part[start..];
-        feature_values(description, |index, value| {
+        let start = part.values.len();
+        part.values.resize(start + width, 0);
+        let row = &mut part.values[start..];
+        let mut missing = (1 << columns.len()) - 1;
+        let mut note = |index: usize, value: f64| {
+            missing &= !(1 << index);
             let (column, circular) = columns[index];
             if circular {
                 let (sin, cos) = libm::sincos(value.to_radians());
@@ -120,7 +145,111 @@ fn note(
                 row[column] = fixed(value);
             }
             let (low, high) = &mut extremes[index];
-            (*low, *high) = (low.min(value), high.max(value));
-        });
+            (*low, *high) = (Real::min(*low, value), Real::max(*high, value));
+        };
+        if let Some(description) = &summary.description {
+            feature_values(description, &mut note);
+        }
+        part.missing.push(missing);
+    }
+}
+
+/// How many poses have a feature and the sum of its values; of a direction the sums of cosines and of sines.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Sum {
+    pub(crate) poses: u64,
+    pub(crate) x: i128,
+    pub(crate) y: i128,
+}
+
+impl Sum {
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.poses += other.poses;
+        self.x += other.x;
+        self.y += other.y;
+    }
+
+    /// The sum of values that are not directions. They are not negative; a damaged file may say otherwise, and counts
+    /// as 0.
+    pub(crate) fn total(&self) -> u128 {
+        self.x.max(0).cast_unsigned()
+    }
+
+    /// The length of the sum of the unit vectors.
+    #[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
+    pub(crate) fn length(&self) -> f64 {
+        libm::hypot(self.x as f64, self.y as f64)
+    }
+}
+
+/// The sums of rows of a table, each row times the number of poses that leave its imprint.
+///
+/// Of each orientation all rows of its imprints are added up, which is a large part of a sweep with many imprints: so all
+/// columns are added alike, whether they have a value or not.
+#[derive(Clone, Debug)]
+pub(crate) struct RowSums {
+    /// The number of poses, with or without a value.
+    poses: u64,
+    columns: Vec<i128>,
+    /// The poses that do not have a feature.
+    missing: Vec<u64>,
+}
+
+impl RowSums {
+    /// Of no row.
+    pub(crate) fn new() -> Self {
+        let features = features();
+        let widths = features.iter().map(|feature| width(feature.circular));
+        Self {
+            poses: 0,
+            columns: vec![0; widths.sum()],
+            missing: vec![0; features.len()],
+        }
+    }
+
+    /// Adds a row.
+    pub(crate) fn add(&mut self, row: Row, poses: u64) {
+        self.poses += poses;
+        // One multiplication of the processor: both numbers fit into 64 bits with their signs.
+        let times = i128::from(poses.cast_signed());
+        for (sum, &value) in self.columns.iter_mut().zip(row.values) {
+            *sum += i128::from(value) * times;
+        }
+        let mut missing = row.missing;
+        while missing != 0 {
+            self.missing[wide(missing.trailing_zeros())] += poses;
+            missing &= missing - 1;
+        }
+    }
+
+    /// Adds other sums.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.poses += other.poses;
+        for (sum, other) in self.columns.iter_mut().zip(&other.columns) {
+            *sum += other;
+        }
+        for (poses, other) in self.missing.iter_mut().zip(&other.missing) {
+            *poses += other;
+        }
+    }
+
+    /// The number of poses that were added.
+    pub(crate) fn poses(&self) -> u64 {
+        self.poses
+    }
+
+    /// The sum of each feature.
+    pub(crate) fn sums(&self) -> Vec<Sum> {
+        let features = columns().into_iter().zip(&self.missing);
+        let sum = |((column, circular), missing): ((usize, bool), &u64)| Sum {
+            poses: self.poses - missing,
+            x: self.columns[column],
+            y: if circular {
+                self.columns[column + 1]
+            } else {
+                0
+            },
+        };
+        features.map(sum).collect()
     }
 }

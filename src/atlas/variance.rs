@@ -7,51 +7,9 @@ use std::collections::BTreeMap;
 
 use crate::atlas::feature::features;
 use crate::atlas::sums::Wide;
-use crate::atlas::values::{NONE, Table, columns};
+use crate::atlas::values::{RowSums, Sum, Table};
 use crate::index::{lower_word, wide};
 use crate::pose::MAX_VALUES;
-
-/// How many poses have a feature and the sum of its values; of a direction the sums of cosines and of sines.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Sum {
-    pub(crate) poses: u64,
-    pub(crate) x: i128,
-    pub(crate) y: i128,
-}
-
-impl Sum {
-    /// Adds what stands in a row of a [`Table`] from a feature on.
-    pub(crate) fn add(&mut self, values: &[i64], circular: bool, poses: u64) {
-        if values[0] == NONE {
-            return;
-        }
-        self.poses += poses;
-        // One multiplication of the processor: both numbers fit into 64 bits with their signs.
-        let times = i128::from(poses.cast_signed());
-        self.x += i128::from(values[0]) * times;
-        if circular {
-            self.y += i128::from(values[1]) * times;
-        }
-    }
-
-    pub(crate) fn merge(&mut self, other: &Self) {
-        self.poses += other.poses;
-        self.x += other.x;
-        self.y += other.y;
-    }
-
-    /// The sum of values that are not directions. They are not negative; a damaged file may say otherwise, and counts
-    /// as 0.
-    pub(crate) fn total(&self) -> u128 {
-        self.x.max(0).cast_unsigned()
-    }
-
-    /// The length of the sum of the unit vectors.
-    #[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
-    fn length(&self) -> f64 {
-        libm::hypot(self.x as f64, self.y as f64)
-    }
-}
 
 /// The sums of one orientation.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -66,17 +24,15 @@ pub(crate) struct OrientationSums {
 impl OrientationSums {
     /// The sums over imprints, given with the number of poses of one orientation that leave each.
     pub(crate) fn of(table: &Table, times: u64, counted: impl Iterator<Item = (u32, u64)>) -> Self {
-        let mut sums = vec![Sum::default(); features().len()];
-        let columns = columns();
-        let mut poses = 0;
+        let mut rows = RowSums::new();
         for (id, count) in counted {
-            let row = table.row(wide(id));
-            for (sum, &(column, circular)) in sums.iter_mut().zip(&columns) {
-                sum.add(&row[column..], circular, count);
-            }
-            poses += count;
+            rows.add(table.row(wide(id)), count);
         }
-        Self { poses, times, sums }
+        Self {
+            poses: rows.poses(),
+            times,
+            sums: rows.sums(),
+        }
     }
 
     /// Whether these sums are possible for an orientation of `full` poses. Others, from a damaged file, could overflow
