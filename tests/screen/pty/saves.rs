@@ -50,30 +50,37 @@ fn keys_go_on_while_another_program_holds_the_library() {
 
 #[test]
 fn the_end_does_not_wait_for_another_program() {
-    for (keys, signal, status) in [
-        (&b"q"[..], None, 0),
-        (b"", Some(Signal::TERM), 143),
-        (b"", Some(Signal::HUP), 129),
-    ] {
-        let folder = tempfile::tempdir().expect("a folder");
-        let (mut program, _lock) = saving(folder.path());
-        program.types(keys);
-        if let Some(signal) = signal {
-            program.signal(signal);
+    // Together: most of their time they wait for that program.
+    std::thread::scope(|scope| {
+        for (keys, signal, status) in [
+            (&b"q"[..], None, 0),
+            (b"", Some(Signal::TERM), 143),
+            (b"", Some(Signal::HUP), 129),
+        ] {
+            scope.spawn(move || ends_before_the_lock(keys, signal, status));
         }
-        let (ended, took) = program.ends();
-        assert_eq!(ended.code(), Some(status));
-        println!("ended within {took:?}");
-        program.is_left();
-        // A save that was waited for would have failed.
-        program.shows("Saving name: not done yet, because another program holds the library");
-        program.shows("the next start offers it as unsaved work");
-        let library = Library::open(folder.path().to_owned());
-        assert!(library.load("name").is_err());
-        let left = Orphan::all(&library);
-        let taxels: Vec<u32> = left.iter().map(|left| left.shape.imprint.count()).collect();
-        assert_eq!(taxels, [1]);
+    });
+}
+
+fn ends_before_the_lock(keys: &[u8], signal: Option<Signal>, status: i32) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut program, _lock) = saving(folder.path());
+    program.types(keys);
+    if let Some(signal) = signal {
+        program.signal(signal);
     }
+    let (ended, took) = program.ends();
+    assert_eq!(ended.code(), Some(status));
+    println!("ended within {took:?}");
+    program.is_left();
+    // A save that was waited for would have failed.
+    program.shows("Saving name: not done yet, because another program holds the library");
+    program.shows("the next start offers it as unsaved work");
+    let library = Library::open(folder.path().to_owned());
+    assert!(library.load("name").is_err());
+    let left = Orphan::all(&library);
+    let taxels: Vec<u32> = left.iter().map(|left| left.shape.imprint.count()).collect();
+    assert_eq!(taxels, [1]);
 }
 
 #[test]
