@@ -28,6 +28,14 @@ const MOMENT: Duration = Duration::from_millis(100);
 /// No recording is waited for longer than a day.
 const LONGEST: f64 = 86_400.0;
 
+/// Why a file that was followed is not read on: a recording of another kind has taken its place.
+fn replaced_by(format: RecordingFormat) -> RecordingError {
+    RecordingError::damaged(format!(
+        "replaced by a recording in the format {}, whose end cannot be followed",
+        format.name()
+    ))
+}
+
 /// When the next frame is due.
 struct Pace<'a> {
     begun: Instant,
@@ -229,7 +237,7 @@ impl Player<'_, '_> {
             format = loop {
                 match File::open(path).and_then(recognised_input) {
                     Ok(Some(format)) if format.is_appended_to() => break format,
-                    Ok(Some(_)) => return Err(RecordingError::Unknown.into()),
+                    Ok(Some(other)) => return Err(replaced_by(other).into()),
                     Ok(None) | Err(_) if self.tick().is_break() => return Ok(()),
                     Ok(None) | Err(_) => std::thread::sleep(MOMENT),
                 }

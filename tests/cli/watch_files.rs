@@ -214,6 +214,41 @@ fn a_first_frame_that_is_not_whole_yet_is_waited_for() {
     }
 }
 
+/// Each frame of a board is shown when it is written, not when a piece of many is full.
+#[test]
+fn the_bytes_of_a_board_are_followed_frame_by_frame() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("board.bin");
+    let frame = |value: u8| [&[0xaa, 0x55][..], &[value; 4]].concat();
+    fs::write(&file, [frame(1), frame(2), frame(3), frame(4)].concat()).expect("written");
+    let line = format!("watch {} --rows 2 --columns 2", file.display());
+    let mut child = started(&line.split_whitespace().collect::<Vec<_>>());
+    let mut output = BufReader::new(child.stdout.take().expect("piped"));
+    let mut sum = || {
+        let mut answer = String::new();
+        output.read_line(&mut answer).expect("it answers");
+        lines(&answer)[0]["sum"].clone()
+    };
+    // A frame is whole when the next one begins.
+    assert_eq!([sum(), sum(), sum()], [4, 8, 12]);
+    let grown = fs::File::options().append(true).open(&file);
+    let appended = grown
+        .expect("opened")
+        .write_all(&[frame(5), frame(6)].concat());
+    appended.expect("written");
+    assert_eq!([sum(), sum()], [16, 20]);
+    // Another kind of recording in its place is called by its name.
+    fs::copy(sample("records.npy"), folder.path().join("other")).expect("copied");
+    fs::rename(folder.path().join("other"), &file).expect("renamed");
+    let run = child.wait().expect("it ends");
+    assert_eq!(run.code(), Some(1));
+    let mut said = String::new();
+    let mut errors = child.stderr.take().expect("piped");
+    std::io::Read::read_to_string(&mut errors, &mut said).expect("read");
+    let expected = "replaced by a recording in the format npy, whose end cannot be followed";
+    assert!(said.contains(expected), "{said}");
+}
+
 #[test]
 fn frames_of_another_size_do_not_end_a_recording() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -5,7 +5,7 @@
 //! counted in a note, as there is no checksum that would tell what is wrong with them.
 
 use std::cell::Cell;
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::ops::ControlFlow;
 
 use crate::formats::recording::error::RecordingError;
@@ -14,7 +14,7 @@ use crate::formats::recording::event::{
 };
 use crate::formats::stream::{StreamDecoder, StreamEvent, StreamFormat, StreamOptions};
 
-/// Bytes read at a time.
+/// Bytes read at a time, at most.
 const CHUNK: usize = 1 << 16;
 
 /// Reads a recording.
@@ -27,8 +27,8 @@ pub(super) fn read(
     sink: &mut Sink<'_>,
 ) -> Result<(), RecordingError> {
     let mut bytes = vec![0; CHUNK];
-    let mut length = super::numpy::fill(input, &mut bytes)?;
     let Some((rows, columns)) = options.shape else {
+        let length = super::numpy::fill(input, &mut bytes)?;
         let marker = |at: &usize| bytes[..length].get(*at..at + 2) == Some(&[0xaa, 0x55]);
         let next = (3..length).find(marker).unwrap_or(length);
         let values = next.saturating_sub(2) as u64;
@@ -52,9 +52,15 @@ pub(super) fn read(
             state.set(sink(RecordingEvent::Frame(frame)));
         }
     };
-    while length > 0 && state.get().is_continue() {
+    while state.get().is_continue() {
+        // What is there, at once: the end of a file that grows is waited for.
+        let length = match input.read(&mut bytes) {
+            Ok(0) => break,
+            Ok(length) => length,
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            Err(error) => return Err(error.into()),
+        };
         decoder.push(&bytes[..length], &mut give);
-        length = super::numpy::fill(input, &mut bytes)?;
     }
     decoder.finish(&mut give);
     let frames = decoder.counts().dropped;
