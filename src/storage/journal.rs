@@ -110,19 +110,23 @@ pub struct Orphan {
 }
 
 impl Orphan {
-    /// Those that wait in a library, at most 100. Work that is saved under its name just so is cleared away. A journal that cannot be
-    /// read is left alone: it may be one of a later version.
+    /// The newest that wait in a library, at most 100, the oldest of them first. Work that is saved under its name just
+    /// so is cleared away. A journal that cannot be read is left alone: it may be one of a later version.
     pub fn all(library: &Library) -> Vec<Self> {
         let journals = folder_in(library);
         // A folder that cannot be read must not keep the program from starting.
-        let Ok(mut names) = folder::names(&journals) else {
+        let Ok(names) = folder::names(&journals) else {
             return Vec::new();
         };
-        names.sort();
-        names
-            .into_iter()
-            .filter_map(|name| {
-                let path = journals.join(name);
+        let mut paths: Vec<PathBuf> = names.into_iter().map(|name| journals.join(name)).collect();
+        paths.sort_by_cached_key(|path| {
+            let changed = fs::symlink_metadata(path).and_then(|file| file.modified());
+            // Of those of the same moment, `1-10.json` comes after `1-9.json`.
+            (changed.ok(), path.as_os_str().len(), path.clone())
+        });
+        let newest = paths.into_iter().rev();
+        let mut found: Vec<Self> = newest
+            .filter_map(|path| {
                 let journal = path.with_extension("json");
                 match path.extension()?.to_str()? {
                     "json" => Self::of(library, path),
@@ -139,7 +143,9 @@ impl Orphan {
                 }
             })
             .take(MOST_ORPHANS)
-            .collect()
+            .collect();
+        found.reverse();
+        found
     }
 
     /// The work in a journal, if its program is dead and it would be lost.

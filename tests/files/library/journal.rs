@@ -37,6 +37,27 @@ fn work_of_a_dead_program_is_offered_until_it_is_discarded() {
     assert_eq!(files(&scratch.path(".journal")), [""; 0]);
 }
 
+/// Names begin with the number of a process, which does not grow with time.
+#[test]
+fn the_newest_work_comes_last_whatever_its_name() {
+    let scratch = Scratch::new();
+    left(&scratch, &shape("work", 1));
+    let folder = scratch.path(".journal");
+    let own = folder.join(&files(&folder)[0]).with_extension("json");
+    let now = std::time::SystemTime::now();
+    for (seconds, name) in [(30, "4711-0"), (20, "999-0"), (10, "1-10"), (10, "1-9")] {
+        let path = folder.join(name).with_extension("json");
+        std::fs::write(&path, shape(&format!("w{name}"), 1).write()).expect("written");
+        let file = std::fs::File::options().write(true).open(&path);
+        let changed = now - std::time::Duration::from_secs(seconds);
+        file.expect("opened").set_modified(changed).expect("set");
+    }
+    std::fs::remove_file(own).expect("removed");
+    let names = offered(&scratch).into_iter().map(|work| work.name);
+    let names: Vec<String> = names.map(|name| name.to_string()).collect();
+    assert_eq!(names, ["w4711-0", "w999-0", "w1-9", "w1-10"]);
+}
+
 #[test]
 fn cleared_work_is_gone_and_more_can_be_kept() {
     let scratch = Scratch::new();
