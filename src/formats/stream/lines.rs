@@ -102,13 +102,14 @@ impl LinesDecoder {
                 self.broken_row.extend(line.iter().take(64));
             }
             self.broken = true;
+            // None of a size that has been met is as high.
+            if self.size.present().is_none() && self.rows > MAX_FRAME_SIDE {
+                counts.unshaped = Some(count as u64);
+            }
             self.give_up(line, counts);
         } else if self.rows == 1 {
             self.broken_row.clear();
             self.broken_row.extend(line.iter().take(64));
-        }
-        if self.size.present().is_none() && self.rows > MAX_FRAME_SIDE {
-            counts.unshaped = Some(count as u64);
         }
     }
 

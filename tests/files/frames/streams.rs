@@ -247,6 +247,10 @@ fn what_is_missing_is_named() {
     assert_eq!(unshaped(&[0xff; 200]), Some(0));
     assert_eq!(unshaped(b"1 2 3\n4 5 6\n"), Some(3));
     assert_eq!(unshaped(b"array('B', [1, 2])\n---\n"), Some(2));
+    // In a stream without empty lines, as soon as there are more rows than a frame can have.
+    let mut live = StreamDecoder::new(options(None));
+    live.push("1 2 3\n".repeat(513).as_bytes(), &mut |_| {});
+    assert_eq!(live.counts().unshaped, Some(3));
     let cut = decoded(
         options(None),
         b"array('B', [1, 2, '...'])\n---\n",
