@@ -177,7 +177,7 @@ fn of_numbers(
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
     let numbers = separator.numbers(first);
-    let values = numbers.len();
+    let (values, number) = (numbers.len(), lines.number());
     let cells = |(rows, columns)| usize::from(rows) * usize::from(columns);
     // A file that grows is read no further than the answer needs.
     let enough = match (options.shape, side(values)) {
@@ -206,7 +206,7 @@ fn of_numbers(
             (shape, LineLayout::Row { parted })
         }
         (Some(shape), _) => {
-            let fields = without_header(shape, &compared)?;
+            let fields = without_header(shape, number, &compared)?;
             (shape, LineLayout::Frame(fields))
         }
         (None, Some(width)) if parted && block > 1 => ((block, width), LineLayout::Row { parted }),
@@ -318,11 +318,13 @@ fn named_cells(
 
 /// The arrangement of lines without names: the cells alone; a number or a time before them, or both; or a number and
 /// milliseconds behind them. What grows from line to line says which it is; of a single line they are taken to stand behind.
+/// The first of them is line `number` of the file.
 ///
 /// # Errors
 /// If the line has fewer fields than a frame has cells, or others that are none of these or may be either.
 fn without_header(
     (rows, columns): (u16, u16),
+    number: u64,
     lines: &[Vec<f64>],
 ) -> Result<FrameFields, RecordingError> {
     let cells = usize::from(rows) * usize::from(columns);
@@ -345,12 +347,12 @@ fn without_header(
         Some(1) if growth_is(0, |step| step > 0.0) => arranged(1, None, Some((0, 1.0))),
         // The offset of a message of ROS.
         Some(1) if first[0] == 0.0 && growth_is(0, |step| step == 0.0) => arranged(1, None, None),
-        Some(2) => match number_and_time(lines, cells)? {
+        Some(2) => match number_and_time(number, lines, cells)? {
             Some((label, time)) if label < cells => arranged(2, Some(label), Some((time, 1.0))),
             Some((label, time)) => arranged(0, Some(label), Some((time, 1e-3))),
-            None => Err(text_row::count(1, first.len(), cells)),
+            None => Err(text_row::count(number, first.len(), cells)),
         },
-        _ => Err(text_row::count(1, first.len(), cells)),
+        _ => Err(text_row::count(number, first.len(), cells)),
     }
 }
 
@@ -367,6 +369,7 @@ fn grows(lines: &[Vec<f64>], field: usize, fits: fn(f64) -> bool) -> bool {
 /// # Errors
 /// If none is.
 fn number_and_time(
+    number: u64,
     lines: &[Vec<f64>],
     cells: usize,
 ) -> Result<Option<(usize, usize)>, RecordingError> {
@@ -387,7 +390,7 @@ fn number_and_time(
         "2 numbers more than the {cells} cells, before or behind them: name the columns in a line above, such as \
          frame,time,r0c0"
     );
-    Err(RecordingError::in_line(1, message))
+    Err(RecordingError::in_line(number, message))
 }
 
 /// Reads frames of a line each.

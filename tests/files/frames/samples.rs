@@ -135,6 +135,21 @@ fn numbers_beside_the_cells_are_told_by_how_they_grow() {
     let unclear =
         "line 1: 2 numbers more than the 2 cells, before or behind them: name the columns";
     assert!(error.is_some_and(|error| error.starts_with(unclear)));
+    for (text, expected) in [
+        (
+            "# a\n\n# b\n0,0.0,5,6\n1,0.1,6,6\n",
+            "line 4: 2 numbers more",
+        ),
+        ("# a\n1,2,3,4,5\n", "line 2: found 5 values, expected 2"),
+    ] {
+        let error = read(text).error.map(|error| error.to_string());
+        assert!(
+            error
+                .as_ref()
+                .is_some_and(|error| error.starts_with(expected)),
+            "{error:?}"
+        );
+    }
 }
 
 #[test]
