@@ -1,6 +1,7 @@
 //! The library: the shapes of a folder and those that come with the program. Listing, loading, saving, deleting and
 //! restoring.
 
+use std::collections::HashSet;
 use std::ffi::OsString;
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -331,16 +332,13 @@ impl Library {
     /// # Errors
     /// If the folder exists but cannot be read.
     pub fn in_trash(&self) -> Result<Vec<String>, LibraryError> {
-        let mut names: Vec<String> = Vec::new();
-        for deleted in Trash::read(self.trash())?.newest_first() {
-            if !names
-                .iter()
-                .any(|name| folded(name) == folded(&deleted.name))
-            {
-                names.push(deleted.name.clone());
-            }
-        }
-        Ok(names)
+        let mut met = HashSet::new();
+        let trash = Trash::read(self.trash())?;
+        let names = trash.newest_first().map(|deleted| &deleted.name);
+        Ok(names
+            .filter(|name| met.insert(folded(name)))
+            .cloned()
+            .collect())
     }
 
     /// Restores the shape of that name that was deleted last, and returns its name.

@@ -14,6 +14,7 @@
 //! A script answers its own questions, and may come from a stranger. So it cannot choose a library of the user's, and
 //! writes only below its own folder, unless `--allow-outside` is given.
 
+use std::collections::{HashMap, HashSet};
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::ops::ControlFlow;
@@ -153,7 +154,12 @@ fn write(
 
 /// The names of drawings so far: each drawing gets one of its own.
 #[derive(Debug, Default)]
-struct Names(Vec<String>);
+struct Names {
+    /// Those that are taken, folded: some file systems do not distinguish upper and lower case.
+    taken: HashSet<String>,
+    /// The last number that each name got behind it.
+    last: HashMap<String, u32>,
+}
 
 impl Names {
     /// The file name, without ending, for a screen of this name. Characters that a name cannot have become `-`, a
@@ -166,15 +172,15 @@ impl Names {
             .collect();
         let name = match Name::new(&name) {
             Ok(name) => name.to_string(),
-            Err(_) => format!("screen-{}", self.0.len() + 1),
+            Err(_) => format!("screen-{}", self.taken.len() + 1),
         };
-        // Some file systems do not distinguish upper and lower case.
-        let (mut free, mut number) = (name.clone(), 1);
-        while self.0.contains(&folded(&free)) {
-            number += 1;
+        let mut free = name.clone();
+        while !self.taken.insert(folded(&free)) {
+            // A script may have a million screens of one name.
+            let number = self.last.entry(folded(&name)).or_insert(1);
+            *number += 1;
             free = format!("{name}-{number}");
         }
-        self.0.push(folded(&free));
         free
     }
 }
