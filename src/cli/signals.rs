@@ -60,6 +60,15 @@ impl Signals {
         Ok(Self { stopped, last })
     }
 
+    /// What a command ends with that failed: that a signal stopped it, if one came, else its own error.
+    pub(crate) fn or(&self, error: CliError) -> CliError {
+        if self.stopped.load(Ordering::Relaxed) {
+            self.failure()
+        } else {
+            error
+        }
+    }
+
     /// The error of a command that the last signal stopped.
     pub(crate) fn failure(&self) -> CliError {
         let (_, status) = STOPPING[self.last.load(Ordering::Relaxed)];

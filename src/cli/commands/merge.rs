@@ -11,7 +11,6 @@
 use std::fmt;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use crate::cli::arguments::model::train::model_file;
@@ -221,10 +220,7 @@ fn leave_model(model: &Model, wanted: &Wanted) -> Result<String, CliError> {
             wanted.there.existing(),
             &signals.stopped,
         );
-        if signals.stopped.load(Ordering::Relaxed) {
-            return Err(signals.failure());
-        }
-        saved?;
+        saved.map_err(|error| signals.or(error.into()))?;
     }
     let limit = Evaluation::of(model);
     Ok(if wanted.json {

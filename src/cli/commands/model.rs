@@ -86,10 +86,7 @@ pub(crate) fn train(
         error => error.into(),
     })?;
     let saved = save_model(&model, &path, asked.there.existing(), stopped);
-    if stopped.load(Ordering::Relaxed) {
-        return Err(signals.failure());
-    }
-    saved?;
+    saved.map_err(|error| signals.or(error.into()))?;
     trained(&model, &path, "written", asked, charset)
 }
 
