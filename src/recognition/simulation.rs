@@ -180,7 +180,10 @@ impl Model {
         progress: &(dyn Fn(u64) -> bool + Sync),
         judge: &(dyn Fn(&mut RecognitionRate, usize, &Imprint) + Sync),
     ) -> Option<RecognitionRate> {
+        /// Touches that one thread draws and counts at a time.
         const CHUNK: u64 = 50;
+        /// Chunks whose counts are held at a time: a billion touches would take gigabytes.
+        const HELD: usize = 4096;
         let (columns, rows) = (sensor.columns(), sensor.rows());
         let places = |key: usize| {
             let key = self.keys().get(key);
@@ -190,32 +193,38 @@ impl Model {
             .map(|shape| Draw::new(self, shape, places))
             .collect();
         let chunks = per_shape.div_ceil(CHUNK);
-        let tasks = (0..draws.len()).flat_map(|shape| (0..chunks).map(move |chunk| (shape, chunk)));
+        let mut tasks =
+            (0..draws.len()).flat_map(|shape| (0..chunks).map(move |chunk| (shape, chunk)));
         let stopped = AtomicBool::new(false);
-        let rates: Vec<RecognitionRate> = tasks
-            .collect::<Vec<_>>()
-            .into_par_iter()
-            .map(|(shape, chunk)| {
-                let number = crate::index::index(chunk) * draws.len() + shape;
-                let mut random = generator(seed, number as u64);
-                let mut rate = RecognitionRate::default();
-                for _ in 0..CHUNK.min(per_shape - chunk * CHUNK) {
-                    if stopped.load(Ordering::Relaxed) {
-                        break;
-                    }
-                    let Some(key) = draws[shape].key(&mut random) else {
-                        break;
-                    };
-                    let touch = self.touch_of(key, (columns, rows), noise, &mut random);
-                    judge(&mut rate, shape, &touch);
-                    if !progress(1) {
-                        stopped.store(true, Ordering::Relaxed);
-                    }
+        let rate = |(shape, chunk): (usize, u64)| {
+            let number = crate::index::index(chunk) * draws.len() + shape;
+            let mut random = generator(seed, number as u64);
+            let mut rate = RecognitionRate::default();
+            for _ in 0..CHUNK.min(per_shape - chunk * CHUNK) {
+                if stopped.load(Ordering::Relaxed) {
+                    break;
                 }
-                rate
-            })
-            .collect();
-        let sum = rates.into_iter().reduce(RecognitionRate::and);
+                let Some(key) = draws[shape].key(&mut random) else {
+                    break;
+                };
+                let touch = self.touch_of(key, (columns, rows), noise, &mut random);
+                judge(&mut rate, shape, &touch);
+                if !progress(1) {
+                    stopped.store(true, Ordering::Relaxed);
+                }
+            }
+            rate
+        };
+        let mut sum: Option<RecognitionRate> = None;
+        while !stopped.load(Ordering::Relaxed) {
+            let held: Vec<(usize, u64)> = tasks.by_ref().take(HELD).collect();
+            if held.is_empty() {
+                break;
+            }
+            let rates: Vec<RecognitionRate> = held.into_par_iter().map(rate).collect();
+            // In their order, so that the sum has the same digits for any number of threads.
+            sum = sum.into_iter().chain(rates).reduce(RecognitionRate::and);
+        }
         sum.filter(|_| !stopped.into_inner())
     }
 
