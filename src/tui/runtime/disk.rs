@@ -209,6 +209,16 @@ fn written(number: u64, written: Result<(), String>) -> DiskAnswer {
     written.map_or_else(failed, |()| DiskAnswer::Nothing)
 }
 
+/// A line about a recording that could not be finished or written on, if the answer says so.
+pub(super) fn not_recorded(answer: &DiskAnswer) -> Option<String> {
+    match answer {
+        DiskAnswer::Live(_, LiveEvent::NotFinished(reason) | LiveEvent::NotRecorded(reason)) => {
+            Some(format!("{reason}\n"))
+        }
+        _ => None,
+    }
+}
+
 /// An error of the library in a sentence.
 #[expect(clippy::needless_pass_by_value, reason = "for `map_err`")]
 fn sentence(error: LibraryError) -> String {
@@ -359,14 +369,8 @@ impl DiskQueue {
         is_first.then(|| self.wait(QUICK)).flatten()
     }
 
-    /// The same for a request whose answer nobody waits for.
-    pub(super) fn ask_aside(&mut self, request: DiskRequest) {
-        // Such a request has no answer.
-        let _ = self.begin(request);
-    }
-
     /// Gives a request to the thread. Without one, carries it out and returns the answer.
-    fn begin(&mut self, request: DiskRequest) -> Option<DiskAnswer> {
+    pub(super) fn begin(&mut self, request: DiskRequest) -> Option<DiskAnswer> {
         self.start();
         let Some(thread) = &self.thread else {
             return Some(request.perform(&self.library, &self.access));

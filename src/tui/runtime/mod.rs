@@ -76,7 +76,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::tui::runtime::disk::{DiskAnswer, DiskQueue, DiskRequest, newest_orphan};
+use crate::tui::runtime::disk::{DiskAnswer, DiskQueue, DiskRequest, newest_orphan, not_recorded};
 use crate::tui::runtime::journal_writer::JournalWriter;
 use crate::tui::runtime::models::ModelStore;
 use crate::tui::runtime::reading::Reader;
@@ -414,11 +414,12 @@ impl World {
     /// at most two seconds. Returns lines about what is not on the disk, because of an error or because the disk does not
     /// answer.
     pub fn end(&mut self, app: &mut App) -> Vec<String> {
-        if let Some((number, recording)) = self.workers.frames.stop() {
+        let recording = self.workers.frames.stop();
+        let ended = recording.and_then(|(number, recording)| {
             let request = DiskRequest::EndRecording(number, recording);
-            self.writer.ask_aside(request);
-        }
-        let (mut lines, is_kept) = self.write_all(app, |_, app, answer| {
+            self.writer.begin(request)
+        });
+        let (mut lines, is_kept) = self.write_all(app, ended, |_, app, answer| {
             // Nothing is begun any more.
             let _ = update(app, answer);
         });
@@ -432,28 +433,35 @@ impl World {
     /// perhaps for ever; but waits for at most two seconds. All goes on where it is continued. Returns lines about what is
     /// not on the disk.
     pub fn flush(&mut self, app: &mut App) -> Vec<String> {
-        if let Some((number, recording)) = self.workers.frames.recording() {
+        let recording = self.workers.frames.recording();
+        let flushed = recording.and_then(|(number, recording)| {
             let request = DiskRequest::FlushRecording(number, recording);
-            self.writer.ask_aside(request);
-        }
-        let (lines, _) = self.write_all(app, |world, app, answer| {
+            self.writer.begin(request)
+        });
+        let (lines, _) = self.write_all(app, flushed, |world, app, answer| {
             // The terminal is about to be given back: nothing is done to it.
             let _ = world.handle(app, answer);
         });
         lines
     }
 
-    /// Waits for changes, memories and the journal, two seconds at most, and has answers taken. Returns lines about what
-    /// is not on the disk, and whether unsaved work is.
+    /// Waits for changes, memories and the journal, two seconds at most, and has answers taken, that of a request that is
+    /// `done` first. Returns lines about what is not on the disk, and whether unsaved work is.
     fn write_all(
         &mut self,
         app: &mut App,
+        done: Option<DiskAnswer>,
         take: fn(&mut Self, &mut App, Message),
     ) -> (Vec<String>, bool) {
         let end = Instant::now() + PATIENCE;
         // Half of the time: the journal keeps what could not be saved.
         let saved_by = Instant::now() + PATIENCE / 2;
-        let mut lines = self.finish_changes(app, saved_by, take);
+        let mut lines = Vec::new();
+        if let Some(answer) = done {
+            lines.extend(not_recorded(&answer));
+            self.take(app, answer, take);
+        }
+        lines.extend(self.finish_changes(app, saved_by, take));
         while !self.memories.is_idle() {
             let time = saved_by.saturating_duration_since(Instant::now());
             if self.memories.wait(time).is_none() {
@@ -487,16 +495,17 @@ impl World {
             let Some(answer) = self.writer.wait(time) else {
                 break;
             };
-            if let DiskAnswer::Live(_, event) = &answer
-                && let LiveEvent::NotFinished(reason) | LiveEvent::NotRecorded(reason) = event
-            {
-                lines.push(format!("{reason}\n"));
-            }
-            if let Some(answer) = self.answer(answer) {
-                take(self, app, answer);
-            }
+            lines.extend(not_recorded(&answer));
+            self.take(app, answer, take);
         }
         lines
+    }
+
+    /// Has the answer to a change taken.
+    fn take(&mut self, app: &mut App, answer: DiskAnswer, take: fn(&mut Self, &mut App, Message)) {
+        if let Some(answer) = self.answer(answer) {
+            take(self, app, answer);
+        }
     }
 
     /// Makes a change, or has it made. Returns the answer if there is one within a moment.

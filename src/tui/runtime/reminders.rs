@@ -58,7 +58,8 @@ impl Reminders {
     /// Remembers what is new. A set counts once its model is there, so that none is remembered that does not exist.
     pub(super) fn note(&mut self, app: &App, queue: &mut DiskQueue) {
         let mut write = |file: &RememberedFile, lines| {
-            queue.ask_aside(DiskRequest::Remember(file.clone(), lines));
+            // The answer says nothing.
+            let _ = queue.begin(DiskRequest::Remember(file.clone(), lines));
         };
         if app.commands.len() > self.remembered {
             write(&self.commands, app.commands.clone());
