@@ -69,7 +69,7 @@ pub(in crate::tui) fn run(
             .handle(&mut event_loop.app, Message::Terminate);
     }
     for line in event_loop.world.end(&mut event_loop.app) {
-        session::tell_later(&line);
+        session::tell(&line);
     }
     let left = session::leave();
     match ended {
@@ -427,7 +427,7 @@ impl<'a> EventLoop<'a> {
             return Ok(());
         }
         for line in self.world.flush(&mut self.app) {
-            session::tell_later(&line);
+            session::tell(&line);
         }
         session::leave()?;
         // From here on a "continue" is the answer to this stop.

@@ -125,8 +125,10 @@ pub(in crate::tui) fn leave() -> io::Result<()> {
         // Reports that are on their way would be typed into the shell.
         let _ = tcflush(found.device.input(), QueueSelector::IFlush);
     }
-    set(&found.device, &found.attributes)?;
+    let restored = set(&found.device, &found.attributes);
+    // Standard error may be a file: there it is read when the terminal is gone.
     eprint(&found.later);
+    restored?;
     said.map(drop)
 }
 
@@ -135,6 +137,13 @@ pub(in crate::tui) fn tell_later(text: &str) -> bool {
     let mut found = found();
     let ours = found.as_mut().map(|found| found.later += text);
     ours.is_some()
+}
+
+/// Prints a text to standard error once the terminal is the shell's again; at once if it is.
+pub(in crate::tui) fn tell(text: &str) {
+    if !tell_later(text) {
+        eprint(text);
+    }
 }
 
 /// Prints to standard error, and ignores a failure: there is no other place to report it.
