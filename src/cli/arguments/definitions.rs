@@ -185,7 +185,7 @@ fn batch() -> Command {
             Arg::new("file")
                 .value_name("FILE")
                 .value_parser(value_parser!(PathBuf))
-                .help("Lines of JSON; standard input without it, or with '-'"),
+                .help("Lines of JSON; nothing or '-' for standard input"),
         )
         .args(sensor_of_imprints())
         .arg(jobs())
@@ -253,7 +253,7 @@ fn merge() -> Command {
         .value_parser(value_parser!(PathBuf))
         .help("Atlases or models of all shards, in any order");
     Command::new("merge")
-        .about("Put the shards of a sweep or a training together")
+        .about("Merge the shards of a sweep or a training")
         .after_help(MERGE_EXAMPLES)
         .args([
             files,
@@ -310,10 +310,10 @@ fn library() -> Command {
     let command = |name: &'static str, about: &'static str, examples: &'static str| {
         Command::new(name).about(about).after_help(examples)
     };
-    let names = switch("names", "Print the names alone, one a line").conflicts_with("json");
+    let names = switch("names", "Print only the names, one per line").conflicts_with("json");
     let list = command("list", "List all shapes", LIST_EXAMPLES).args([names, json()]);
     let show = command("show", "Show a shape and describe it", SHOW_EXAMPLES)
-        .arg(name("Which shape"))
+        .arg(name("Name of the shape"))
         .args(of_sensor(&[Parameter::Pitch]))
         .arg(json());
     let save = command("save", "Store a shape under a name", SAVE_EXAMPLES)
@@ -322,8 +322,8 @@ fn library() -> Command {
             "Shape of the library, or file; '-' for standard input",
         ))
         .arg(force());
-    let delete = command("delete", "Move a shape into the trash", DELETE_EXAMPLES);
-    let restore = command("restore", "Bring a deleted shape back", RESTORE_EXAMPLES);
+    let delete = command("delete", "Move a shape to the trash", DELETE_EXAMPLES);
+    let restore = command("restore", "Restore a deleted shape", RESTORE_EXAMPLES);
     Command::new("library")
         .about("List, show, save, delete and check stored shapes")
         .after_help(LIBRARY_EXAMPLES)
@@ -331,8 +331,8 @@ fn library() -> Command {
         .subcommand(list)
         .subcommand(show)
         .subcommand(save)
-        .subcommand(delete.arg(name("Which shape")))
-        .subcommand(restore.arg(name("Which shape")))
+        .subcommand(delete.arg(name("Name of the shape")))
+        .subcommand(restore.arg(name("Name of the shape")))
         .subcommand(command("path", "Print the library's folder", PATH_EXAMPLES))
         .subcommand(command("check", "Check every file", CHECK_EXAMPLES).arg(json()))
 }

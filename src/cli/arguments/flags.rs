@@ -176,7 +176,7 @@ pub(super) fn quiet() -> Arg {
 
 /// `--force`, for commands that store a shape.
 pub(super) fn force() -> Arg {
-    switch("force", "Replace a shape that has the name already")
+    switch("force", "Replace an existing shape of this name")
 }
 
 /// All flags of the sensor.

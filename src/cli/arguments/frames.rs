@@ -92,7 +92,7 @@ pub(crate) fn command() -> Command {
         .value_parser(value_parser!(PathBuf))
         .help("Recording; '-' for standard input");
     let frame =
-        option("frame", "N", "This frame of its channel, from 0").value_parser(whole::<u64>(0..));
+        option("frame", "N", "Frame N of the channel, from 0").value_parser(whole::<u64>(0..));
     let label = option("label", "L", "The frame that the recording itself labels L")
         .allow_hyphen_values(true)
         .value_parser(whole::<i64>(..));

@@ -13,13 +13,13 @@ pub(crate) const ABOUT: &str = "\
 Which shapes can a robot recognise by one touch?
 
 Touches figures with a matrix of tactile sensors, computes the exact imprint and
-describes it. Without a command the screen opens, where all of this is live.";
+describes it. Without a command, opens the screen, where all of this is live.";
 
 /// Below the flags of `taxel --help`: units, exit status and an example of most commands.
 pub(crate) const EXAMPLES: &str = "\
-All lengths are in sides of a sensory cell, x to the right, y down.
-Exit status: 0 done, 1 wrong input, 2 wrong command line, 3 another answer than
-expected, 128 + n ended by signal n.
+All lengths are in sides of a sensory cell; x runs to the right, y down.
+Exit status: 0 success, 1 wrong input, 2 wrong command line, 3 not the expected
+answer, 128 + n ended by signal n.
 
 Examples:
   taxel
@@ -33,8 +33,8 @@ Examples:
 
 /// `taxel figure`: on which sensor the ranges of the flags hold.
 pub(crate) const FIGURE_EXAMPLES: &str = "\
-Ranges are those of the 16 x 16 sensor: on another one its larger side takes the
-place of 16. A flag that is not given takes its default.
+The ranges are for a sensor of 16 x 16; for another sensor, read its larger side
+instead of 16. Flags that are not given take their defaults.
 
 Examples:
   taxel figure ellipse --x0 1.99 --y0 1.47 --thickness 2
@@ -46,9 +46,9 @@ Examples:
 /// `taxel picture`: where a picture comes from, and which sensor touches it.
 pub(crate) const PICTURE_EXAMPLES: &str = "\
 If a stored shape and a file have the same name, the shape is taken. A file is a
-stored shape or an imprint. The sensor is that of the stored shape; an imprint
-alone lies on one of 16 x 16, or of its own size where that is larger. A flag
-that is not given changes nothing: without flags the picture stays as it is.
+stored shape or an imprint. A stored shape keeps its sensor; an imprint gets one
+of 16 x 16, or of its own size if that is larger. Flags that are not given
+change nothing: without flags, the picture stays as it is.
 
 Examples:
   taxel picture washer --x0 6 --y0 4.5
@@ -57,12 +57,12 @@ Examples:
 
 /// `taxel describe`: the formats that can be read.
 pub(crate) const DESCRIBE_EXAMPLES: &str = "\
-An imprint is text, a line a row, '#' for an active taxel and '.' for an
-inactive one; or a table of numbers (CSV), a bitmap (PBM), a grey image of two
-shades (PGM) or an array of numpy (NPY); at most 64 x 64. Masks are read, too: 0
-and one other value, such as 255. The content decides, not the extension. A
-stored shape is a JSON file. If a stored shape and a file have the same name,
-the shape is taken.
+An imprint is text with one line per row, '#' for an active taxel and '.' for an
+inactive one; or a table of numbers (CSV), a bitmap (PBM), a grey image with two
+shades (PGM) or a numpy array (NPY); at most 64 x 64. Masks work, too: 0 and one
+other value, such as 255. The content decides, not the extension. A stored shape
+is a JSON file. If a stored shape and a file have the same name, the shape is
+taken.
 
 Examples:
   taxel describe washer
@@ -75,10 +75,10 @@ pub(crate) const EXPORT_EXAMPLES: &str = "\
 The extension of TO decides the format:
   .txt  rows of '#' and '.'         .svg  a drawing: matrix, outline where it is
   .pbm  a bitmap, P4                      known, rectangle, CG, CD, axes, legend
-  .csv  a table of 0 and 1          .png  the same in pixels, 288 an inch
-  .npy  an array of numpy, bool
+  .csv  a table of 0 and 1          .png  the same in pixels, 288 per inch
+  .npy  a numpy array of bool
 Drawings are grey; with a pitch they are in mm. An existing file is replaced
-only with --force. Figures are exported by 'taxel figure ... --export'.
+only with --force. To export a figure, use 'taxel figure ... --export'.
 
 Examples:
   taxel export washer washer.svg --pitch 2.5
@@ -94,23 +94,23 @@ pub(crate) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:
   {"imprint":[".##.","#..#",".##."]}
   {"frame":[[0,3,8],[1,9,12]],"at_least":5}
 Sizes, place, angle and zooms have no defaults here, unlike the flags of other
-commands; a figure without "thickness" is solid. A picture's name is one of the
-library. A figure or picture may bring a sensor of its own:
+commands; a figure without "thickness" is solid. A picture is named as in the
+library. A figure or picture may have its own sensor:
   "sensor":{"columns":32,"rows":32,"threshold":0.5}
 A frame has the values of a sensor in rows, and "at_least":VALUE, "percent":P
 or "low":VALUE,"high":VALUE; "least":TAXELS drops pieces of fewer taxels.
 
-Each answer is one line, in the order of the poses. A line that is wrong or
-longer than 1 MiB is answered by {"error":"line 3: ..."}, the others go on, and
-the exit status is 1. Blank lines are skipped. Answers are written out whenever
-the input pauses.
+Each answer is one line, in the order of the input. If a line is wrong or longer
+than 1 MiB, its answer is {"error":"line 3: ..."}, the other lines are still
+answered, and the exit status is 1. Blank lines are skipped. Answers are written
+out whenever the input pauses.
 
 Examples:
   taxel batch poses.jsonl > answers.jsonl
   echo '{"imprint":["##","#."]}' | taxel batch"###;
 
 /// `taxel script`: all commands of a script.
-pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command a line; places are column,row of the screen, from 0:
+pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command per line; places are column,row of the screen, from 0:
   Size 80x24          Set ascii on        Set theme light   Set columns 8
   Set library "DIR"   Set shape {...}     Set leftover {}   Set mouse off
   Resize 100x30       Seed 7 (of random touches)
@@ -121,13 +121,13 @@ pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command a line; places are colum
   Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"
   ExpectStyle 3,10 reverse
   Source touch.csv    Frames 3  (watch a recording, and take its next 3 frames)
-Quit checks that the program has ended; Source and Frames fail without the
-file or with fewer frames. Without --library the script has an empty library
-of its own. It writes files only below its own folder, and replaces none that
-was there before; --allow-outside, for scripts that you trust, lets it write
+Quit checks that the program has ended. Source fails without a readable file,
+Frames if too few frames come. Without --library the script has its own, empty
+library. It writes files only below its own folder, and replaces none that was
+there before; --allow-outside, for scripts that you trust, lets it write
 anywhere and set a library.
 
-Exit status: 0 all held, 1 an expectation failed, 2 the script is wrong, 3 the
+Exit status: 0 all expectations held, 1 one failed, 2 the script is wrong, 3 the
 program ended before the script.
 
 Examples:
@@ -137,8 +137,8 @@ Examples:
   echo 'State /regions/0/f' | taxel script -k 'fh<Enter>' -"#;
 
 /// `taxel config`: where the settings file is, and an example of one.
-pub(crate) const CONFIG_EXAMPLES: &str = r#"The output is itself a file of settings. Yours is config.toml in the folder
-taxel among your settings, or the file that --config or TAXEL_CONFIG names:
+pub(crate) const CONFIG_EXAMPLES: &str = r#"The output is itself a settings file. Yours is taxel/config.toml in your folder
+for settings, or the file that --config or TAXEL_CONFIG names:
   theme = "light"               # as --theme, --color; charset = "ascii"
   library = "~/shapes"
   [sensor]
@@ -146,9 +146,10 @@ taxel among your settings, or the file that --config or TAXEL_CONFIG names:
   [keys.matrix]                 # place, key, action; "none" frees a key
   "x" = "toggle"
   "<C-n>" = "new"
-Flags override the environment, which overrides the file. A file with anything
-unknown in it is refused with line and column, and nothing is started. Scripts
-ignore the settings unless --config is given: they do the same for everybody.
+Flags override the environment, which overrides the file. If the file has
+anything unknown in it, taxel names the line and column and does not start.
+Scripts ignore the settings unless --config is given, so they do the same for
+everybody.
 
 Examples:
   taxel config
@@ -171,8 +172,8 @@ Examples:
 /// The environment variables, for the manual page; `--help` leaves them out.
 pub(crate) const ENVIRONMENT: &str = "
   TAXEL_LIBRARY    the library's folder
-  TAXEL_CONFIG     the file of settings
-  NO_COLOR         no colours, where it is not empty
+  TAXEL_CONFIG     the settings file
+  NO_COLOR         no colours, if it is not empty
   TERM, COLORTERM  what the terminal can show
   LC_ALL, LC_CTYPE, LANG
                    ASCII only, unless the locale is UTF-8
@@ -181,16 +182,16 @@ pub(crate) const ENVIRONMENT: &str = "
 /// The files, for the manual page; `--help` leaves them out.
 pub(crate) const FILES: &str = "
   ~/.config/taxel/config.toml
-                   settings; 'taxel config' shows what it can say
+                   settings; 'taxel config' prints all of them
   ~/.local/share/taxel/library
                    the shapes, one JSON file each";
 
 /// `taxel sweep`: ranges and their defaults.
 pub(crate) const SWEEP_EXAMPLES: &str = "\
 A range is START:END:STEP with the end included, or one number; decimals are
-exact. A range that is not given has the paper's resolution: one cell by
-hundredths and every whole degree, 3.6 million poses. Figures start at x0 = y0 =
-5, pictures in the cell that they lie in. If the sensor would cut the shape off
+exact. By default, ranges have the paper's resolution: one cell in steps of 0.01
+and every whole degree, 3.6 million poses. Figures start at x0 = y0 = 5, and
+pictures in the cell that they lie in. If the sensor would cut the shape off
 there at any angle, a cell near the middle is used. The sweep prints its ranges.
 Figures are solid without --thickness. A picture keeps its own sensor.
 
@@ -213,9 +214,9 @@ Examples:
 
 /// `taxel model`: what a model is.
 pub(crate) const MODEL_EXAMPLES: &str = "\
-A model holds every imprint that some shapes can leave, and in how many poses
-each shape leaves it. So the best answer to one touch can be found by counting,
-and no method gets a smaller share of the touches wrong.
+A model holds every imprint that its shapes can leave, and in how many poses
+each shape leaves it. So counting finds the best answer to one touch: no method
+gets a smaller share of the touches wrong.
 MODEL is the name of a model beside the library, or a file.
 
 Examples:
@@ -225,13 +226,13 @@ Examples:
 
 /// `taxel model train`: how shapes are given, and on which grid they are touched.
 pub(crate) const MODEL_TRAIN_EXAMPLES: &str = "\
-A line of JSON is a shape with a name, as for 'taxel batch' without a pose:
+A line of JSON is a shape as for 'taxel batch', but with a name and no pose:
   {\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}
   {\"name\":\"ring\",\"picture\":\"washer\"}
-Without ranges, every shape is touched at 100 x 100 positions inside one cell
-and at every whole degree, on the smallest sensor that holds all of them, at
-least 16 x 16, which is printed. Poses that the sensor cuts off are refused,
-since a cut imprint depends on the rim. 'taxel merge' puts shards together.
+By default, every shape is touched at 100 x 100 positions inside one cell and at
+every whole degree. The sensor is the smallest that holds all shapes, at least
+16 x 16; its size is printed. Poses that the sensor cuts off are refused, since
+a cut imprint depends on the rim. 'taxel merge' puts shards together.
 
 Examples:
   taxel model train parts.jsonl --name parts
@@ -242,7 +243,7 @@ Examples:
 
 /// `taxel model show`: what a card says.
 pub(crate) const MODEL_SHOW_EXAMPLES: &str = "\
-Prints shapes, sensor and poses, and how well one touch tells the shapes apart.
+Prints shapes, sensor and poses, and how well one touch tells shapes apart.
 
 Examples:
   taxel model show parts
@@ -257,7 +258,7 @@ Examples:
 
 /// `taxel model delete`: unlike a deleted shape, a deleted model does not come back.
 pub(crate) const MODEL_DELETE_EXAMPLES: &str = "\
-The file is removed for good; it can be trained again.
+The file is removed for good, but the model can be trained again.
 
 Examples:
   taxel model delete parts";
@@ -265,11 +266,12 @@ Examples:
 /// `taxel model confusion`: what the numbers mean.
 pub(crate) const MODEL_CONFUSION_EXAMPLES: &str = "\
 A row is a true shape, a column the name that the best classifier gives it; the
-numbers are touches, all of them counted. 'certain' are touches that only one
-shape can leave. Descriptors are those that do not say where the imprint lies:
-na, nae, ce, p, f, roundness, area, diagonals, side_ratio, filling, cg_cd,
-cg_cd_direction. CG-CD at full precision is more of a fingerprint than a
-measurement: --round cg_cd=0.01 says what it is worth when measured.
+numbers count the touches of all poses. 'certain' are touches that only one
+shape can leave. The descriptors are those that do not depend on where the
+imprint lies: na, nae, ce, p, f, roundness, area, diagonals, side_ratio,
+filling, cg_cd, cg_cd_direction. CG-CD at full precision is more of a
+fingerprint than a measurement: --round cg_cd=0.01 shows what it is worth when
+measured.
 
 Examples:
   taxel model confusion parts
@@ -282,11 +284,11 @@ Examples:
 
 /// `taxel model separate`: what it answers.
 pub(crate) const MODEL_SEPARATE_EXAMPLES: &str = "\
-Trains the set at each scale (all lengths of all shapes times it) or, where the
-lengths are in mm, at each pitch, and says how many touches even the best
-classifier names wrong. --want scans from the smallest size upwards, then in
-tenths of the step before the first size that reaches the error. The error is
-not monotonic, so --want also reports how many larger sizes miss it again.
+Trains the set at each scale, which multiplies all lengths, or, if lengths are
+in mm, at each pitch, and prints how many touches even the best classifier names
+wrong. --want scans from the smallest size upwards, then in tenths of the step
+before the first size that reaches the error. The error is not monotonic, so
+--want also reports how many larger sizes miss it again.
 
 Examples:
   taxel model separate parts --scale 0.5:2:0.1 --positions 20
@@ -296,9 +298,9 @@ Examples:
 
 /// `taxel model touches`: what is simulated.
 pub(crate) const MODEL_TOUCHES_EXAMPLES: &str = "\
-A shape is touched again and again in random poses, and the probabilities are
-multiplied, until one shape is as probable as wanted. The mean number of touches
-has its standard error; the same seed gives the same numbers.
+Touches each shape again and again in random poses and multiplies probabilities,
+until one shape is as probable as wanted. The mean number of touches comes with
+its standard error; the same seed gives the same numbers.
 
 Examples:
   taxel model touches parts
@@ -308,12 +310,12 @@ Examples:
 pub(crate) const RECOGNISE_EXAMPLES: &str = "\
 Reads an imprint in any format that 'taxel describe' reads, or lines of JSON,
 each {\"imprint\":[\"..##\",...]} or, for several touches of one shape,
-{\"touches\":[[...],[...]]}. Each line gets one line back; other keys are ignored,
-except frame, label, time and channel, which are copied. An imprint at the rim
-may be cut off and is never 'certain'. With --noise an imprint that no shape
-leaves is answered too: every key in every place on the matrix is compared.
-Exit status 3: --expect was given, and the answer is another one, tied, rejected
-or unknown.
+{\"touches\":[[...],[...]]}. Each line gets one line in return, which copies
+frame, label, time and channel; other keys are ignored. An imprint at the rim
+may be cut off and is never 'certain'. With --noise, even an imprint that no
+shape leaves gets an answer: it is compared with every key in every place on the
+matrix. With --expect, the exit status is 3 if the answer is another one, tied,
+rejected or unknown.
 
 Examples:
   taxel recognise imprint.txt --pose
@@ -324,9 +326,9 @@ Examples:
 
 /// `taxel library`: what a library is, and which folder it is.
 pub(crate) const LIBRARY_EXAMPLES: &str = "\
-A library is a folder with one JSON file a shape. The shapes that come with the
-program are always listed; they can be copied, not changed. A name has 1 to 64
-letters, digits, spaces, '-', '_', '.'; upper and lower case are the same.
+A library is a folder with one JSON file per shape. The shapes that come with
+the program are always listed; you can copy them, but not change them. A name
+has 1 to 64 letters, digits, spaces, '-', '_' or '.'; case does not matter.
 Without --library the folder is TAXEL_LIBRARY, else the 'library' of the
 settings, else ~/.local/share/taxel/library.
 
@@ -338,8 +340,8 @@ Examples:
 
 /// `taxel library list`.
 pub(crate) const LIST_EXAMPLES: &str = "\
-Size in columns x rows, active taxels, pieces and holes. A file that cannot be
-read is listed as broken, with the reason.
+Prints size (columns x rows), active taxels, pieces and holes. Files that cannot
+be read are listed as broken, with the reason.
 
 Examples:
   taxel library list
@@ -355,7 +357,7 @@ Examples:
 /// `taxel library save`.
 pub(crate) const SAVE_EXAMPLES: &str = "\
 A file is a stored shape or an imprint. If a stored shape and a file have the
-same name, the shape is taken; this is how to copy one.
+same name, the shape is taken, so you can copy a shape.
 
 Examples:
   taxel library save ring imprint.txt
@@ -364,7 +366,7 @@ Examples:
 
 /// `taxel library delete`.
 pub(crate) const DELETE_EXAMPLES: &str = "\
-The last 50 that were deleted are kept.
+The last 50 deleted shapes are kept.
 
 Examples:
   taxel library delete ring
@@ -384,9 +386,9 @@ Examples:
   ls \"$(taxel library path)\"";
 
 /// `taxel library check`.
-pub(crate) const CHECK_EXAMPLES: &str = r#"Reads every shape, and lists what else is in the folder. The exit status is 1 if
-a shape is broken. With --json the answer is an array with an object for each
-finding, in one line; it is empty if there is none:
+pub(crate) const CHECK_EXAMPLES: &str = r#"Reads every shape, and lists other files in the folder. The exit status is 1 if
+a shape is broken. --json prints an array on one line, with an object for each
+finding; without findings it is empty:
   {"finding":"broken","name":"ring","reason":"..."}
   {"finding":"left over","path":"shapes/notes.txt","reason":"..."}
 
@@ -397,14 +399,15 @@ Examples:
 
 /// `taxel frames`: the formats of recordings, the order of processing, and what happens to a damaged one.
 pub(crate) const FRAMES_EXAMPLES: &str = "\
-A recording is a file of Tekscan, XSENSOR, emed or zebris, PoPu, MCAP, NPY, NPZ,
-JSON lines, what 'ros2 topic echo' prints, or a table of numbers; its content
-decides which. Without a flag under Frames its channels are listed. Frames are
-cropped, flipped, turned and masked, then tared, then multiplied by the gain;
-then the threshold makes the imprint. Values are in the recording's own unit.
+A recording comes from Tekscan, XSENSOR, emed, zebris or PoPu, or is MCAP, NPY,
+NPZ, JSON lines, the output of 'ros2 topic echo' or a table of numbers; its
+content decides which. Without a flag under Frames, its channels are listed.
+Frames are cropped, flipped, turned and masked, then tared, then multiplied by
+the gain; then the threshold makes the imprint. Values are in the recording's
+own unit.
 
-If a recording is damaged, the whole frames before the damage are answered, the
-damage is reported with its place, and the exit status is 1.
+If a recording is damaged, the complete frames before the damage are processed,
+taxel reports where the damage is, and the exit status is 1.
 
 Examples:
   taxel frames recording.csv
@@ -418,18 +421,18 @@ Examples:
 
 /// `taxel watch`: what is answered, what a stream may be, and what is recorded.
 pub(crate) const WATCH_EXAMPLES: &str = "\
-On a terminal the frames are shown on a page, which stays open when the source
-has ended, even with --once. With --json, or in a pipeline, each frame is
-answered by one line, as of 'taxel frames --all --json'; without a threshold its
-imprint is null. Streams are numbers in lines, JSON lines, what
-'ros2 topic echo' prints, FlexiTac's and MatSense's bytes; the format is
-recognised from the content. A recording is played at its own rate. A serial
-line or connection that is lost is tried again each second, unless --once is
-given; on a terminal, taxel also waits for one that is not there yet. Torn,
-short, long and garbled frames are dropped and counted.
+On a terminal, a page shows the frames; it stays open when the source has ended,
+even with --once. With --json, or in a pipeline, taxel prints a line for each
+frame, as 'taxel frames --all --json' does; without a threshold its imprint is
+null. A stream consists of numbers in lines, JSON lines, the output of
+'ros2 topic echo', or FlexiTac's or MatSense's bytes; its content decides which.
+A recording is played at its own rate. If a serial line or connection is lost,
+taxel tries again each second, unless --once is given; on a terminal, it also
+waits for one that is not there yet. Torn, short, long and garbled frames are
+dropped and counted.
 
---write records every frame, read or not; numpy can open the file at any moment.
-A .json of the same name says what the values are.
+--write records every frame, shown or not; numpy can open the file at any time.
+A .json file of the same name describes the values.
 
 Examples:
   taxel watch recording.csv --once --at-least 10

@@ -78,8 +78,8 @@ pub(crate) fn script() -> Command {
         .short('k')
         .value_name("KEYS")
         .help("Keys to press first; without a script, print the screen");
-    let styles = switch("styles", "Screens with a grid of style letters");
-    let json = switch("json", "Screens as lines of JSON");
+    let styles = switch("styles", "Add a grid of style letters to screens");
+    let json = switch("json", "Print screens as lines of JSON");
     let svg = option(
         "svg",
         "DIR",
@@ -109,7 +109,7 @@ pub(crate) fn completions() -> Command {
         .hide_possible_values(true)
         .help("bash, zsh or fish");
     Command::new("completions")
-        .about("Print what a shell completes after 'taxel'")
+        .about("Print the completion script for your shell")
         .after_help(COMPLETIONS_EXAMPLES)
         .arg(shell)
 }
@@ -148,7 +148,7 @@ pub(crate) fn look() -> [Arg; 3] {
         choice(
             "theme",
             palettes.map(|(name, _)| name).to_vec(),
-            "Auto, dark, light or mono",
+            "Theme: auto, dark, light or mono",
         ),
         no_mouse,
     ]
@@ -160,7 +160,7 @@ pub(crate) fn record() -> Arg {
     option(
         "record",
         "FILE",
-        "Write what is typed as a script, to a new file, with\nthe shapes that are used",
+        "Record what you type as a script in a new file, with\nthe shapes that you use",
     )
     .value_parser(value_parser!(PathBuf))
 }
@@ -175,7 +175,7 @@ pub(crate) fn config() -> Command {
 
 /// `--config`, which every command takes.
 pub(crate) fn config_file() -> Arg {
-    option("config", "FILE", "A settings file in place of your own")
+    option("config", "FILE", "Use this settings file instead of your own")
         .value_parser(value_parser!(PathBuf))
 }
 

@@ -57,11 +57,11 @@ pub(super) fn command() -> Command {
     .default_value(DEFAULT_MODEL)
     .hide_default_value(true);
     let top =
-        option("top", "K", "Show the K likeliest shapes only").value_parser(whole::<u32>(1..));
+        option("top", "K", "Show only the K likeliest shapes").value_parser(whole::<u32>(1..));
     let reject = option(
         "reject",
         "P",
-        "Give no answer that is less probable (0 to 1)",
+        "Reject answers less probable than P (0 to 1)",
     )
     .value_parser(parse_probability);
     let expect = option(

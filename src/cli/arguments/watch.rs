@@ -66,7 +66,7 @@ pub(crate) fn command() -> Command {
         ));
     let baud = option("baud", "BAUD", "Speed of a serial line; default 115200")
         .value_parser(whole::<u32>(50..=20_000_000));
-    let once = switch("once", "Read to the end, as fast as it goes, and stop")
+    let once = switch("once", "Read to the end as fast as possible, then stop")
         .conflicts_with_all(["loop", "speed"]);
     let again = switch("loop", "Start a recording again when it ends");
     let speed = option(

@@ -132,7 +132,7 @@ fn questions() -> [Arg; 4] {
         option(
             "given",
             "KEY,...",
-            "As if only these descriptors were known: na,p",
+            "Know only these descriptors: na,p",
         )
         .value_parser(parse_given),
         switch("greedy", "Choose descriptors one by one until none helps"),
@@ -180,7 +180,7 @@ fn noisy() -> [Arg; 5] {
     let noise = option(
         "noise",
         "START:END:STEP",
-        "Touches whose taxels flip this often",
+        "Test touches whose taxels flip this often",
     )
     .value_parser(parse_noise_range);
     let dead = option(
@@ -200,7 +200,7 @@ fn noisy() -> [Arg; 5] {
     let test = option(
         "test",
         "half-step",
-        "Touches between the poses of the model",
+        "Test touches between the model's poses",
     )
     .value_parser(["half-step"])
     .hide_possible_values(true);

@@ -92,7 +92,7 @@ pub(super) fn command() -> Command {
     let delete = Command::new("delete")
         .about("Delete a model")
         .after_help(MODEL_DELETE_EXAMPLES)
-        .arg(flags::name("Which model"));
+        .arg(flags::name("Name of the model"));
     Command::new("model")
         .about("Train models of shapes, and see what one touch can tell")
         .after_help(MODEL_EXAMPLES)

@@ -79,7 +79,7 @@ pub(super) fn command() -> Command {
         .args([
             range(Axis::Angle, "that of the model, or 0:359:1"),
             shape_set::positions()
-                .help("Positions of a cell each way;\ndefault those of the model, or 100"),
+                .help("Positions per cell along x and y;\ndefault those of the model, or 100"),
             want,
         ])
         .group(

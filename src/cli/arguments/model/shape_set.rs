@@ -68,7 +68,7 @@ pub(super) fn positions() -> Arg {
     option(
         "positions",
         "N",
-        "Positions of a cell each way; default 100",
+        "Positions per cell along x and y; default 100",
     )
     .value_parser(parse_positions)
     .help_heading("Grid")

@@ -72,7 +72,7 @@ pub(super) fn command() -> Command {
         "Keep the model under this name, beside the library",
     )
     .value_parser(parse_name);
-    let allow_cut = switch("allow-cut", "Take poses that the sensor cuts off, too");
+    let allow_cut = switch("allow-cut", "Also take poses that the sensor cuts off");
     let anchor = anchor().help(
         "What x0 and y0 place: corner or centre; default\n\
          corner where one of them is given, else centre",
