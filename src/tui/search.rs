@@ -101,7 +101,7 @@ impl LinePrompt for SearchDialog {
                 "   a key, or a word of what it does".into()
             }
             (_, Searched::History(_)) if self.field.text().is_empty() => {
-                "   a word of what a step did".into()
+                "   a word in a step".into()
             }
             ((_, 0), _) => "   no match".into(),
             ((number, all), _) => format!("   {number} of {all}").into(),

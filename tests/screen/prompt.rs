@@ -202,7 +202,7 @@ fn help_is_everywhere() {
             "<Space>q?",
             "(y/n, s: save first)",
             "At a question",
-            "no answer now",
+            "cancel, without an answer",
             "On the matrix",
         ),
         (

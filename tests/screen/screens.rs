@@ -259,7 +259,7 @@ fn help_is_whole_and_holds_where_it_is() {
         let text = "New: empty the matrix, to draw by hand";
         assert!(help.contains(text), "{size:?}\n{help}");
         let end = joined(&sized(size, false, "?<99x:PageDown>").screen());
-        assert!(end.contains("the keys that mean something here"), "{end}");
+        assert!(end.contains("the keys that work here"), "{end}");
     }
     let held = sized((80, 60), false, "f<Enter>g?");
     // What an outer context has under other keys too stays with those.

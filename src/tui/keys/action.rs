@@ -333,12 +333,12 @@ actions! {
         "recognise" Arguments::Model, "Recognise: which shape of this set left the imprint";
         "restore" Arguments::Deleted, "bring back a deleted shape; alone, the one deleted last";
         "save" Arguments::Name, "Save: store what is on the matrix";
-        "seed" Arguments::Seed, "begin the random touches of the quiz at a seed";
+        "seed" Arguments::Seed, "set the seed of the quiz's random touches";
         "sensor" Arguments::Sensor, "Sensor: columns, rows, threshold, pitch";
         "separate" Arguments::Sizes, "the error against the size of the shapes";
         "turn" Arguments::Degrees, "turn the shape right; negative degrees: left";
         "watch" Arguments::FrameSource, "Watch: the frames of a sensor, live or recorded";
-        "write" Arguments::File(FilePurpose::Write), "write an imprint, shape or drawing, by the file's ending";
+        "write" Arguments::File(FilePurpose::Write), "write an imprint, shape or drawing, by file extension";
     }
 }
 

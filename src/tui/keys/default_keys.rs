@@ -53,9 +53,9 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Home => FIRST_COLUMN, End => LAST_COLUMN] "" "cursor to the first, the last column";
         [PageUp => FIRST_ROW, PageDown => LAST_ROW] "" "cursor to the first, the last row";
         [Char('1') => COUNT_ONE, Char('2') => COUNT_TWO, Char('3') => COUNT_THREE, Char('4') => COUNT_FOUR, Char('5') => COUNT_FIVE, Char('6') => COUNT_SIX, Char('7') => COUNT_SEVEN, Char('8') => COUNT_EIGHT, Char('9') => COUNT_NINE, Char('0') => COUNT_ZERO]
-            "" "a count: how many times the next key does it, 12 Right";
+            "" "a count: repeats the next key, as in 12 Right";
         [Char(' ') => TOGGLE] "toggle" "turn the taxel under the cursor on or off";
-        [Char('u') => UNDO] "undo" "undo the last change, then those before";
+        [Char('u') => UNDO] "undo" "undo the last change, then earlier ones";
         [Char('U') => REDO, Ctrl('r') => REDO] "" "redo what was undone";
         [Char('=') => COMPARE] "" "compare with the state before the last step";
         [Char('H') => HISTORY] "" "History: all steps, to go back to any of them";
@@ -93,7 +93,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('+') => LARGER_STEP, Char('=') => LARGER_STEP, Char('-') => SMALLER_STEP]
             "step" "a larger, a smaller step: 0.01, 0.1, 1";
         [Char('g') => GRAB, Enter => GRAB] "let go" "let the shape go where it is";
-        [Esc => PUT_BACK] "put back" "put it back to where it was taken, and let go";
+        [Esc => PUT_BACK] "put back" "put it back where it was, and let go";
     }
 
     /// Characters that have no row are typed into the field with the focus.
@@ -113,14 +113,14 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('y') => ACCEPT] "yes" "yes";
         [Char('n') => DECLINE] "no" "no";
         [Char('s') => SAVE] "save first" "at the end: save first, then quit";
-        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "not now" "no answer now";
+        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "not now" "cancel, without an answer";
         [Char('?') => HELP] "help" "these keys";
     }
 
     /// Letters are typed into the filter, so that `q` does not close this page as it does others.
     List {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "previous, next shape";
-        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, on";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, forward";
         [Home => FIRST, End => LAST] "" "first, last shape";
         [Enter => ACCEPT] "accept" "accept the selected shape";
         [Char('/') => ERASE_ALL, Ctrl('u') => ERASE_ALL]
@@ -133,11 +133,11 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     /// To move in the list changes nothing; the matrix follows only on Enter.
     History {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "earlier, later step";
-        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten steps back, on";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten steps back, forward";
         [Home => FIRST, End => LAST] "" "the start, the latest step";
         [Enter => ACCEPT] "go there" "go to the state after this step";
         [Char('=') => COMPARE] "compare" "compare that state with the present one";
-        [Char('/') => SEARCH] "search" "search for a word of what a step did";
+        [Char('/') => SEARCH] "search" "search the steps for a word";
         [Char('n') => NEXT_MATCH, Char('N') => PREVIOUS_MATCH] "match" "next, previous match";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "close" "leave the search; without one: close";
         [Char('q') => QUIT, Char('H') => QUIT] "" "leave everything as it is";
@@ -196,7 +196,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('d') => NEXT_DESCRIPTOR, Char('D') => PREVIOUS_DESCRIPTOR]
             "descriptor" "next, previous descriptor";
         [Char('m') => MARK, Char('\'') => JUMP]
-            "" "mark what is selected by a letter; go to a mark";
+            "" "mark the selection with a letter; go to a mark";
         [Char('x') => EXPORT]
             "export" "write .csv .jsonl .npz imprints, .npy poses, .svg .png";
         [Char('e') => RANGES] "ranges" "explore other ranges";
@@ -208,7 +208,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     /// Enter takes the first pose of the selected imprint: of its poses the one that the sweep came to first.
     Imprints {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "" "previous, next imprint";
-        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten imprints back, on";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten imprints back, forward";
         [Home => FIRST, End => LAST] "" "first, last imprint";
         [Enter => ACCEPT] "to matrix" "put it onto the matrix, in its first pose";
         [Char('/') => FILTER, Char('f') => FILTER]
@@ -245,13 +245,13 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [LEFT => CURSOR_LEFT, RIGHT => CURSOR_RIGHT, UP => CURSOR_UP, DOWN => CURSOR_DOWN]
             "" "to the next pose; each letter or colour is an imprint";
         [Char('+') => ZOOM_IN, Char('-') => ZOOM_OUT]
-            "zoom" "closer, down to letters; out, to the whole range";
+            "zoom" "zoom in, down to letters; out, to the whole range";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten poses up, down";
         [Home => FIRST, End => LAST] "" "to the first, the last x0";
         [Char('<') => PREVIOUS_ANGLE, Char('>') => NEXT_ANGLE]
             "angle" "previous, next angle";
         [Char('(') => TEN_ANGLES_BACK, Char(')') => TEN_ANGLES_ON]
-            "" "ten angles back, on";
+            "" "ten angles back, forward";
         [Char('z') => NEXT_ZOOM_X, Char('Z') => PREVIOUS_ZOOM_X,
             Char('w') => NEXT_ZOOM_Y, Char('W') => PREVIOUS_ZOOM_Y]
             "" "next, previous zoom x, zoom y of a picture";
@@ -261,10 +261,10 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
 
     Scatter {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN, PageUp => PAGE_UP, PageDown => PAGE_DOWN]
-            "y axis" "choose the descriptor of the upward axis";
+            "y axis" "choose the descriptor of the vertical axis";
         [Home => FIRST, End => LAST] "" "first, last descriptor for that axis";
         [LEFT => EARLIER_COLUMNS, RIGHT => LATER_COLUMNS]
-            "x axis" "choose the descriptor of the other axis";
+            "x axis" "choose the descriptor of the horizontal axis";
         [Char('/') => FILTER, Char('f') => FILTER]
             "filter" "show only imprints that fit, such as na>=40 holes=0";
         [Enter => ACCEPT] "to matrix" "put the selected imprint onto the matrix";
@@ -279,7 +279,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [LEFT => PREVIOUS_ANGLE, RIGHT => NEXT_ANGLE, Char('<') => PREVIOUS_ANGLE, Char('>') => NEXT_ANGLE]
             "angle" "previous, next angle";
         [Char('(') => TEN_ANGLES_BACK, Char(')') => TEN_ANGLES_ON]
-            "" "ten angles back, on";
+            "" "ten angles back, forward";
         [Enter => ACCEPT] "to matrix" "put the pose of the map at this angle onto the matrix";
         [Char('g') => FOLLOW] "list" "go to the imprint of that pose in the list";
     }
@@ -293,7 +293,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
 
     /// Any letter is an answer, so no letter can be bound here.
     Mark {
-        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "no letter now; any letter marks, or goes there";
+        [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "cancel; any letter sets the mark, or goes to it";
         [F1 => HELP] "help" "these keys";
     }
 
@@ -305,7 +305,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
 
     /// What has no row goes to the matrix: one draws, moves and turns while the answer follows.
     Recognise {
-        [Char('t') => QUIZ] "quiz" "a random shape of the set touches: name it";
+        [Char('t') => QUIZ] "quiz" "quiz: name the shape that left a random touch";
         [Char('a') => KEEP, Char('x') => FORGET]
             "keep, forget" "keep this touch as one of several; forget them";
         [Char('o') => NEXT_SET, Char('O') => PREVIOUS_SET]
@@ -322,7 +322,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     /// Letters choose a shape by the beginning of its name, and digits name one at once; so help is F1.
     Quiz {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "previous, next shape, or by its first letter";
-        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, on";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, forward";
         [Home => FIRST, End => LAST] "" "first, last shape";
         [Enter => ACCEPT] "name it" "name the shape, or 1 to 9";
         [Char(' ') => QUIZ] "again" "touch again, in another pose";
@@ -344,13 +344,13 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     /// While sizes are still looked at, Enter is refused, and Esc stops the work and leaves the page open.
     Separate {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "size" "previous, next size";
-        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten sizes back, on";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten sizes back, forward";
         [Home => FIRST, End => LAST] "" "first, last size";
         [Char('+') => HIGHER_ERROR, Char('=') => HIGHER_ERROR, Char('-') => LOWER_ERROR]
             "error" "raise, lower the wanted error";
-        [Char('x') => EXPORT] "export" "write a file: .csv numbers, .svg .png curve";
-        [Enter => ACCEPT] "to matrix" "put the imprint that is confused onto the matrix";
-        [Char('V') => SEPARATE] "" "go on after a stop";
+        [Char('x') => EXPORT] "export" "write a file: .csv numbers, .svg or .png curve";
+        [Enter => ACCEPT] "to matrix" "put the confused imprint onto the matrix";
+        [Char('V') => SEPARATE] "" "resume after a stop";
         [Char('?') => HELP] "help" "these keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
             "close" "stop the work; back to the matrix";
@@ -363,17 +363,17 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('+') => THRESHOLD_UP, Char('=') => THRESHOLD_UP, Char('-') => THRESHOLD_DOWN]
             "threshold" "the threshold up, down";
         [Char('%') => PERCENT] "" "a threshold in percent of the peak, or in the unit";
-        [Char(' ') => FREEZE] "freeze" "stay at this frame, or follow the source again";
+        [Char(' ') => FREEZE] "freeze" "freeze this frame, or follow the source again";
         [LEFT => SCROLL_UP, RIGHT => SCROLL_DOWN, UP => SCROLL_UP, DOWN => SCROLL_DOWN]
             "scrub" "to an earlier, a later frame";
-        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten frames back, on";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten frames back, forward";
         [Home => FIRST, End => LAST] "" "the oldest frame; follow the source";
-        [Char('p') => PEAK_HOLD] "peak" "hold the peak of each cell, or let go of it";
+        [Char('p') => PEAK_HOLD] "peak" "hold the peak of each cell, or release it";
         [Char('v') => NEXT_LAYER] "view" "raw values, tared values, the imprint";
         [Char('#') => NUMBERS] "" "values as numbers, or in shades";
         [Char('g') => OWN_RANGE] "" "shades over this frame's values, or a fixed range";
-        [Char('r') => RECORD] "record" "record all frames in a file, or end that";
-        [Char('m') => MARK_FRAME] "" "mark this frame, or take its mark off";
+        [Char('r') => RECORD] "record" "record all frames in a file, or stop recording";
+        [Char('m') => MARK_FRAME] "" "mark this frame, or remove its mark";
         [Char('n') => NEXT_MODEL] "name" "name the shape by the next set, or by none";
         [Enter => ACCEPT] "to matrix" "take the imprint to the matrix";
         [Char('?') => HELP] "help" "these keys";
@@ -385,7 +385,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     Help {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "scroll" "scroll by a line";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN, Char(' ') => PAGE_DOWN] "" "scroll by a page";
-        [Char('/') => SEARCH] "search" "search for a key, or for what one does";
+        [Char('/') => SEARCH] "search" "search for a key or what it does";
         [Char('n') => NEXT_MATCH, Char('N') => PREVIOUS_MATCH] "match" "next, previous match";
         [Char('q') => QUIT, Char('?') => QUIT, F1 => QUIT, Enter => QUIT] "close" "close";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "" "leave the search; without one: close";
@@ -408,10 +408,10 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
 
     /// Looked up last, so that any place can give these keys another meaning.
     Everywhere {
-        [Ctrl('l') => REDRAW] "" "draw the screen anew";
+        [Ctrl('l') => REDRAW] "" "redraw the screen";
         [Ctrl('z') => SUSPEND] "" "back to the shell; fg returns here";
         [Ctrl('c') => QUIT] "" "close what is open; on the matrix: quit";
-        [F1 => HELP] "" "the keys that mean something here";
+        [F1 => HELP] "" "the keys that work here";
     }
 };
 
