@@ -26,8 +26,8 @@ pub enum ReadAnew {
 impl fmt::Display for ReadAnew {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Cut => "was cut or written anew: it is read from its start",
-            Self::Replaced => "was replaced: the new file is read from its start",
+            Self::Cut => "was truncated or rewritten: reading it again from its start",
+            Self::Replaced => "was replaced: reading the new file from its start",
         })
     }
 }

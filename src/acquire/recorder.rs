@@ -73,7 +73,7 @@ pub enum RecorderError {
         path: PathBuf,
     },
     /// The file, or the description beside it, is the source.
-    #[error("{} is the source that is watched: record in another file", path.display())]
+    #[error("{} is the source being watched: record to another file", path.display())]
     IsSource {
         /// The file.
         path: PathBuf,

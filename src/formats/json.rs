@@ -114,7 +114,7 @@ const PARSER: [(&str, &str); 20] = [
     ("EOF while parsing a value", "the end, expected a value"),
     (
         "EOF while parsing a string",
-        "the end inside a text, expected a closing quote",
+        "the end inside a string, expected a closing quote",
     ),
     (
         "EOF while parsing an object",
@@ -127,12 +127,15 @@ const PARSER: [(&str, &str); 20] = [
     ("expected `:`", "expected ':' after a key"),
     ("expected `,` or `}`", "expected ',' or '}'"),
     ("expected `,` or `]`", "expected ',' or ']'"),
-    ("expected `\"`", "expected a text in double quotes"),
-    ("expected double quote", "expected a text in double quotes"),
+    ("expected `\"`", "expected a string in double quotes"),
+    (
+        "expected double quote",
+        "expected a string in double quotes",
+    ),
     ("key must be a string", "expected a key in double quotes"),
     (
         "trailing comma",
-        "a comma too many, expected another value after it or none",
+        "expected another value after the comma, or no comma",
     ),
     (
         "trailing characters",
@@ -150,7 +153,7 @@ const PARSER: [(&str, &str); 20] = [
     ),
     (
         "control character (\\u0000-\\u001F) found while parsing a string",
-        "a control character in a text, expected an escape such as \\n",
+        "a control character in a string, expected an escape such as \\n",
     ),
     (
         "recursion limit exceeded",
@@ -159,7 +162,7 @@ const PARSER: [(&str, &str); 20] = [
 ];
 
 /// What may stand where a value must.
-const VALUE: &str = "expected a value: a text in double quotes, a number, a list or an object";
+const VALUE: &str = "expected a value: a string in double quotes, a number, a list or an object";
 
 /// What was found, as people call it: `string "3"` is the text "3".
 fn noun(found: &str) -> String {
@@ -176,7 +179,7 @@ fn noun(found: &str) -> String {
         "sequence" => "a list".to_owned(),
         "unit value" => "null".to_owned(),
         _ => match found.strip_prefix("string ") {
-            Some(text) => format!("the text {text}"),
+            Some(text) => format!("the string {text}"),
             None => found.to_owned(),
         },
     }
@@ -188,7 +191,7 @@ fn kind(expected: &str) -> &str {
         "f64" | "f32" => "a number",
         "u8" => "a whole number from 0 to 255",
         "u32" => "a whole number from 0 to 4294967295",
-        "u16" | "u64" | "usize" => "a whole number from 0 up",
+        "u16" | "u64" | "usize" => "a whole number, 0 or more",
         "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
         "a string" | "a borrowed string" => "a text",
         "a boolean" => "true or false",
@@ -215,18 +218,18 @@ mod parser_tests {
             ("{\"a\":nonsense}", VALUE),
             ("{\"a\":x}", VALUE),
             ("{", "the end inside an object, expected '}'"),
-            ("{\"a", "the end inside a text, expected a closing quote"),
+            ("{\"a", "the end inside a string, expected a closing quote"),
             ("{\"a\" 1}", "expected ':' after a key"),
             ("{\"a\":1 2}", "expected ',' or '}'"),
             ("{1:2}", "expected a key in double quotes"),
             (
                 "{\"a\":1,}",
-                "a comma too many, expected another value after it or none",
+                "expected another value after the comma, or no comma",
             ),
             ("{} {}", "more text after the end, expected one object"),
             ("{\"a\":1.}", "expected a number such as 3, 0.5 or 1e-3"),
             ("{\"a\":1e999}", "a number too large"),
-            ("{\"a\":\"3\"}", "found the text \"3\", expected a number"),
+            ("{\"a\":\"3\"}", "found the string \"3\", expected a number"),
             ("{\"a\":null}", "found null, expected a number"),
             ("{\"a\":true}", "found true, expected a number"),
             ("{\"a\":[1]}", "found a list, expected a number"),
@@ -235,7 +238,7 @@ mod parser_tests {
             ("-3.5", "found the number -3.5, expected an object"),
             (
                 "{\"a\n\":1}",
-                "a control character in a text, expected an escape such as \\n",
+                "a control character in a string, expected an escape such as \\n",
             ),
             (
                 "{\"a\\q\":1}",

@@ -115,7 +115,7 @@ impl fmt::Display for PbmError {
             ),
             Self::Third { row, column } => write!(
                 f,
-                "row {row}, column {column}: a third shade, expected an image of two"
+                "row {row}, column {column}: a third shade, expected an image with two"
             ),
             Self::Unclear => f.write_str("one shade of grey everywhere, expected two"),
             Self::Long { found } => write!(

@@ -195,7 +195,7 @@ impl<'de: 'a, 'a> Deserialize<'de> for File<'a> {
                 while let Some(key) = map.next_key::<String>()? {
                     if seen.contains(&key) {
                         return Err(A::Error::custom(format_args!(
-                            "key {:?} stands twice",
+                            "key {:?} is given twice",
                             shortened(&key)
                         )));
                     }

@@ -87,7 +87,7 @@ impl UnfinishedFile {
         if let Some(old) = old {
             file.file()
                 .set_permissions(old.permissions())
-                .map_err(refuse("give it its permissions"))?;
+                .map_err(refuse("set its permissions"))?;
         }
         Ok(Self {
             path: path.to_owned(),
@@ -171,7 +171,7 @@ impl FinishedFile {
         let folder = folder_of(&self.path);
         let replace = self.existing == Existing::Replaced;
         let named = self.file.persist(folder, &self.path, replace);
-        let refuse = |error| FileError::new("put it in its place", &self.path, error);
+        let refuse = |error| FileError::new("move it into place", &self.path, error);
         let file = named.map_err(refuse)?;
         sync_folder(folder)?;
         Ok(file)

@@ -89,7 +89,7 @@ impl Journal {
             return Ok(path);
         }
         let none = io::Error::other("no journal could be locked");
-        Err(FileError::new("begin a journal", &self.folder, none).into())
+        Err(FileError::new("create a journal", &self.folder, none).into())
     }
 
     /// Forgets what was kept: it is saved, or given up.

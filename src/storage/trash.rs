@@ -72,7 +72,7 @@ impl Trash {
             // In this order no file is replaced: a number never rises, and lower ones have moved already.
             if shape.number > number {
                 fs::rename(&shape.path, &path)
-                    .map_err(|error| FileError::new("number it anew", &shape.path, error))?;
+                    .map_err(|error| FileError::new("renumber it", &shape.path, error))?;
                 (shape.number, shape.path) = (number, path);
             }
         }

@@ -86,13 +86,13 @@ fn bad_lines_are_answered_in_their_places() {
     let expected = [
         POINT_ANSWER.to_owned(),
         error(
-            "2: column 2: expected a value: a text in double quotes, a number, a list or an object",
+            "2: column 2: expected a value: a string in double quotes, a number, a list or an object",
         ),
         error("4: side: 99 is above 16 (allowed: above 0, up to 16)"),
         error("5: picture: no shape is called \\\"gasket\\\""),
         error("6: column 12: not UTF-8, or an escape of no character"),
         error(
-            "7: column 1: expected a value: a text in double quotes, a number, a list or an object",
+            "7: column 1: expected a value: a string in double quotes, a number, a list or an object",
         ),
         error(
             "9: figure: \\\"\\\\u{1b}\\u00e9\\\" is unknown, expected one of ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon",

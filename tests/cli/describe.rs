@@ -196,7 +196,7 @@ fn a_bad_shape_is_told_by_line_and_column() {
     bad(
         "corner\"",
         "\u{1b}[31m\"",
-        "line 4, column 12: a control character in a text, expected an escape such as \\n",
+        "line 4, column 12: a control character in a string, expected an escape such as \\n",
     );
 }
 

@@ -102,7 +102,7 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
     let count = taxel::storage::shipped::names().count() + 1;
     assert_eq!(
         shelf.does("library|check", ""),
-        format!("{count} shapes, all whole\n")
+        format!("{count} shapes, all intact\n")
     );
     assert_eq!(shelf.does("library|check|--json", ""), "[]\n");
     let path = shelf.does("library|path", "");

@@ -259,9 +259,9 @@ fn a_pose_is_told_in_cells_degrees_and_mm() {
         &BAR.replacen("........\n", "#.......\n", 1),
     );
     assert!(
-        noisy.stdout.ends_with(
-            "no pose: the shape leaves this imprint in none of the poses of the model\n"
-        )
+        noisy
+            .stdout
+            .ends_with("no pose: the shape leaves this imprint in no pose of the model\n")
     );
     let unknown = answer(&place.run("recognise - --model r --pose --json", SPECK));
     assert!(unknown["pose"].is_null() && unknown.get("pose").is_some());

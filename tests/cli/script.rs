@@ -151,7 +151,7 @@ fn a_script_changes_nothing_outside_its_folder() {
     for source in sources {
         let script = format!("Source {source}\nFrames 1\nScreen\n");
         let refused = run("d.taxel", &script, &[]);
-        let refusal = "a script reads frames from files only";
+        let refusal = "a script reads frames only from files";
         assert!(refused.stderr.contains(refusal), "{source}: {refused:?}");
         assert_eq!(refused.status, Some(1), "{source}: {refused:?}");
     }

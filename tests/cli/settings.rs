@@ -234,7 +234,7 @@ fn flags_of_the_screen_do_not_stand_before_a_command() {
         let run = run(&mut taxel(&format!("{flag} library list")));
         assert_eq!(run.status, Some(2), "{flag}");
         let name = flag.split(' ').next().expect("a flag");
-        let expected = format!("cannot be used with '{name}', which is the screen's");
+        let expected = format!("cannot be used with '{name}', which is only for the screen");
         assert!(run.stderr.contains(&expected), "{flag}: {}", run.stderr);
     }
 }

@@ -169,7 +169,7 @@ fn read_on(flags: &[&str]) {
     child.kill().expect("it is killed");
     let said = finish(child, b"").stderr;
     let count = |what: &str| said.matches(what).count();
-    assert_eq!(count("was cut or written anew"), 2, "{said}");
+    assert_eq!(count("was truncated or rewritten"), 2, "{said}");
     assert_eq!(count("was replaced"), 2, "{said}");
 }
 

@@ -403,7 +403,7 @@ fn a_figure_that_a_smaller_sensor_does_not_allow_is_said_to_be_a_drawing() {
     let smaller = ":figure rectangle --length 10<Enter>:sensor --columns 4 --rows 4<Enter>";
     shows(
         smaller,
-        &["the rectangle does not fit this sensor and is a drawing now; u undoes it"],
+        &["the rectangle does not fit this sensor and became a drawing; u undoes it"],
     );
     shows(&format!("{smaller}u"), &["rectangle length 10.0"]);
 }
@@ -532,7 +532,7 @@ fn touches_are_kept_multiplied_and_forgotten() {
     shows(&format!("{one}a"), &["1 touch kept", "45.3 %"]);
     shows(
         &format!("{one}aa"),
-        &["this touch is kept already", "45.3 %"],
+        &["this touch is already kept", "45.3 %"],
     );
     shows(
         &format!("{one}a><gt>"),
@@ -660,7 +660,7 @@ fn esc_takes_a_count_back() {
     assert!(!screen.contains("12 times"), "{screen}");
     shows("1", &["1 time"]);
     shows("999", &["999 times"]);
-    shows("1000", &["999 times: a key is repeated no more often"]);
+    shows("1000", &["a key repeats at most 999 times"]);
     shows("0", &["a count begins with 1 to 9"]);
 }
 

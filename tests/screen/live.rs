@@ -314,7 +314,7 @@ fn a_frame_is_marked_and_unmarked() {
     then(
         &mut page,
         "m",
-        &["frame 4: no mark any more", "marked     frame 5"],
+        &["frame 4: mark removed", "marked     frame 5"],
     );
     then(&mut page, "<End>", &["frame 5", "marked"]);
 }
@@ -415,7 +415,7 @@ fn frames_of_an_earlier_watch_have_none_of_the_present_marks() {
     let refused = "! frame 0 came before the source was watched again";
     then(&mut page, "m", &[refused, "marked     frame 0"]);
     then(&mut page, "<End>", &["frame 0", "marked     frame 0"]);
-    then(&mut page, "m", &["frame 0: no mark any more"]);
+    then(&mut page, "m", &["frame 0: mark removed"]);
 }
 
 #[test]

@@ -138,7 +138,7 @@ fn what_does_not_hold_is_told_with_its_line() {
         ),
         (
             "Keys <20000x:Down>",
-            "line 1: key \"<20000x:Down>\" at character 1: a key is repeated at most 10,000 times",
+            "line 1: key \"<20000x:Down>\" at character 1: a key repeats at most 10,000 times",
         ),
         (
             "ExpectAt 3,4",
@@ -151,7 +151,7 @@ fn what_does_not_hold_is_told_with_its_line() {
         ),
         (
             "Type x",
-            "line 1: expected a text in double quotes, found x",
+            "line 1: expected a string in double quotes, found x",
         ),
         ("Expect zzz", "line 1: expected a pattern between slashes"),
         ("Expect /(/", "line 1: pattern /(/"),
@@ -258,7 +258,7 @@ fn a_script_sets_the_scene() {
     let told = output(&both, false).expect_err("it does not hold");
     assert_eq!(
         told.to_string(),
-        "line 1: Set library cannot stand beside Set shape or Set leftover"
+        "line 1: Set library cannot be used with Set shape or Set leftover"
     );
 }
 

@@ -373,7 +373,7 @@ impl ProcessingArguments {
     pub(crate) fn tare_refused(&self, error: &FrameError) -> String {
         match (error, self.tare_from) {
             (FrameError::Tare { .. }, RuleOrigin::Settings) => {
-                format!("{error}, by tare under [frames] in the settings; --tare 0 takes none")
+                format!("{error} (tare under [frames] in the settings; --tare 0 turns it off)")
             }
             _ => error.to_string(),
         }

@@ -175,8 +175,12 @@ pub(crate) fn config() -> Command {
 
 /// `--config`, which every command takes.
 pub(crate) fn config_file() -> Arg {
-    option("config", "FILE", "Use this settings file instead of your own")
-        .value_parser(value_parser!(PathBuf))
+    option(
+        "config",
+        "FILE",
+        "Use this settings file instead of your own",
+    )
+    .value_parser(value_parser!(PathBuf))
 }
 
 /// `--size`, for the screen and for scripts.

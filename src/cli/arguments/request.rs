@@ -197,7 +197,7 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
     };
     if let Some(flag) = Given::of(&matches).first().or(of_screen(&matches)) {
         let message = format!(
-            "the subcommand '{name}' cannot be used with '--{flag}', which is the screen's"
+            "the subcommand '{name}' cannot be used with '--{flag}', which is only for the screen"
         );
         return Err(command.error(ErrorKind::ArgumentConflict, message).into());
     }

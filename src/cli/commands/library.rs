@@ -264,7 +264,7 @@ pub(crate) fn check(
         json::ascii(&findings) + "\n"
     } else {
         let lines = findings.iter().map(Finding::to_string);
-        let whole = (broken == 0).then(|| format!("{shapes} shapes, all whole"));
+        let whole = (broken == 0).then(|| format!("{shapes} shapes, all intact"));
         let lines = lines.chain(whole);
         lines
             .map(|line| charset.line(&line).into_owned() + "\n")

@@ -115,8 +115,7 @@ impl<'a> Recogniser<'a> {
             let pose = match pose {
                 Some(pose) => pose.text(imprint, charset),
                 None if self.asked.pose && answer.shape.is_some() => {
-                    "no pose: the shape leaves this imprint in none of the poses of the model\n"
-                        .to_owned()
+                    "no pose: the shape leaves this imprint in no pose of the model\n".to_owned()
                 }
                 None => String::new(),
             };

@@ -199,7 +199,7 @@ fn unended(path: &Path, description: &RecordingMetadata) -> Option<String> {
     let beside = beside.display();
     if description.ended == Some(false) {
         return Some(format!(
-            "{beside}: not ended: it is being recorded, or its program was killed; the last half second may be missing"
+            "{beside}: has no end: still being recorded, or the program was killed; the last half second may be missing"
         ));
     }
     let reason = description.ended_by.as_ref()?;

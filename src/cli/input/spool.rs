@@ -52,7 +52,7 @@ impl SpooledInput {
         self.length += count as u64;
         if self.length > self.most {
             return Err(io::Error::other(
-                "more than 4 GiB, save it to a file and name that; taxel watch reads what has no end",
+                "more than 4 GiB; save it to a file and read that, or use taxel watch for endless input",
             ));
         }
         Ok(count)

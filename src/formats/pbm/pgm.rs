@@ -147,7 +147,7 @@ mod tests {
             ),
             (
                 b"P2 3 1 9 0 1 2",
-                "row 1, column 2: a third shade, expected an image of two",
+                "row 1, column 2: a third shade, expected an image with two",
             ),
             (
                 b"P2 2 1 9 4 4",

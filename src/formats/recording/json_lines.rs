@@ -183,7 +183,7 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
         let mut found = false;
         while let Some(key) = map.next_key::<std::borrow::Cow<'de, str>>()? {
             match &*key {
-                "frame" if found => return Err(A::Error::custom("\"frame\" stands twice")),
+                "frame" if found => return Err(A::Error::custom("\"frame\" is given twice")),
                 "frame" => {
                     found = true;
                     map.next_value_seed(CellsSeed(&mut self.0.values, Some(self.1)))?;
@@ -304,7 +304,7 @@ impl<'de> Visitor<'de> for CellSeed<'_> {
     fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<bool, A::Error> {
         if !self.1 {
             return Err(A::Error::custom(
-                "a list inside of a row, expected a number or null",
+                "a list inside a row, expected a number or null",
             ));
         }
         CellsSeed(self.0, None).visit_seq(list)?;

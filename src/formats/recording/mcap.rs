@@ -363,7 +363,7 @@ impl McapState<'_, '_> {
             }
             other => {
                 let message =
-                    format!("chunks are packed as {other:?}, expected lz4, zstd or not at all");
+                    format!("chunks are compressed with {other:?}, expected lz4, zstd or none");
                 return Err(RecordingError::damaged(legible(&message)));
             }
         };

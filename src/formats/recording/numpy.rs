@@ -452,7 +452,7 @@ fn moment(
 /// The error of an array that is shorter than its header says.
 fn short(frame: u64, frames: u64) -> RecordingError {
     RecordingError::damaged(format!(
-        "the file ends inside of frame {frame}, expected {frames} frames"
+        "the file ends inside frame {frame}, expected {frames} frames"
     ))
 }
 

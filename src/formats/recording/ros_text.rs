@@ -255,7 +255,7 @@ pub(super) fn read(
             RosLine::More => continue,
             RosLine::Whole if ended && !message.begun() => return Ok(()),
             RosLine::Whole if message.is_open() && ended => {
-                let text = "ends inside of a message, expected '---'";
+                let text = "ends inside a message, expected '---'";
                 return Err(RecordingError::in_line(number + 1, text));
             }
             RosLine::Whole => {}

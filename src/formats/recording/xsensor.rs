@@ -153,7 +153,7 @@ impl XsensorState {
         frame.reset(columns, rows);
         for row in frame.values_mut().chunks_mut(columns.into()) {
             if !lines.advance_to_content()? {
-                let message = format!("ends inside of a frame, expected {rows} rows");
+                let message = format!("ends inside a frame, expected {rows} rows");
                 return Err(RecordingError::in_line(lines.number() + 1, message));
             }
             let (line, number) = (lines.line(), lines.number());

@@ -130,7 +130,7 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
     frame.label = Some(1);
     for row in frame.values_mut().chunks_mut(columns.into()) {
         if !lines.advance_to_content()? {
-            let message = format!("ends inside of the frame, expected {rows} lines of values");
+            let message = format!("ends inside the frame, expected {rows} lines of values");
             return Err(RecordingError::in_line(lines.number() + 1, message));
         }
         let (line, number) = (lines.line(), lines.number());

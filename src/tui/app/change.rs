@@ -197,7 +197,7 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     match lost {
         Some(what) => {
             let undo = app.key_of(&action::UNDO);
-            let text = format!("the {what} does not fit this sensor and is a drawing now");
+            let text = format!("the {what} does not fit this sensor and became a drawing");
             inform(app, format!("{text}; {undo} undoes it"));
         }
         None => say_dropped(app, dropped),

@@ -101,7 +101,7 @@ fn take_digit(app: &mut App, digit: u16) {
     let text = match count {
         0 => "a count begins with 1 to 9".to_owned(),
         1..=MOST_TIMES => counted(count.into(), "time"),
-        _ => format!("{MOST_TIMES} times: a key is repeated no more often"),
+        _ => format!("a key repeats at most {MOST_TIMES} times"),
     };
     inform(app, text);
 }

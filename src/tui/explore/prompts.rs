@@ -107,7 +107,7 @@ pub(crate) fn in_mark(app: &mut App, dialog: MarkDialog, message: &Message) -> O
             let key = app.keymap().label(Context::Explore, &action::JUMP);
             inform(
                 app,
-                format!("marked by {letter}: {key} {letter} leads back"),
+                format!("marked as {letter}: {key} {letter} goes back to it"),
             );
         }
         MarkPurpose::Jump => {

@@ -131,7 +131,7 @@ impl Key {
 #[non_exhaustive]
 pub enum KeyError {
     /// No key has that name.
-    #[error("key {found:?} at character {at} is unknown; a '<' by itself is written <lt>")]
+    #[error("key {found:?} at character {at} is unknown; write a single '<' as <lt>")]
     Unknown {
         /// Where.
         at: usize,
@@ -140,7 +140,7 @@ pub enum KeyError {
     },
     /// It would go on for hours.
     #[error(
-        "key {found:?} at character {at}: a key is repeated at most 10,000 times, and all are at most 200,000 keys"
+        "key {found:?} at character {at}: a key repeats at most 10,000 times, and all keys together are at most 200,000"
     )]
     TooMany {
         /// Where.

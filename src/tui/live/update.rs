@@ -231,7 +231,7 @@ fn mark(app: &mut App, page: &mut Live) {
             return refuse(app, refused.to_string());
         }
     };
-    let text = if marked { "marked" } else { "no mark any more" };
+    let text = if marked { "marked" } else { "mark removed" };
     inform(app, format!("frame {number}: {text}"));
 }
 

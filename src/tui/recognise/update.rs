@@ -187,7 +187,7 @@ fn add_touch(app: &mut App) {
         (true, 1) => "1 touch kept; now touch the shape elsewhere".to_owned(),
         (true, count) => format!("{count} touches kept"),
         (false, _) if page.present().is_empty() => "nothing is touched".to_owned(),
-        (false, _) => "this touch is kept already".to_owned(),
+        (false, _) => "this touch is already kept".to_owned(),
     };
     inform(app, text);
 }
@@ -224,7 +224,7 @@ pub(in crate::tui) fn in_recognition(
 fn prepare_again(app: &mut App) -> Option<Effect> {
     let text = match state(app)?.state() {
         ModelState::Missing => return open(app, None),
-        ModelState::Preparing(_) => "the set is on its way",
+        ModelState::Preparing(_) => "the set is not ready yet",
         ModelState::Ready(_) => "the set is ready: nothing was stopped",
     };
     inform(app, text);

@@ -123,7 +123,7 @@ impl DiskRequest {
             Self::Named(Purpose::Load, name) => format!("Loading {name}"),
             Self::Named(_, name) => format!("Reading {name}"),
             Self::Remember(..) => "Remembering it".to_owned(),
-            Self::BeginRecording(..) => "Beginning a recording".to_owned(),
+            Self::BeginRecording(..) => "Starting a recording".to_owned(),
             Self::MarkRecording(_, recording, _) => {
                 format!("Marking frames of {}", recording.path().display())
             }

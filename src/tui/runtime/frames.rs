@@ -138,7 +138,7 @@ impl FrameWatcher {
     pub(super) fn begins(&mut self) -> Result<u64, &'static str> {
         let watched = self.watched.as_mut().ok_or("no source is watched")?;
         if std::mem::replace(&mut watched.begins, true) {
-            return Err("a recording is being begun already");
+            return Err("a recording is already starting");
         }
         Ok(watched.number)
     }
@@ -267,7 +267,7 @@ mod tests {
         assert_eq!(watcher.begins(), Err("no source is watched"));
         assert_eq!(watcher.watch(7, request, write, None), None);
         assert_eq!(watcher.begins(), Ok(7));
-        let already = "a recording is being begun already";
+        let already = "a recording is already starting";
         assert_eq!(watcher.begins(), Err(already));
         let access = WriteAccess::below(folder.path().to_owned());
         let metadata = RecordingMetadata::default();

@@ -27,7 +27,7 @@ pub(super) fn readable(name: &OsStr, access: &WriteAccess) -> Result<FrameSource
     let refused = |reason: &dyn std::fmt::Display| format!("{}: {reason}", source.name());
     if access.is_confined() && !is_file(&source) {
         return Err(refused(
-            &"a script reads frames from files only; --allow-outside lifts that",
+            &"without --allow-outside, a script reads frames only from files",
         ));
     }
     source.check().map_err(|error| refused(&error))?;

@@ -44,14 +44,14 @@ impl WriteAccess {
         };
         let path = inside(folder, name).ok_or_else(|| {
             format!(
-                "{name}: a script writes only below its folder, and no hidden files; --allow-outside lifts that"
+                "{name}: without --allow-outside, a script writes only below its folder, and no hidden files"
             )
         })?;
         // A thread that panicked here has added a path or not.
         let mut written = locked(&self.written);
         if existing == Existing::Replaced && path.exists() && !written.contains(&path) {
             return Err(format!(
-                "{name}: was there before the script, which replaces only its own files; --allow-outside lifts that"
+                "{name}: was there before the script; without --allow-outside, a script replaces only its own files"
             ));
         }
         if existing == Existing::Kept && !path.exists() {

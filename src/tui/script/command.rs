@@ -275,7 +275,7 @@ fn position(text: &str) -> Result<ScreenPosition, String> {
 fn quoted(text: &str) -> Result<String, String> {
     serde_json::from_str(text).map_err(|_| {
         format!(
-            "expected a text in double quotes, found {}",
+            "expected a string in double quotes, found {}",
             shortened(text)
         )
     })

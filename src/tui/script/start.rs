@@ -79,7 +79,7 @@ impl<'a> ScriptStart<'a> {
         }
         match start.library {
             Some((line, _)) if !start.shapes.is_empty() || !start.leftovers.is_empty() => {
-                let message = "Set library cannot stand beside Set shape or Set leftover";
+                let message = "Set library cannot be used with Set shape or Set leftover";
                 Err(ScriptError {
                     line,
                     message: message.to_owned(),
@@ -116,7 +116,7 @@ impl<'a> ScriptStart<'a> {
                 options.sensor = sensor.map_err(|error| error.to_string())?;
             }
             ScriptSetting::Library(_) if self.settings.folder.is_some() => {
-                return Err("Set library needs --allow-outside; without that line the script has a library of its own"
+                return Err("Set library needs --allow-outside; without that line, the script has its own library"
                     .to_owned());
             }
             ScriptSetting::Library(folder) => {

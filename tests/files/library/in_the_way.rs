@@ -168,7 +168,7 @@ fn broken_files_are_listed_told_and_harm_nothing() {
         (
             "cut",
             &good[..good.len() / 2],
-            "line 15, column 20: the end inside a text, expected a closing quote",
+            "line 15, column 20: the end inside a string, expected a closing quote",
         ),
         ("empty", "", "line 1, column 1: the end, expected a value"),
         (

@@ -338,11 +338,11 @@ fn frames_are_shown_while_a_hanging_disk_creates_a_recording() {
         return;
     };
     watched.program.types(b"r");
-    (watched.program).shows("Beginning a recording: waiting for the disk");
+    (watched.program).shows("Starting a recording: waiting for the disk");
     watched.sends(1..11);
     watched.program.shows("frame 10");
     watched.program.types(b"r");
-    watched.program.shows("a recording is being begun already");
+    watched.program.shows("a recording is already starting");
     hanging.end();
     watched.program.shows("recording in touch-1.npy");
     watched.sends(11..14);
