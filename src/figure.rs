@@ -9,13 +9,13 @@ use crate::geometry::{Ellipse, Extent, Pen, Point, Real, Side, Solid, Turn};
 use crate::parameter::{Parameter, ParameterError};
 use crate::sensor::Sensor;
 
-/// The remark on a thickness that leaves no room for a hole.
+/// The note shown for a thickness that leaves no room for a hole.
 pub const NO_ROOM: &str = "no room for a hole: solid";
 
 /// The kinds of figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum FigureKind {
-    /// Axes along x and y before rotation; a circle where its radii are equal.
+    /// Axes along x and y before rotation; a circle if its radii are equal.
     Ellipse,
     /// Sides along x and y before rotation.
     Rectangle,
@@ -149,8 +149,8 @@ impl FigureBuilder {
         })
     }
 
-    /// Gives the figure a wall of this thickness around one concentric hole; cell sides. It stays solid where there is
-    /// no room for a hole.
+    /// Gives the figure a wall of this thickness around one concentric hole; cell sides. It stays solid if there is no
+    /// room for a hole.
     pub fn thickness(self, wall: f64) -> Self {
         Self(Figure {
             thickness: Some(wall),
@@ -337,7 +337,7 @@ impl Figure {
         pen.0
     }
 
-    /// Draws an ellipse or a rectangle from half of its extent; the extent of a hole is smaller by the wall.
+    /// Draws an ellipse or a rectangle from half of its extent; the hole's extent is smaller by the wall.
     fn draw_round_or_square<T: Real>(&self, half: Point<T>, pen: &mut impl Pen<T>) {
         let centre = Point::new(T::decimal(self.x0), T::decimal(self.y0)).moved(half);
         let turn = Turn::clockwise(T::decimal(self.angle));

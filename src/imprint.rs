@@ -1,4 +1,4 @@
-//! The imprint: which taxels are active, one `u64` a row.
+//! The imprint: which taxels are active, one `u64` per row.
 //!
 //! Bit `i` of a row is the taxel in column `i`. Bits beyond the last column and rows beyond the last one are always
 //! 0, so counting is `count_ones`, neighbours are shifts, and two imprints are equal when their words are.
@@ -25,7 +25,7 @@ pub struct Imprint {
 }
 
 impl Imprint {
-    /// No taxel active. Sides beyond 1 to 64 are brought to the nearest of these.
+    /// An imprint without active taxels. Sides are clamped to 1 to 64.
     pub fn empty(columns: u8, rows: u8) -> Self {
         Self {
             columns: columns.clamp(1, MAX_SIDE),
@@ -49,7 +49,7 @@ impl Imprint {
         &self.words[..usize::from(self.rows)]
     }
 
-    /// The rows, to be changed. The caller must leave the bits beyond the last column at 0.
+    /// The rows, mutable. The caller must leave the bits beyond the last column at 0.
     pub(crate) fn words_mut(&mut self) -> &mut [u64] {
         &mut self.words[..usize::from(self.rows)]
     }
@@ -115,7 +115,7 @@ impl Imprint {
         Bounds::around(across, top, last + 1 - top)
     }
 
-    /// Whether a taxel in the first or last row or column is active, so that what it is an imprint of may be cut off.
+    /// Whether a taxel in the first or last row or column is active, so that the shape may be cut off.
     pub fn touches_rim(&self) -> bool {
         self.bounds().is_some_and(|bounds| {
             bounds.left == 0
@@ -145,7 +145,7 @@ impl Imprint {
         differing
     }
 
-    /// The same active taxels on a matrix of another size; what lies beyond it is dropped.
+    /// The same active taxels on a matrix of another size; taxels beyond it are dropped.
     #[must_use]
     pub fn resized(&self, columns: u8, rows: u8) -> Self {
         let mut resized = Self::empty(columns, rows);
@@ -199,7 +199,7 @@ impl Bounds {
 }
 
 impl fmt::Display for Imprint {
-    /// One line a row, `#` active, `.` inactive, no line end after the last row.
+    /// One line per row, `#` active, `.` inactive, no line end after the last row.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (row, line) in self.lines().enumerate() {
             if row > 0 {
@@ -301,13 +301,13 @@ pub enum ImprintError {
         /// The length of the first row.
         expected: u8,
     },
-    /// Something else than `#` or `.`.
+    /// A character other than `#` or `.`.
     Character {
         /// Which row.
         row: usize,
         /// Which column.
         column: usize,
-        /// What stands there.
+        /// The character found there.
         found: char,
     },
 }

@@ -1,9 +1,9 @@
 //! Which shapes can a robot recognise by one touch?
 //!
-//! A tactile matrix sensor touches a flat shape, and a taxel is active when the shape covers at least half of its
-//! cell. This crate computes that binary imprint exactly, for any position, rotation and size; describes it by the
-//! geometric parameters of D. Purcaru and E. Niculescu, *Experimental Results in Shape Description*; and keeps shapes
-//! in a library of files. The program of the same name is a screen and a command line over it.
+//! A tactile matrix sensor touches a flat shape, and a taxel is active when the shape covers at least half of its cell.
+//! This crate computes that binary imprint exactly, for any position, rotation and size; describes it by the geometric
+//! parameters of D. Purcaru and E. Niculescu, *Experimental Results in Shape Description*; and keeps shapes in a
+//! library of files. The program of the same name puts a screen and a command line on top of it.
 //!
 //! ```
 //! use taxel::prelude::*;
@@ -24,7 +24,7 @@
 //!
 //! # Frame and units
 //!
-//! One frame for everything, and the side of a sensory cell as unit:
+//! There is one coordinate frame for everything, and its unit is the side of a sensory cell:
 //! ```text
 //!   0   1   2   3 → x        The taxel in column i, row j (both from 0) covers
 //! 0 +---+---+---+            [i, i+1] × [j, j+1]; its coordinates are those of its
@@ -37,8 +37,8 @@
 //!
 //! # Map
 //!
-//! The rooms in reading order; each names only rooms above it, and inside a room there is no cycle. A test reads the
-//! `use` lines and holds that law.
+//! The rooms (top-level modules) in reading order. Each uses only rooms above it, and inside a room there are no
+//! cycles. A test reads the `use` lines and enforces this.
 //! ```text
 //!  quote        untrusted text, cut short for messages
 //!  index        whole numbers as indices, checked
@@ -65,15 +65,15 @@
 //!  tui          the screen                                                         ratatui, crossterm
 //!  cli          the command line over all of it                                    clap
 //! ```
-//! Files and streams are opened by `storage`, `acquire`, `memory`, `cli`, `tui::runtime`, `tui::terminal` and `main` only;
+//! Only `storage`, `acquire`, `memory`, `cli`, `tui::runtime`, `tui::terminal` and `main` open files and streams;
 //! `formats` reads and writes those that it is given.
 //!
-//! The way of a pose:
+//! What happens to a pose:
 //! ```text
 //! form, flag or JSON line -> parameter (range) -> figure or picture -> outlines, placed
 //!   -> coverage -> imprint -> regions -> descriptors -> panel, table, JSON, drawing, sweep
 //! ```
-//! The way of a frame:
+//! What happens to a frame:
 //! ```text
 //! file -> formats::recording, or acquire -> bytes -> formats::stream
 //!   -> frame (crop, tare, gain, threshold) -> imprint -> regions -> descriptors, recognition
@@ -97,22 +97,22 @@
 //! cli (the default)   cli, and the program                             tui
 //! ```
 //!
-//! A controller that only touches and describes takes `default-features = false`.
+//! A controller that only needs touches and descriptors uses `default-features = false`.
 //!
 //! # Stability
 //!
-//! From `geometry` to `acquire` the crate follows semantic versioning; what is likely to grow is non-exhaustive. `tui`
-//! and `cli` are the program: their items are public for tests and scripts, and follow the program.
+//! The rooms from `geometry` to `acquire` follow semantic versioning; types that are likely to grow are non-exhaustive.
+//! `tui` and `cli` are the program: their items are public only for tests and scripts, and change with the program.
 //!
 //! # Invariants
 //!
-//! - A coverage of exactly the threshold in real arithmetic is active, and so is one that falls short by less than 1e-20
-//!   ([`touch`]).
-//! - Every [`figure::Figure`], [`picture::Picture`] and [`sensor::Sensor`] is in range for the sensor that it is made for;
-//!   a picture at home lies where its imprint does.
+//! - A taxel is active if its coverage in real arithmetic is exactly the threshold, or falls short of it by less than
+//!   1e-20 ([`touch`]).
+//! - Every [`figure::Figure`], [`picture::Picture`] and [`sensor::Sensor`] is in range for the sensor that it is made
+//!   for; a picture that was not moved lies where its imprint does.
 //! - What follows from a document (coverage, imprint, regions, descriptors) is computed, never stored beside it.
-//! - Infinity is never shown or written. A value that does not exist is None; in arrays (`.npz`, recordings), which have
-//!   no other word for it, it is NaN.
+//! - Infinity is never shown or written. A value that does not exist is None; arrays (`.npz`, recordings) cannot
+//!   express that otherwise and use NaN.
 
 // The examples of the README are compiled and run with those of the documentation.
 #[cfg(doctest)]

@@ -1,10 +1,10 @@
-//! A picture: a stored imprint as a shape of its own, moved, zoomed and turned.
+//! A picture: a stored imprint that is itself a shape, and is moved, zoomed and turned.
 //!
-//! Its active taxels are unit squares, and their union is the shape. The top left corner of its bounding rectangle
-//! goes to (`x0`, `y0`); then everything, that position included, is scaled about the origin of the plane; then it is
-//! turned **counter-clockwise** as seen about the centre of its scaled bounding rectangle. Angle 0 and zoom 1 at its
-//! own corner give the same imprint again. Source: the paper's option Picture; the order is a convention of this
-//! project.
+//! Its active taxels are unit squares, and their union is the shape. First, the top left corner of its bounding
+//! rectangle goes to (`x0`, `y0`). Then everything, including that position, is scaled about the origin of the plane.
+//! Then the picture is turned **counter-clockwise** as seen about the centre of its scaled bounding rectangle. Angle 0
+//! and zoom 1 at its own corner give the same imprint again. Source: the paper's option Picture; the order is a
+//! convention of this project.
 
 use std::sync::Arc;
 
@@ -41,7 +41,7 @@ pub struct Picture {
     imprint: Imprint,
     /// The values of [`PICTURE_PARAMETERS`].
     values: [f64; PICTURE_PARAMETERS.len()],
-    /// Shared, so that a picture is moved about without allocating.
+    /// Shared, so that moving a picture does not allocate.
     name: Option<Arc<str>>,
 }
 
@@ -53,7 +53,7 @@ impl PartialEq for Picture {
 
 /// A picture whose values are not checked yet; [`Self::on`] checks them all.
 ///
-/// At first its imprint lies where it is: its own corner, angle 0, zoom 1.
+/// At first its imprint stays where it is: at its own corner, with angle 0 and zoom 1.
 #[derive(Clone, Debug)]
 #[must_use = "only `on` makes a picture of it"]
 pub struct PictureBuilder(Picture);

@@ -1,8 +1,8 @@
 //! The tactile matrix sensor: its columns and rows of square cells, its threshold, its pitch, and the values that it
 //! allows.
 //!
-//! The ranges of a figure's lengths and positions scale with the larger side of the sensor, so it is the sensor that
-//! checks, reads and steps values: `sensor.check(Parameter::X0, 1.99)`.
+//! The ranges of a figure's lengths and positions scale with the larger side of the sensor, so the sensor checks,
+//! parses and steps values: `sensor.check(Parameter::X0, 1.99)`.
 
 use crate::parameter::{Parameter, ParameterError, Range, Unit, number};
 use crate::quote::shortened;
@@ -68,8 +68,8 @@ impl Sensor {
             .with(Parameter::Rows, rows.into())
     }
 
-    /// Creates a sensor of `columns × rows` taxels, like [`Self::new`]; a number outside of 1 to [`MAX_SIDE`] becomes
-    /// the nearest in it. So every imprint is the whole matrix of some sensor.
+    /// Creates a sensor of `columns × rows` taxels, like [`Self::new`]; numbers are clamped to 1 to [`MAX_SIDE`]. So
+    /// every imprint is the whole matrix of some sensor.
     pub fn clamped(columns: u8, rows: u8) -> Self {
         Self {
             columns: columns.clamp(1, MAX_SIDE),
@@ -178,7 +178,7 @@ impl Sensor {
         }
     }
 
-    /// Reads a value from a text: of a flag, a command or the field of a form.
+    /// Parses a value from the text of a flag, a command or a form's field.
     ///
     /// # Errors
     /// [`ParameterError::Number`] or [`ParameterError::Range`].

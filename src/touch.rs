@@ -1,18 +1,18 @@
-//! One touch: a shape on a sensor gives the coverage of every taxel and the imprint.
+//! One touch: from a shape on a sensor to the coverage of every taxel and the imprint.
 //!
 //! **The rule** (the paper's "50 %"): a taxel is active when the shape covers at least the threshold share of its
 //! cell. What reaches beyond the sensor is cut off.
 //!
-//! **Exactly the threshold is active**, in real arithmetic, for the decimals that the user wrote. Coverages are
-//! computed in `f64` first, with an error below 1e-11 ([`crate::geometry::cell_area`]). One that lies within 1e-10 of
-//! the threshold is computed again with 32 digits ([`Double`]), and is active unless it falls short by more than 1e-20
-//! ([`Real::TIE`]). Of ellipses at a threshold of one half hardly any coverage needs to be computed at all: where the
-//! cells' centres lie decides.
+//! **Exactly the threshold is active**, in real arithmetic, for the decimals that the user wrote. Coverages are first
+//! computed in `f64`, with an error below 1e-11 ([`crate::geometry::cell_area`]). If one lies within 1e-10 of the
+//! threshold, it is computed again with 32 digits ([`Double`]), and the taxel is active unless it falls short by more
+//! than 1e-20 ([`Real::TIE`]). For ellipses at a threshold of one half, hardly any coverage needs to be computed at
+//! all: the positions of the cells' centres decide.
 //!
-//! Whether two algebraic expressions of the input are *equal* cannot be decided by any number of digits: what falls
-//! short by less than 1e-20 is taken for a tie. For an upright rectangle whose numbers have at most nine decimals that
-//! is exact, since its coverages are multiples of 1e-18; with more decimals a coverage can come nearer than 1e-20
-//! (0.9999999999 × 0.50000000005). Turned figures of hundredths come within 3e-11.
+//! No number of digits can decide whether two algebraic expressions of the input are *equal*, so a coverage that falls
+//! short by less than 1e-20 counts as a tie. This is exact for an upright rectangle whose numbers have at most nine
+//! decimals, since its coverages are multiples of 1e-18. With more decimals, a coverage can come nearer than 1e-20
+//! (0.9999999999 × 0.50000000005). Turned figures given in hundredths come within 3e-11.
 
 use std::ops::Range;
 
@@ -24,12 +24,13 @@ use crate::imprint::Imprint;
 use crate::index::from_first;
 use crate::sensor::Sensor;
 
-/// A coverage this near to the threshold is decided with more digits, of every shape of the program; a share of a cell.
+/// Coverages this near to the threshold are computed with more digits, for every shape of the program; a share of a
+/// cell.
 pub(crate) const DOUBTFUL: f64 = 1e-10;
-/// Outlines of one's own may reach further: roundings grow with the numbers that they are roundings of.
+/// User-defined outlines may reach further away, and rounding errors grow with the numbers.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
-/// The sensory plane: a sensor that can be touched again and again without allocating, unless a coverage is in doubt.
+/// The sensory plane: a sensor that can be touched repeatedly. A touch allocates only if a coverage is in doubt.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -64,7 +65,7 @@ impl Plane {
         &self.sensor
     }
 
-    /// The imprint that a shape leaves. Total: a shape without a boundary leaves none.
+    /// The imprint that a shape leaves. It never fails: a shape without a boundary leaves an empty imprint.
     pub fn touch(&mut self, solid: &impl Solid) -> Imprint {
         self.areas.clear();
         self.ellipses.clear();
@@ -89,7 +90,7 @@ impl Plane {
         imprint
     }
 
-    /// Activates the taxels that are covered enough, most of them by where their centres lie.
+    /// Activates the taxels that are covered enough; for most of them, the position of the centre decides.
     fn activate_by_centres(&mut self, solid: &impl Solid, rows: Range<i32>, imprint: &mut Imprint) {
         let columns = imprint.mask();
         let words = imprint.words_mut();
@@ -110,7 +111,7 @@ impl Plane {
         }
     }
 
-    /// Activates the taxels that are covered enough, by their areas.
+    /// Activates the taxels that are covered enough; their areas decide.
     fn activate_by_areas(&self, solid: &impl Solid, imprint: &mut Imprint) {
         let (threshold, doubt) = (self.sensor.threshold(), self.doubt());
         let areas = self.areas.grid();
@@ -123,8 +124,8 @@ impl Plane {
             return;
         }
         for pair in rows.start / 2..rows.end.div_ceil(2) {
-            // The sign of what a cell has too little is its bit. Bits come in from the left: after the last one they
-            // stand `unused` places too high.
+            // The sign of a cell's excess becomes its bit. Bits are shifted in from the left, so after the last one
+            // they are `unused` places too high.
             let (mut short, mut nearest) = ([0_u64; 2], [f64::MAX; 2]);
             for excess in areas.pair(pair, &columns, threshold) {
                 for lane in 0..2 {
@@ -142,7 +143,7 @@ impl Plane {
         }
     }
 
-    /// How near to the threshold a coverage of the last touch is in doubt.
+    /// How near to the threshold a coverage of the last touch must be to be in doubt.
     fn doubt(&self) -> f64 {
         DOUBTFUL.max(ROUNDINGS * self.areas.grid().magnitude())
     }
@@ -166,7 +167,7 @@ impl Plane {
             return active;
         };
         let least = least(self.sensor.threshold());
-        // Several in a row, as full ones at a threshold of 1, are computed by drawing the shape once.
+        // Several in one row, such as full cells at a threshold of 1, are computed by drawing the shape once.
         let areas = (doubtful.count_ones() > 1)
             .then(|| row_areas::<Double>(solid, self.sensor.columns(), row));
         for column in 0..self.sensor.columns() {
@@ -181,7 +182,7 @@ impl Plane {
         active
     }
 
-    /// How much of a taxel's cell the shape of the last touch covers, 0 to 1; of one beyond the sensor, 0.
+    /// How much of a taxel's cell the shape of the last touch covers, 0 to 1; 0 for a taxel beyond the sensor.
     ///
     /// Takes as long as [`Self::coverages`], which gives those of all taxels.
     pub fn coverage(&self, column: u8, row: u8) -> f64 {
@@ -233,13 +234,14 @@ impl Pen<f64> for TouchPen<'_> {
     }
 }
 
-/// The least coverage that activates a taxel: the threshold, short of a tie; and more than nothing, so that a threshold
-/// below a tie does not activate what is not covered at all.
+/// The least coverage that activates a taxel: the threshold minus the tolerance for ties, but more than 0, so that a
+/// tiny threshold does not activate taxels that are not covered at all.
 pub(crate) fn least(threshold: f64) -> Double {
     Real::max(Double::decimal(threshold) - Double::TIE, Double::TIE)
 }
 
-/// A share of a cell without the roundings that show: never below 0 or above 1, and 0, ½ and 1 just these.
+/// A share of a cell without visible rounding errors: never below 0 or above 1, and exactly 0, ½ or 1 if it is close to
+/// them.
 fn share(area: f64) -> f64 {
     let near = (area * 2.0).round() / 2.0;
     let area = if (area - near).abs() < f64::TIE {
@@ -251,7 +253,7 @@ fn share(area: f64) -> f64 {
     area.clamp(0.0, 1.0) + 0.0
 }
 
-/// Whether a shape reaches beyond the sensor, by more than a rounding.
+/// Whether a shape reaches beyond the sensor by more than a rounding error.
 pub fn reaches_beyond(solid: &impl Solid, sensor: &Sensor) -> bool {
     Extent::of(solid).is_some_and(|extent| {
         let beyond =

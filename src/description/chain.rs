@@ -1,8 +1,8 @@
 //! The outline of a filled region as a chain of taxel centres, and the number of its taxels.
 //!
-//! The length of the closed polygon through the centres of the successive outline taxels is local: each 2 × 2
-//! window of centres adds 1 where two neighbours in it belong to the region, √2 where three do, 2√2 where just the two
-//! of a diagonal do, and nothing otherwise. So a part one taxel wide counts out and back, a single taxel nothing.
+//! The length of the closed polygon through the centres of successive outline taxels is a sum over windows: each 2 × 2
+//! window of centres adds 1 if two neighbours in it belong to the region, √2 if three do, 2√2 if just two on a diagonal
+//! do, and nothing otherwise. So a part one taxel wide counts out and back, and a single taxel counts nothing.
 
 use crate::imprint::{Bounds, Imprint};
 
@@ -36,7 +36,7 @@ fn windows(upper_left: u64, upper_right: u64, lower_left: u64, lower_right: u64)
 pub(super) struct OutlineCounts {
     /// Its taxels.
     pub(super) taxels: u32,
-    /// Those of them that have one of their four neighbours outside of it.
+    /// Those with at least one of their four neighbours outside the region.
     pub(super) rim: u32,
     /// The steps around it.
     pub(super) steps: ChainSteps,
@@ -45,8 +45,8 @@ pub(super) struct OutlineCounts {
 impl OutlineCounts {
     /// Counts a region without holes; `bounds` are its bounds.
     ///
-    /// Regions are narrow, and counting a word's bits takes a dozen steps on a processor that is not known to have an
-    /// instruction for it: so four rows go into a word wherever they leave a column free between them.
+    /// Regions are narrow, and counting a word's bits takes a dozen steps unless the processor is known to have an
+    /// instruction for it. So four rows share a word if a column stays free between them.
     pub(super) fn of(filled: &Imprint, bounds: Bounds) -> Self {
         if bounds.right - bounds.left < 16 {
             Self::count::<16>(filled, bounds)

@@ -1,9 +1,9 @@
 //! The paper's descriptors of a region, in one table.
 //!
-//! Panel, tables, JSON and statistics walk [`DESCRIPTORS`]; nothing else in the program lists them. Frame and units
-//! are those of the sensory plane: a taxel's coordinates are those of its centre, lengths are cell sides, areas
-//! cells, directions degrees counter-clockwise from +x as seen on the screen. A value that does not exist is
-//! [`Value::None`], never a number that is not finite. Points are [`glam`]'s.
+//! The panel, tables, JSON and statistics iterate over [`DESCRIPTORS`]; nothing else in the program lists them.
+//! Coordinates and units are those of the sensory plane: a taxel has the coordinates of its centre, lengths are in cell
+//! sides, areas in cells, and directions in degrees counter-clockwise from +x as seen on the screen. A value that does
+//! not exist is [`Value::None`], never a number that is not finite. Points are [`glam`]'s.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ use crate::description::chain::{ChainSteps, OutlineCounts};
 use crate::description::region::{Region, RegionKind};
 use crate::imprint::{Bounds, Imprint};
 
-/// What is counted and summed up of one region; every descriptor follows from it.
+/// The counts and sums of one region, from which every descriptor follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Description {
@@ -81,7 +81,7 @@ impl Description {
         [rising, 180.0 - rising]
     }
 
-    /// The sides of the rectangle, across and down.
+    /// The width and height of the rectangle.
     fn whole_sides(&self) -> [i64; 2] {
         let rect = self.rect;
         [rect.right - rect.left, rect.bottom - rect.top].map(i64::from)
@@ -103,7 +103,7 @@ impl Description {
             .map(|(low, high)| i64::from(low) + i64::from(high))
     }
 
-    /// The way from the centre of gravity to the rectangle's centre, in units of 1/(2 NA).
+    /// The vector from the centre of gravity to the rectangle's centre, in units of 1/(2 NA).
     fn exact_cg_to_cd(&self) -> [i64; 2] {
         let (sums, centre) = (self.doubled_sums(), self.doubled_centre());
         [0, 1].map(|axis| i64::from(self.na) * centre[axis] - sums[axis])
@@ -178,7 +178,7 @@ pub enum Value {
     Rect(Bounds),
 }
 
-/// What a descriptor's number counts, and so how it goes over into millimetres.
+/// What a descriptor's number measures, and so how it converts to millimetres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Dimension {
@@ -209,13 +209,13 @@ pub struct ChangesUnder {
 }
 
 impl ChangesUnder {
-    /// The same wherever and however the imprint lies.
+    /// The same for every position and orientation of the imprint.
     const NOTHING: Self = Self {
         shift: false,
         quarter_turn: false,
         mirror: false,
     };
-    /// It says where the imprint lies.
+    /// Depends on where the imprint lies.
     const SHIFTS: Self = Self {
         shift: true,
         quarter_turn: true,
@@ -233,17 +233,18 @@ pub type ExactValue = Option<[i64; 4]>;
 pub struct Descriptor {
     /// Its name in JSON and CSV.
     pub key: &'static str,
-    /// Its name on the screen, the paper's where it has one.
+    /// Its name on the screen: that of the paper, if it has one.
     pub symbol: &'static str,
-    /// What it is, in a few words.
+    /// A description in a few words.
     pub name: &'static str,
     /// What it counts.
     pub dimension: Dimension,
-    /// Whether it stands in the JSON answers, whose form is fixed; the others can be computed from these.
+    /// Whether the JSON answers contain it. Their form is fixed; the other descriptors can be computed from those in
+    /// it.
     pub in_answer: bool,
-    /// What changes it. One that changes with shifts says nothing of the shape by itself.
+    /// What changes it. One that changes with shifts alone says nothing about the shape.
     pub changes_under: ChangesUnder,
-    /// What it is where there is nothing to describe: 0 for counts and sums of taxels; the others do not exist.
+    /// Its value if there is nothing to describe: 0 for counts and sums of taxels; the others do not exist.
     ///
     /// ```
     /// use taxel::description::{DESCRIPTORS, Value};
@@ -254,7 +255,7 @@ pub struct Descriptor {
     pub of_nothing: Value,
     /// How it follows from the counts and sums.
     pub measure: fn(&Description) -> Value,
-    /// Two imprints have the same value just where this is the same; what [`Self::measure`] rounds is not rounded here.
+    /// Two imprints have the same value exactly if this is the same. Unlike [`Self::measure`], it does not round.
     pub exact: fn(&Description) -> ExactValue,
 }
 
@@ -317,7 +318,7 @@ impl Descriptor {
         }
     }
 
-    /// Returns what it is of a region of that kind, in a few words. The taxels of a hole are inactive.
+    /// Returns its description for a region of that kind, in a few words. The taxels of a hole are inactive.
     ///
     /// ```
     /// use taxel::description::{Descriptor, RegionKind};
@@ -363,13 +364,13 @@ fn ratios(numerators: [i64; 2], denominator: i64) -> [i64; 4] {
     [one[0], one[1], other[0], other[1]]
 }
 
-/// The direction of a vector; None of one without length.
+/// The direction of a vector; None if its length is 0.
 fn direction([x, y]: [i64; 2]) -> ExactValue {
     let common = gcd(x.unsigned_abs(), y.unsigned_abs());
     (common > 0).then(|| [x / common, y / common, 0, 0])
 }
 
-/// The greatest common divisor, of numbers far below 2⁶³; 0 of two zeros.
+/// The greatest common divisor of numbers far below 2⁶³; 0 for two zeros.
 fn gcd(one: u64, other: u64) -> i64 {
     let (mut one, mut other) = (one, other);
     while other > 0 {
@@ -378,7 +379,7 @@ fn gcd(one: u64, other: u64) -> i64 {
     one.cast_signed()
 }
 
-/// The table, in the paper's order; `roundness` is what image analysis uses in place of F.
+/// The table, in the paper's order; `roundness` is what image analysis uses instead of F.
 pub const DESCRIPTORS: &[Descriptor] = &[
     Descriptor::new(
         "na",

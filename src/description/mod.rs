@@ -1,4 +1,4 @@
-//! What describes an imprint: its regions, and the paper's descriptors of each.
+//! The description of an imprint: its regions, and the paper's descriptors of each.
 //!
 //! The object is 8-connected and the background 4-connected, so that a diagonal line of taxels is one piece and
 //! encloses what is behind it. All counting is integer arithmetic on the rows' words; only the last step divides.

@@ -2,11 +2,11 @@
 //!
 //! An **exterior** is an 8-connected component of the active taxels. A **hole** is a 4-connected component of the
 //! inactive ones that does not reach the outside; an inactive taxel on the rim of the matrix belongs to the outside.
-//! Exteriors come first, then holes, each in reading order of their first taxel. Each region is described as a shape
-//! of its own: `filled` is the region with everything that its own exterior outline encloses.
+//! Exteriors come first, then holes, each in reading order of their first taxel. Each region is described separately:
+//! `filled` is the region with everything that its outer outline encloses.
 //!
-//! Piece after piece is flooded and filled by itself. Floods work on whole rows: a run of taxels that is entered anywhere
-//! is filled at once by the carry of an addition.
+//! Each piece is flooded and filled separately. Floods work on whole rows: if a flood enters a run of taxels anywhere,
+//! the carry of an addition fills the whole run at once.
 
 use std::borrow::Cow;
 
@@ -111,7 +111,7 @@ pub fn regions(imprint: &Imprint) -> Vec<Region<'static>> {
     found
 }
 
-/// Shows all regions of an imprint one after another, in the order of [`regions`], and allocates nothing.
+/// Passes all regions of an imprint to `visit`, in the order of [`regions`], without allocating.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -147,7 +147,7 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
 }
 
 /// The index of the main region, which is selected at the start and described by sweeps: the exterior with the largest
-/// filled area, the first of equals. None if there are no exteriors.
+/// filled area, or the first of them if several are equal. None if there are no exteriors.
 pub fn main_region(regions: &[Region]) -> Option<usize> {
     let exteriors = regions
         .iter()
@@ -164,8 +164,8 @@ pub fn main_region(regions: &[Region]) -> Option<usize> {
     exteriors.fold(None, largest).map(|(index, _)| index)
 }
 
-/// The rule of the main region, for exteriors one after another: whether one with this filled area takes the place of
-/// the best so far. The first of equals stays.
+/// The rule of the main region, applied to one exterior after another: whether one with this filled area replaces the
+/// best so far. Among equals, the first stays.
 pub(crate) fn is_main(area: u32, best: Option<u32>) -> bool {
     best.is_none_or(|best| area > best)
 }
@@ -175,12 +175,12 @@ fn rows(matrix: &Imprint, bounds: Bounds) -> &[u64] {
     &matrix.words()[usize::from(bounds.top)..usize::from(bounds.bottom)]
 }
 
-/// The rows within the bounds, to be changed.
+/// The rows within the bounds, mutable.
 fn rows_mut(matrix: &mut Imprint, bounds: Bounds) -> &mut [u64] {
     &mut matrix.words_mut()[usize::from(bounds.top)..usize::from(bounds.bottom)]
 }
 
-/// Shows the connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected.
+/// Passes on the connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected.
 fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: impl FnMut(&Region)) {
     let diagonal = kind == RegionKind::Exterior;
     let none = || Imprint::empty(matrix.columns(), matrix.rows());
@@ -238,8 +238,8 @@ fn show_filled(
     ));
 }
 
-/// Whether the first row is one run, and every run of another row meets the row above: then all is one component. Nearly
-/// every imprint of one figure is, and so are most holes.
+/// Whether the first row is one run, and every run of another row meets the row above: then everything is one
+/// component. This holds for nearly every imprint of one figure, and for most holes.
 fn hangs_together(rows: &[u64], diagonal: bool) -> bool {
     let Some(first) = rows.first() else {
         return false;
@@ -354,8 +354,8 @@ impl Wave {
     }
 }
 
-/// Puts a component and what it encloses, background that does not reach the rim, into `filled`, which is empty and of
-/// the same size. Tells whether it encloses anything.
+/// Puts a component and the background it encloses (background that does not reach the rim) into `filled`, which is
+/// empty and has the same size. Returns whether it encloses anything.
 fn fill(piece: &Imprint, bounds: Bounds, filled: &mut Imprint) -> bool {
     let words = rows(piece, bounds);
     let filled = rows_mut(filled, bounds);
