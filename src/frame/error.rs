@@ -1,10 +1,10 @@
-//! Why a frame, or how it is to be processed, is refused.
+//! Why a frame, or the way to process it, is refused.
 
 use std::fmt;
 
 use crate::matrix::Matrix;
 
-/// What is wrong with a frame or with the way it is to be processed.
+/// What is wrong with a frame or with the way to process it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum FrameError {
@@ -22,7 +22,7 @@ pub enum FrameError {
         /// The frame's rows.
         rows: u16,
     },
-    /// A mask, a gain or a tare of another size than what is left of the frame.
+    /// A mask, a gain or a tare whose size differs from that of the visible part of the frame.
     Size {
         /// Which of these.
         what: &'static str,
@@ -50,7 +50,7 @@ pub enum FrameError {
         /// How many frames are possible.
         most: u64,
     },
-    /// The noise rule without a tare to take the noise from.
+    /// The noise rule without a tare that measures the noise.
     NoTare,
 }
 
@@ -93,7 +93,7 @@ impl fmt::Display for FrameError {
 
 impl std::error::Error for FrameError {}
 
-/// Refuses a matrix of another size than that of the values.
+/// Refuses a matrix whose size differs from that of the values.
 pub(super) fn check_size(
     what: &'static str,
     found: &Matrix<f64>,

@@ -1,32 +1,33 @@
-//! How often taxels flip, and which are dead or stuck, as a recording itself shows it.
+//! How often taxels flip, and which are dead or stuck, estimated from a recording.
 //!
-//! A taxel that is the same in the first and the last of three frames in a row is taken to have been so all the time: if
-//! it differs in the middle one, it has flipped. If every taxel flips with probability e, a share e(1−e) / (1 − 2e(1−e)) of
-//! these does so; that gives e. A moving contact changes taxels, too, but
+//! If a taxel has the same state in the first and the last of three consecutive frames, it is assumed to have had this
+//! state all the time: if it differs in the middle frame, it has flipped. If every taxel flips with probability e, a
+//! share e(1−e) / (1 − 2e(1−e)) of these taxels differs, which gives e. A moving contact also changes taxels, but
 //! rarely for one frame only. Frames of a contact at rest or of an empty sensor give the best estimate.
 //!
-//! A taxel is stuck on if it is active wherever none of its neighbours is, and off or dead if it is never active where three
-//! quarters of its neighbours are; each in ten frames or more. A hole of one taxel that never moves looks the same.
+//! A taxel is stuck on if it is active whenever none of its neighbours is, and stuck off or dead if it is never active
+//! when three quarters of its neighbours are, in ten frames or more each. A hole of one taxel that never moves looks
+//! the same.
 
 use crate::frame::rule::unite;
 use crate::imprint::Imprint;
 
-/// Frames that it takes to call a taxel stuck.
+/// How many frames it takes to call a taxel stuck.
 const ENOUGH: u32 = 10;
 
 /// What was seen of a taxel.
 #[derive(Clone, Copy, Debug, Default)]
 struct TaxelCounts {
-    /// Frames in which no neighbour was active, and in how many of these it was.
+    /// Frames in which no neighbour was active, and in how many of these the taxel was.
     alone: (u32, u32),
-    /// Frames in which three quarters of the neighbours were active, and in how many of these it was.
+    /// Frames in which three quarters of the neighbours were active, and in how many of these the taxel was.
     amid: (u32, u32),
 }
 
 /// Gathers the frames of a recording.
 #[derive(Clone, Debug)]
 pub struct FlipCounter {
-    /// The taxels that there are.
+    /// The taxels that exist.
     cells: Imprint,
     frames: u64,
     /// The last two imprints, the last one first.
@@ -46,11 +47,11 @@ pub struct FlipReport {
     pub cells: u32,
     /// How often a taxel was the same in the frame before and the frame after.
     pub repeated: u64,
-    /// In how many of these it differed meanwhile.
+    /// In how many of these cases it differed in between.
     pub flips: u64,
     /// The probability that a taxel flips; None without three frames, or if it seems to be ½ or more.
     pub noise: Option<f64>,
-    /// The standard error of that, as if flips were independent.
+    /// The standard error of that, assuming independent flips.
     pub standard_error: Option<f64>,
     /// Taxels that are stuck on.
     pub stuck_on: Imprint,
@@ -59,7 +60,7 @@ pub struct FlipReport {
 }
 
 impl FlipReport {
-    /// The taxels that say nothing: stuck on or off.
+    /// The taxels that carry no information: stuck on or off.
     pub fn mask(&self) -> Imprint {
         let mut mask = self.stuck_on;
         unite(&mut mask, &self.stuck_off);
@@ -81,7 +82,7 @@ impl FlipCounter {
         }
     }
 
-    /// Adds an imprint, of the same size; another one is left out.
+    /// Adds an imprint; one of another size is ignored.
     pub fn add(&mut self, imprint: &Imprint) {
         if (imprint.columns(), imprint.rows()) != (self.cells.columns(), self.cells.rows()) {
             return;
@@ -187,7 +188,7 @@ fn noise(flips: u64, repeated: u64) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
 
-    /// Numbers that look random, the same each time.
+    /// Pseudo-random numbers, the same each time.
     fn next(state: &mut u64) -> u64 {
         *state ^= *state << 13;
         *state ^= *state >> 7;

@@ -1,11 +1,11 @@
 //! Frames of real sensors: what each cell measures, and how that becomes an imprint.
 //!
-//! A [`Frame`] comes as the sensor or a recording has it, up to 512 × 512 values. [`Processing`] does the rest, in this
-//! order, and allocates nothing per frame:
+//! A [`Frame`] holds up to 512 × 512 values as the sensor or a recording gives them. [`Processing`] does the rest, in
+//! this order, without allocating anything per frame:
 //!
-//! 1. [`View`]: crop, flip, turn by quarters, and the mask of dead cells; what is left has at most 64 × 64 cells.
+//! 1. [`View`]: crop, flip, turn by quarters, and the mask of dead cells; at most 64 × 64 cells may be left.
 //! 2. [`Tare`]: the median of each cell over the first frames is subtracted.
-//! 3. Gain: each cell is multiplied by a factor of its own, if there are such.
+//! 3. Gain: each cell is multiplied by its own factor, if there are factors.
 //! 4. [`Rule`]: which values make a taxel active; then pieces that are too small are dropped.
 //!
 //! Nothing is interpolated, smoothed or normalised. A cell without a value is NaN in memory and never active.

@@ -1,6 +1,6 @@
-//! The frame in which most is pressed.
+//! The frame with the greatest pressure.
 
-/// The frame with the greatest sum of values so far, the first of equals.
+/// The frame with the greatest sum of values so far; the first one if several are equal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peak {
     best: Option<(u64, f64)>,

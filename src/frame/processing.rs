@@ -1,4 +1,4 @@
-//! A frame from what the sensor sends to its imprint, without allocating anything per frame.
+//! From the values that a sensor sends to the imprint, without allocating anything per frame.
 
 use crate::frame::error::{FrameError, check_size};
 use crate::frame::recorded::{Frame, LARGEST_VALUE};
@@ -8,7 +8,7 @@ use crate::frame::view::View;
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 
-/// All that is done with a frame, in the order of the fields.
+/// Everything that is done with a frame, in the order of the fields.
 #[derive(Clone, Debug)]
 pub struct Processing {
     /// Crop, flip, turn, mask.
@@ -26,7 +26,7 @@ pub struct Processing {
 }
 
 impl Default for Processing {
-    /// Nothing is done, and there is no imprint.
+    /// Changes nothing and makes no imprint.
     fn default() -> Self {
         Self {
             view: View::default(),
@@ -40,7 +40,7 @@ impl Default for Processing {
     }
 }
 
-/// A frame and what has become of it.
+/// A frame and the results of its processing.
 #[derive(Clone, Copy, Debug)]
 pub struct Processed<'a> {
     /// The values after crop, flip, turn and mask, in the sensor's unit; NaN where there is no cell.
@@ -102,7 +102,7 @@ impl Processing {
     }
 }
 
-/// The sum, the largest and the number of the values that are there.
+/// The sum, the maximum and the number of the values that exist.
 fn summary(values: &[f64]) -> (f64, Option<f64>, u32) {
     let (mut sum, mut max, mut cells) = (0.0, f64::NEG_INFINITY, 0);
     for &value in values {
@@ -115,7 +115,7 @@ fn summary(values: &[f64]) -> (f64, Option<f64>, u32) {
     (sum, (cells > 0).then_some(max), cells)
 }
 
-/// Multiplies each value by the gain of its cell; what becomes too large has no value.
+/// Multiplies each value by the gain of its cell; a product that is too large counts as no value.
 fn multiply(values: &mut Matrix<f64>, gain: &Matrix<f64>) -> Result<(), FrameError> {
     check_size("gain", gain, values)?;
     for (value, gain) in values.values_mut().iter_mut().zip(gain.values()) {

@@ -1,25 +1,26 @@
-//! A frame as it comes: the values of all cells at one moment, before anything is done with them.
+//! A raw frame: the values of all cells at one moment, before any processing.
 
 /// The largest number of columns, and of rows, of a frame before it is cropped.
 pub const MAX_FRAME_SIDE: u16 = 512;
 
-/// The largest value that a cell may have, and minus that the smallest: sums of a frame are finite then.
+/// The largest value that a cell may have; the smallest is minus that. So sums of a frame are always finite.
 pub const LARGEST_VALUE: f64 = 1e300;
 
 /// The values of a sensor's cells at one moment, in the sensor's unit.
 ///
-/// Readers and decoders fill the same frame again and again, so nothing is allocated per frame.
+/// Readers and decoders reuse the same frame, so nothing is allocated per frame.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// Its number in its channel, from 0.
     pub number: u64,
-    /// The number of its channel (a sensor of several), from 0.
+    /// The number of its channel (one of several sensors), from 0.
     pub channel: usize,
-    /// What the recording itself calls it, where it does.
+    /// The recording's own label for it, if it has one.
     pub label: Option<i64>,
-    /// Seconds since the start of the recording, where they are known. Times may repeat and go back.
+    /// Seconds since the start of the recording, if known. Times may repeat and go back.
     pub time: Option<f64>,
-    /// The row and column of the whole sensor where the frame begins, as the recording counts them, where it says so.
+    /// The row and column of the whole sensor at which the frame begins, as the recording counts them, if it states
+    /// them.
     pub first: Option<(u32, u32)>,
     columns: u16,
     rows: u16,
@@ -27,7 +28,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Creates a frame of cells without values. Sides beyond 1 to 512 are brought to the nearest of these.
+    /// Creates a frame of cells without values. Sides are clamped to 1 to 512.
     pub fn new(columns: u16, rows: u16) -> Self {
         let mut frame = Self {
             number: 0,
@@ -43,8 +44,8 @@ impl Frame {
         frame
     }
 
-    /// Changes the size and empties all cells; number, channel, label and time stay. Memory is only taken for more cells
-    /// than there have been.
+    /// Changes the size and empties all cells; number, channel, label and time stay. It allocates only if there are
+    /// more cells than ever before.
     pub fn reset(&mut self, columns: u16, rows: u16) {
         self.columns = columns.clamp(1, MAX_FRAME_SIDE);
         self.rows = rows.clamp(1, MAX_FRAME_SIDE);
@@ -53,7 +54,7 @@ impl Frame {
         self.values.resize(cells, f64::NAN);
     }
 
-    /// Makes this frame a copy of another one, in the memory that it has.
+    /// Makes this frame a copy of another one, reusing its memory.
     pub fn copy_from(&mut self, other: &Self) {
         let values = std::mem::take(&mut self.values);
         *self = Self {
@@ -85,7 +86,7 @@ impl Frame {
         &self.values
     }
 
-    /// The same, to be changed. A value that is infinite or beyond [`LARGEST_VALUE`] counts as none.
+    /// The same, mutable. A value that is infinite or beyond [`LARGEST_VALUE`] counts as none.
     pub fn values_mut(&mut self) -> &mut [f64] {
         &mut self.values
     }

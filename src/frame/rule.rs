@@ -11,19 +11,19 @@ use crate::matrix::Matrix;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Rule {
-    /// Active from this value on, in the sensor's unit.
+    /// Active at this value or more, in the sensor's unit.
     AtLeast(f64),
-    /// Active from this percentage of the frame's largest value on; no taxel is active if that value is 0 or less.
+    /// Active at this percentage of the frame's largest value or more; no taxel is active if that value is 0 or less.
     Percent(f64),
-    /// Active from `high` on. A cell from `low` on is active if an 8-connected path of such cells joins it to one from
-    /// `high` on.
+    /// Active at `high` or more. A cell of at least `low` is active if an 8-connected path of such cells joins it to
+    /// one of at least `high`.
     Hysteresis {
         /// The lower threshold.
         low: f64,
         /// The upper threshold.
         high: f64,
     },
-    /// Active from this many standard deviations of the cell's own noise above its tare on.
+    /// Active at this many standard deviations of the cell's own noise above its tare, or more.
     Noise(f64),
 }
 
@@ -79,11 +79,12 @@ impl Rule {
         Ok(Self::Noise(checked("noise", deviations, fits, expected)?))
     }
 
-    /// The imprint of values from which the tare was subtracted and which were then multiplied by the gain. A margin of noise,
-    /// which is measured before the gain, is multiplied as well.
+    /// The imprint of values after tare and gain. A margin of noise is measured before the gain, so it is multiplied by
+    /// the gain as well.
     ///
     /// # Errors
-    /// If noise is asked for without a tare of two frames or more, or its size or that of the gain differs.
+    /// If the rule needs noise and there is no tare of two frames or more, or if the size of the tare or the gain
+    /// differs.
     pub fn imprint(
         &self,
         values: &Matrix<f64>,
@@ -124,7 +125,7 @@ impl Rule {
                     check_size("gain", gain, values)?;
                 }
                 let factor = |index: usize| gain.map_or(1.0, |gain| gain.values()[index].abs());
-                // A margin is above 0, so a value of 0 is never active: not even that of a cell whose gain is 0.
+                // A margin is above 0, so a value of 0 is never active, not even in a cell whose gain is 0.
                 active(values, |index, value| {
                     value > 0.0 && value >= factor(index) * tare.margin(index, deviations)
                 })
@@ -133,7 +134,7 @@ impl Rule {
     }
 }
 
-/// The cells from a threshold on.
+/// The cells at a threshold or above.
 fn from(values: &Matrix<f64>, threshold: f64) -> Imprint {
     active(values, |_, value| value >= threshold)
 }

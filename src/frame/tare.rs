@@ -1,9 +1,9 @@
-//! What the cells show when nothing touches them: the median of each over some frames, and how much it varies.
+//! The values of the cells when nothing touches them: the median of each over some frames, and how much it varies.
 
 use crate::frame::error::{FrameError, check_size};
 use crate::matrix::Matrix;
 
-/// The values that a tare keeps until it is finished: 256 MiB of them.
+/// The most values that a tare keeps until it is finished: 256 MiB.
 const MAX_VALUES: u64 = 1 << 25;
 
 /// The normal distribution's standard deviation is this times its median absolute deviation.
@@ -30,7 +30,7 @@ impl TareFrames {
         }
     }
 
-    /// Number of frames that it is to be made of.
+    /// The number of frames that it needs.
     pub fn wanted(&self) -> u64 {
         self.wanted
     }
@@ -100,7 +100,7 @@ impl TareFrames {
     }
 }
 
-/// The value in the middle, the mean of the two there are in the middle of an even number; NaN of none.
+/// The median: the middle value, or the mean of the two middle values of an even number; NaN without values.
 fn median(values: &mut [f64]) -> f64 {
     values.sort_unstable_by(f64::total_cmp);
     let middle = values.len() / 2;
@@ -111,7 +111,7 @@ fn median(values: &mut [f64]) -> f64 {
     }
 }
 
-/// The smallest difference between two values; 1 where all are equal.
+/// The smallest difference between two values; 1 if all are equal.
 fn step(mut values: Vec<f64>) -> f64 {
     values.retain(|value| !value.is_nan());
     values.sort_unstable_by(f64::total_cmp);
@@ -171,19 +171,19 @@ impl Tare {
         self.step
     }
 
-    /// How many frames it was made of.
+    /// The number of frames it was made from.
     pub fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// By how much a tared value of each cell must exceed 0 to stand out from noise: `k` standard deviations, estimated
+    /// How far a tared value of each cell must exceed 0 to stand out from the noise: `k` standard deviations, estimated
     /// from the median absolute deviation, but at least one step of the values.
     pub(crate) fn margin(&self, index: usize, k: f64) -> f64 {
         let deviation = self.deviation.values()[index];
         (k * MAD_TO_DEVIATION * deviation).max(self.step)
     }
 
-    /// Subtracts it.
+    /// Subtracts the tare from the values.
     ///
     /// # Errors
     /// If the values are of another size.

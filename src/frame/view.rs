@@ -1,4 +1,4 @@
-//! Which part of a frame is looked at, and from which side: crop, flip, turn, mask.
+//! Which part of a frame is used, and how it is oriented: crop, flip, turn, mask.
 
 use crate::frame::error::FrameError;
 use crate::frame::recorded::{Frame, LARGEST_VALUE};
@@ -22,21 +22,21 @@ pub struct Crop {
 /// Crop, flip, turn and mask, done in this order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct View {
-    /// The part that is kept; the whole frame where there is none.
+    /// The part that is kept; None keeps the whole frame.
     pub crop: Option<Crop>,
     /// Whether columns are reversed: the left one becomes the right one.
     pub flip_x: bool,
     /// Whether rows are reversed.
     pub flip_y: bool,
-    /// Quarter turns clockwise as seen; four are none.
+    /// Quarter turns clockwise as seen; four are the same as none.
     pub quarter_turns: u8,
-    /// Dead cells: those that are active here have no value. It has the size of what is left.
+    /// Dead cells: cells that are active here have no value. The mask has the size of the cropped and turned frame.
     pub mask: Option<Imprint>,
 }
 
 impl View {
-    /// Writes what is seen of a frame into a matrix of its size. Values that are infinite, or too large for a sum, become
-    /// NaN.
+    /// Writes the visible part of a frame into a matrix of its size. Values that are infinite, or too large for a sum,
+    /// become NaN.
     ///
     /// # Errors
     /// If the crop reaches beyond the frame, more than 64 × 64 cells are left, or the mask is of another size.
@@ -71,7 +71,7 @@ impl View {
         self.hide(seen)
     }
 
-    /// Columns and rows of what is seen of frames of that size; more than there may be are possible.
+    /// Columns and rows of the visible part of a frame of that size; they may exceed the allowed size.
     pub fn size(&self, columns: u16, rows: u16) -> (u16, u16) {
         let (columns, rows) = self
             .crop
@@ -111,7 +111,7 @@ impl View {
         }
     }
 
-    /// Where a cell of the cropped frame comes to.
+    /// Where a cell of the cropped frame ends up.
     fn position(&self, column: u8, row: u8, columns: u8, rows: u16) -> (u8, u8) {
         // At most 64: checked before.
         let last_row = u8::try_from(rows.saturating_sub(1)).unwrap_or(MAX_SIDE - 1);
@@ -154,7 +154,7 @@ impl View {
 mod tests {
     use super::*;
 
-    /// `1 2 3 / 4 5 6` seen, rows parted by `/`.
+    /// `1 2 3 / 4 5 6` as it is seen, with rows separated by `/`.
     fn seen(view: &View) -> Result<String, FrameError> {
         let mut frame = Frame::new(3, 2);
         frame

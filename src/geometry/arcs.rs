@@ -1,12 +1,12 @@
 //! An ellipse cut at the lines of a grid.
 //!
-//! Each half is gone along from top to bottom, row by row. In a row it goes on in one direction until it comes to the
-//! column of its end, or first to that of its leftmost or rightmost point and then back: so the columns say which
-//! vertical lines a piece ends at, each point is reached once, and nothing depends on how two roundings compare. An
+//! Each half is followed from top to bottom, row by row. Within a row it runs in one direction to the column of its
+//! end, or first to the column of its leftmost or rightmost point and then back. So the columns determine the vertical
+//! lines at which a piece ends, each point is reached once, and nothing depends on how two rounding errors compare. An
 //! ellipse that merely touches a grid line is not a special case.
 //!
 //! What a piece adds to its cell is the difference of two running sums ([`Sums`]), so each line is computed once for
-//! the cells on its two sides; and all lines are computed before the way down begins, since a processor then works on
+//! the cells on its two sides. All lines are computed before the descent begins, so that a processor can work on
 //! several of them at once.
 
 use crate::geometry::cell_grid::CellGrid;
@@ -15,7 +15,7 @@ use crate::geometry::outline::{Point, Side};
 use crate::geometry::real::Real;
 use crate::index::from_first;
 
-/// Draws ellipses, again and again without allocating.
+/// Draws ellipses; drawing another one does not allocate.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Arcs<T> {
     /// Where the ellipse meets the vertical lines: above, below.
@@ -24,7 +24,7 @@ pub(crate) struct Arcs<T> {
     horizontal: Vec<[Way<T>; 2]>,
 }
 
-/// Where a half is on its way down.
+/// How far the descent along a half has come.
 #[derive(Clone, Copy, Debug)]
 struct Way<T> {
     sums: Sums<T>,
@@ -37,7 +37,7 @@ struct Way<T> {
 struct RowPass<T> {
     number: usize,
     start: usize,
-    /// Whether the way down adds or takes away.
+    /// Whether the descent adds or subtracts.
     sign: T,
     quarter: T,
 }
@@ -100,7 +100,7 @@ impl<T: Real> Arcs<T> {
                     sign,
                     quarter,
                 };
-                // Above its turning point a half goes away from the middle, below it back.
+                // Above its turning point a half moves away from the middle, below it back.
                 if number < turn {
                     self.go(grid, &row, &mut way, goal.slot, 0);
                 } else {
@@ -137,7 +137,7 @@ impl<T: Real> Arcs<T> {
         rows
     }
 
-    /// Goes on to a column within a row, above or below the turning point.
+    /// Continues to a column within a row, above or below the turning point.
     fn go(
         &self,
         grid: &mut CellGrid<T>,

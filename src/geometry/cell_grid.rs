@@ -6,11 +6,11 @@
 //! of its own cell only, and the areas come from running sums of the rows: only cells that the boundary crosses are
 //! computed.
 //!
-//! What lies left of the grid is put into a column before the first one, where its height is all that counts, and
-//! what lies right of it into one behind the last: no piece is a special case.
+//! Whatever lies left of the grid goes into a column before the first one, where only its height counts, and whatever
+//! lies right of it into one behind the last. So no piece is a special case.
 //!
-//! Two rows are kept side by side, so that one running sum serves both: a processor adds a pair of `f64` in the time
-//! of one, and the running sums are what a touch of a polygon spends most of its time on.
+//! Two rows are kept side by side, so that one running sum serves both: a processor adds a pair of `f64` in the time of
+//! one, and a touch of a polygon spends most of its time on running sums.
 
 use std::ops::Range;
 
@@ -26,14 +26,14 @@ pub(crate) struct CellGrid<T> {
     /// The entries of a pair of rows: one before the first column, one a column, one behind the last.
     stride: usize,
     entries: Vec<CellSums<T>>,
-    /// How far anything drawn reaches: the least x and y, and the largest ones.
+    /// The extent of everything drawn: the least x and y, and the largest ones.
     low: Point<T>,
     high: Point<T>,
     /// The largest moment of an ellipse that was drawn.
     moment: T,
 }
 
-/// What the pieces of boundary in a cell and in the one below it leave there, and in each cell further to the right.
+/// What the pieces of boundary in a cell and in the one below it contribute there, and to each cell further right.
 #[derive(Clone, Copy, Debug)]
 struct CellSums<T> {
     here: [T; 2],
@@ -64,7 +64,7 @@ impl<T: Real> CellGrid<T> {
         grid
     }
 
-    /// Wipes the grid.
+    /// Clears the grid.
     pub(crate) fn clear(&mut self) {
         let (rows, drawn) = (self.rows(), self.entries_drawn());
         if !rows.is_empty() && !drawn.is_empty() {
@@ -171,7 +171,7 @@ impl<T: Real> CellGrid<T> {
         }
     }
 
-    /// How large the numbers are that the areas are sums of, at most: coordinates of edges, moments of ellipses.
+    /// An upper bound of the numbers whose sums are the areas: coordinates of edges, moments of ellipses.
     pub(crate) fn magnitude(&self) -> T {
         let ends = [self.low.x, self.low.y, self.high.x, self.high.y];
         ends.into_iter()

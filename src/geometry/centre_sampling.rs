@@ -1,20 +1,20 @@
-//! Which cells of a grid ellipses cover by half or more, decided by the cells' centres.
+//! Which cells of a grid are covered by ellipses by half or more, decided by the cells' centres.
 //!
-//! **Method.** A cell is symmetric about its centre. So a straight line through the centre halves it, and whatever is
-//! convex covers less than half of a cell whose centre it does not cover.
+//! **Method.** A cell is symmetric about its centre, so a straight line through the centre halves it. Therefore a
+//! convex shape covers less than half of a cell whose centre it does not cover.
 //!
-//! Conversely, let `u` be the centre in the frame in which the ellipse is the unit disc, and `r` the smaller radius. Of two
-//! points of the cell on opposite sides of its centre the ellipse covers at least one if `1 − |u|² ≥ 1 / (2·r²)`, since
-//! no point of a cell is further than √½ from its centre: so it covers more than half. Half of that depth is enough where
-//! the larger radius is at most `0.9·r²`: then a lens about the centre, of which the ellipse covers both of such points,
-//! is more than twice as large as the corners of the cell of which it covers neither.
+//! Conversely, let `u` be the centre in the frame in which the ellipse is the unit disc, and `r` the smaller radius. If
+//! `1 − |u|² ≥ 1 / (2·r²)`, the ellipse covers at least one of any two points of the cell that are opposite each other
+//! about its centre, since no point of a cell is further than √½ from its centre. So it covers more than half. Half of
+//! that depth is enough if the larger radius is at most `0.9·r²`: then the lens about the centre in which the ellipse
+//! covers both such points is more than twice as large as the corners of the cell in which it covers neither.
 //!
-//! So it is enough to find where the ellipses meet the lines through the centres of the rows. What this leaves *open* is
-//! computed from areas: cells whose centre lies just inside an ellipse, and cells that two ellipses cross. Of a circle of
-//! radius 4 those are fewer than 4 % of the cells that it crosses.
+//! So it is enough to find where the ellipses meet the lines through the centres of the rows. The cells that this
+//! leaves *open* are decided by their areas: cells whose centre lies just inside an ellipse, and cells that two
+//! ellipses cross. For a circle of radius 4, fewer than 4 % of the cells that it crosses are open.
 //!
-//! No other cell is near to one half: where the centre lies on an ellipse, its area in the cell falls short of one half by
-//! a 24th of its least curvature. Ellipses that are too flat for that are left to [`super::overlap`].
+//! No other cell is close to one half: if the centre lies on an ellipse, the ellipse's area in the cell falls short of
+//! one half by a 24th of its least curvature. Ellipses that are too flat for this are left to [`super::overlap`].
 
 use std::ops::Range;
 
@@ -52,7 +52,7 @@ struct ShapeRow {
     inside: u64,
     /// The cells that an ellipse crosses.
     crossed: u64,
-    /// The cells that their centres do not decide.
+    /// The cells that are not decided by their centres.
     open: u64,
 }
 
@@ -106,7 +106,7 @@ impl CentreSampling {
         }
     }
 
-    /// Samples the ellipses. Gives the rows that may have cells covered by half. None if centres do not decide: where an
+    /// Samples the ellipses. Gives the rows that may have cells covered by half. None if centres do not decide: if an
     /// ellipse is very large or flat, material overlaps, or a hole does not lie in material drawn before.
     pub(crate) fn sample(&mut self) -> Option<Range<i32>> {
         self.shape[slots(&self.drawn)].fill(ShapeRow::default());
@@ -188,7 +188,7 @@ impl Curve {
         misplaced != 0
     }
 
-    /// How large `1 − |u|²` is of the centres of cells of which it surely covers more than half.
+    /// The value of `1 − |u|²` from which on the ellipse surely covers more than half of the cell.
     fn sure_depth(&self) -> f64 {
         let square = self.radius_squared;
         let span = self.cuts.span();
@@ -225,12 +225,12 @@ fn slots(rows: &Range<i32>) -> Range<usize> {
     from_first(rows.start)..from_first(rows.end)
 }
 
-/// The cell of a line that a number lies in; a whole number lies in either of two.
+/// The unit interval that contains a number; for a whole number, it may be either of two.
 fn cell(number: f64) -> i32 {
     nearest(number - 0.5)
 }
 
-/// The columns from that on which `x` lies in, or from the nearest one.
+/// The columns from the one that contains `x` on, or from the nearest one.
 fn columns_from(x: f64) -> u64 {
     u64::MAX.wrapping_shl(cell(min(max(x, 0.5), 63.5)).cast_unsigned())
 }

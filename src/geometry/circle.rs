@@ -1,6 +1,6 @@
-//! Sines, cosines and angles in `f64`, in radians: by arithmetic alone, so the same on every machine.
+//! Sines, cosines and angles in `f64`, in radians, by arithmetic alone and therefore the same on every machine.
 //!
-//! Series are of Taylor, with the angle made short first, since then few terms are enough. Errors stay below 5e-16.
+//! Uses Taylor series, after reducing the angle so that few terms are enough. Errors stay below 5e-16.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -19,7 +19,7 @@ pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     (angle * sum(&ODD), sum(&EVEN))
 }
 
-/// Of `first`, which is 0 or 1, and of every second number after it.
+/// For `first`, which is 0 or 1, and for every second number after it.
 const fn inverse_factorials<const TERMS: usize>(first: f64) -> [f64; TERMS] {
     let mut terms = [1.0; TERMS];
     let (mut term, mut number) = (1, first);
@@ -32,8 +32,9 @@ const fn inverse_factorials<const TERMS: usize>(first: f64) -> [f64; TERMS] {
 
 /// The angle that has this sine and this cosine, from −π/2 to π/2: the cosine is not negative.
 ///
-/// Turned back by an angle of a table that is nearly the same, there is so little left that its arc sine is a short
-/// series. The sine says which one, so the cosine, which is often a root still being computed, is not waited for.
+/// The angle is first turned back by a nearly equal angle from a table; the rest is so small that its arc sine is a
+/// short series. The sine selects the entry, so that nothing waits for the cosine, which is often a root still being
+/// computed.
 pub(crate) fn angle(sin: f64, cos: f64) -> f64 {
     let size = sin.abs();
     #[expect(
@@ -75,7 +76,7 @@ const fn nodes() -> [Node; 128] {
     let (mut number, mut sine, mut from) = (0, 0.0, 0.0);
     while number < 64 {
         sine += 1.0 / 64.0;
-        // Newton's method; from the angle of the sine before, which is smaller, it does not go too far but the last
+        // Newton's method. Starting at the angle of the previous, smaller sine, it never overshoots except the last
         // time, where the slope is zero.
         let (mut to, mut step) = (from, 0);
         while step < 9 && number < 63 {

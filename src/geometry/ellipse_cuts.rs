@@ -5,8 +5,8 @@
 //! `extent = |det| / R`; likewise for vertical lines.
 //!
 //! **Moments.** Along an arc whose angle in the disc is `φ`, Green's theorem gives `∫ X dY = (X·Y + det·φ) / 2` about
-//! the centre. A horizontal line takes one angle `η` for the two points at which it meets the ellipse, since they lie
-//! as far from the topmost point on either side; so does a vertical line.
+//! the centre. A horizontal line needs only one angle `η` for the two points at which it meets the ellipse, since they
+//! are equally far from the topmost point; so does a vertical line.
 
 use crate::geometry::outline::{Ellipse, Point};
 use crate::geometry::real::Real;
@@ -21,7 +21,7 @@ pub(crate) struct EllipseCuts<T> {
     extent: Point<T>,
     /// Half the area of the image of the unit square, positive.
     half_area: T,
-    /// By how much of an angle the rightmost point lies below the middle between the topmost and the bottommost one.
+    /// The angle by which the rightmost point lies below the middle between the topmost and the bottommost one.
     tilt: T,
     /// The leftmost point.
     pub(crate) left: Point<T>,
@@ -33,9 +33,9 @@ pub(crate) struct EllipseCuts<T> {
     pub(crate) bottom: Point<T>,
 }
 
-/// The sums that run along a half of an ellipse on the way down, at a point of it.
+/// The running sums of a descent along a half of an ellipse, at one of its points.
 ///
-/// What they come to between two points is their difference.
+/// The contribution between two points is their difference.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sums<T> {
     /// `∫ dy`: the height below the centre.
@@ -44,11 +44,11 @@ pub(crate) struct Sums<T> {
     pub moment: T,
 }
 
-/// Where a line meets an ellipse: the x, and what the way down the left or the right half comes to there.
+/// Where a line meets an ellipse: the x, and the sums of the descent along the left or the right half up to there.
 pub(crate) type Crossing<T> = (T, Sums<T>);
 
 impl<T: Real> EllipseCuts<T> {
-    /// Prepares an ellipse; none that is thinner than any tie.
+    /// Prepares an ellipse; None if it is thinner than any tie.
     pub(crate) fn of(ellipse: &Ellipse<T>) -> Option<Self> {
         let (centre, reach, area) = (ellipse.centre, ellipse.reach(), ellipse.span());
         if area <= T::TIE * T::TIE {
@@ -79,7 +79,7 @@ impl<T: Real> EllipseCuts<T> {
         })
     }
 
-    /// Where the horizontal line at `y` meets it: left, right. Where it passes by, the nearest extreme point, twice.
+    /// Where the horizontal line at `y` meets it: left, right. If it passes by, the nearest extreme point, twice.
     pub(crate) fn across(&self, y: T) -> [Crossing<T>; 2] {
         let height = y - self.centre.y;
         let (angle, half) = if height.abs() < self.reach.y {
@@ -102,7 +102,7 @@ impl<T: Real> EllipseCuts<T> {
         ]
     }
 
-    /// Where the vertical line at `x`, which meets it, does so: above, below. The moments are a quarter turn off, see
+    /// Where the vertical line at `x` meets it, which it must: above, below. The moments are a quarter turn off, see
     /// [`Self::quarter`].
     pub(crate) fn along(&self, x: T) -> [Sums<T>; 2] {
         let aside = x - self.centre.x;
@@ -119,12 +119,13 @@ impl<T: Real> EllipseCuts<T> {
         [at(middle - half, sector), at(middle + half, -sector)]
     }
 
-    /// Where the horizontal line at `y` meets it: the x on the left and on the right. Where it passes by, the middle, twice.
+    /// Where the horizontal line at `y` meets it: the x on the left and on the right. If it passes by, the middle,
+    /// twice.
     pub(crate) fn chord(&self, y: T) -> [T; 2] {
         self.chords(y, T::ONE)[0]
     }
 
-    /// The same, and where the line meets the ellipse made smaller about its centre by the root of `size`.
+    /// The same, and where the line meets the ellipse scaled about its centre by the root of `size`.
     pub(crate) fn chords(&self, y: T, size: T) -> [[T; 2]; 2] {
         let height = y - self.centre.y;
         let sin = height * self.inverse.y;
@@ -142,7 +143,7 @@ impl<T: Real> EllipseCuts<T> {
 
     /// The square of the smaller radius.
     pub(crate) fn smaller_radius_squared(&self) -> T {
-        // Of the squares of the two radii the sum and the product are known.
+        // The sum and the product of the squared radii are known.
         let span = self.span();
         let sum = self.reach.x * self.reach.x + self.reach.y * self.reach.y;
         let larger = (sum + (sum * sum - T::whole(4) * span * span).sqrt()) * T::HALF;
@@ -161,8 +162,8 @@ impl<T: Real> EllipseCuts<T> {
         }
     }
 
-    /// A quarter turn's share of a moment. On a way down that goes to the right it is to be taken off what
-    /// [`Self::along`] gives, on one that goes to the left it is to be added.
+    /// A quarter turn's share of a moment. Subtract it from the result of [`Self::along`] on a descent to the right,
+    /// and add it on a descent to the left.
     pub(crate) fn quarter(&self) -> T {
         self.half_area * T::QUARTER_TURN
     }

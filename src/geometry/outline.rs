@@ -1,14 +1,14 @@
-//! What bounds a shape: straight edges and ellipses, drawn with a [`Pen`].
+//! The boundary of a shape: straight edges and ellipses, drawn with a [`Pen`].
 //!
 //! A shape is *drawn* rather than returned: it calls the pen for each edge and each ellipse of its boundary. So one
-//! definition of a shape serves every use (areas, extents, pictures) in every number ([`Real`]), and in `f64` nothing
-//! is allocated on the way.
+//! definition of a shape serves every purpose (areas, extents, pictures) with every type of number ([`Real`]), and
+//! allocates nothing with `f64`.
 //!
-//! **Orientation.** Edges run clockwise as seen (x right, y down) around the material, that is with the material on
-//! their right; around a hole they run the other way. Only closed sets of edges bound anything; their order is free.
+//! **Orientation.** Edges run clockwise as seen (x right, y down) around the material, with the material on their
+//! right; around a hole they run the other way. Only closed sets of edges bound anything; their order does not matter.
 //!
-//! **Size.** Coordinates are finite. They may lie far beyond the sensor, but roundings grow with them: of the 32 digits
-//! that decide a tie, those before the decimal point are lost, and of an ellipse as many again.
+//! **Size.** Coordinates are finite. They may lie far beyond the sensor, but rounding errors grow with them: of the 32
+//! digits that decide a tie, those before the decimal point are lost, and twice as many for an ellipse.
 
 use crate::geometry::real::Real;
 
@@ -34,7 +34,7 @@ impl<T: Real> Point<T> {
     }
 }
 
-/// A turn about the origin.
+/// A rotation about the origin.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn<T> {
     sin: T,
@@ -48,7 +48,7 @@ impl<T: Real> Turn<T> {
         Self { sin, cos }
     }
 
-    /// Where the vector goes.
+    /// The rotated vector.
     pub fn of(&self, vector: Point<T>) -> Point<T> {
         Point::new(
             vector.x * self.cos - vector.y * self.sin,
@@ -78,7 +78,7 @@ impl<T: Real> Ellipse<T> {
         )
     }
 
-    /// The area of the parallelogram that its two axes span: its own area over π.
+    /// The area of the parallelogram that its two axes span: the area of the ellipse divided by π.
     pub(crate) fn span(&self) -> T {
         (self.across.x * self.along.y - self.across.y * self.along.x).abs()
     }
@@ -98,9 +98,9 @@ pub enum Side {
     Outside,
 }
 
-/// What a shape draws its boundary with; all coordinates are finite.
+/// The pen with which a shape draws its boundary; all coordinates are finite.
 pub trait Pen<T: Real> {
-    /// A straight piece of boundary, the material on the right of the way from `from` to `to`.
+    /// A straight piece of boundary, with the material on the right when going from `from` to `to`.
     fn edge(&mut self, from: Point<T>, to: Point<T>);
     /// A whole ellipse.
     fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side);
@@ -119,7 +119,7 @@ pub trait Pen<T: Real> {
     }
 }
 
-/// A pen whose paper is moved.
+/// A pen that draws everything shifted.
 pub(crate) struct Moving<'a, T, P> {
     pub(crate) by: Point<T>,
     pub(crate) pen: &'a mut P,
@@ -135,9 +135,9 @@ impl<T: Real, P: Pen<T>> Pen<T> for Moving<'_, T, P> {
     }
 }
 
-/// Anything with a boundary: figures, pictures, and outlines of one's own.
+/// Anything with a boundary: figures, pictures, and your own outlines.
 ///
-/// A type of one's own says how it is drawn, once, for every kind of number:
+/// Your own type defines once, for every type of number, how it is drawn:
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -168,14 +168,14 @@ impl<T: Real, P: Pen<T>> Pen<T> for Moving<'_, T, P> {
 ///
 /// [`Polygon`] takes vertices as they are.
 pub trait Solid {
-    /// Draws the whole boundary. The numbers of the shape are to be taken through [`Real::decimal`].
+    /// Draws the whole boundary. Convert the numbers of the shape with [`Real::decimal`].
     fn draw<T: Real>(&self, pen: &mut impl Pen<T>);
 }
 
-/// A simple polygon of one's own: its vertices in either sense of rotation, at least three.
+/// A simple polygon from at least three vertices, in either sense of rotation.
 ///
-/// With fewer vertices, or all of them on a line, it bounds nothing. Where its edges cross each other, a part that is
-/// wound around twice counts twice: such polygons have no meaning here.
+/// With fewer vertices, or with all of them on a line, it bounds nothing. If its edges cross each other, a part that is
+/// wound around twice counts twice: such polygons make no sense here.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -195,7 +195,7 @@ pub struct Polygon {
 }
 
 impl Polygon {
-    /// The polygon through the vertices, in order. A coordinate that is not finite is read as 0.
+    /// The polygon through the vertices, in order. Coordinates that are not finite become 0.
     pub fn new(vertices: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
         let mut vertices: Vec<_> = vertices
@@ -214,8 +214,8 @@ fn turns_left(vertices: &[(f64, f64)]) -> bool {
     let Some(&first) = vertices.first() else {
         return false;
     };
-    // Seen from the first vertex, or a polygon far away would be lost in the roundings of the way there; and in units
-    // of its size, or products would overflow. Differences of halves cannot.
+    // Relative to the first vertex, since a polygon far away would otherwise drown in rounding errors; and in units of
+    // its size, since products could overflow. Differences of halves cannot.
     let way = |&(x, y): &(f64, f64)| (x / 2.0 - first.0 / 2.0, y / 2.0 - first.1 / 2.0);
     let ways = || vertices.iter().map(way);
     let size = ways().fold(f64::MIN_POSITIVE, |size, (x, y)| {
@@ -254,7 +254,7 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// The extent of a shape; none of one without a boundary.
+    /// The extent of a shape; None without a boundary.
     pub fn of(solid: &impl Solid) -> Option<Self> {
         Self::drawn(|pen| solid.draw(pen))
     }
@@ -267,7 +267,7 @@ impl Extent {
     }
 }
 
-/// Draws nothing and remembers how far it went.
+/// Draws nothing, but remembers how far it went.
 pub(crate) struct ExtentPen(Option<Extent>);
 
 impl ExtentPen {

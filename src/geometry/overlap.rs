@@ -3,10 +3,10 @@
 //! **Method.** The boundary is cut at the grid lines, and each piece adds to its own cell what the areas follow from
 //! (`cell_grid`): straight edges here, ellipses in `arcs`.
 //!
-//! **Error.** A few roundings per piece, of sums below 10^4 for every shape of the program: under 1e-11 in `f64`, a
-//! tenth of what a touch takes for doubtful. Edges that are horizontal or vertical up to a rounding are harmless: what
-//! they contribute is as small as their height. Deciding a threshold exactly is the business of [`crate::touch`], which
-//! uses [`cell_area`] for it.
+//! **Error.** A few rounding errors per piece, of sums below 10^4 for every shape of the program: under 1e-11 in `f64`,
+//! a tenth of what a touch considers doubtful. Edges that are horizontal or vertical up to a rounding error are
+//! harmless: their contribution is as small as their height. Deciding a threshold exactly is the business of
+//! [`crate::touch`], which uses [`cell_area`] for it.
 
 use crate::geometry::arcs::Arcs;
 use crate::geometry::cell_grid::CellGrid;
@@ -56,7 +56,8 @@ impl<T: Real> Overlap<T> {
             let next = if ends {
                 to
             } else {
-                // Kept between the ends: the slope of an edge that is horizontal up to a rounding means nothing.
+                // Clamped between the ends: the slope of an edge that is horizontal up to a rounding error is
+                // meaningless.
                 Point::new(here.x.max(edge.x_at(line)).min(to.x), line)
             };
             cell = self.slice(row, edge, (here, cell), next);
@@ -92,8 +93,8 @@ impl<T: Real> Overlap<T> {
             add(last, height, last_right - (from.x + to.x) * T::HALF);
             return (last, last_left);
         }
-        // What is left of the height after the first cell and the whole ones between goes to the last cell: a sum
-        // that is too small in one cell by a rounding is too large in the next one.
+        // The height that remains after the first cell and the whole cells in between goes to the last cell: a sum that
+        // is too small in one cell by a rounding error is too large in the next one.
         let way = first_left + T::ONE - from.x;
         let own = way * edge.climb;
         add(first, own, way * T::HALF);
@@ -123,7 +124,7 @@ impl<T: Real> Overlap<T> {
             }
         }
         let at = |x: T| Point::new(x, top.max(edge.y_at(x)).min(end));
-        // Where it is left of the grid only its height counts, where it is right of it nothing does.
+        // Left of the grid only its height counts; right of it, nothing does.
         if from.x < T::ZERO {
             let rim = if to.x < T::ZERO { to } else { at(T::ZERO) };
             self.aside(edge, from.y, rim.y);
@@ -154,12 +155,11 @@ impl<T: Real> Overlap<T> {
 struct SlopedEdge<T> {
     left: Point<T>,
     right: Point<T>,
-    /// Its way to the right for each step down.
+    /// How far it goes right for each step down.
     slope: T,
-    /// Its way down for each step to the right.
+    /// How far it goes down for each step right.
     steepness: T,
-    /// −1 where the material is below, +1 where it is above: where the boundary runs upwards, the cells on its right
-    /// gain.
+    /// −1 if the material is below, +1 if it is above: if the boundary runs upwards, the cells on its right gain.
     sign: T,
     /// What it adds to the height of a cell that it crosses from side to side.
     climb: T,

@@ -1,12 +1,12 @@
-//! The number that geometry is computed in: [`f64`] for speed, [`Double`] to decide what `f64` cannot.
+//! The numbers that geometry computes with: [`f64`] for speed, [`Double`] to decide what `f64` cannot.
 //!
-//! Every outline and every area is written once, over [`Real`]. A touch computes in `f64`, whose error here stays
-//! below 1e-11; what lies within ten times that of the threshold is computed again as a [`Double`], a pair of `f64`
-//! with about 106 bits, and there a difference below 1e-20 counts as none ([`Real::TIE`]).
+//! Every outline and every area is written once, over [`Real`]. A touch computes in `f64`, whose error here stays below
+//! 1e-11. Whatever lies within ten times that of the threshold is computed again as a [`Double`], a pair of `f64` with
+//! about 106 bits; there, a difference below 1e-20 counts as zero ([`Real::TIE`]).
 //!
-//! **A parameter means the decimal number that one reads.** `0.1` as an `f64` is not one tenth, so a figure that
-//! should cover exactly half of a cell would miss by 1e-17. [`Real::decimal`] therefore takes the shortest decimal
-//! that reads back as the given `f64`, which is what a user typed, and a `Double` holds that decimal to 32 digits.
+//! **A parameter means the decimal number that is displayed.** `0.1` as an `f64` is not one tenth, so a figure that
+//! should cover exactly half of a cell would miss by 1e-17. [`Real::decimal`] therefore takes the shortest decimal that
+//! reads back as the given `f64`, which is what a user typed, and a `Double` holds that decimal to 32 digits.
 //!
 //! Double-double arithmetic after T. J. Dekker, *A floating-point technique for extending the available
 //! precision*, Numerische Mathematik 18 (1971), and D. E. Knuth, *The Art of Computer Programming*, vol. 2, 4.2.2.
@@ -27,9 +27,9 @@ impl sealed::Sealed for f64 {}
 
 impl sealed::Sealed for Double {}
 
-/// What geometry needs of a number. Total: no operation panics; the callers keep divisors away from zero.
+/// The operations that geometry needs. None of them panics; callers keep divisors away from zero.
 ///
-/// Sealed: [`f64`] and [`Double`] are all there are.
+/// This trait is sealed: only [`f64`] and [`Double`] implement it.
 pub trait Real:
     sealed::Sealed
     + Copy
@@ -49,10 +49,10 @@ pub trait Real:
     const HALF: Self;
     /// A right angle in radians.
     const QUARTER_TURN: Self;
-    /// Two areas (in cells) that differ by less than this are taken for equal.
+    /// Two areas (in cells) that differ by less than this count as equal.
     const TIE: Self;
 
-    /// The decimal number that `value` is written as; `value` itself where the number has no more digits than that.
+    /// The decimal number as which `value` is written; `value` itself if the type has no more digits than that.
     fn decimal(value: f64) -> Self;
     /// The nearest `f64`.
     fn to_f64(self) -> f64;
@@ -60,10 +60,10 @@ pub trait Real:
     fn whole(value: i32) -> Self;
     /// The largest whole number not above it; saturates beyond the range of `i32`.
     fn floor(self) -> i32;
-    /// The cell of a line that a number from 0 to below 2²⁰ lies in: its index, and its lower end. A whole number lies in
-    /// either of two.
+    /// The unit interval that contains a number from 0 to below 2²⁰: its index, and its lower end. For a whole number,
+    /// it may be either of two.
     fn cell(self) -> (usize, Self);
-    /// The square root, of a negative number 0: roots of differences that vanish may come out at −1e-17.
+    /// The square root; 0 for a negative number, since a difference that vanishes may come out as −1e-17.
     #[must_use]
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in degrees; exactly 0 and ±1 at the multiples of 90°.
@@ -81,18 +81,18 @@ pub trait Real:
     fn max(self, other: Self) -> Self {
         if other > self { other } else { self }
     }
-    /// Without its sign.
+    /// The absolute value.
     #[must_use]
     fn abs(self) -> Self {
         if self < Self::ZERO { -self } else { self }
     }
 }
 
-/// 1.5 · 2⁵². Added to it, a number is rounded to a whole one, which stands in the lowest bits. A cast takes three times as
-/// long: it has to saturate.
+/// 1.5 · 2⁵². Adding a number to it rounds the number to a whole one, which is then in the lowest bits. A cast takes
+/// three times as long, because it has to saturate.
 const WHOLE: f64 = 6_755_399_441_055_744.0;
 
-/// The whole number nearest to a number from −2³¹ to below 2³¹; of two, the even one.
+/// The whole number nearest to a number from −2³¹ to below 2³¹; the even one if two are equally near.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "the lowest bits are wanted"
@@ -122,7 +122,7 @@ impl Real for f64 {
         reason = "saturating is what the contract asks for"
     )]
     fn floor(self) -> i32 {
-        // Not `f64::floor`, which is a call where the processor is not known to have the instruction.
+        // Not `f64::floor`, which is a function call unless the processor is known to have the instruction.
         let towards_zero = self as i32;
         towards_zero.saturating_sub(i32::from(Self::from(towards_zero) > self))
     }
@@ -148,7 +148,7 @@ impl Real for f64 {
 
 /// The nearest number of right angles, and the degrees left over, from −45 to 45. Both are exact.
 fn quarters(degrees: f64) -> (i32, f64) {
-    // Not `round` and `rem_euclid`, which are calls; a turn more or less makes no difference.
+    // Not `round` and `rem_euclid`, which are function calls; a turn more or less makes no difference.
     let degrees = if degrees.abs() < 1e9 {
         degrees
     } else {
@@ -197,7 +197,7 @@ fn two_sum(a: f64, b: f64) -> Double {
     }
 }
 
-/// The same, where `a` is known to be the larger.
+/// The same, if `a` is known to be the larger.
 fn quick_two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     Double {
@@ -296,7 +296,7 @@ impl Real for Double {
     };
 
     fn decimal(value: f64) -> Self {
-        // The power of ten below would overflow, and what the binary number is off by is less than any tie.
+        // The power of ten below would overflow, and the error of the binary number is smaller than any tie.
         if value.abs() < 1e-200 {
             return Self::from(value);
         }
@@ -355,7 +355,7 @@ impl Real for Double {
         turn_by_quarters(quarter, sin, cos)
     }
     fn angle(sin: Self, cos: Self) -> Self {
-        // What the f64 angle is off by is so small that it is its own sine.
+        // The error of the f64 angle is so small that it equals its own sine.
         let near = Self::from(libm::atan2(sin.high, cos.high));
         let (near_sin, near_cos) = near.sin_cos();
         near + (sin * near_cos - cos * near_sin)
@@ -363,7 +363,7 @@ impl Real for Double {
 }
 
 impl Double {
-    /// Sine and cosine of an angle in radians, up to a right one.
+    /// Sine and cosine of an angle in radians, up to a right angle.
     fn sin_cos(self) -> (Self, Self) {
         // Taylor's series; the terms fall below 1e-33 before the 36th power.
         let (mut sin, mut cos, mut term) = (Self::ZERO, Self::ZERO, Self::ONE);
