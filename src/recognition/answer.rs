@@ -13,9 +13,9 @@ pub enum AnswerState {
     Certain,
     /// Other shapes leave them less often, or the imprint may be cut off.
     Likely,
-    /// Another shape leaves them as often.
+    /// Another shape leaves them just as often.
     Tied,
-    /// The likeliest shape is less likely than was asked for.
+    /// The likeliest shape is less likely than required.
     Rejected,
     /// No shape of the set leaves them.
     Unknown,
@@ -34,8 +34,8 @@ impl AnswerState {
     }
 }
 
-/// What was touched: imprints of one shape in poses that do not depend on each other, how often taxels fail, and the least
-/// probability that is good enough for an answer.
+/// The evidence: imprints of one shape in independent poses, how often taxels fail, and the least probability that is
+/// enough for an answer.
 #[derive(Clone, Copy, Debug)]
 pub struct Evidence<'a> {
     touches: &'a [Imprint],
@@ -44,7 +44,7 @@ pub struct Evidence<'a> {
 }
 
 impl<'a> Evidence<'a> {
-    /// These touches of a sensor whose taxels never fail; any probability will do.
+    /// These touches, of a sensor whose taxels never fail; any probability is enough for an answer.
     pub fn of(touches: &'a [Imprint]) -> Self {
         Self {
             touches,
@@ -72,19 +72,19 @@ impl<'a> Evidence<'a> {
     }
 }
 
-/// Which shape was touched, as far as the touches tell.
+/// The answer to the question which shape was touched.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Answer {
-    /// How far it can be trusted.
+    /// How far the answer can be trusted.
     pub state: AnswerState,
-    /// The shape, by its number in the set; of tied ones the first. None if rejected or unknown.
+    /// The number of the shape in the set; if several are tied, the first. None if rejected or unknown.
     pub shape: Option<usize>,
-    /// All shapes that are as likely, if the state is [`AnswerState::Tied`]; otherwise empty.
+    /// All shapes that are equally likely, if the state is [`AnswerState::Tied`]; otherwise empty.
     pub tied: Vec<usize>,
     /// Whether an imprint reaches the rim of its matrix, so that it may be cut off. Such an answer is never certain.
     pub at_rim: bool,
-    /// Every shape of positive probability, the likeliest first, equals in the order of the set.
+    /// Every shape with a positive probability, the likeliest first; equally likely ones in the order of the set.
     pub ranking: Vec<(usize, f64)>,
     /// Which keys were looked up; for several touches, by the touch that needed the most.
     pub method: Method,
@@ -94,8 +94,8 @@ pub struct Answer {
 const SAME: f64 = 1e-12;
 
 impl Model {
-    /// Says which shape was touched. Nothing was touched, nothing is known: the answer to no touch is the prior. Under noise
-    /// no answer is certain, since any shape may leave any imprint.
+    /// Says which shape was touched. Without any touch, the answer is the prior. With noise no answer is certain, since
+    /// any shape may leave any imprint.
     ///
     /// ```
     /// use taxel::prelude::*;

@@ -2,7 +2,7 @@
 
 use crate::recognition::model::{Model, NamedShape, ShapeCount, share};
 
-/// What the best classifier of one touch does, over every touch of a model.
+/// How well the best classifier of one touch does, over every touch of a model.
 ///
 /// A touch is a shape in a pose. A shape of weight w counts as if it were touched w times in each pose. All counts are
 /// exact; `right` of `touches` is the *Bayes accuracy*, which no classifier of one touch exceeds on these poses.
@@ -39,11 +39,11 @@ pub struct Evaluation {
     pub tied: u128,
     /// Touches whose shape is one of the two most frequent.
     pub right_in_top_two: u128,
-    /// What a touch tells of the shape on average, in bits: H(S) − H(S | key).
+    /// How much a touch tells about the shape on average, in bits: H(S) − H(S | key).
     pub information_bits: f64,
-    /// What there is to tell, in bits: H(S).
+    /// How much there is to tell, in bits: H(S).
     pub prior_bits: f64,
-    /// Number of distinct keys, or of distinct values where descriptors are given in their place.
+    /// Number of distinct keys, or of distinct values if descriptors are given instead of keys.
     pub keys: usize,
     /// How many of these only one shape leaves.
     pub keys_of_one_shape: usize,
@@ -117,7 +117,7 @@ impl Evaluation {
         }
     }
 
-    /// Rounds what cannot be exact: information is neither negative nor more than there is.
+    /// Clamps rounding errors: information is neither negative nor more than there is.
     pub(super) fn finished(mut self) -> Self {
         self.information_bits = self.information_bits.clamp(0.0, self.prior_bits);
         self
@@ -133,7 +133,7 @@ impl Evaluation {
         share(self.touches - self.right, self.touches)
     }
 
-    /// Returns the share of the touches of a shape that are named so.
+    /// Returns the recall of a shape: the share of its touches that get its name.
     ///
     /// # Panics
     /// If there is no such shape.
@@ -142,7 +142,8 @@ impl Evaluation {
         share(row[shape], row.iter().sum())
     }
 
-    /// Returns the share of the touches named so that are of that shape; None if none is named so.
+    /// Returns the precision of a shape: the share of the touches with its name that are really its own; None if no
+    /// touch gets its name.
     ///
     /// # Panics
     /// If there is no such shape.
@@ -151,7 +152,7 @@ impl Evaluation {
         (named > 0).then(|| share(self.confusion[shape][shape], named))
     }
 
-    /// Returns the pairs of shapes that are taken for each other, the most touches first: (one, other, touches).
+    /// Returns the pairs of shapes that are confused, those with the most touches first: (one, other, touches).
     pub fn worst_pairs(&self) -> Vec<(usize, usize, u128)> {
         let shapes = self.labels.len();
         let pairs = (0..shapes).flat_map(|one| (one + 1..shapes).map(move |other| (one, other)));
@@ -202,8 +203,8 @@ impl Model {
         (0..shapes).map(row).collect()
     }
 
-    /// Returns the shapes that could never be rejected, whatever else is touched: every key of theirs is left by another
-    /// shape of the set too, so a touch of them is never certain.
+    /// Returns the shapes whose touches are never certain, because each of their keys is also left by another shape of
+    /// the set.
     pub fn never_certain(&self) -> Vec<usize> {
         if self.poses() == 0 {
             return Vec::new();

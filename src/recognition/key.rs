@@ -1,4 +1,4 @@
-//! Keys: what of an imprint does not depend on where it lies.
+//! Keys: the part of an imprint that does not depend on where it lies.
 
 use std::hash::BuildHasher;
 
@@ -6,7 +6,8 @@ use hashbrown::{DefaultHashBuilder, HashTable};
 
 use crate::imprint::Imprint;
 
-/// All active taxels of an imprint, of all its pieces, cut to their bounding box. That of an empty imprint has sides of 0.
+/// All active taxels of an imprint, of all its pieces, cropped to their bounding box. The key of an empty imprint has
+/// sides of 0.
 ///
 /// Keys are ordered by height, width, and the taxels in reading order.
 ///
@@ -40,7 +41,7 @@ impl ImprintKey {
         key
     }
 
-    /// Becomes the key of another imprint.
+    /// Makes this the key of another imprint.
     pub(super) fn set(&mut self, imprint: &Imprint) {
         self.bits.clear();
         let Some(bounds) = imprint.bounds() else {
@@ -58,7 +59,7 @@ impl ImprintKey {
         }
     }
 
-    /// Returns the imprint, on a matrix of just its size; None of the empty key.
+    /// Returns the imprint, on a matrix of exactly its size; None for the empty key.
     pub fn imprint(&self) -> Option<Imprint> {
         self.borrowed().imprint()
     }

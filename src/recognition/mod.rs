@@ -1,11 +1,11 @@
-//! Names a shape from one touch, and says how well any method could.
+//! Names a shape from one touch, and computes how well any method can.
 //!
-//! A sweep knows *every* imprint of a shape and how often it occurs, so the best classifier of one touch is not learned
-//! but counted. Where a touch lies is not known; what is left of an imprint then is its [`ImprintKey`], the active taxels cut to
-//! their bounding box. A [`Model`] holds, for each key, in how many poses each shape leaves it, `n[s, k]`. From these
-//! integers follow the [`posterior`](Model::posterior) of a touch and, exactly, the [`Evaluation`]: which touches the best
-//! classifier names right, which are certain, and how much a touch tells in bits. No classifier of one touch errs less on
-//! these poses.
+//! A sweep finds *every* imprint of a shape and how often it occurs, so the best classifier of one touch is not learned
+//! but counted. The place of a touch is not known, so all that counts of an imprint is its [`ImprintKey`]: the active
+//! taxels, cropped to their bounding box. A [`Model`] holds, for each key, in how many poses each shape leaves it,
+//! `n[s, k]`. These integers give the [`posterior`](Model::posterior) of a touch and, exactly, the [`Evaluation`]:
+//! which touches the best classifier names right, which are certain, and how much a touch tells in bits. No classifier
+//! of one touch errs less on these poses.
 //!
 //! ```text
 //! shapes + poses -> Training -> Model -> Answer       of an imprint: posterior, state, nearest imprint
@@ -17,8 +17,8 @@
 //! shapes + sizes                      -> Separation   the limit against size and threshold
 //! ```
 //!
-//! Convention of this project, after the definition of the Bayes classifier (R. O. Duda, P. E. Hart and D. G. Stork,
-//! *Pattern Classification*, 2001, chapter 2).
+//! This is a convention of this project, based on the definition of the Bayes classifier (R. O. Duda, P. E. Hart and D.
+//! G. Stork, *Pattern Classification*, 2001, chapter 2).
 
 mod key;
 

@@ -13,7 +13,7 @@ use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::sweep::Shard;
 
-/// A shape and the name that answers give.
+/// A shape and the name that answers use for it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct NamedShape {
@@ -21,7 +21,7 @@ pub struct NamedShape {
     pub name: String,
     /// The shape; where it lies does not matter.
     pub source: Source,
-    /// How likely it is before the touch, in relation to the others; at least 1.
+    /// How likely it is before the touch, relative to the others; at least 1.
     pub weight: u32,
 }
 
@@ -42,7 +42,7 @@ impl NamedShape {
     }
 }
 
-/// In how many poses a shape leaves a key.
+/// The number of poses in which a shape leaves a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ShapeCount {
@@ -59,7 +59,7 @@ impl ShapeCount {
     }
 }
 
-/// What can be told apart by one touch: shapes, the poses in which each was touched, and the keys that these left.
+/// The shapes to tell apart, the poses in which each was touched, and the keys that these left.
 ///
 /// Made by [`Training`](crate::recognition::Training), or read from a file.
 #[derive(Clone, Debug)]
@@ -69,7 +69,7 @@ pub struct Model {
     anchor: Anchor,
     ranges: Ranges,
     shard: Shard,
-    /// Poses of each shape: as many for one as for another.
+    /// The number of poses of each shape; the same for all.
     poses: u64,
     /// Poses of each shape that reach beyond the sensor.
     cut: Vec<u64>,
@@ -91,7 +91,7 @@ struct ScanTables {
     poses: Vec<u64>,
 }
 
-/// What a model is made of, as its file holds it.
+/// The parts of a model, as its file holds them.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ModelParts {
@@ -137,7 +137,7 @@ impl ModelParts {
 /// The most shapes of a set.
 pub(super) const MAX_SHAPES: usize = 1 << 15;
 
-/// Why shapes or numbers make no model.
+/// Why shapes or numbers do not make a model.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
@@ -174,13 +174,13 @@ pub enum ModelError {
         /// The one that does not fit the first.
         shard: Shard,
     },
-    /// A shard that is there twice.
+    /// A shard that is given twice.
     #[error("shard {shard} is given twice")]
     Twice {
         /// That one.
         shard: Shard,
     },
-    /// A shard that is not there.
+    /// A missing shard.
     #[error("shard {number}/{of} is missing")]
     Missing {
         /// Which, from 1.
@@ -193,7 +193,7 @@ pub enum ModelError {
 /// Checks the names and weights of a set.
 ///
 /// # Errors
-/// The first fault.
+/// The first problem found.
 pub(super) fn check_shapes(shapes: &[NamedShape]) -> Result<(), ModelError> {
     if shapes.is_empty() || shapes.len() > MAX_SHAPES {
         return Err(ModelError::Shapes {
@@ -217,7 +217,7 @@ pub(super) fn check_shapes(shapes: &[NamedShape]) -> Result<(), ModelError> {
 }
 
 impl Model {
-    /// Puts a model together.
+    /// Assembles a model.
     ///
     /// # Errors
     /// If names or weights are not as they should be, or if the counts of a shape do not sum up to its poses.
@@ -297,10 +297,10 @@ impl Model {
         })
     }
 
-    /// Puts all shards of one training together: the same model as that of one run. [`ModelMerge`] needs less memory.
+    /// Merges all shards of one training into the same model as that of a single run. [`ModelMerge`] needs less memory.
     ///
     /// # Errors
-    /// If a shard is missing, there twice, or of another training.
+    /// If a shard is missing, given twice, or of another training.
     pub fn merge(shards: impl IntoIterator<Item = Self>) -> Result<Self, ModelError> {
         let mut shards: Vec<Self> = shards.into_iter().collect();
         shards.sort_by_key(|model| model.shard.number());
@@ -354,7 +354,7 @@ impl Model {
         &self.ranges
     }
 
-    /// Returns which part of the poses the model holds; a model that is asked should be [`Shard::WHOLE`].
+    /// Returns which part of the poses the model holds; only a model with [`Shard::WHOLE`] should answer touches.
     pub fn shard(&self) -> Shard {
         self.shard
     }
@@ -389,7 +389,7 @@ impl Model {
             .map_or(&[], |key| self.counts(key))
     }
 
-    /// Returns P(shape | imprint) for each shape of the set; None of an imprint that no shape leaves.
+    /// Returns P(shape | imprint) for each shape of the set; None for an imprint that no shape leaves.
     pub fn posterior(&self, imprint: &Imprint) -> Option<Vec<f64>> {
         let counts = self.counts_of(imprint);
         if counts.is_empty() {
@@ -484,7 +484,7 @@ impl Gathered {
     }
 }
 
-/// The shards of a training, put together one after another: memory holds what is merged and one shard.
+/// Merges the shards of a training one after another: memory holds only what is already merged and one shard.
 #[derive(Debug, Default)]
 pub struct ModelMerge {
     /// What the first shard says of the training, with the poses of all so far and the number of the last.

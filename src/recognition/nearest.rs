@@ -7,7 +7,7 @@ use crate::recognition::key::ImprintKey;
 use crate::recognition::model::Model;
 use crate::recognition::scan::Observed;
 
-/// An imprint that a shape of a model leaves, where it is most like an observed one.
+/// An imprint that a shape of a model leaves, placed where it is most similar to an observed one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Nearest {
@@ -23,15 +23,15 @@ pub struct Nearest {
 
 impl Model {
     /// Returns the imprint of this model that differs least from an observed one, over all keys and all their shifts on
-    /// the observed matrix; of equals that which one shape leaves in the most poses, then the first. None if no key fits
-    /// the matrix.
+    /// the observed matrix; among equals, the one that a single shape leaves in the most poses, then the first. None if
+    /// no key fits the matrix.
     ///
     /// The first call arranges the keys, which takes longer.
     pub fn nearest(&self, observed: &Imprint) -> Option<Nearest> {
         self.nearest_without(observed, None)
     }
 
-    /// The same, where the active taxels of `dead` do not count.
+    /// The same, but the active taxels of `dead` do not count.
     pub(super) fn nearest_without(
         &self,
         observed: &Imprint,
@@ -63,7 +63,7 @@ impl Model {
         })
     }
 
-    /// The shape that leaves a key most often, the first of equals, and how often.
+    /// The shape that leaves a key most often (the first among equals), and how often.
     pub(super) fn most_frequent(&self, key: usize) -> (usize, u128) {
         let mut most = (0, 0);
         for &count in self.counts(key) {

@@ -8,7 +8,7 @@ use crate::source::Source;
 use crate::sweep::Sweep;
 use crate::touch::Plane;
 
-/// The poses of a shape that leave an imprint, in short.
+/// A summary of the poses in which a shape leaves an imprint.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PoseEstimate {
@@ -18,7 +18,7 @@ pub struct PoseEstimate {
     pub position: [f64; 2],
     /// Standard deviation of each.
     pub standard_deviation: [f64; 2],
-    /// The angle; None if any angle looks the same, as of a disc.
+    /// The angle; None if the shape looks the same at any angle, like a disc.
     pub angle: Option<AngleEstimate>,
 }
 
@@ -28,9 +28,9 @@ pub struct PoseEstimate {
 pub struct AngleEstimate {
     /// Degrees after which the shape looks the same again; 360/7 for a heptagon.
     pub period: f64,
-    /// Circular mean in degrees, from 0 to below the period. None if the angles point in all directions alike.
+    /// Circular mean in degrees, from 0 to below the period. None if the angles point equally in all directions.
     pub mean: Option<f64>,
-    /// Circular standard deviation in degrees. None where the mean is none.
+    /// Circular standard deviation in degrees. None if the mean is None.
     pub standard_deviation: Option<f64>,
     /// The fewest neighbouring whole degrees that hold 95 % of the poses: the first of them, and how many.
     pub most: (u32, u32),
@@ -74,8 +74,8 @@ fn whole_degrees(period: f64) -> u32 {
 }
 
 impl Model {
-    /// Returns in which poses a shape leaves an imprint, by touching with it in every pose of the model. `progress` is
-    /// called as by [`Sweep::progress`]. None if there is no such shape, if it does not leave the imprint, if the
+    /// Returns the poses in which a shape leaves an imprint, by touching with it in every pose of the model. `progress`
+    /// is called as by [`Sweep::progress`]. None if there is no such shape, if it does not leave the imprint, if the
     /// imprint is empty, or if it was stopped.
     ///
     /// ```
@@ -104,8 +104,9 @@ impl Model {
             .map(|(estimate, _)| estimate)
     }
 
-    /// Returns the same with at most `most` of the poses: first the one nearest to the mean, which is the likeliest since
-    /// all are equally likely by themselves, then others spread over the 95 % of the poses that are nearest to it.
+    /// Returns the same with at most `most` of the poses: first the one nearest to the mean, then others spread over
+    /// the 95 % of the poses that are nearest to it. Single poses are equally likely, so the first one stands for the
+    /// likeliest place.
     pub fn poses_of(
         &self,
         shape: usize,

@@ -1,5 +1,5 @@
-//! Which sensor tells a set of shapes apart: the limit of one touch against the size of the shapes in cells, and against
-//! the threshold.
+//! Which sensor tells a set of shapes apart: the limit of one touch as a function of the size of the shapes in cells,
+//! and of the threshold.
 //!
 //! A scale of 2 makes every length of every shape twice as long in cells, as a sensor with half the pitch does. Each
 //! shape is touched with its centre in one cell and at the angles asked for, on a sensor that cuts nothing off.
@@ -17,7 +17,7 @@ use crate::source::Source;
 /// Steps into which a search divides the distance between two values of a scan.
 const FINER: u8 = 10;
 
-/// What the size of shapes is measured against.
+/// What is varied to change the size of the shapes in cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SizeAxis {
@@ -54,7 +54,7 @@ impl SizeAxis {
     }
 }
 
-/// A set of shapes whose limit is looked at in several sizes.
+/// A set of shapes whose limit is computed at several sizes.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -78,7 +78,7 @@ pub struct Separation {
     angles: DecimalRange,
 }
 
-/// The limit of one touch in one size, with one threshold.
+/// The limit of one touch for one size and one threshold.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SeparationPoint {
@@ -112,7 +112,7 @@ impl SeparationPoint {
     }
 }
 
-/// The smallest size that reaches a wanted error, as far as a search has looked.
+/// The smallest size that reaches a wanted error, among those that a search has tried.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SmallestSize {
@@ -191,8 +191,8 @@ impl Separation {
 
     /// The poses of one shape; None if it is too large for any sensor.
     ///
-    /// Every shape has a sensor of its own: where a touch lies does not matter, so long as nothing is cut off and the
-    /// positions are those of one cell from a whole number on.
+    /// Every shape has its own sensor: the place of a touch does not matter, as long as nothing is cut off and the
+    /// positions are those of one cell that starts at a whole number.
     fn grid(
         &self,
         source: &Source,
@@ -304,9 +304,8 @@ impl Separation {
     /// Returns the smallest size with at most this error. Takes the first such size of the scan, then tries nine values
     /// between it and the size before. None if every size of the scan has a larger error.
     ///
-    /// The error is not monotonic: it falls with the size on the whole, but rises here and there. Between the values
-    /// that were tried it may reach the wanted error unnoticed. So this is the smallest size *of those that were
-    /// tried*.
+    /// The error is not monotonic: overall it falls with the size, but here and there it rises. Between the values that
+    /// were tried, it may reach the wanted error unnoticed. So this is the smallest size *of those that were tried*.
     ///
     /// # Errors
     /// Those of [`Self::at`].

@@ -1,4 +1,4 @@
-//! Sets of shapes that are at hand, and the grid of poses that suits a set.
+//! Built-in sets of shapes, and the grid of poses that suits a set.
 
 use crate::figure::{Figure, FigureKind};
 use crate::parameter::Parameter;
@@ -8,8 +8,8 @@ use crate::recognition::training::{LEAST_SIDE, Training, TrainingError};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
-/// Returns the seven figures at the sizes that forms propose. They cover 7 to 77 cells, so that a touch tells them
-/// apart by their size already.
+/// Returns the seven figures at the default sizes of forms. They cover 7 to 77 cells, so their size alone already tells
+/// them apart.
 pub fn default_figures() -> Vec<NamedShape> {
     let sensor = Sensor::default();
     let figure = |kind: FigureKind| NamedShape::new(kind.name(), Figure::default_of(kind, &sensor));
@@ -69,7 +69,7 @@ pub enum GridStepsError {
         /// What was given.
         found: u8,
     },
-    /// An angle that does not lead around.
+    /// A step of the angle that does not divide 360.
     #[error("steps of {found} degrees: expected a divisor of 360")]
     Degrees {
         /// What was given.
@@ -78,7 +78,7 @@ pub enum GridStepsError {
 }
 
 impl GridSteps {
-    /// Hundredths of a cell and whole degrees, as a sweep has.
+    /// Hundredths of a cell and whole degrees, as in a sweep.
     pub const FINE: Self = Self {
         positions: 100,
         degrees: 1,

@@ -1,7 +1,7 @@
-//! What cannot be counted is simulated: how often noisy touches are named right, and how many touches it takes.
+//! Simulates what cannot be counted: how often noisy touches are named right, and how many touches it takes.
 //!
-//! Touches are drawn with a seed, the same for one seed on every machine and for any number of threads, and every mean has
-//! its standard error.
+//! Random touches are the same for the same seed on every machine and for any number of threads. Every mean has its
+//! standard error.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -16,8 +16,8 @@ use crate::recognition::noise::Noise;
 use crate::recognition::scan::places;
 use crate::sensor::Sensor;
 
-/// How often noisy touches are named right. As many touches are drawn of each shape; in shares and means, each counts
-/// with the weight of its shape.
+/// How often noisy touches are named right. The same number of touches is drawn for each shape; in shares and means,
+/// each touch counts with the weight of its shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct RecognitionRate {
@@ -76,7 +76,7 @@ impl RecognitionRate {
 pub struct TouchesUntil {
     /// The mean, over the runs that reached it; None if none did.
     pub mean: Option<f64>,
-    /// Its standard error; None of fewer than two runs.
+    /// Its standard error; None for fewer than two runs.
     pub standard_error: Option<f64>,
     /// Runs that reached it within [`MOST_TOUCHES`].
     pub reached: u64,
@@ -86,7 +86,7 @@ pub struct TouchesUntil {
     pub right: u64,
 }
 
-/// A run that takes more touches is given up: shapes that leave the same imprints are never told apart.
+/// A run that takes more touches is abandoned: shapes that leave the same imprints can never be told apart.
 pub const MOST_TOUCHES: u32 = 10_000;
 
 /// A generator for one of many tasks, so that no task waits for another.

@@ -13,7 +13,7 @@ use crate::recognition::model::{
 use crate::sensor::Sensor;
 use crate::sweep::{CountedImprints, Shard, Sweep};
 
-/// The smallest side of a sensor that is chosen for a training: that of the paper.
+/// The smallest side of a sensor that a training chooses by itself: that of the paper's sensor.
 pub const LEAST_SIDE: u8 = 16;
 
 /// A training to run: shapes, a sensor and the poses in which each shape touches it.
@@ -71,7 +71,7 @@ pub enum TrainingError {
         /// Why.
         error: GridError,
     },
-    /// Poses that the sensor cuts off, which would tell of its rim.
+    /// Poses that the sensor cuts off, so that imprints depend on its rim.
     #[error(
         "{name}: the {columns} × {rows} sensor cuts off {} of {} poses; use a larger sensor or other positions, or allow it",
         grouped(*cut), grouped(*poses)
@@ -91,7 +91,7 @@ pub enum TrainingError {
     /// Shapes that no sensor holds in every angle.
     #[error("the shapes do not fit on 64 × 64 taxels in every angle")]
     Large,
-    /// Positions of a cell that are no divisor of 100.
+    /// A number of positions per cell that does not divide 100.
     #[error("{found} positions in a cell: expected a divisor of 100")]
     Positions {
         /// What was given.
@@ -135,8 +135,8 @@ impl<'a> Training<'a> {
         })
     }
 
-    /// A training in which each shape has a grid of its own, of as many poses as the others. The sensor and the
-    /// poses that its model gives are those of the first.
+    /// A training in which each shape has its own grid, all with the same number of poses. Its model has the sensor and
+    /// the poses of the first.
     pub(super) fn of_grids(shapes: Vec<NamedShape>, grids: Vec<PoseGrid>) -> Self {
         Self {
             grids,
@@ -147,14 +147,14 @@ impl<'a> Training<'a> {
         }
     }
 
-    /// Takes poses that the sensor cuts off, too. Their imprints tell of the sensor's rim, not of the shape alone.
+    /// Also takes poses that the sensor cuts off. Their imprints depend on the sensor's rim, not on the shape alone.
     #[must_use]
     pub fn allow_cut(mut self, allow: bool) -> Self {
         self.allow_cut = allow;
         self
     }
 
-    /// Takes one part of the poses only; [`Model::merge`] puts all parts together.
+    /// Takes only one part of the poses; [`Model::merge`] merges all parts.
     #[must_use]
     pub fn shard(mut self, shard: Shard) -> Self {
         self.shard = shard;
@@ -192,7 +192,7 @@ impl<'a> Training<'a> {
         &self.grids
     }
 
-    /// Runs it.
+    /// Runs the training.
     ///
     /// # Errors
     /// [`TrainingError::Cut`] if the sensor cuts off a pose and that is not allowed; [`TrainingError::Stopped`].

@@ -44,8 +44,8 @@ pub struct PoseRun {
     pub first: u64,
     /// How many there are.
     pub poses: u64,
-    /// How many orientations show the same, this one included, where symmetry makes them equal; the numbers of the
-    /// others are not given.
+    /// How many orientations show the same because of symmetry, including this one; the numbers of the others are not
+    /// given.
     pub orientations: u64,
 }
 
@@ -94,7 +94,7 @@ impl Sweep<'_> {
         complete.then_some(counted)
     }
 
-    /// Finds the poses that leave an imprint of which `wanted` says yes. None if it was stopped.
+    /// Finds the poses whose imprint satisfies `wanted`. None if it was stopped.
     ///
     /// They come in an order that does not depend on the number of threads.
     pub fn poses_where(self, wanted: &(dyn Fn(&Imprint) -> bool + Sync)) -> Option<Vec<PoseRun>> {

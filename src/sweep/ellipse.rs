@@ -2,11 +2,11 @@
 //!
 //! **Method.** With `O` and `I` the areas of the outer and the inner ellipse in the cell, a taxel is active where `O −
 //! I` reaches the threshold `t`. `O` does so between one rising and one falling passage ([`crate::sweep::track`]), and
-//! outside of these nothing is active. Where the cell lies inside of the outer ellipse (`O = 1`), what matters is where
-//! `I` exceeds `1 − t`: again one rising and one falling passage. What remains is where the cell reaches the hole
-//! already and the outside still; there `O` rises from its value at the first touch of the hole and `I` to its value at
-//! the last touch of the outside, and as a rule the difference of the two stays above `t`. Whenever one of these
-//! conditions does not hold, the band is computed from scratch ([`crate::sweep::isolate`]).
+//! outside of these nothing is active. If the cell lies inside the outer ellipse (`O = 1`), it matters where `I`
+//! exceeds `1 − t`: again between one rising and one falling passage. What remains are places where the cell reaches
+//! both the hole and the outside. There, `O` rises from its value at the first touch of the hole, `I` rises to its
+//! value at the last touch of the outside, and usually the difference of these two values stays above `t`. Whenever one
+//! of these conditions does not hold, the band is computed from scratch ([`crate::sweep::isolate`]).
 
 use crate::geometry::{Ellipse, Side};
 use crate::sensor::MAX_SIDE;
@@ -28,7 +28,7 @@ pub(crate) struct Elliptic {
 }
 
 impl Elliptic {
-    /// None unless it is one ellipse with at most one hole.
+    /// None unless the shape is one ellipse with at most one hole.
     pub(crate) fn new(ellipses: &[(Ellipse<f64>, Side)]) -> Option<Self> {
         let (outer, inner) = match ellipses {
             [(outer, Side::Inside)] => (outer, None),
@@ -48,7 +48,7 @@ impl Elliptic {
     }
 
     /// The spans at which the coverage of the cells from `top` to `top + 1` reaches the threshold. `row` is the row of
-    /// the sensor: the passages of the same row a moment ago tell where to look.
+    /// the sensor: the previous passages of the same row predict where to look.
     pub(crate) fn band(&mut self, top: f64, row: usize, threshold: f64, spans: &mut Spans) {
         spans.clear();
         self.ring.threshold = threshold;
@@ -129,7 +129,7 @@ fn follow(ring: &Ring, tracks: &mut Tracks) -> Option<Passages> {
     })
 }
 
-/// Notes where the passages are, as far as the spans tell.
+/// Notes the passages that the spans show.
 fn learn(spans: &Spans, tracks: &mut Tracks) {
     let all = spans.all();
     match (spans.sharp(), all) {

@@ -1,4 +1,4 @@
-//! One ellipse, cut to bands: the height of its section at a place, and the area on the left of it.
+//! One ellipse, cut to bands: the height of its section at a place, and the area to the left of it.
 //!
 //! Inside of a band the ellipse is bounded by arcs and by the band's two lines; between the places where an arc
 //! meets a line the area has a closed form. Frame: the anchor at the origin; cell sides.
@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_4;
 use crate::geometry::Ellipse;
 use crate::geometry::circle::angle;
 
-/// Bounds of sections are taken this much wider than computed.
+/// Bounds of sections are widened by this much.
 const SLACK: f64 = 1e-12;
 
 /// An ellipse prepared for bands; see `geometry::ellipse_cuts` for the formulas.

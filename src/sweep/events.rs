@@ -1,12 +1,12 @@
-//! What happens along one row of the grid: which taxels are active at its first x0, and which turn over where.
+//! The events along one row of the grid: which taxels are active at its first x0, and which switch at which step.
 //!
-//! Events are kept by the step at which they happen, in lists without an order of their own, and a bit per step tells
-//! where to look. Playing them back gives one imprint per run of steps at which nothing happens.
+//! Events are stored in an unordered list for each step, and a bit per step says whether there are any. Playing them
+//! back gives one imprint per run of steps without events.
 
 use crate::atlas::Layout;
 use crate::index::{index, narrow, wide};
 
-/// Which taxels are active at first, and which turn over at which step.
+/// Which taxels are active at first, and which switch at which step.
 #[derive(Clone, Debug)]
 pub(crate) struct Events<'a> {
     pub(crate) layout: &'a Layout,
@@ -23,7 +23,7 @@ pub(crate) struct Events<'a> {
     list: Vec<Event>,
 }
 
-/// A taxel that turns over.
+/// A taxel that switches between active and inactive.
 #[derive(Clone, Copy, Debug)]
 struct Event {
     /// Its bit.
@@ -40,7 +40,7 @@ struct Event {
 const NONE: u32 = u32::MAX;
 
 impl<'a> Events<'a> {
-    /// A row in which nothing happens yet.
+    /// A row without events.
     pub(crate) fn new(layout: &'a Layout, count: u64) -> Self {
         let steps = index(count);
         Self {
@@ -54,7 +54,7 @@ impl<'a> Events<'a> {
         }
     }
 
-    /// Begins another row. The marks were taken away when this one was played back.
+    /// Begins another row. Playing back the previous one has cleared the marks.
     pub(crate) fn clear(&mut self) {
         self.key.fill(0);
         self.hash = 0;
@@ -68,7 +68,7 @@ impl<'a> Events<'a> {
         self.hash ^= self.layout.hash(row, taxels);
     }
 
-    /// A taxel turns over at a step, 1 to the last.
+    /// A taxel switches at a step, from 1 to the last.
     pub(crate) fn turn_over(&mut self, row: usize, column: usize, step: u32) {
         let step = wide(step);
         let (word, shift) = self.layout.slot(row);

@@ -1,8 +1,8 @@
-//! What `f64` cannot decide: whether the shape covers exactly the threshold of a cell, with 32 digits.
+//! Decides what `f64` cannot, with 32 digits: whether the shape covers exactly the threshold of a cell.
 //!
-//! The same rule as that of a touch ([`crate::touch`]): a coverage that falls short by less than 1e-20 does not fall
-//! short. The boundary is drawn once per orientation in [`Double`] at the origin and shifted by the decimals that the ranges
-//! give, which is in real arithmetic the shape of the pose itself.
+//! The rule is that of a touch ([`crate::touch`]): a coverage that falls short by less than 1e-20 does not count as
+//! short. The boundary is drawn in [`Double`] once per orientation, at the origin, and shifted by the decimals of the
+//! ranges; in real arithmetic, this is exactly the shape in that pose.
 
 use crate::geometry::Overlap;
 use crate::geometry::Point;
@@ -21,7 +21,7 @@ pub(crate) struct Exact<'a> {
     grid: &'a PoseGrid,
     /// The number of the orientation.
     orientation: u64,
-    /// Drawn when it is asked for first: in most orientations nothing is in doubt.
+    /// Drawn when first needed: in most orientations nothing is in doubt.
     boundary: Option<Boundary<Double>>,
     /// Where the anchor lies for the values of x0 and of y0 asked for last.
     positions: Box<[(Option<u64>, Double)]>,

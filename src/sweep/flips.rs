@@ -1,7 +1,7 @@
 //! From the spans of a band to the events of a row of the grid.
 //!
-//! A taxel in column `i` inside of a span from `a` to `b` is active while `i − b ≤ x0 ≤ i − a`. Where a value of x0
-//! lies within [`NEAR`] of the end of a span, or in a span that is in doubt, [`Exact`] decides for that taxel and pose.
+//! A taxel in column `i` inside of a span from `a` to `b` is active while `i − b ≤ x0 ≤ i − a`. If a value of x0 lies
+//! within [`NEAR`] of the end of a span, or in a span that is in doubt, [`Exact`] decides for that taxel and pose.
 
 use crate::geometry::{Real, nearest};
 use crate::index::from_first;
@@ -159,7 +159,7 @@ impl FlipWriter<'_, '_, '_> {
     }
 }
 
-/// A taxel on its way along the range of x0.
+/// A taxel that moves along the range of x0.
 struct Taxel {
     /// Its row.
     row: usize,

@@ -1,8 +1,8 @@
-//! What the descriptors of a figure would be on a sensor of infinitely many, infinitely small cells.
+//! The descriptors that a figure would have on a sensor of infinitely many, infinitely small cells.
 //!
-//! Only for those that have such a value: `na` is the figure's area, `nae` that with its hole, `p` the length of its
-//! outer outline, `f` and `roundness` follow. Cells and cell sides. None for pictures, whose pieces and zooms
-//! leave no one value.
+//! Only some descriptors have such a value: `na` is the figure's area, `nae` its area with the hole, and `p` the length
+//! of its outer outline; `f` and `roundness` follow from these. Units are cells and cell sides. Pictures have none,
+//! because their pieces and zooms do not give a single value.
 
 use std::f64::consts::PI;
 

@@ -1,7 +1,7 @@
-//! Puts the shards of a sweep together.
+//! Merges the shards of a sweep.
 //!
-//! Shards follow on each other in the order of the grid, so first poses stay the first, and the numbers of imprints are
-//! those of one sweep. They are taken one after another: memory holds what is merged and one shard.
+//! Shards are merged in the order of the grid, so first poses stay the first, and imprints have the same numbers as in
+//! a single sweep. Memory holds only what is already merged and one shard.
 
 use std::cmp::Ordering;
 
@@ -10,7 +10,7 @@ use crate::pose::PoseGrid;
 use crate::sweep::plan::Shard;
 use crate::sweep::result::SweepResult;
 
-/// The shards of a sweep, as far as they were given.
+/// The shards of a sweep that were added so far.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -29,7 +29,7 @@ use crate::sweep::result::SweepResult;
 #[derive(Debug, Default)]
 pub struct SweepMerge(Option<Begun>);
 
-/// What is merged of the first shards.
+/// The merged result of the first shards.
 #[derive(Debug)]
 struct Begun {
     grid: PoseGrid,
@@ -44,7 +44,7 @@ struct Begun {
 }
 
 impl Begun {
-    /// Nothing yet of the study that this shard belongs to.
+    /// An empty merge for the study that this shard belongs to.
     fn of(first: &SweepResult) -> Self {
         let (grid, sensor) = (first.grid.clone(), first.grid.sensor());
         Self {
@@ -90,7 +90,7 @@ impl SweepMerge {
         Ok(())
     }
 
-    /// Returns what all shards found together.
+    /// Returns the result of all shards together.
     ///
     /// # Errors
     /// If some are missing.
@@ -123,8 +123,8 @@ impl SweepMerge {
 }
 
 impl SweepResult {
-    /// Merges all shards of a grid into one result, the same as that of one sweep of the whole grid. [`SweepMerge`] needs
-    /// less memory.
+    /// Merges all shards of a grid into one result, equal to that of a single sweep of the whole grid. [`SweepMerge`]
+    /// needs less memory.
     ///
     /// # Errors
     /// If a shard is missing, given twice, incomplete, or of another grid.
@@ -143,7 +143,7 @@ impl SweepResult {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MergeError {
-    /// There are none.
+    /// There are no shards.
     #[error("no shards to merge")]
     Nothing,
     /// A shard of another grid than the first one, or of another number of shards.
@@ -164,7 +164,7 @@ pub enum MergeError {
         /// The shard.
         shard: Shard,
     },
-    /// A shard that is not there.
+    /// A missing shard.
     #[error("shard {number}/{of} is missing")]
     Missing {
         /// Which, from 1.

@@ -1,10 +1,10 @@
 //! Every pose of a grid: runs of equal imprints, an atlas of the distinct ones, statistics of their descriptors.
 //!
-//! The paper wanted "almost all possible imprints" of a shape and could only sample them. A sweep finds all of them. It
-//! does not touch pose by pose, but finds where along a range of positions the imprint changes; the result is identical
-//! to touching every pose. No I/O, no panics.
+//! The paper wanted "almost all possible imprints" of a shape and could only sample them. A sweep finds all of them.
+//! Instead of touching pose by pose, it finds where along a range of positions the imprint changes; the result is
+//! identical to touching every pose. No I/O, no panics.
 //!
-//! **The way of a row** (all x0 at one y0 and one angle):
+//! **How a row is swept** (all x0 at one y0 and one angle):
 //! ```text
 //! polygon | ellipse   for each row of the sensor: the spans of x at which a taxel is active
 //!   isolate           the spans of an ellipse, slow but always right, if `ellipse` (which uses `track`) is not certain
@@ -14,12 +14,12 @@
 //! -> atlas            each imprint counted once per run, and described once per sweep
 //! ```
 //!
-//! **What is skipped.** Of the angles at which the shape looks the same, all but one ([`crate::pose`]). Where the shape is
-//! its mirror image at another angle, the spans of one are those of the other with right and left exchanged. And if a
-//! half turn of the plane maps the poses of an angle onto each other, half of their rows (`point_symmetry`,
-//! `reflected_rows`). All of this is decided on exact decimals.
+//! **What is skipped.** If the shape looks the same at several angles, only one of them is swept ([`crate::pose`]). If
+//! the shape at one angle is the mirror image of itself at another, the spans of one are those of the other with right
+//! and left exchanged. If a half turn of the plane maps the poses of an angle onto each other, only half of their rows
+//! are swept (`point_symmetry`, `reflected_rows`). Exact decimals decide all of this.
 //!
-//! Sums are whole numbers, so the statistics are the same to the last digit for any number of threads and shards.
+//! Sums are whole numbers, so the statistics are the same to the last digit for any number of threads or shards.
 
 mod point_symmetry;
 

@@ -1,8 +1,8 @@
-//! How a grid is cut up: shards for several machines, and tasks for the threads of one.
+//! How a grid is divided: into shards for several machines, and into tasks for the threads of one.
 //!
-//! A shard is a piece of the list of rows, in their order. Orientations (an angle and a pair of zooms) at which the shape
-//! looks the same form a *group*, of which one is swept. A task is some rows of a group, and of the group at which the
-//! shape is its mirror image. The result does not depend on how tasks are cut.
+//! A shard is a contiguous part of the list of rows. Orientations (an angle and a pair of zooms) at which the shape
+//! looks the same form a *group*, and only one of them is swept. A task is some rows of a group, together with the
+//! group at which the shape is its mirror image. The result does not depend on how the work is divided into tasks.
 
 use std::collections::HashMap;
 use std::fmt;

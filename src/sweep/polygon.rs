@@ -5,10 +5,11 @@
 //! pieces left of `x` have climbed: piecewise linear, with a corner at each piece's ends. Its integral `W` is piecewise
 //! quadratic, and the coverage at place `u` is `C(u) = W(u + 1) − W(u)`, with slope `w(u + 1) − w(u)`. Two pointers
 //! walk the corners of `w`, one cell apart. Between two stops `C` is one quadratic, which is solved for its crossings
-//! of the threshold. The slope is at most 1: as far as `C` is from the threshold, so far no stop is looked at.
+//! of the threshold. The slope is at most 1, so stops that are nearer than the distance of `C` from the threshold can
+//! be skipped.
 //!
-//! **Error.** `w` at a corner is a sum of shares of rises, each in [0, 1] of them, and `W` is summed up by
-//! trapezoids: nothing is extrapolated, so steep pieces do no harm. Below 1e-11.
+//! **Error.** `w` at a corner is a sum of shares of rises, each in [0, 1], and `W` is a sum of trapezoids. Nothing is
+//! extrapolated, so steep pieces do no harm. The error is below 1e-11.
 
 use crate::geometry::{Point, Real};
 use crate::sweep::span::{DOUBT, Level, STEEP, Spans};
@@ -308,7 +309,7 @@ fn sort<T: Copy>(list: &mut [T], place: impl Fn(&T) -> f64) {
     }
 }
 
-/// Notes the levels that a quadratic takes between two places. Each is given with its value and slope.
+/// Notes the levels that a quadratic takes between two places, each given with its value and slope.
 fn quadratic(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
     let ((start, first, slope), (end, last, final_slope)) = (from, to);
     // The usual case: on one side of the threshold throughout, because the slope is at most 1.

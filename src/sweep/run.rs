@@ -1,8 +1,8 @@
-//! Runs a sweep: shares the tasks of a shard among all threads and puts together what they find.
+//! Runs a sweep: distributes the tasks of a shard among all threads and combines their results.
 //!
-//! Tasks are worked off in portions. The tasks of a portion run side by side, each with counters of its own; then
-//! these counters are added to the atlas one after the other, while the next portion is being swept. At the end the
-//! imprints are put in the order of their first poses, so their numbers are the same for any number of threads.
+//! Tasks run in portions. The tasks of a portion run in parallel, each with its own counters; then the counters are
+//! added to the atlas one after the other, while the next portion is being swept. At the end the imprints are sorted by
+//! their first poses, so their numbers are the same for any number of threads.
 //!
 //! With [`Sweep::rows`], imprints are numbered as they are found. So tasks come in the order of their first orientations,
 //! mirror images are swept separately, and the rows of a group come together.
@@ -22,7 +22,7 @@ use crate::sweep::runs::{self, Found};
 /// Takes a row: its number in the grid, and the atlas number of each of its poses.
 pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
 
-/// A sweep to run: a grid of poses, and what else is wanted.
+/// A sweep to run: a grid of poses, and options.
 ///
 /// It uses rayon's current thread pool; run it inside [`rayon::ThreadPool::install`] for another number of threads. The
 /// result is the same for any number of them.
@@ -82,16 +82,16 @@ impl<'a> Sweep<'a> {
         self
     }
 
-    /// Calls `rows` once for each complete row. Rows do not come in the order of the grid where several orientations
-    /// show the same shape.
+    /// Calls `rows` once for each complete row. Rows do not come in the order of the grid if several orientations show
+    /// the same shape.
     #[must_use]
     pub fn rows(mut self, rows: &'a mut TakeRow<'a>) -> Self {
         self.rows = Some(rows);
         self
     }
 
-    /// Runs it. If it is stopped early, the result holds what is complete: whole orientations or parts of them, and
-    /// everything about these. What was under way is lost, a few seconds of work at most.
+    /// Runs the sweep. If it is stopped early, the result holds what is complete: whole orientations or parts of them,
+    /// with everything about these. Unfinished work is lost, a few seconds at most.
     pub fn run(mut self) -> SweepResult {
         let (grid, shard) = (self.grid, self.shard);
         let sensor = grid.sensor();

@@ -23,7 +23,7 @@ use crate::sweep::reflected_rows::{ReflectedRows, Runs};
 use crate::sweep::span::Spans;
 use crate::touch::DOUBTFUL;
 
-/// What a task found about one of its groups.
+/// The result of a task for one of its groups.
 #[derive(Debug)]
 pub(crate) struct Found {
     /// The orientations of the group.
@@ -78,7 +78,7 @@ enum Shape {
 }
 
 impl Shape {
-    /// Takes the way for one ellipse, with or without a hole, else that for straight edges.
+    /// Uses the method for one ellipse, with or without a hole, and otherwise that for straight edges.
     fn new(boundary: &Boundary<f64>) -> Self {
         match Elliptic::new(&boundary.ellipses) {
             Some(elliptic) => Self::Elliptic(elliptic),
@@ -86,7 +86,7 @@ impl Shape {
         }
     }
 
-    /// Notes where taxels in a row of the sensor turn over, for the band that begins at `top`.
+    /// Notes where taxels in a row of the sensor switch, for the band that begins at `top`.
     fn band(&mut self, top: f64, row: usize, threshold: f64, spans: &mut Spans) {
         match self {
             Self::Polygonal(shape) => shape.band(top, threshold, spans),
@@ -107,7 +107,7 @@ struct Sweeper<'a> {
     height: Option<[f64; 2]>,
     /// The values of x0.
     steps: Steps,
-    /// Those of the band at hand, in memory that is used again.
+    /// The spans of the current band; the memory is reused.
     spans: Spans,
     /// The same of the mirror image.
     mirrored: Spans,
@@ -212,9 +212,9 @@ struct Group<'a> {
     beyond: u64,
     /// The values of y0, by number, that put it beyond neither the upper nor the lower side.
     rows_inside: Range<u64>,
-    /// What happens along the row at hand.
+    /// The events of the current row.
     events: Events<'a>,
-    /// Whether the row at hand is to be swept: it is not the image of one that was.
+    /// Whether the current row must be swept, because it is not the image of one that was.
     due: bool,
     /// Decides where `f64` cannot.
     exact: Exact<'a>,
@@ -276,7 +276,7 @@ impl<'a> Group<'a> {
         (self.orientation() * self.grid.rows_per_orientation() + y) * self.grid.row_length()
     }
 
-    /// Begins a row. Whether it is to be swept: the image of a row that was is counted at once.
+    /// Begins a row. Returns whether it must be swept; the image of a row that was swept is counted at once.
     fn begin(&mut self, y: u64) -> bool {
         let first = self.first(y);
         self.events.clear();

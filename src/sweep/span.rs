@@ -1,9 +1,9 @@
-//! Where along a band of the shape a taxel is active: intervals of its place `u`.
+//! Where along a band of the shape a taxel is active, as intervals of its place `u`.
 //!
-//! For one angle and one y0 the coverage of a taxel in row `j` depends only on `u = i − x0`, its column relative to
-//! the shape's anchor: it is the shape's area inside of the unit square whose top left corner is (`u`, `j − y0`).
-//! So one function of `u` per row serves all columns and all x0. This module holds the set of `u` at which it
-//! reaches the threshold.
+//! For one angle and one y0 the coverage of a taxel in row `j` depends only on `u = i − x0`, its column relative to the
+//! shape's anchor: it is the shape's area inside the unit square whose top left corner is (`u`, `j − y0`). So one
+//! function of `u` per row serves all columns and all x0. This module holds the set of `u` at which it reaches the
+//! threshold.
 
 use crate::touch::DOUBTFUL;
 
@@ -17,7 +17,7 @@ pub(crate) const NEAR: f64 = 1e-8;
 /// See [`NEAR`]; the factor of two leaves room for the curvature.
 pub(crate) const STEEP: f64 = 2.0 * DOUBT / NEAR;
 
-/// What is known about the coverage at a place.
+/// How the coverage at a place compares with the threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Level {
     /// Short of the threshold.
@@ -67,7 +67,7 @@ impl Spans {
         self.level = None;
     }
 
-    /// Notes that from `at` on the level is this one. Places come in ascending order.
+    /// Notes that the level is this one from `at` on. Places come in ascending order.
     pub(crate) fn turn(&mut self, at: f64, level: Level) {
         if let Some((from, old)) = self.level {
             if old == level {

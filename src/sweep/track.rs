@@ -1,13 +1,13 @@
-//! The passages of an ellipse's coverage through a level, followed from one row of the grid to the next.
+//! Where the coverage of an ellipse passes through a level, followed from one row of the grid to the next.
 //!
 //! The area of a convex set in a moving cell rises to a plateau and falls again: its root is concave where it is not 0
-//! (Brunn and Minkowski). So the coverage passes a level at most twice, once on either side, so one rising and one
-//! falling passage are all there are. From one row to the next a passage moves smoothly: three former ones tell where
-//! to look, and one step of Newton's method usually ends there.
+//! (Brunn and Minkowski). So the coverage passes a level at most twice: there is at most one rising and one falling
+//! passage. From one row to the next a passage moves smoothly, so the last three predict the next, and one step of
+//! Newton's method usually suffices.
 //!
 //! **Certainty.** At a position the excess over the level is `e` and the slope `m`; within `e/m` and a little the slope
-//! cannot change by more than `c` ([`EllipseBand::change`]). Then the passage lies between `e/(m + c)` and `e/(m − c)`
-//! away. It is taken for known once that is narrower than [`NEAR`] asks for.
+//! cannot change by more than `c` ([`EllipseBand::change`]). Then the distance to the passage is between `e/(m + c)`
+//! and `e/(m − c)`. The passage counts as known once this interval is narrower than [`NEAR`] requires.
 
 use crate::sweep::ellipse_band::EllipseBand;
 use crate::sweep::span::{NEAR, STEEP};
