@@ -1,4 +1,4 @@
-//! What an acquisition is asked for, what it reports, and why it ends.
+//! The options of an acquisition, what it reports, and why it ends.
 
 use std::io;
 use std::time::Duration;

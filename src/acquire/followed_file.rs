@@ -1,7 +1,7 @@
-//! A recording that may still be written: at its end more is waited for, as `tail -f` does.
+//! A recording that may still grow: at its end, it waits for more, like `tail -f`.
 //!
-//! A file that has grown since it was opened is followed until it is cut or replaced. One that has not, but was changed
-//! a moment ago, is given as long to grow; any other file ends where it ends.
+//! A file that has grown since it was opened is followed until it is truncated or replaced. One that has not, but was
+//! changed a moment ago, gets a moment to grow; any other file is read to its end.
 
 use std::cell::Cell;
 use std::fs::File;

@@ -1,4 +1,4 @@
-//! A file that is read as it grows, also when it is cut and written anew, or when another file takes its name.
+//! A file that is read while it grows, even if it is truncated and rewritten, or if another file takes its name.
 
 use std::fmt;
 use std::fs::{self, File};

@@ -1,4 +1,4 @@
-//! A recording, played back at its own rate, another one, or as fast as it goes; or followed while it is written.
+//! A recording, played back at its own rate, at another rate, or as fast as possible; or followed while it is written.
 
 use std::cell::RefCell;
 use std::fs::File;

@@ -1,4 +1,4 @@
-//! Frames into a file that numpy and taxel can open at every moment, also after the program was killed.
+//! Writes frames to a file that numpy and taxel can open at any moment, even after the program was killed.
 //!
 //! An array of records: time in seconds (NaN where it is not known), number, values. The header has room to spare and
 //! counts the records that are in the file already: they are written first, the count after them, at least twice a second,
@@ -10,8 +10,8 @@
 //! recording was ended; that of a killed program does not. The file is long because the array, its description and their
 //! names change together.
 //!
-//! Nothing appears, and nothing is replaced, until the first frame comes. A disk that is full ends a recording after its last whole record,
-//! and the description says why.
+//! No file appears or is replaced until the first frame arrives. A disk that is full ends a recording after its last
+//! whole record, and the description says why.
 
 use std::collections::VecDeque;
 use std::fs::File;

@@ -1,4 +1,4 @@
-//! Reads a source, whatever it is.
+//! Reads a source of any kind.
 
 use std::sync::atomic::AtomicBool;
 

@@ -1,4 +1,4 @@
-//! What a source is called, and what it is.
+//! The name of a source, and its kind.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};

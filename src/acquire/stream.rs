@@ -1,4 +1,4 @@
-//! A source of bytes, decoded as long as it lasts; one that comes back is opened again each second.
+//! A source of bytes, decoded until it ends; if it may come back, taxel tries to open it again each second.
 
 use std::io;
 use std::ops::ControlFlow;

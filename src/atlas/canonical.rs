@@ -1,4 +1,4 @@
-//! Imprints that differ by a shift, a quarter turn or a mirror image only, brought to one form.
+//! One canonical form for imprints that differ only by a shift, a quarter turn or a mirror image.
 //!
 //! First the active taxels are moved to the top left corner. There are eight images under quarter turns and
 //! mirrors; only those that are not higher than wide are considered: four, or eight if the bounds are a square. The one

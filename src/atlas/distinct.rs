@@ -1,4 +1,4 @@
-//! The atlas: every distinct imprint of a sweep once.
+//! The atlas: every distinct imprint of a sweep, once.
 
 use rayon::prelude::*;
 

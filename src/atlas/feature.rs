@@ -1,4 +1,4 @@
-//! The numbers that statistics are made of: every descriptor of [`DESCRIPTORS`], taken apart where it has parts.
+//! The numbers that statistics use: every descriptor of [`DESCRIPTORS`], split into its parts if it has any.
 //!
 //! A point `cg` gives `cg_x` and `cg_y`; a rectangle `rect` gives `rect_left`, `rect_top`, `rect_right` and
 //! `rect_bottom`; the two diagonals give `diagonals_1`, in (0, 90), and `diagonals_2`, in (90, 180): neither

@@ -1,4 +1,4 @@
-//! Which imprints of an atlas fit an expression that somebody typed: `na>=40 holes=0 f<12`.
+//! Filters the imprints of an atlas by an expression that the user typed: `na>=40 holes=0 f<12`.
 //!
 //! ```text
 //! na>=40 holes=0      every condition has to hold; blanks around the sign do not matter

@@ -1,4 +1,4 @@
-//! The atlas: every imprint of a sweep once, with how often and where it occurs, and what it looks like.
+//! The atlas: every imprint of a sweep once, with how often and where it occurs and what it looks like.
 //!
 //! Two imprints are the same when the same taxels are active. An imprint's number is that of its first occurrence in
 //! the order of poses (see [`crate::pose::PoseGrid`]), the same for any number of threads. Descriptors are those of the

@@ -1,4 +1,4 @@
-//! The imprints of an atlas in another order than that of their first occurrence.
+//! The imprints of an atlas in an order other than that of their first occurrence.
 
 use std::cmp::Ordering;
 

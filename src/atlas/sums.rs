@@ -1,4 +1,4 @@
-//! Sums that come out the same in any order: of whole numbers, wide enough never to overflow.
+//! Sums that are the same in any order: of whole numbers, wide enough never to overflow.
 //!
 //! Threads, shards and symmetries change the order in which a sweep adds up; sums of `f64` would change with it in
 //! their last digits. A value therefore counts as the nearest multiple of 2⁻⁴⁰ (an error below 5e-13), values are below

@@ -1,4 +1,4 @@
-//! The values of all features of all imprints, in rows: what statistics are summed up from.
+//! The values of all features of all imprints, in rows, from which the statistics are computed.
 //!
 //! They are fixed-point numbers ([`crate::atlas::sums`]), because each one is added once per orientation.
 

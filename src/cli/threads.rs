@@ -1,4 +1,4 @@
-//! The threads of long work. Where the system gives none, it is done on the thread that asks for it.
+//! The threads for long work. If the system provides none, the calling thread does the work.
 
 use std::io;
 

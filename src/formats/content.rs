@@ -1,4 +1,4 @@
-//! An imprint in any format, or a stored shape: which of the two shows in the first character.
+//! An imprint in any format, or a stored shape; the first character shows which of the two it is.
 
 use crate::formats::imprint_file::{self, ImprintFormatError};
 use crate::formats::shape::{ShapeError, StoredShape};

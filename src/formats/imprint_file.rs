@@ -1,4 +1,4 @@
-//! The formats in which an imprint alone goes to other programs and comes from them.
+//! The formats in which a plain imprint is exchanged with other programs.
 //!
 //! The content of a file decides its format when it is read, the ending of its name when it is written.
 //!

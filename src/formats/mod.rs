@@ -1,7 +1,7 @@
 //! The formats in which imprints, poses and answers leave the program and come back.
 //!
-//! Every reader is strict and total: it takes any bytes, and answers with a value in range or with one error that
-//! says what was found, where, and what was expected.
+//! Every reader is strict and total: it accepts any bytes, and returns either a value in range or one error that says
+//! what was found, where, and what was expected.
 
 pub mod value;
 

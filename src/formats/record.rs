@@ -1,7 +1,6 @@
-//! JSON objects whose keys are parameters, sensors and imprints: what jobs and stored shapes are made of.
+//! JSON objects whose keys are parameters, sensors and imprints: the building blocks of jobs and stored shapes.
 //!
-//! Keys that are parameters are looked up in the table of parameters; a key that stands twice, or is none of
-//! those expected, is refused.
+//! Keys that are parameters are looked up in the table of parameters; duplicate and unexpected keys are refused.
 
 use std::borrow::Cow;
 use std::fmt;

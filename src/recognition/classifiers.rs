@@ -1,10 +1,11 @@
-//! Classifiers in the paper's way, by descriptors of the imprint: what they reach, beside the limit of one touch.
+//! Classifiers that use descriptors of the imprint, as the paper does, and what they reach compared with the limit of
+//! one touch.
 //!
-//! All of them see the same touches as the [`Evaluation`] of the model. Means, deviations and covariances are those of all
-//! poses, exact but for rounding; what is sampled is sampled with a seed. Features are numbers of the main region that do
-//! not change under shifts, each in units of its deviation over all touches. A direction that goes all around enters as its
-//! cosine and its sine, both 0 where it does not exist. Left out are other features that do not exist for some imprint,
-//! constants, and copies of others (NA and NAE of solid shapes).
+//! All of them see the same touches as the [`Evaluation`] of the model. Means, deviations and covariances are those of
+//! all poses, exact except for rounding; samples are drawn with a seed. Features are numbers of the main region that do
+//! not change under shifts, each in units of its deviation over all touches. A direction counts as its cosine and its
+//! sine, both 0 if it does not exist. Other features that do not exist for some imprint, constants, and copies of
+//! others (NA and NAE of solid shapes) are left out.
 //!
 //! Source: R. O. Duda, P. E. Hart and D. G. Stork, *Pattern Classification*, 2001, chapters 2 to 4.
 
@@ -21,7 +22,7 @@ use crate::recognition::model::{Model, share};
 use crate::recognition::simulation::Draw;
 use crate::recognition::templates::Templates;
 
-/// A classifier by descriptors or by samples: not the best one, whose answers are those of the model itself.
+/// A classifier that uses descriptors or samples. It is not the best one: those answers come from the model itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Classifier {
@@ -35,7 +36,7 @@ pub enum Classifier {
     Qda,
     /// The nearest touches of a sample.
     Knn,
-    /// The nearest of the most frequent imprints, in taxels that differ.
+    /// The nearest of the most frequent imprints, by the number of taxels that differ.
     Template,
 }
 
@@ -105,8 +106,8 @@ impl Default for ClassifierSettings {
 pub struct ClassifierEvaluation {
     /// Which one.
     pub classifier: Classifier,
-    /// As for the best classifier. `information_bits` is what the given name tells of the shape; `certain` counts nothing,
-    /// since these classifiers do not know when they are.
+    /// The same counts as for the best classifier. `information_bits` is what the given name tells about the shape;
+    /// `certain` is 0, since these classifiers do not know when they are certain.
     pub evaluation: Evaluation,
     /// The features that it used; empty for [`Classifier::Template`].
     pub features: Vec<String>,
@@ -201,7 +202,7 @@ fn evaluate(model: &Model, scores: impl Fn(usize) -> Scores + Sync) -> Evaluatio
     evaluation.finished()
 }
 
-/// The shape of the lowest score, that of the next, and the latter again if both are equal.
+/// The shape with the lowest score, the one with the next score, and the latter again if both scores are equal.
 fn first_two(scores: &[f64]) -> [Option<usize>; 3] {
     let lowest = |without: Option<usize>| {
         let open = (0..scores.len()).filter(|&shape| Some(shape) != without);
@@ -221,7 +222,7 @@ fn first_two(scores: &[f64]) -> [Option<usize>; 3] {
     [first, second, tie.map(|(_, second)| second)]
 }
 
-/// What the name tells of the shape, in bits.
+/// How much the name tells about the shape, in bits.
 fn information(confusion: &[Vec<u128>]) -> f64 {
     let total: u128 = confusion.iter().flatten().sum();
     let rows: Vec<u128> = confusion.iter().map(|row| row.iter().sum()).collect();

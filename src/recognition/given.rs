@@ -1,7 +1,7 @@
-//! What descriptors are worth: the limit of one touch where only some of them are known of the imprint.
+//! What descriptors are worth: the limit of one touch if only some descriptors of the imprint are known.
 //!
-//! Two imprints count as one where all given descriptors of their main regions agree. They are compared exactly
-//! ([`Descriptor::exact`]), or in steps of a [`Rounding`]. A value that does not exist agrees with itself only.
+//! Two imprints count as the same if all given descriptors of their main regions agree. Descriptors are compared
+//! exactly ([`Descriptor::exact`]), or in steps of a [`Rounding`]. A missing value agrees only with a missing value.
 
 use std::collections::HashMap;
 
@@ -17,7 +17,7 @@ use crate::recognition::noise::Noise;
 use crate::recognition::simulation::RecognitionRate;
 use crate::sensor::Sensor;
 
-/// A descriptor that says something of the shape: one that does not change when the imprint is moved.
+/// A descriptor that says something about the shape, because it does not change when the imprint is moved.
 #[derive(Clone, Copy, Debug)]
 pub struct ShapeDescriptor(&'static Descriptor);
 
@@ -31,7 +31,7 @@ impl PartialEq for ShapeDescriptor {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GivenError {
-    /// Another name.
+    /// An unknown name.
     #[error("descriptor {found:?} is unknown, expected one of {}", ShapeDescriptor::keys().join(", "))]
     Unknown {
         /// What was given.
@@ -115,7 +115,7 @@ impl std::str::FromStr for Rounding {
     }
 }
 
-/// Descriptors that are known of an imprint, in place of the imprint itself.
+/// Descriptors that are known instead of the imprint itself.
 ///
 /// ```
 /// use taxel::recognition::GivenDescriptors;
@@ -150,7 +150,7 @@ impl GivenDescriptors {
         &self.descriptors
     }
 
-    /// Returns the limit of one touch where only these descriptors are known.
+    /// Returns the limit of one touch if only these descriptors are known.
     pub fn evaluate(&self, model: &Model) -> Evaluation {
         let table = GivenTable::new(model);
         let mut classes = table.one_class();
@@ -163,8 +163,8 @@ impl GivenDescriptors {
 
 impl GivenDescriptors {
     /// Draws noisy touches as [`Model::recognition_rate`] does and names them by these descriptors alone: by the shape
-    /// that has their values most often without noise. Values that no shape has then get no name, which is wrong. None
-    /// if `progress` stops it.
+    /// that has their values most often without noise. Values that no shape has without noise get no name, which counts
+    /// as wrong. None if `progress` stops it.
     ///
     /// ```
     /// use taxel::recognition::{GivenDescriptors, GridSteps, Noise, Training, equal_figures};
@@ -232,7 +232,7 @@ fn known(
     }
 }
 
-/// The most frequent shape, of equals the first, and its share.
+/// The most frequent shape (the first among equals), and its share.
 fn most_of(counts: &[u128]) -> Option<(usize, f64)> {
     let all = counts.iter().enumerate().rev();
     let (shape, &most) = all.max_by_key(|(_, count)| **count)?;
@@ -291,7 +291,7 @@ impl<'a> GivenTable<'a> {
         vec![0; self.descriptions.len()]
     }
 
-    /// The classes that remain where one descriptor more is known.
+    /// The classes that remain if one more descriptor is known.
     fn refined(
         &self,
         classes: &Classes,
@@ -382,8 +382,8 @@ impl Rounding {
     }
 }
 
-/// Chooses descriptors one after the other: each time the one with which most touches are named right, the first in the
-/// table of equals, until none names one touch more.
+/// Chooses descriptors one by one: each time the one with which the most touches are named right (among equals, the
+/// first in the table), until no descriptor improves the result.
 ///
 /// Returns each descriptor with the evaluation of all chosen so far.
 pub fn greedy(model: &Model, roundings: &[Rounding]) -> Vec<(ShapeDescriptor, Evaluation)> {

@@ -26,7 +26,7 @@ impl Model {
     /// the observed matrix; among equals, the one that a single shape leaves in the most poses, then the first. None if
     /// no key fits the matrix.
     ///
-    /// The first call arranges the keys, which takes longer.
+    /// The first call sorts the keys for scans and takes longer.
     pub fn nearest(&self, observed: &Imprint) -> Option<Nearest> {
         self.nearest_without(observed, None)
     }

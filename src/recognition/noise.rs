@@ -1,25 +1,25 @@
-//! Recognition where taxels fail: each flips with probability e, independently of the others.
+//! Recognition with failing taxels: each flips with probability e, independently of the others.
 //!
 //! ```text
 //! P(imprint | s) = Σ over keys k and shifts of  n[s, k] · e^d (1 − e)^(cells − d)  / T[s]
 //! ```
-//! with d the number of taxels in which the imprint and the shifted key differ, and T[s] the number of touches of s: its
-//! poses, times the shifts of the key on the matrix. So the prior is that of every pose in every place on the matrix.
-//! Taxels that are known to be dead are left out of d and of `cells`.
+//! where d is the number of taxels in which the imprint and the shifted key differ, and T[s] the number of touches of
+//! s: its poses, times the shifts of the key on the matrix. So the prior is uniform over every pose in every place on
+//! the matrix. Taxels that are known to be dead are left out of d and of `cells`.
 //!
-//! What is summed are integers: for each shape, how many touches lie at each distance. So one scan serves any e, and
+//! The sums are of integers: for each shape, how many touches lie at each distance. So one scan serves any e, and
 //! neither threads nor the order of keys matter. Only distances up to D are kept: D follows from e, the weights and the
-//! least distance, and what lies beyond changes no probability by more than 1e-9. Several touches may contradict each
-//! other, and then what is improbable for one decides: D grows until that holds for all of them together.
+//! least distance, and larger distances change no probability by more than 1e-9. If several touches contradict each
+//! other, what is improbable for one of them may decide, so D grows until this holds for all of them together.
 //!
-//! The search for the near keys is that of [`scan`](super::scan).
+//! [`scan`](super::scan) finds the near keys.
 
 use crate::imprint::Imprint;
 use crate::index::wide;
 use crate::recognition::model::{Model, float};
 use crate::recognition::scan::{Observed, places};
 
-/// What a probability may change by leaving out far keys.
+/// How much leaving out far keys may change a probability.
 pub(super) const NEGLIGIBLE: f64 = 1e-9;
 
 /// The probability that a taxel flips, from 0 to below ½, and the taxels that are known to be dead.
@@ -51,7 +51,7 @@ impl Noise {
         }
     }
 
-    /// The active taxels of `dead` say nothing: they are stuck on or off. Those beyond an imprint do not matter.
+    /// The active taxels of `dead` are ignored: they are stuck on or off. Those beyond an imprint do not matter.
     #[must_use]
     pub fn without(self, dead: Imprint) -> Self {
         let dead = (!dead.is_empty()).then_some(dead);
@@ -68,7 +68,7 @@ impl Noise {
         self.dead.as_ref()
     }
 
-    /// By how much a touch is less probable for each taxel that differs.
+    /// The factor by which each differing taxel makes a touch less probable.
     fn ratio(&self) -> f64 {
         self.flip / (1.0 - self.flip)
     }
@@ -126,10 +126,11 @@ pub struct Distances {
 }
 
 impl Model {
-    /// Returns P(shape | imprint) for each shape of the set, where taxels fail; None if no key fits the matrix, or, without
-    /// noise, if no shape leaves the imprint.
+    /// Returns P(shape | imprint) for each shape of the set, with failing taxels; None if no key fits the matrix, or,
+    /// without noise, if no shape leaves the imprint.
     ///
-    /// The prior is that of every pose in every place on the matrix. The first call arranges the keys, which takes longer.
+    /// The prior is uniform over every pose in every place on the matrix. The first call sorts the keys for scans and
+    /// takes longer.
     ///
     /// ```
     /// use taxel::prelude::*;

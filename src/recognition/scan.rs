@@ -1,14 +1,14 @@
-//! The keys of a model, arranged to be compared with an imprint in every place on its matrix.
+//! The keys of a model, arranged for comparison with an imprint in every place on its matrix.
 //!
 //! The distance of a key in a place is the number of taxels in which the imprint differs from the key put there. Inside
-//! of the key's box that is a popcount of key ^ window, where the window is the part of the imprint below the box, cut
-//! out once for all keys of one box; outside of it, it is the number of the imprint's own taxels.
+//! the key's box this is a popcount of key ^ window, where the window is the part of the imprint under the box,
+//! extracted once for all keys with the same box; outside, it is the number of the imprint's own taxels.
 //!
-//! Keys stand in groups of one box and one number of taxels, n. If the imprint has C taxels and i of them lie inside of
+//! Keys are grouped by their box and their number of taxels, n. If the imprint has C taxels and i of them lie inside
 //! the box, then C − i differ outside and at least |i − n| inside. So a sum over the box bounds the distance of a whole
-//! group in a place, and the most taxels that any place has inside bound it in all places: most groups and places are
-//! never looked at. What remains are dense loops over keys, compiled more than once: `pulp` picks the code for the registers
-//! that the processor has.
+//! group in one place, and the largest number of taxels inside any place bounds it in all places: most groups and
+//! places are never compared. What remains are dense loops over keys, compiled for several kinds of processors; `pulp`
+//! picks the code for the registers that this one has.
 
 use std::cmp::Reverse;
 use std::ops::Range;
@@ -21,7 +21,7 @@ use crate::imprint::Imprint;
 use crate::index::{narrow, wide};
 use crate::recognition::key::{KeyRef, KeyTable, or_bits};
 
-/// Keys that are compared with all windows before the next ones are, so that what is counted of them stays in the cache.
+/// The number of keys that are compared with all windows before the next ones, so that their counts stay in the cache.
 const BLOCK: usize = 64;
 
 /// Keys of one task. Fewer keys than this are compared on the calling thread. In tests few models have so many.

@@ -1,4 +1,4 @@
-//! The commands by what they are for, as the help of the program lists them.
+//! The commands grouped by purpose, as the help of the program lists them.
 
 use clap::Command;
 

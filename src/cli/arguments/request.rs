@@ -1,5 +1,5 @@
-//! From what clap has read to a [`Request`]: plain values, in their types and checked. Nothing below this module knows
-//! clap.
+//! Turns the arguments that clap has parsed into a [`Request`]: plain values, typed and checked. Nothing below this
+//! module knows clap.
 //!
 //! Settings are resolved on the way, since they decide about defaults: the sensor of a figure, the pitch of a table.
 

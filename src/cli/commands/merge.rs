@@ -1,4 +1,4 @@
-//! `taxel merge`: puts the shards of a sweep or of a training together.
+//! `taxel merge`: merges the shards of a sweep or of a training.
 //!
 //! Their headers tell what they are and bring them into order; then they are read one after another. Memory holds what is
 //! merged and one shard. The most that this can be follows from the sizes of the files and is printed before; what it was is

@@ -1,4 +1,4 @@
-//! What a model says of the imprint of a frame, for `taxel frames` and `taxel watch` with `--model`.
+//! What a model says about the imprint of a frame, for `taxel frames` and `taxel watch` with `--model`.
 
 use std::ffi::OsString;
 

@@ -1,4 +1,4 @@
-//! What one reading of a recording finds: its channels, what is odd in it, and the damage at which it ends.
+//! The result of reading a recording once: its channels, its oddities, and the damage at which it ends.
 //!
 //! ```text
 //! recording -> Scan -> the listing of `taxel frames`, or the channel that is answered

@@ -1,4 +1,4 @@
-//! `--resume`: takes up the work on a large study. A shard whose file is there, whole and of the same study is not
+//! `--resume`: resumes the work on a large study. A shard whose file is complete and belongs to the same study is not
 //! computed again.
 //!
 //! A file appears under its name only when all of it is written, so a killed shard leaves none and is computed. What is

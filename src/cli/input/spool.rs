@@ -1,4 +1,5 @@
-//! Standard input or a pipe as a file that can be read again: what is read is copied into a temporary file on the way.
+//! Standard input or a pipe as a file that can be read again: everything that is read is also copied to a temporary
+//! file.
 //!
 //! Nothing is read ahead, so that an input without an end is refused as soon as something in it is wrong.
 

@@ -1,5 +1,4 @@
-//! Lines on standard output, written by a thread of their own, so that a reader that is slow does not hold up a
-//! recording.
+//! Writes lines to standard output on a separate thread, so that a slow reader does not hold up a recording.
 
 use std::io::{self, Write};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_channel};

@@ -1,4 +1,4 @@
-//! The file of `--record`, written by a thread of its own: a disk that hangs holds up no key.
+//! Writes the file of `--record` on a separate thread, so that a disk that hangs does not delay any key.
 
 use std::fs::{self, File};
 use std::io::{self, Write};

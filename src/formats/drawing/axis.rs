@@ -1,4 +1,4 @@
-//! The marks of an axis: round numbers, not too many of them.
+//! The marks of an axis: round numbers, and not too many.
 
 /// The largest number of steps between marks.
 const STEPS: f64 = 8.0;

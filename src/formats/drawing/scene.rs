@@ -1,4 +1,4 @@
-//! What a page is made of: paths and texts, in points from its top left corner, y down.
+//! The elements of a page: paths and texts, in points from its top left corner, y down.
 
 /// A point of the page, or of the plane in cell sides.
 pub(super) type Position = (f64, f64);

@@ -1,4 +1,4 @@
-//! Which of the channels of a source is watched, as they become known one after the other.
+//! Chooses the channel of a source to watch, while the channels become known one after the other.
 
 use crate::formats::recording::event::ChannelInfo;
 

@@ -1,4 +1,4 @@
-//! Which format a recording has, by its content.
+//! Detects the format of a recording from its content.
 //!
 //! Tested in this order, from what cannot be mistaken to what is left: magic bytes, then JSON, then words that only one
 //! vendor writes, then ROS, then a table. A `.csv` of XSENSOR or Tekscan would pass for a table, and is therefore

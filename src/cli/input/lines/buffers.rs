@@ -1,4 +1,4 @@
-//! Memory that is used again. Without it, each block's answers would come fresh from the system, which clears them page by
+//! Reused memory. Without it, each block's answers would get fresh memory from the system, which clears it page by
 //! page: a sixth of the time of two threads.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -1,4 +1,4 @@
-//! Items worked on by several threads, their results in the order of the items.
+//! Processes items on several threads and returns their results in the order of the items.
 //!
 //! ```text
 //! source, on a thread of its own -> this thread -> workers -> this thread: sorts -> sink
