@@ -1,4 +1,4 @@
-//! A matrix of values, one a taxel, row by row from the top left: what a sensor measures in each of its cells.
+//! A matrix of values, one per taxel, row by row from the top left: what a sensor measures in each of its cells.
 
 use crate::sensor::MAX_SIDE;
 

@@ -1,7 +1,7 @@
 //! A bound on the memory of long work: sweeps and trainings, which keep every distinct imprint.
 //!
-//! The program's own memory is looked at while the work goes on. Tables grow by doubling, so the work is stopped when half
-//! of what is allowed is in use: the next step still fits, and nothing has to be given up in the middle of it.
+//! The program checks its own memory while it works. Tables grow by doubling, so the work is stopped when half of what
+//! is allowed is in use: the next step still fits, and nothing has to be given up in the middle of it.
 
 use std::fmt;
 #[cfg(target_os = "linux")]

@@ -1,4 +1,4 @@
-//! Every quantity that a user can set, one row of a table each: key, label, unit, range, decimals, default.
+//! Every quantity that a user can set, each with a row of a table: key, label, unit, range, decimals, default.
 //!
 //! Forms, flags, JSON checks and error messages are made from [`PARAMETERS`]; no other place knows a range. Lengths are
 //! relative to the side of a sensory cell. The ranges of figures are the paper's (0.00–9.99 with two decimals, 10.0–16.0

@@ -1,4 +1,4 @@
-//! Ranges of numbers, whose bounds belong to them or not, or grow with the sensor.
+//! Ranges of numbers. Their bounds may be included or not, and may grow with the sensor.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! The boundary of a shape, kept: drawn once for all positions that differ by a shift.
+//! The stored boundary of a shape, drawn once for all positions that differ by a shift.
 //!
 //! In `f64` it is what bands are cut from; as [`Double`](crate::geometry::Double) it decides what `f64`
 //! cannot. Frame and units are those of the plane; the anchor of the shape lies at the origin.

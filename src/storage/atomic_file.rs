@@ -1,5 +1,5 @@
-//! The one way in which a file is written: under a temporary name in the same folder, synced, renamed over its place,
-//! and the folder synced.
+//! How every file is written: under a temporary name in the same folder, synced, renamed into place, and the folder
+//! synced.
 //!
 //! Whenever the program dies or the power fails, the old file or the new one is there whole. The stages are types:
 //! content goes into an [`UnfinishedFile`]; a [`FinishedFile`] is on disk and lacks only its name. Either one removes

@@ -1,4 +1,4 @@
-//! What can go wrong with files and with a library: which file, what was to be done, what was expected.
+//! What can go wrong with files and with a library: which file, which operation, what was expected.
 
 use std::io;
 use std::path::{Path, PathBuf};

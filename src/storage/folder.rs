@@ -1,4 +1,4 @@
-//! Reading the files of a library, and listing and making its folders.
+//! Reads the files of a library, and lists and creates its folders.
 
 use std::ffi::OsString;
 use std::fs::{self, File, Metadata};

@@ -1,4 +1,4 @@
-//! The shape library: a folder with one JSON file a shape, and the shapes that come with the program.
+//! The shape library: a folder with one JSON file per shape, and the shapes that come with the program.
 //!
 //! **Nothing is lost.** A file is written beside its place, synced, renamed over it, and the folder synced: at every
 //! moment, whatever fails, the old file or the new one is there whole. Deleting moves into a trash inside the folder.

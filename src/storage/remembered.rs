@@ -1,4 +1,4 @@
-//! What the screen remembers between runs, in small files of the library's folder: a line an entry, the last one last.
+//! What the screen remembers between runs, in small files in the library's folder: one entry per line, the newest last.
 //!
 //! Errors are ignored: a file that cannot be read counts as empty, and lines that cannot be written are dropped.
 

@@ -1,5 +1,4 @@
-//! What a sweep leaves as files: its atlas, in the format that the name's ending decides, and the atlas number of every
-//! pose.
+//! The files that a sweep writes: its atlas, in the format of the name's extension, and the atlas number of every pose.
 //!
 //! At every time there is all of a file or what was there before ([`crate::storage::atomic_file`]).
 

@@ -1,4 +1,4 @@
-//! A file on its way to its name.
+//! A file that does not have its final name yet.
 //!
 //! Where the file system has files without a name (`O_TMPFILE`, on Linux), it has none until it is whole: a program that
 //! is killed leaves nothing behind. Elsewhere it is `.taxel-XXXXXX`, with a random ending, in the folder that it is for,

@@ -45,7 +45,7 @@ impl Trash {
         self.shapes.iter().rev()
     }
 
-    /// The path for the next shape. If the highest number is taken, the shapes are numbered anew from 1.
+    /// The path for the next shape. If the highest number is taken, the shapes are renumbered from 1.
     ///
     /// # Errors
     /// What the system reports of a file that could not be renamed.

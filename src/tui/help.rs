@@ -1,4 +1,4 @@
-//! Help: the list of the keys that mean something in a place, as they are now. It can be searched:
+//! Help: the list of the keys that work in a place, as they are currently set. It can be searched:
 //! [`crate::tui::search`].
 
 use ratatui::buffer::Buffer;

@@ -1,4 +1,4 @@
-//! The search in help and in the history: a prompt at the foot of the list, which follows as one types.
+//! The search in help and in the history: a prompt at the bottom of the list, which follows as you type.
 //!
 //! ```text
 //! Search: undo   1 of 3          which match is in sight, of how many

@@ -310,7 +310,7 @@ fn rounded(value: f64) -> f64 {
     to_decimals(value, 6)
 }
 
-/// Gives the source new values and touches the matrix anew, in the step of the history that the last message began if
+/// Gives the source new values and touches the matrix again, in the step of the history that the last message began if
 /// that moved in the same way. A value out of range is refused, and nothing changes.
 fn set(app: &mut App, source: Source, way: MoveKind, values: &[(Parameter, f64)]) {
     let sensor = app.history.present().sensor;

@@ -1,4 +1,4 @@
-//! What is on the matrix, what can be read off it, and its history.
+//! What is on the matrix, what follows from it, and its history.
 //!
 //! A [`Document`] is a sensor, what touched it, and the taxels set by hand since then. Everything else follows from it
 //! and is a [`Reading`].

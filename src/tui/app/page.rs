@@ -1,4 +1,4 @@
-//! What the screen knows of a page: of each form, list, prompt, question or result that lies over the matrix.
+//! What the screen knows about a page: each form, list, prompt, question or result that lies over the matrix.
 //!
 //! [`crate::tui::app::dialog`] has the table of pages. The screen draws them, shows their keys and finds what the mouse
 //! points at through this trait, and so never names one of them.

@@ -1,4 +1,4 @@
-//! The end of the program: at once, or after a question where work would be lost.
+//! Quitting the program: at once, or after a question if work would be lost.
 
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;

@@ -1,4 +1,4 @@
-//! The lines at the foot of the screen.
+//! The lines at the bottom of the screen.
 //!
 //! ```text
 //! ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0° + 1 by hand              what made the imprint

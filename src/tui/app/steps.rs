@@ -1,5 +1,5 @@
-//! What a step of the history did, in words. The words follow from the documents before and after it and are stored
-//! nowhere.
+//! Describes in words what a step of the history did. The words follow from the documents before and after it and are
+//! not stored.
 
 use crate::formats::value::counted;
 use crate::parameter::Parameter;

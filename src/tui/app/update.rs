@@ -36,9 +36,8 @@ pub fn update(app: &mut App, message: Message) -> Option<Effect> {
     effect.or_else(|| live::update::follow(app))
 }
 
-/// Handles a message, without reading the document anew.
-/// A count repeats what can be repeated, such as a step of the cursor; anything else is done once. A repetition ends at
-/// the first effect that the runtime has to take care of.
+/// Handles a message without reading the document again. A count repeats what can be repeated, such as a step of the
+/// cursor; anything else is done once. A repetition ends at the first effect that the runtime has to take care of.
 fn handle(app: &mut App, message: Message) -> Option<Effect> {
     match message {
         Message::Redraw => return Some(Effect::Terminal(TerminalEffect::Redraw)),

@@ -1,4 +1,4 @@
-//! The prompt for a filter: what imprints of the list have to fulfil. The list follows as one types.
+//! The prompt for a filter: the conditions that imprints in the list must meet. The list follows as you type.
 //!
 //! ```text
 //! Filter: na>=40 holes=0   312 of 4,102        how many it keeps

@@ -1,4 +1,4 @@
-//! What the results of a sweep know of a page of theirs.
+//! What the results of a sweep know about each of their pages.
 //!
 //! A page has no state of its own: [`Results`] holds the chosen descriptor, row and pose, so that all pages agree on
 //! them.

@@ -1,4 +1,4 @@
-//! What a sweep found, and which part of it is looked at: page, descriptor, order, row, cursor of the map.
+//! The results of a sweep, and which part of them is shown: page, descriptor, order, row, cursor of the map.
 //!
 //! What was found never changes and is shared with workers that write it to files. All pages look at the same
 //! descriptor, and the list and the map lead to each other.

@@ -1,4 +1,4 @@
-//! The way to results: the form of ranges, a sweep or an export in progress, and what its worker reports.
+//! The steps that lead to results: the form of ranges, a sweep or an export in progress, and what its worker reports.
 //!
 //! ```text
 //! Open -> form of ranges -> Start -> Running -> Swept -> results        Stop: the results so far

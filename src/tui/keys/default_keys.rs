@@ -1,4 +1,5 @@
-//! The default keys: for each place its keys with their actions, a hint for the foot of the screen and a line of help.
+//! The default keys: for each place its keys with their actions, a hint for the bottom of the screen and a line of
+//! help.
 //!
 //! Help, hints, the menu and `docs/keys.md` are made from it; a key that is not in it does nothing. A settings file can
 //! give the actions of a place other keys: [`crate::tui::keys::keymap`]. Hint and help stand here and not with the action

@@ -1,4 +1,4 @@
-//! The frames that have come, as many of the last ones as fit into some memory.
+//! The most recent frames, as many as fit into a given amount of memory.
 
 use std::collections::VecDeque;
 use std::sync::Arc;

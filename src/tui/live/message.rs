@@ -1,4 +1,4 @@
-//! What is asked of the live page, and what its source reports.
+//! Requests to the live page, and reports from its source.
 
 use std::sync::Arc;
 

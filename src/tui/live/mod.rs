@@ -1,4 +1,4 @@
-//! The live page: the frames of a sensor as they come, or played back, as a heat map with what can be said of them.
+//! The live page: the frames of a sensor, live or played back, as a heat map with a description.
 //!
 //! ```text
 //! request    which source, and how its frames are looked at

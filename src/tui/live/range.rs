@@ -1,4 +1,4 @@
-//! Between which values shades are spread.
+//! The range of values that the shades cover.
 
 use crate::frame::Frame;
 use crate::tui::live::reading::{LiveReading, round_up};

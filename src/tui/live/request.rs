@@ -1,4 +1,4 @@
-//! What is to be watched, and how its frames are looked at.
+//! What to watch, and how to process its frames.
 
 use std::ffi::OsString;
 use std::path::PathBuf;

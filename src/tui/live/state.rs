@@ -1,5 +1,5 @@
-//! The state of the live page: which frame is shown and how, and what can be said of it. What keys ask for changes all of
-//! this together, so it stands in one file, long as it is.
+//! The state of the live page: which frame is shown and how, and its description. Keys change all of this together, so
+//! it is in one long file.
 
 use std::sync::Arc;
 
@@ -422,7 +422,7 @@ impl Live {
         SetRule::apply(rule, &mut self.processing);
     }
 
-    /// Takes a rule that a key leads to, and reads the frame anew; a value out of range changes nothing.
+    /// Takes a rule that a key leads to, and reads the frame again; a value out of range changes nothing.
     fn choose(&mut self, rule: &Result<Rule, FrameError>) {
         if let &Ok(rule) = rule {
             let (least, from) = (self.processing.least, RuleOrigin::Key);
@@ -568,7 +568,7 @@ impl Live {
         Some((number, Arc::clone(frame)))
     }
 
-    /// Reads the frame that is shown anew.
+    /// Reads the shown frame again.
     fn read(&mut self) {
         self.error = None;
         let shown = match &self.held {

@@ -1,4 +1,4 @@
-//! What keys make of a threshold: a step up or down, another unit.
+//! How keys change a threshold: a step up or down, another unit.
 
 use crate::frame::{FrameError, Rule};
 use crate::tui::live::reading::{nine_digits, round_up};

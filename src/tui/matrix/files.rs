@@ -1,7 +1,7 @@
 //! What is on the matrix, from a file and to a file: `:open`, `:write` and `:export`.
 //!
-//! A file is read by what it holds and written by its ending: an imprint as text, table, bitmap or array, a shape with
-//! what touched as JSON, a drawing as SVG or PNG.
+//! The content of a file decides how it is read, its extension how it is written: an imprint as text, table, bitmap or
+//! array, a shape with what touched as JSON, a drawing as SVG or PNG.
 
 use std::path::Path;
 

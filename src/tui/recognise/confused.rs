@@ -1,4 +1,4 @@
-//! Pairs of shapes that are confused, and an imprint that shows it.
+//! Pairs of shapes that are confused, each with an example imprint.
 
 use crate::formats::value::counted;
 use crate::imprint::Imprint;

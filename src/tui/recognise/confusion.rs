@@ -1,5 +1,5 @@
-//! The confusion matrix of a model: how often the best classifier takes a touch of one shape for another, and for the
-//! cell under the cursor an imprint that it takes so.
+//! The confusion matrix of a model: how often the best classifier takes a touch of one shape for another, and an
+//! example imprint for the cell under the cursor.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What is asked of recognition on the screen, and what its worker reports.
+//! Requests to recognition on the screen, and reports from its worker.
 
 use std::sync::Arc;
 

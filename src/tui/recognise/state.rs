@@ -342,7 +342,7 @@ impl Recognition {
         any
     }
 
-    /// Answers anew.
+    /// Computes the answer again.
     fn ask(&mut self) {
         let touches = self.touches();
         self.answer = match &self.state {

@@ -1,5 +1,5 @@
-//! Work with the disk, one request after the other on a thread of their own, so that no key waits for a disk or for the
-//! lock of another program.
+//! Disk requests, handled one after the other on a separate thread, so that no key waits for a disk or for the lock of
+//! another program.
 //!
 //! ```text
 //! request -> thread -> answer within QUICK: handled at once, before the next key

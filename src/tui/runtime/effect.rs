@@ -45,7 +45,7 @@ pub enum FileRequest {
 /// Effects on the terminal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TerminalEffect {
-    /// Draw the whole screen anew.
+    /// Redraw the whole screen.
     Redraw,
     /// Stop, as Ctrl-Z does, until the shell continues the program.
     Suspend,

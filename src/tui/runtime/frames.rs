@@ -1,4 +1,4 @@
-//! Watches a source of frames on a thread of its own, so that neither a key nor a slow terminal holds it up.
+//! Watches a source of frames on a separate thread, so that neither a key nor a slow terminal holds it up.
 //!
 //! ```text
 //! acquire -> Recording: every frame

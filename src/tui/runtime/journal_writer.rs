@@ -1,4 +1,4 @@
-//! Writes unsaved work to the journal on a thread of its own, so that no key waits for a disk.
+//! Writes unsaved work to the journal on a separate thread, so that no key waits for a disk.
 //!
 //! ```text
 //!             Persist                400 ms, or Flush

@@ -1,4 +1,4 @@
-//! Locks whose value is whole at every moment, so that a panic of another thread does no harm.
+//! Locks whose value is always consistent, so that a panic of another thread does no harm.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -1,4 +1,4 @@
-//! What the screen reads from the disk. An answer that comes late goes to the page that asked for it.
+//! What the screen reads from the disk. A late answer goes to the page that asked for it.
 //!
 //! ```text
 //! ask -> answer within a moment: the next message

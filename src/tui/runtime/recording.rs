@@ -1,4 +1,4 @@
-//! A file that frames are recorded in while they are watched.
+//! The file to which frames are recorded while they are watched.
 //!
 //! ```text
 //! begin    creates the file            the source's thread, or the one of the disk

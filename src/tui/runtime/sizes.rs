@@ -1,4 +1,5 @@
-//! Looks at sizes of a set: the limit of one touch in each, the smallest first, then the smallest that reaches an error.
+//! Computes the limit of one touch for each size of a set, the smallest first, then finds the smallest size that
+//! reaches an error.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

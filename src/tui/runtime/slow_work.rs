@@ -1,4 +1,4 @@
-//! Work that is waited for, and when that is said.
+//! Work that the user waits for, and when the screen says so.
 
 use std::time::{Duration, Instant};
 

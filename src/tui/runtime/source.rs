@@ -1,4 +1,4 @@
-//! What the name of a source of frames stands for, and whether it can be watched.
+//! Finds out what the name of a frame source refers to, and whether it can be watched.
 
 use std::ffi::OsStr;
 

@@ -1,4 +1,4 @@
-//! The commands of a script, one a line.
+//! The commands of a script, one per line.
 //!
 //! ```text
 //! Size 80x24          Resize 100x30       Set ascii on        Set theme light

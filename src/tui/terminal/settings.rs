@@ -1,4 +1,4 @@
-//! What the terminal is sent, decided from the environment and the command line without asking the terminal.
+//! Decides what to send to the terminal, from the environment and the command line, without asking the terminal.
 //!
 //! `TERM` tells the kind. A terminal that is not named, or is named `dumb`, is taken to move its cursor and no more;
 //! names of video terminals (`vt100`) stand for serial lines.

@@ -1,5 +1,5 @@
-//! What the system says: to end, to stop, to look at the size again. Handlers write into a pipe that can be waited
-//! for together with everything else.
+//! Signals from the system: to end, to stop, to check the size again. Handlers write into a pipe that can be waited for
+//! together with everything else.
 
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd};

@@ -1,4 +1,4 @@
-//! Widths of texts in the columns of a terminal, where a character may have two, or none.
+//! The width of text in terminal columns; a character may take two columns, or none.
 //!
 //! ```
 //! use taxel::tui::widget::columns::{broken, width, window};

@@ -1,5 +1,5 @@
-//! Lines finer than characters: eight dots a character, two across and four down, shown as Braille. Where the terminal
-//! has no Braille, the nearest stroke in ASCII stands for the dots of a character.
+//! Lines finer than characters: eight dots per character, two across and four down, shown as Braille. If the terminal
+//! has no Braille, the nearest ASCII stroke stands for the dots of a character.
 
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::Theme;

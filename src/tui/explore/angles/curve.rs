@@ -1,5 +1,5 @@
-//! What a descriptor does over the angles of a sweep: at each angle its smallest, mean and largest value over the
-//! positions.
+//! How a descriptor changes over the angles of a sweep: its smallest, mean and largest value over the positions at each
+//! angle.
 //!
 //! The imprints of an angle are found by sweeping its positions again. A large grid is sampled: only every n-th angle
 //! and every m-th y0 are swept, so that the plot is there at once.

@@ -1,5 +1,5 @@
-//! The imprints of the poses in sight, kept from one drawing to the next: while only the cursor moves, the same poses stay
-//! in sight, and to find their imprints means to sweep them.
+//! The imprints of the visible poses, kept from one drawing to the next: while only the cursor moves, the same poses
+//! stay visible, and finding their imprints takes a sweep.
 
 use std::cell::RefCell;
 use std::sync::Arc;

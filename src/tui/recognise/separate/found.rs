@@ -1,4 +1,4 @@
-//! What the worker finds of sizes.
+//! What the worker finds about sizes.
 
 use crate::recognition::{SeparationPoint, SmallestSize};
 use crate::tui::recognise::confused::ConfusedPair;

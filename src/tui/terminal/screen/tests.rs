@@ -1,4 +1,4 @@
-//! What an emulator shows after the bytes is what was drawn.
+//! After the bytes, an emulator shows exactly what was drawn.
 
 use super::*;
 use proptest::prelude::*;
