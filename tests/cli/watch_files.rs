@@ -38,7 +38,7 @@ fn a_source_is_never_its_own_target() {
         format!("watch {json} --once --write {} --force", path("p.npy")),
     ] {
         let said = refused(&line, "");
-        assert!(said.contains("record in another file"), "{line}: {said}");
+        assert!(said.contains("record to another file"), "{line}: {said}");
     }
     let input = fs::File::open(&own).expect("opened");
     let mut child = program(&["watch", "-", "--write", &own, "--force"], "C.UTF-8");

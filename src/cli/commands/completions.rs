@@ -120,7 +120,7 @@ _taxel_shapes() {
 const NAMES_OF_ZSH: [(&str, &str); 4] = [
     ("':what -- ", ":_default' \\"),
     ("'*::set -- ", ":_default' \\"),
-    ("':name -- Which shape", ":_default' \\"),
+    ("':name -- Name of the shape", ":_default' \\"),
     ("'--picture=[", ":_default' \\"),
 ];
 

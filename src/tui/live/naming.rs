@@ -1,6 +1,6 @@
-//! What a model says of the imprint that is shown: the likeliest shape and the nearest imprint, while frames come.
+//! What a model says about the imprint that is shown: the likeliest shape and the nearest imprint, while frames arrive.
 //!
-//! A worker answers one imprint at a time, and then the newest: neither its training nor its search holds up drawing.
+//! A worker answers one imprint at a time, always the newest; neither its training nor its search delays drawing.
 
 use crate::imprint::Imprint;
 use crate::recognition::{AnswerState, Evidence, Model, Noise};
