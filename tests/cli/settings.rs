@@ -299,7 +299,7 @@ fn frames_are_looked_at_as_the_file_says() {
         let line = |tare| format!("{command} {samples}/tekscan.asf --json --at-least 9 {tare}");
         let said = |tare| run(&mut at_home(&line(tare), few.path())).stderr;
         let lacking = "frames for the tare: found 3, expected 9";
-        let of_settings = format!("{lacking}, by tare under [frames] in the settings");
+        let of_settings = format!("{lacking} (tare under [frames] in the settings");
         assert!(said("").contains(&of_settings), "{}", said(""));
         let of_flag = said("--tare 9");
         assert!(of_flag.ends_with(&format!("{lacking}\n")), "{of_flag}");
