@@ -113,6 +113,18 @@ pub struct ClassifierEvaluation {
     pub features: Vec<String>,
     /// Those that were left out, with the reason.
     pub dropped: Vec<(String, &'static str)>,
+    /// What was drawn at random; None if all touches were counted.
+    pub sample: Option<PoseSample>,
+}
+
+/// Poses that a classifier drew at random.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct PoseSample {
+    /// How many of each shape.
+    pub per_shape: usize,
+    /// The seed that they were drawn with.
+    pub seed: u64,
 }
 
 /// Scores of the shapes for a key, the best the lowest.
@@ -170,6 +182,10 @@ impl Classifier {
             evaluation,
             features,
             dropped,
+            sample: (self == Self::Knn).then_some(PoseSample {
+                per_shape: settings.sample,
+                seed: settings.seed,
+            }),
         }
     }
 }

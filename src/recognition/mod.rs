@@ -53,7 +53,7 @@ mod half_step;
 mod scan;
 
 pub use answer::{Answer, AnswerState, Evidence};
-pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings};
+pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings, PoseSample};
 pub use evaluation::Evaluation;
 pub use given::{GivenDescriptors, GivenError, GivenTable, Rounding, ShapeDescriptor, greedy};
 pub use half_step::HalfStep;

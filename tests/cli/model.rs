@@ -189,6 +189,21 @@ fn what_descriptors_pairs_and_classifiers_are_worth() {
         assert!(right(&peer) <= right(&limit) && peer["certain"].is_null());
     }
     assert_eq!(table["limit"], limit["error"]);
+    // What is drawn says so, and nothing is certain that is not known.
+    let knn = "model confusion m.npz --classifier knn --sample 7 --seed 3";
+    let answer = place.json(&format!("{knn} --json"));
+    assert_eq!((&answer["sample"], &answer["seed"]), (&7.into(), &3.into()));
+    let text = place.done(knn);
+    assert!(text.contains("knn draws 7 poses of each shape, with seed 3\n"));
+    assert!(!text.contains("certain"), "{text}");
+    let all = place.done("model confusion m.npz --classifier all");
+    assert!(
+        all.contains("knn draws 2,000 poses of each shape, with seed 0\n"),
+        "{all}"
+    );
+    let advice = "cg_cd at full precision is more of a fingerprint than a measurement; try --round cg_cd=0.01\n";
+    let given = |more: &str| place.done(&format!("model confusion m.npz --given na,cg_cd {more}"));
+    assert!(given("").ends_with(advice) && !given("--round cg_cd=0.1").contains("fingerprint"));
     misused(
         "model confusion m.npz --given na,cg",
         "invalid value 'na,cg' for '--given <KEY,...>': cg says where the imprint lies",

@@ -127,7 +127,11 @@ fn shown(
     charset: Charset,
 ) -> Result<String, CliError> {
     if let Some(path) = &asked.export {
-        put(path, &file(path, own)?, asked.existing)?;
+        put(
+            path,
+            &file(path, own, classifier.is_none())?,
+            asked.existing,
+        )?;
     }
     Ok(match asked.form {
         EvaluationForm::Json => {
@@ -141,22 +145,45 @@ fn shown(
             let matrix = evaluation::matrix(own, charset);
             let worst = evaluation::worst_pairs(own, charset);
             let features = charset.lines(&evaluation::features(classifier));
+            let drawn = classifier.map(evaluation::sampled).unwrap_or_default();
+            let advice = advice(asked);
             let named = match (&asked.of, classifier) {
                 (_, Some(_)) => NamedBy::Classifier,
                 (Evaluated::Given(_), None) => NamedBy::Descriptors,
                 _ => NamedBy::Imprint,
             };
             let summary = evaluation::summary(own, named);
-            format!("{summary}\n{matrix}{worst}{features}")
+            format!("{summary}\n{matrix}{worst}{features}{drawn}{advice}")
         }
     })
 }
 
-/// The matrix as the file that an ending asks for.
+/// A line of advice where the distance of CG and CD, or its direction, is given at full precision; else empty.
+fn advice(asked: &ConfusionArguments) -> String {
+    let Evaluated::Given(given) = &asked.of else {
+        return String::new();
+    };
+    let is_rounded = |key: &str| {
+        asked
+            .roundings
+            .iter()
+            .any(|own| own.descriptor().key() == key)
+    };
+    let mut keys = given.descriptors().iter().map(|own| own.key());
+    let fine = keys.find(|key| key.starts_with("cg_cd") && !is_rounded(key));
+    fine.map_or_else(String::new, |key| {
+        let step = if key == "cg_cd" { "0.01" } else { "1" };
+        format!(
+            "{key} at full precision is more of a fingerprint than a measurement; try --round {key}={step}\n"
+        )
+    })
+}
+
+/// The matrix as the file that an ending asks for; `knows` says whether the method knows when it is certain.
 ///
 /// # Errors
 /// [`CliError::TooManyShapes`] for a drawing whose matrix would not be legible.
-fn file(path: &Path, own: &Evaluation) -> Result<Vec<u8>, CliError> {
+fn file(path: &Path, own: &Evaluation, knows: bool) -> Result<Vec<u8>, CliError> {
     let map = || {
         let map = ConfusionMap::new(&own.labels, &own.confusion);
         map.ok_or_else(|| CliError::TooManyShapes {
@@ -164,11 +191,11 @@ fn file(path: &Path, own: &Evaluation) -> Result<Vec<u8>, CliError> {
             shapes: own.labels.len(),
         })
     };
-    let title = format!(
-        "error {}, certain {}",
-        evaluation::percent(own.error()),
-        evaluation::percent(evaluation::ratio(own.certain, own.touches))
-    );
+    let mut title = format!("error {}", evaluation::percent(own.error()));
+    if knows {
+        let certain = evaluation::ratio(own.certain, own.touches);
+        title += &format!(", certain {}", evaluation::percent(certain));
+    }
     Ok(match ending(path).as_str() {
         "svg" => map()?.with_title(&title).svg().into_bytes(),
         "png" => map()?.with_title(&title).png().map_err(CliError::Write)?,

@@ -58,6 +58,10 @@ impl Serialize for EvaluationJson<'_> {
                 .iter()
                 .map(|(name, reason)| (name.as_str(), *reason));
             map.serialize_entry("dropped", &dropped.collect::<Vec<_>>())?;
+            if let Some(sample) = reached.sample {
+                map.serialize_entry("sample", &sample.per_shape)?;
+                map.serialize_entry("seed", &sample.seed)?;
+            }
         }
         map.end()
     }
@@ -149,7 +153,10 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
     };
     line("right", *right, "");
     line("wrong", touches - right, named.remark());
-    line("certain", *certain, "  only one shape can leave them");
+    // Another classifier does not know when it is certain.
+    if named != NamedBy::Classifier {
+        line("certain", *certain, "  only one shape can leave them");
+    }
     line("tied", *tied, "  named by the order of the set");
     line("in top two", *right_in_top_two, "");
     let _ = writeln!(
@@ -329,7 +336,8 @@ pub(crate) fn classifiers(
         line(own.classifier.name(), &own.evaluation);
     }
     line("limit of one touch", limit);
-    charset.lines(&(text + &features(reached.first())))
+    let drawn = reached.iter().map(sampled).collect::<String>();
+    charset.lines(&(text + &features(reached.first()) + &drawn))
 }
 
 /// The table of all classifiers with commas, and with a row of names; the limit is the last row.
@@ -349,6 +357,19 @@ pub(crate) fn classifiers_csv(reached: &[ClassifierEvaluation], limit: &Evaluati
         );
     }
     text
+}
+
+/// What a classifier drew at random: another seed gives other numbers. Empty for one that counts all touches.
+pub(crate) fn sampled(reached: &ClassifierEvaluation) -> String {
+    let Some(sample) = reached.sample else {
+        return String::new();
+    };
+    format!(
+        "{} draws {} poses of each shape, with seed {}\n",
+        reached.classifier.name(),
+        grouped(sample.per_shape as u64),
+        sample.seed
+    )
 }
 
 /// The features that a classifier used, and those that it left out.
