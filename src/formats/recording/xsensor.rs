@@ -90,6 +90,11 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
             _ => state.line(&key, &value, lines.number())?,
         }
     }
+    // Only the cells end the block, so a sensor that is still open has lost them.
+    if state.sensor.is_some() {
+        let message = "ends inside a SENSOR block, expected SENSELS";
+        return Err(RecordingError::in_line(lines.number() + 1, message));
+    }
     Ok(())
 }
 

@@ -272,6 +272,32 @@ fn a_recording_that_is_cut_off_gives_its_whole_frames() {
 }
 
 #[test]
+fn a_sensor_that_ends_before_its_cells_is_a_damage() {
+    let text = String::from_utf8(sample("xsensor.csv")).expect("a text");
+    let lines: Vec<&str> = text.split_inclusive('\n').collect();
+    let begins = |line: &&str| line.starts_with("SENSOR,right");
+    let cells = |line: &&str| line.starts_with("SENSELS");
+    let sensor = lines.iter().position(begins).expect("two sensors");
+    let last = sensor + lines[sensor..].iter().position(cells).expect("cells");
+    // The line before a block is no part of it.
+    assert!(
+        recorded(lines[..sensor].concat().as_bytes(), None)
+            .error
+            .is_none()
+    );
+    for end in sensor + 1..=last {
+        let cut = recorded(lines[..end].concat().as_bytes(), None);
+        assert_eq!(cut.frames.len(), 1);
+        let error = cut.error.map(|error| error.to_string());
+        let expected = format!(
+            "line {}: ends inside a SENSOR block, expected SENSELS",
+            end + 1
+        );
+        assert_eq!(error, Some(expected));
+    }
+}
+
+#[test]
 fn records_beyond_those_of_the_header_are_read_and_a_torn_one_is_not() {
     let mut records = sample("records.npy");
     assert_eq!(recorded(&records, None).frames.len(), 3);
