@@ -481,11 +481,54 @@ fn a_plain_table_of_factors_is_a_gain() {
     assert_eq!(na(&table("1000")), na(&format!("{}\n", table("1000"))));
     assert_ne!(na(&table("1000")), 0);
     std::fs::write(&path, format!("{}\n", ["1"; 20].join(","))).expect("written");
+    refused("tekscan.asf", &flags, "the gain has 20 columns and 1 rows");
+    std::fs::write(&path, "{\"frame\":[1,1]}\n").expect("written");
     refused(
         "tekscan.asf",
         &flags,
         "expected a table: a line for each row",
     );
+    std::fs::write(&path, "a word\n").expect("written");
+    refused("tekscan.asf", &flags, "not a recording of a known format");
+}
+
+#[test]
+fn a_gain_of_one_row_or_one_column_is_a_table() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, content: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, content).expect("written");
+        path.to_string_lossy().into_owned()
+    };
+    let cells = [4; 4];
+    let row = write("row.jsonl", &format!("{{\"frame\":[{cells:?}]}}\n"));
+    let column = cells.map(|cell| [cell]);
+    let column = write("column.jsonl", &format!("{{\"frame\":{column:?}}}\n"));
+    let imprint = |recording: &str, gain: &str| {
+        let gain = write("gain.txt", gain);
+        let line = format!("frames {recording} --all --at-least 3 --json --gain {gain}");
+        let run = taxel(&line, "");
+        assert_eq!(run.status, Some(0), "{gain:?}: {}", run.stderr);
+        serde_json::from_str::<Value>(&run.stdout).expect("JSON")["imprint"].clone()
+    };
+    for gain in [
+        "1,2,1,0.5\n",
+        "1,2,1,0.5",
+        "1;2;1;0,5\n",
+        "1\t2\t1\t0.5\n",
+        "# factors\n1 2 1 0.5\n\n",
+        "1, 2, 1, 0.5,\r\n",
+    ] {
+        assert_eq!(imprint(&row, gain), serde_json::json!(["###."]), "{gain:?}");
+    }
+    let found = serde_json::json!([".", "#", "#", "."]);
+    for gain in [
+        "0\n2\n1\n0.5\n",
+        "0\r\n2\r\n1\r\n0.5",
+        "0,\n2,\n1,\n0.5,\n\n",
+    ] {
+        assert_eq!(imprint(&column, gain), found, "{gain:?}");
+    }
 }
 
 /// A file in a folder of its own, and the imprints of all its frames.

@@ -57,9 +57,15 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
         ControlFlow::Continue(())
     };
     let read = match file.read(&mut take) {
-        // Its lines were taken for frames, but it is one table of factors.
-        Err(RecordingError::Shape { .. }) => file.read_table(&mut take),
-        read => read,
+        // Its lines were taken for frames, or for no table since nothing parts a single column, but it is one table of
+        // factors.
+        Err(error @ (RecordingError::Shape { .. } | RecordingError::Unknown)) => {
+            match file.read_table(&mut take) {
+                Err(RecordingError::Unknown) => Err(error),
+                read => read,
+            }
+        }
+        read => read.map(drop),
     };
     read.map_err(|error| match error {
         RecordingError::Shape { .. } => file.refused(&"expected a table: a line for each row"),

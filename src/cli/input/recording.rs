@@ -12,7 +12,7 @@ use crate::cli::input::content::InputError;
 use crate::cli::input::spool::SpooledInput;
 use crate::formats::recording::{
     ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, read,
-    recognised_input,
+    read_rows, recognised_input,
 };
 use crate::imprint::Imprint;
 
@@ -118,22 +118,20 @@ impl RecordingFile {
         })
     }
 
-    /// Reads the lines of a small text as the rows of one frame. An empty line at its end says that they are not frames of a
-    /// line each.
+    /// Reads the lines of a small text as the rows of one frame, even if it is a single row or a single column.
     ///
     /// # Errors
     /// If it cannot be read, or is no such text.
     pub(crate) fn read_table(
         &mut self,
         sink: &mut dyn FnMut(RecordingEvent<'_>) -> std::ops::ControlFlow<()>,
-    ) -> Result<RecordingFormat, RecordingError> {
+    ) -> Result<(), RecordingError> {
         self.file.seek(SeekFrom::Start(0))?;
         let mut bytes = Vec::new();
         Read::by_ref(&mut self.file)
             .take(LARGEST_TABLE)
             .read_to_end(&mut bytes)?;
-        bytes.extend(b"\n\n");
-        read(io::Cursor::new(bytes), self.options, sink)
+        read_rows(&bytes, sink)
     }
 
     /// Remembers that reading all of it has found a damage, which the caller reports.

@@ -116,6 +116,39 @@ pub(super) fn read(
     }
 }
 
+/// Reads a text that is known to be one frame, a line for each row, up to its end or an empty line. In a recording a single
+/// row would be a frame of unknown shape, and a single column no table at all.
+///
+/// # Errors
+/// [`RecordingError::Unknown`] of what does not begin with a line of numbers or is larger than a frame; if a row has another
+/// number of values than the first, or something other than numbers.
+#[cfg(feature = "cli")]
+pub(crate) fn read_rows(text: &[u8], sink: &mut Sink<'_>) -> Result<(), RecordingError> {
+    let mut lines = TextLines::new(text);
+    while lines.advance_to_content()? && is_comment(lines.line()) {}
+    let first = lines.line();
+    let separator = Separator::of(first);
+    let is_row = !is_blank(first)
+        && separator
+            .fields(first)
+            .all(|field| separator.is_numeric(field));
+    let columns = side(separator.fields(first).count()).filter(|_| is_row);
+    let mut rows = 1_usize;
+    while lines.advance()? && !is_blank(lines.line()) {
+        rows += usize::from(!is_comment(lines.line()));
+    }
+    let (Some(rows), Some(columns)) = (side(rows), columns) else {
+        return Err(RecordingError::Unknown);
+    };
+    let block = RowBlock {
+        separator,
+        frame: Frame::new(columns, rows),
+        found: 0,
+        parted: false,
+    };
+    block.read(&mut TextLines::new(text), sink)
+}
+
 /// Whether a line is a comment, wherever it stands.
 pub(super) fn is_comment(line: &[u8]) -> bool {
     line.trim_ascii_start().starts_with(b"#")

@@ -76,6 +76,8 @@ mod description;
 
 pub use answer::{FrameAnswer, RuleOrigin, SetRule};
 pub use channel_choice::ChannelChoice;
+#[cfg(feature = "cli")]
+pub(crate) use delimited::read_rows;
 pub use description::{FrameMark, RecordingMetadata};
 #[cfg(all(feature = "acquire", unix))]
 pub(crate) use detect::{RecordingInput, read_as};
