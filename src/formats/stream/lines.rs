@@ -8,7 +8,7 @@
 //! 7 3
 //! ```
 //! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are never
-//! joined.
+//! joined. Where frames are known to be a line each, each line that is none is a frame that is lost.
 
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
@@ -35,6 +35,8 @@ pub(super) struct LinesDecoder {
     broken_row: Vec<u8>,
     /// Whether there was an empty line.
     parted: bool,
+    /// Whether the last frame was a line, so that a wrong line is a frame that is lost, not a row of one.
+    by_line: bool,
     /// The frame that is given.
     frame: Frame,
 }
@@ -50,6 +52,7 @@ impl LinesDecoder {
             broken: false,
             broken_row: Vec::new(),
             parted: false,
+            by_line: shape.is_some_and(|(rows, _)| rows == 1),
             frame: Frame::new(1, 1),
         }
     }
@@ -79,14 +82,29 @@ impl LinesDecoder {
                 || self.size.named() == Some((1, width(count))))
         {
             if self.rows > 0 && self.begun {
-                counts.drop_frames(1, &self.broken_row);
+                // Without an empty line so far, those before it were frames, too.
+                let lost = if self.parted { 1 } else { self.rows };
+                counts.drop_frames(lost.into(), &self.broken_row);
             }
+            self.by_line = true;
             self.values.drain(..before);
             self.size.pass_torn();
             // The line before it was ended.
             self.begun = true;
             self.give(counts, sink);
             self.clear();
+            return;
+        }
+        // Frames may be in rows from here on, if an empty line parts them.
+        let may_be_row = |(_, columns): (u16, u16)| {
+            self.parted && read.is_some() && count == usize::from(columns)
+        };
+        if self.by_line && self.rows == 0 && !self.size.present().is_some_and(may_be_row) {
+            self.values.truncate(before);
+            self.size.pass_torn();
+            if std::mem::replace(&mut self.begun, true) {
+                counts.drop_frames(1, line);
+            }
             return;
         }
         let expected = match self.size.named() {
@@ -136,6 +154,7 @@ impl LinesDecoder {
         let own = (self.rows, columns);
         let fits = !self.broken && (1..=MAX_FRAME_SIDE).contains(&columns);
         if fits && self.size.admits(own) {
+            self.by_line &= self.rows == 1;
             self.give(counts, sink);
         } else {
             if !fits {
@@ -228,6 +247,26 @@ mod tests {
         let rows = vec![(1, 2, 1.0), (1, 2, 3.0)];
         assert_eq!(decoded("1 2\n\n3 4\n\n", None), (rows.clone(), 0));
         assert_eq!(decoded("1 2\n3 4\n", Some((1, 2))), (rows, 0));
+    }
+
+    #[test]
+    fn of_frames_of_a_line_each_every_wrong_line_is_counted() {
+        let shape = Some((2, 3));
+        let (whole, torn) = ("1,2,3,4,5,6\n", "1,2,3,4,5\n1,2,3,4\n1,2,3,4,5,9,9\n");
+        let stream = [whole, whole, torn, whole, whole];
+        assert_eq!(decoded(&stream.concat(), shape), (vec![(2, 3, 1.0); 4], 3));
+        // As long as a row, at the beginning, at the end, with words, and behind an empty line.
+        let stream = ["1,2\n", "1,2,3,4\n", whole, "1,2,3\n", "x\n", whole, torn];
+        assert_eq!(decoded(&stream.concat(), shape), (vec![(2, 3, 1.0); 2], 7));
+        let stream = ["version 1\n\n", whole, torn, whole, "\n", torn, whole];
+        assert_eq!(decoded(&stream.concat(), shape), (vec![(2, 3, 1.0); 3], 7));
+        let stream = "1,2\n1\n1,2,3\nx\n3,4\n";
+        let found = vec![(1, 2, 1.0), (1, 2, 3.0)];
+        assert_eq!(decoded(stream, Some((1, 2))), (found, 3));
+        // A frame in rows is lost once, also behind one that has lost the end of a line.
+        let (rows, torn) = ("1 2 3\n4 5 6\n\n", "1 2 3\n4 5\n4\n\n");
+        let stream = [rows, torn, rows, "1 2 3 4 5 6\n\n", torn, rows, torn];
+        assert_eq!(decoded(&stream.concat(), shape), (vec![(2, 3, 1.0); 4], 3));
     }
 
     #[test]
