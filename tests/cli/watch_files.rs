@@ -383,12 +383,29 @@ fn dots_mean_that_values_were_left_out_only_where_they_stand_for_values() {
         "array('H', [0, 1, '...'])\n---\n",
         "[0, 1, ...]\n---\n",
         ",1,2,,2,2,0,0,1,'...'\n",
+        "0,0,1,...\n",
+        "0,0.5,nan,'...'\r\n0,0.5,1,'...'\r\n",
     ] {
         let said = refused(line, cut);
         assert!(
             said.contains("run ros2 topic echo with --full-length"),
             "{cut}: {said}"
         );
+    }
+}
+
+#[test]
+fn an_echo_without_dimensions_that_was_cut_is_refused_with_the_missing_flag() {
+    let values: Vec<String> = (0..128).map(|value| value.to_string()).collect();
+    let echo = format!("0,{},...\n", values.join(",")).repeat(2);
+    for line in [
+        "frames - --rows 8 --columns 16",
+        "frames -",
+        "watch - --once --rows 8 --columns 16",
+        "watch - --once --format ros2 --rows 8 --columns 16",
+    ] {
+        let said = refused(line, &echo);
+        assert!(said.contains("--full-length"), "{line}: {said}");
     }
 }
 

@@ -70,7 +70,7 @@ fn is_ros(text: &[u8], first: &[u8]) -> bool {
     text.starts_with(b"array(")
         || text.starts_with(b"layout:")
         || text.starts_with(b"data:")
-        || ros_text::is_layout(first)
+        || ros_text::is_csv(first)
         || first.starts_with(b"[") && text.windows(4).any(|word| word == b"\n---")
 }
 

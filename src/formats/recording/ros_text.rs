@@ -129,7 +129,7 @@ impl RosMessage {
         match bracket {
             Some(start) => self.list(&line[start + 1..]),
             None if self.open && line[0] != b'-' => self.list(line),
-            None if is_layout(line) => self.csv(line),
+            None if is_csv(line) => self.csv(line),
             None => RosLine::More,
         }
     }
@@ -232,6 +232,23 @@ pub(crate) fn is_layout(line: &[u8]) -> bool {
         size > 0 && stride == product
     });
     !strides.is_empty() && fits
+}
+
+/// Whether only `--csv` prints such a line: it begins with a layout, or was cut off. A whole line without dimensions is a
+/// line of numbers like any other.
+pub(crate) fn is_csv(line: &[u8]) -> bool {
+    is_layout(line) || is_cut_csv(line)
+}
+
+/// Whether a line is an offset and values, the last of which are left out. Its layout has no dimensions, as most publishers
+/// leave it.
+fn is_cut_csv(line: &[u8]) -> bool {
+    let is_number = |field: &[u8]| {
+        let field = field.trim_ascii();
+        matches!(text_row::value(field), Field::Value(_)) || field.eq_ignore_ascii_case(b"nan")
+    };
+    let mut fields = line.rsplit(|&byte| byte == b',');
+    fields.next().is_some_and(is_cut) && fields.clone().count() > 1 && fields.all(is_number)
 }
 
 /// Reads a recording.

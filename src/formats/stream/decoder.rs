@@ -360,7 +360,7 @@ fn is_ros(line: &[u8]) -> bool {
         || line.starts_with(b"array(")
         || line.starts_with(b"layout:")
         || line.starts_with(b"data:")
-        || ros_text::is_layout(line)
+        || ros_text::is_csv(line)
 }
 
 /// Whether a line holds numbers only, at least one.

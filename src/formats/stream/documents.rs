@@ -114,14 +114,14 @@ impl RosDecoder {
     ) {
         // A boundary, or a line that has a whole array.
         let trimmed = line.trim_ascii();
-        let begins = trimmed.starts_with(b"array(") || ros_text::is_layout(trimmed);
+        let begins = trimmed.starts_with(b"array(") || ros_text::is_csv(trimmed);
         self.begun |= begins;
         match self.message.line(line) {
             RosLine::More => {}
             RosLine::Cut => {
                 self.cut = true;
                 // A line that is a message has no other end.
-                if ros_text::is_layout(trimmed) {
+                if ros_text::is_csv(trimmed) {
                     self.end(line, counts, sink);
                 }
             }
