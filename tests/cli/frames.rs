@@ -196,6 +196,20 @@ fn of_several_channels_one_must_be_named() {
 }
 
 #[test]
+fn the_only_array_of_an_archive_is_a_channel_with_its_name() {
+    let listed = answered("touch.npz", "--json");
+    assert_eq!(listed[0]["channels"][0]["name"], "touch");
+    let frame = &answered("touch.npz", "--channel touch --frame 0 --at-least 9 --json")[0];
+    assert_eq!(frame["channel"], "touch");
+    // It need not be named.
+    assert_eq!(
+        &answered("touch.npz", "--frame 0 --at-least 9 --json")[0],
+        frame
+    );
+    refused("touch.npz", "--channel other", "touch");
+}
+
+#[test]
 fn what_the_recording_does_not_say_is_asked_for_and_never_cut() {
     refused("plain.csv", "", "--rows and --columns");
     refused(

@@ -1,9 +1,9 @@
 //! Frames as an archive of numpy arrays: each array of two or three axes is a channel, and a list named `t…` or `time…`
 //! gives the times of channels of its length.
 //!
-//! Its channels are named as the arrays, without `.npy`; a single one has no name. Times may be in s, ms, µs or ns,
-//! which their name tells (`time_ms`), and count from the first one. Whole nanoseconds since 1970 lose nothing: the
-//! difference is taken before they become floats. What `numpy.savez` and `numpy.savez_compressed` write is read.
+//! Its channels are named as the arrays, without `.npy`. Times may be in s, ms, µs or ns, which their name tells
+//! (`time_ms`), and count from the first one. Whole nanoseconds since 1970 lose nothing: the difference is taken before
+//! they become floats. What `numpy.savez` and `numpy.savez_compressed` write is read.
 
 use std::io::{Read, Seek};
 
@@ -63,11 +63,10 @@ pub(super) fn read(
             "no array of two or three axes, expected frames, rows and columns",
         ));
     }
-    let alone = channels.len() == 1;
     let channels = with_layouts(channels, options)?;
     for (array, layout) in &channels {
         let info = ChannelInfo {
-            name: (!alone).then(|| array.name.clone()),
+            name: Some(array.name.clone()),
             shape: Some(layout.shape()),
             ..ChannelInfo::default()
         };
