@@ -28,8 +28,8 @@ use crate::index::wide;
 use crate::parameter::number::counted;
 use crate::quote::legible;
 
-/// Bytes of the magic number at the start, which was recognised already.
-const MAGIC: usize = 8;
+/// The magic number, at the start, where it was recognised already, and at the end.
+const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 
 /// No message of a frame is larger.
 const LARGEST_RECORD: u64 = 1 << 24;
@@ -152,8 +152,7 @@ pub(super) fn read(
         record: Vec::new(),
         sink,
     };
-    let mut magic = [0; MAGIC];
-    whole(input, &mut magic)?;
+    pass_over(input, MAGIC.len() as u64)?;
     let ended = state.records(input, Container::File)?;
     if state.given.is_empty() && ended == Ended::AtFooter {
         return Err(RecordingError::damaged(
@@ -297,7 +296,13 @@ impl McapState<'_, '_> {
             let [kind, length @ ..] = head;
             let length = u64::from_le_bytes(length);
             match kind {
-                FOOTER if within == Container::File => return Ok(Ended::AtFooter),
+                FOOTER if within == Container::File => {
+                    pass_over(input, length)?;
+                    let mut magic = [0; MAGIC.len()];
+                    whole(input, &mut magic)?;
+                    let is_whole = magic == MAGIC;
+                    return is_whole.then_some(Ended::AtFooter).ok_or_else(torn);
+                }
                 CHUNK if within == Container::File => {
                     if self.chunk(input)? == Ended::ByReader {
                         return Ok(Ended::ByReader);

@@ -384,6 +384,14 @@ fn topics_and_their_sensors_are_channels() {
         message.as_deref(),
         Some("the file ends without a footer: it was not closed")
     );
+    // Nor is one closed that ends within its footer or the magic behind it.
+    for missing in 1..=8 + 20 + 9 {
+        let open = recorded(&bytes[..bytes.len() - missing], Some((4, 5)));
+        assert_eq!(open.frames.len(), found.frames.len(), "{missing}");
+        let message = open.error.map(|error| error.to_string());
+        let expected = "the file ends without a footer: it was not closed";
+        assert_eq!(message.as_deref(), Some(expected), "{missing}");
+    }
     for name in ["topics_lz4.mcap", "topics_zstd.mcap"] {
         let packed = sample(name);
         let open = recorded(&packed[..packed.len() * 2 / 3], Some((4, 5)));
