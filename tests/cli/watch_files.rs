@@ -410,6 +410,27 @@ fn an_echo_without_dimensions_that_was_cut_is_refused_with_the_missing_flag() {
 }
 
 #[test]
+fn why_lines_of_json_are_no_frames_is_said() {
+    let line = "watch - --once --at-least 9";
+    let text = "{\"t\":0.1,\"frame\":[[0,30],[40,50]],\"label\":\"L1\"}\n";
+    for (input, reason) in [
+        (
+            text.repeat(3),
+            "found the string \"L1\", expected a whole number",
+        ),
+        (
+            format!("{text}{{\"frame\":[[1,2],[3]]}}\n"),
+            "row 2 has 1 values, expected 2",
+        ),
+    ] {
+        let said = refused(line, &input);
+        let expected = format!("bytes but no frame; the last line: {reason}");
+        assert!(said.contains(&expected), "{said}");
+        assert!(!said.contains("--rows"), "{said}");
+    }
+}
+
+#[test]
 fn what_is_wrong_with_a_recording_is_called_by_its_name() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();

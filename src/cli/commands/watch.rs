@@ -554,9 +554,10 @@ impl Watcher<'_> {
                 return Err(CliError::Recording { name, error });
             }
             let bytes = grouped(counts.bytes);
-            return Err(self.refused(&format!(
-                "{bytes} bytes but no frame; check --rows, --columns and --format"
-            )));
+            return Err(self.refused(&match &counts.reason {
+                Some(reason) => format!("{bytes} bytes but no frame; the last line: {reason}"),
+                None => format!("{bytes} bytes but no frame; check --rows, --columns and --format"),
+            }));
         }
         Ok(())
     }

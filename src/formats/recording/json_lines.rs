@@ -104,6 +104,14 @@ impl FrameLineError {
             Self::Json(..) => None,
         }
     }
+
+    /// What is wrong, if it is more than rows and columns that are missing.
+    pub(crate) fn reason(self) -> Option<String> {
+        match self {
+            Self::Shape(_) => None,
+            Self::Json(_, message) => Some(message),
+        }
+    }
 }
 
 impl FrameLine {

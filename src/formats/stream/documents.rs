@@ -67,6 +67,7 @@ impl JsonDecoder {
                 self.size.pass_torn();
                 counts.unshaped = counts.unshaped.or(error.unshaped());
                 counts.drop_frames(1, line);
+                counts.reason = error.reason();
             }
         }
     }

@@ -100,6 +100,8 @@ pub struct StreamCounts {
     pub dropped: u64,
     /// What the last of these looked like, up to 40 characters.
     pub sample: Option<String>,
+    /// Why the last of these is no frame, where its format can tell: that of JSON lines.
+    pub reason: Option<String>,
     /// What is missing to decode the stream at all: how many values a frame seems to have, without rows and columns.
     pub unshaped: Option<u64>,
     /// Whether messages were cut by `ros2 topic echo` without `--full-length`.
@@ -131,6 +133,7 @@ impl StreamCounts {
     /// Counts dropped frames.
     pub(super) fn drop_frames(&mut self, frames: u64, bytes: &[u8]) {
         self.dropped += frames;
+        self.reason = None;
         let mut sample = String::new();
         for &byte in bytes.iter().take(SAMPLE) {
             let text = match byte {
