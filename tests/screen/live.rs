@@ -291,6 +291,19 @@ fn the_imprint_goes_to_the_matrix_and_the_source_stays() {
 }
 
 #[test]
+fn an_imprint_of_cells_that_are_not_square_has_no_lengths_in_mm() {
+    let samples = "tests/files/frames/samples";
+    let mut page = session(&format!(":watch {samples}/zebris.apd<Enter>"));
+    page.frames(1);
+    then(&mut page, "+<Enter>", &["cells of 8 × 8.5 mm are not"]);
+    hides(&page, &["pitch"]);
+    let mut page = session(&format!(":watch {samples}/tekscan.asf<Enter>"));
+    page.frames(1);
+    then(&mut page, "+<Enter>", &["pitch 2.5 mm"]);
+    hides(&page, &["not square"]);
+}
+
+#[test]
 fn an_imprint_from_a_frame_is_not_saved() {
     let mut page = watched(6, "+<Enter>");
     then(&mut page, "q", &["The imprint is not saved. Quit anyway?"]);

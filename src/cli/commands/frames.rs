@@ -457,17 +457,9 @@ fn cell_size(
     pitch: Pitch,
     info: &ChannelInfo,
 ) -> Result<(Option<f64>, Option<String>), CliError> {
-    let Some([x, y]) = info.pitch_mm else {
-        return Ok((pitch.given, None));
+    let Some(reason) = info.why_not_in_mm() else {
+        return Ok((pitch.given.or(info.square_pitch_mm()), None));
     };
-    if x == y {
-        return Ok((pitch.given.or(Some(x)), None));
-    }
-    let reason = format!(
-        "cells of {} × {} mm are not square, so lengths are in taxels only",
-        short(x),
-        short(y)
-    );
     if pitch.given.is_some() {
         return Err(CliError::Frames {
             name: name.to_owned(),

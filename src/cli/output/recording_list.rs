@@ -146,12 +146,9 @@ fn size(channel: &ListedChannel) -> String {
 fn channel_lines(channel: &ListedChannel) -> Vec<String> {
     let info = &channel.info;
     let row = |name: &str, value: Option<String>| value.map(|value| format!("{name:<10}{value}"));
-    let pitch = info.pitch_mm.map(|[x, y]| {
-        if x == y {
-            format!("{} mm", short(x))
-        } else {
-            format!("{} mm across, {} mm down", short(x), short(y))
-        }
+    let pitch = info.pitch_mm.map(|[x, y]| match info.square_pitch_mm() {
+        Some(side) => format!("{} mm", short(side)),
+        None => format!("{} mm across, {} mm down", short(x), short(y)),
     });
     let marks = info.marks.iter().map(|mark| mark.number.to_string());
     let marks = (!info.marks.is_empty()).then(|| marks.collect::<Vec<_>>().join(", "));

@@ -6,6 +6,8 @@ use std::ops::ControlFlow;
 use crate::formats::recording::answer::{RuleOrigin, SetRule};
 use crate::formats::recording::description::{FrameMark, RecordingMetadata};
 use crate::frame::{Frame, Rule, Tare};
+#[cfg(feature = "tui")]
+use crate::parameter::number::short;
 
 /// The formats of recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -125,6 +127,23 @@ impl ChannelInfo {
         self.rule = self.rule.or(description.rule);
         self.tare = self.tare.take().or_else(|| description.tare.clone());
         self.marks.clone_from(&description.marks);
+    }
+
+    /// The side of a cell in mm; None where it is not known or cells are not square.
+    /// A sensor has one pitch only. A file writes that of square cells as the same number twice, so nothing is rounded.
+    pub fn square_pitch_mm(&self) -> Option<f64> {
+        self.pitch_mm.and_then(|[x, y]| (x == y).then_some(x))
+    }
+
+    /// That lengths are not in mm although the distance of cells is known; None where they are or it is not.
+    #[cfg(feature = "tui")]
+    pub(crate) fn why_not_in_mm(&self) -> Option<String> {
+        let [x, y] = self.pitch_mm.filter(|_| self.square_pitch_mm().is_none())?;
+        Some(format!(
+            "cells of {} × {} mm are not square, so lengths are in taxels only",
+            short(x),
+            short(y)
+        ))
     }
 
     /// The rule of the recording itself: that of its description, else its threshold.

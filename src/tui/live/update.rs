@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::formats::recording::RecordingMetadata;
+use crate::formats::recording::{ChannelInfo, RecordingMetadata};
 use crate::formats::value::counted;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
@@ -124,41 +124,34 @@ pub(in crate::tui) fn in_live(
 }
 
 /// The imprint that is shown, as if it were drawn; None without one.
-/// The sensor has the size of the frame, and its pitch in mm where that is known and the same both ways; otherwise the
-/// default pitch stands.
+/// The sensor has the size of the frame, and its pitch in mm where that is known and cells are square; otherwise the
+/// default pitch stands, with which lengths are shown in taxels only.
 fn document(page: &Live) -> Option<Document> {
     let imprint = page.reading()?.imprint?;
     let sensor = Sensor::new(imprint.columns(), imprint.rows()).ok()?;
-    let pitch = page
-        .status()
-        .channel
-        .as_deref()
-        .and_then(|channel| channel.pitch_mm);
-    let sensor = match pitch {
-        // A sensor has one pitch only.
-        Some([x, y]) if (x - y).abs() < f64::EPSILON => {
-            let scaled = sensor.with(Parameter::Pitch, x);
-            scaled.unwrap_or(sensor)
-        }
-        _ => sensor,
-    };
-    let mut document = Document::empty(sensor);
+    let channel = page.status().channel.as_deref();
+    let pitch = channel.and_then(ChannelInfo::square_pitch_mm);
+    let scaled = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
+    let mut document = Document::empty(scaled.unwrap_or(sensor));
     document.edits = imprint;
     Some(document)
 }
 
 /// Puts the imprint onto the matrix; the source goes on meanwhile. No source sends the same frame again, so the imprint
-/// counts as unsaved.
+/// counts as unsaved. Says why lengths are not in mm, if the recording gives the size of its cells.
 fn take(app: &mut App, page: Box<Live>, document: Document) {
     let number = page.reading().map(|reading| reading.frame.number);
+    let channel = page.status().channel.as_deref();
+    let without_mm = channel.and_then(ChannelInfo::why_not_in_mm);
     app.live = Some(page);
     let frame = number.map_or("a frame".to_owned(), |number| format!("frame {number}"));
     begin_unsaved(app, document, &frame);
     let back = app.key_of(&action::WATCH);
-    inform(
-        app,
-        format!("the imprint of {frame}; {back} goes back to the source"),
-    );
+    let mut text = format!("the imprint of {frame}; {back} goes back to the source");
+    if let Some(reason) = without_mm {
+        text += &format!("; {reason}");
+    }
+    inform(app, text);
 }
 
 /// Says why there is no imprint to take.
