@@ -247,7 +247,7 @@ impl Selection {
                 let asked = &asked.processing;
                 processing::tare(recording, (channel, wanted), asked, &mut processing)?;
             }
-            None => processing.tare = processing::own_tare(&listed.info, &processing.view),
+            None => processing.tare = listed.info.tare_for(&processing.view).cloned(),
         }
         let number = match choice {
             FrameChoice::Peak => processing::peak(recording, channel, listed, &mut processing)?,

@@ -352,7 +352,7 @@ impl Watcher<'_> {
             self.set_rule(info.own_rule(self.asked.processing.least));
         }
         if self.asked.processing.tare.is_none() {
-            self.processing.tare = processing::own_tare(info, &self.processing.view);
+            self.processing.tare = info.tare_for(&self.processing.view).cloned();
             let view = &self.processing.view;
             if let Some(unused) = processing::unused_tare(&self.asked.processing, info, view) {
                 self.say(&format!("warning: {unused}"));

@@ -9,7 +9,7 @@ use crate::cli::output::recording_list::ListedChannel;
 use crate::formats::recording::{
     ChannelInfo, ReadOptions, RecordingError, RecordingEvent, SetRule,
 };
-use crate::frame::{Peak, Processing, Tare, TareFrames, View};
+use crate::frame::{Peak, Processing, TareFrames, View};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 
@@ -102,7 +102,7 @@ pub(crate) fn unused_tare(
     info: &ChannelInfo,
     view: &View,
 ) -> Option<String> {
-    if asked.tare.is_some() || own_tare(info, view).is_some() {
+    if asked.tare.is_some() || info.tare_for(view).is_some() {
         return None;
     }
     let tare = info.tare.as_ref()?;
@@ -112,15 +112,6 @@ pub(crate) fn unused_tare(
         baseline.columns(),
         baseline.rows()
     ))
-}
-
-/// The tare that a recording's description names, if it is of the size of what is seen of the frames.
-pub(crate) fn own_tare(info: &ChannelInfo, view: &View) -> Option<Tare> {
-    let (rows, columns) = info.shape?;
-    let tare = info.tare.as_ref()?;
-    let baseline = tare.baseline();
-    let size = (baseline.columns().into(), baseline.rows().into());
-    (size == view.size(columns, rows)).then(|| tare.clone())
 }
 
 /// Gathers the tare of the channel's first frames.

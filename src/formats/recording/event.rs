@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use crate::formats::recording::answer::{RuleOrigin, SetRule};
 use crate::formats::recording::description::{FrameMark, RecordingMetadata};
-use crate::frame::{Frame, Rule, Tare};
+use crate::frame::{Frame, Rule, Tare, View};
 #[cfg(feature = "tui")]
 use crate::parameter::number::short;
 
@@ -146,6 +146,15 @@ impl ChannelInfo {
         ))
     }
 
+    /// The recording's own tare, if it has the size of what that view shows of its frames.
+    pub fn tare_for(&self, view: &View) -> Option<&Tare> {
+        let (rows, columns) = self.shape?;
+        self.tare.as_ref().filter(|tare| {
+            let baseline = tare.baseline();
+            (baseline.columns().into(), baseline.rows().into()) == view.size(columns, rows)
+        })
+    }
+
     /// The rule of the recording itself: that of its description, else its threshold.
     pub fn own_rule(&self, least: u32) -> Option<SetRule> {
         let threshold = self.threshold.and_then(|own| Rule::at_least(own).ok());
@@ -246,3 +255,31 @@ pub enum RecordingEvent<'a> {
 
 /// Takes what a reader reports; `Break` ends the reading without an error.
 pub(crate) type Sink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matrix::Matrix;
+
+    #[test]
+    fn a_tare_is_for_the_view_that_shows_as_many_cells() {
+        let tare = Tare::from_parts(Matrix::filled(3, 2, 1.0), None, None, 1).expect("sizes fit");
+        let info = ChannelInfo {
+            shape: Some((2, 3)),
+            tare: Some(tare.clone()),
+            ..ChannelInfo::default()
+        };
+        let turned = View {
+            quarter_turns: 1,
+            ..View::default()
+        };
+        assert_eq!(info.tare_for(&View::default()), Some(&tare));
+        assert_eq!(info.tare_for(&turned), None);
+        // Without the size of its frames nothing tells whether it fits.
+        let unknown = ChannelInfo {
+            shape: None,
+            ..info
+        };
+        assert_eq!(unknown.tare_for(&View::default()), None);
+    }
+}

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::formats::recording::ChannelInfo;
-use crate::frame::{Frame, FrameError, Processing, Tare, TareFrames};
+use crate::frame::{Frame, FrameError, Processing, TareFrames};
 use crate::matrix::Matrix;
 use crate::tui::live::request::WatchRequest;
 
@@ -64,14 +64,10 @@ impl LiveTare {
 
     /// Takes what a recording says of its own tare, if none was asked for and it fits.
     pub(super) fn take_own(&mut self, channel: &ChannelInfo, processing: &mut Processing) {
-        let baseline = channel.tare.as_ref().map(Tare::baseline);
-        let size = baseline.map(|own| (own.columns().into(), own.rows().into()));
-        let seen = channel
-            .shape
-            .map(|(rows, columns)| processing.view.size(columns, rows));
-        if std::mem::take(&mut self.takes_own) && size.is_some() && size == seen {
-            processing.tare.clone_from(&channel.tare);
-            self.mark = channel.tare.as_ref().map(|tare| TareMark {
+        let takes_own = std::mem::take(&mut self.takes_own);
+        if let Some(tare) = channel.tare_for(&processing.view).filter(|_| takes_own) {
+            processing.tare = Some(tare.clone());
+            self.mark = Some(TareMark {
                 frames: tare.frames(),
                 number: None,
                 time: None,
