@@ -271,7 +271,7 @@ impl Player<'_, '_> {
             let consumer = &mut **self.consumer.borrow_mut();
             flow = match event {
                 RecordingEvent::Channel(info) => {
-                    let info = completed(info, self.description.as_ref());
+                    let info = info.completed(self.description.as_ref());
                     pace.add(&info);
                     if round.is_again {
                         ControlFlow::Continue(())
@@ -322,15 +322,6 @@ fn description_of(
             ControlFlow::Continue(None)
         }
     }
-}
-
-/// What a recording says of a channel, with what the description beside it says.
-fn completed(info: &ChannelInfo, description: Option<&RecordingMetadata>) -> ChannelInfo {
-    let mut info = info.clone();
-    if let Some(description) = description {
-        info.complete(description);
-    }
-    info
 }
 
 #[cfg(test)]

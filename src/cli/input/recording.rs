@@ -107,14 +107,12 @@ impl RecordingFile {
         &mut self,
         sink: &mut dyn FnMut(RecordingEvent<'_>) -> std::ops::ControlFlow<()>,
     ) -> Result<RecordingFormat, RecordingError> {
-        let description = &self.description;
-        read(&mut self.file, self.options, &mut |event| {
-            let (RecordingEvent::Channel(info), Some(description)) = (event, description) else {
-                return sink(event);
-            };
-            let mut info = info.clone();
-            info.complete(description);
-            sink(RecordingEvent::Channel(&info))
+        let description = self.description.as_ref();
+        read(&mut self.file, self.options, &mut |event| match event {
+            RecordingEvent::Channel(info) => {
+                sink(RecordingEvent::Channel(&info.completed(description)))
+            }
+            event => sink(event),
         })
     }
 

@@ -119,14 +119,19 @@ impl ChannelInfo {
         self.name.as_deref().unwrap_or("unnamed")
     }
 
-    /// Fills in what the recording does not say itself, but the description beside it does.
-    pub fn complete(&mut self, description: &RecordingMetadata) {
-        self.unit = self.unit.take().or_else(|| description.unit.clone());
-        self.pitch_mm = self.pitch_mm.or(description.pitch_mm);
-        self.seconds_per_frame = self.seconds_per_frame.or(description.seconds_per_frame);
-        self.rule = self.rule.or(description.rule);
-        self.tare = self.tare.take().or_else(|| description.tare.clone());
-        self.marks.clone_from(&description.marks);
+    /// The channel with what the recording does not say itself, but the description beside it does, if there is one.
+    #[must_use]
+    pub fn completed(&self, description: Option<&RecordingMetadata>) -> Self {
+        let mut info = self.clone();
+        if let Some(description) = description {
+            info.unit = info.unit.or_else(|| description.unit.clone());
+            info.pitch_mm = info.pitch_mm.or(description.pitch_mm);
+            info.seconds_per_frame = info.seconds_per_frame.or(description.seconds_per_frame);
+            info.rule = info.rule.or(description.rule);
+            info.tare = info.tare.or_else(|| description.tare.clone());
+            info.marks.clone_from(&description.marks);
+        }
+        info
     }
 
     /// The side of a cell in mm; None where it is not known or cells are not square.
@@ -260,6 +265,23 @@ pub(crate) type Sink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a
 mod tests {
     use super::*;
     use crate::matrix::Matrix;
+
+    #[test]
+    fn a_description_completes_a_channel_but_for_what_the_recording_says() {
+        let own = ChannelInfo {
+            unit: Some("kPa".to_owned()),
+            ..ChannelInfo::default()
+        };
+        let description = RecordingMetadata {
+            unit: Some("mmHg".to_owned()),
+            pitch_mm: Some([2.0, 3.0]),
+            ..RecordingMetadata::default()
+        };
+        assert_eq!(own.completed(None), own);
+        let completed = own.completed(Some(&description));
+        assert_eq!(completed.unit, own.unit);
+        assert_eq!(completed.pitch_mm, description.pitch_mm);
+    }
 
     #[test]
     fn a_tare_is_for_the_view_that_shows_as_many_cells() {
