@@ -8,7 +8,7 @@ use std::fmt;
 
 use crate::formats::mask::Mask;
 use crate::formats::npy;
-use crate::formats::npy::Dtype;
+use crate::formats::npy::{Dtype, NumberType};
 use crate::imprint::Imprint;
 use crate::parameter::number::counted;
 use crate::quote::shortened;
@@ -82,44 +82,33 @@ fn sides(found: &[u64]) -> String {
     sides.join(", ")
 }
 
-/// What the numbers of an array are, and how to read one.
+/// What the numbers of an array mean in an imprint, by their bits: no value has to be computed.
 #[derive(Clone, Copy, Debug)]
-struct Type {
-    /// Bytes of a number.
-    size: usize,
-    /// Whether its highest byte comes first.
-    big_endian: bool,
+struct TaxelType {
+    /// How a number stands in the file.
+    number: NumberType,
     /// The bits of infinity, if it is a float: those of numbers are below. The highest bit is the sign.
     infinity: Option<u64>,
     /// The bits of 1, and of 255 where there is one.
     active: [u64; 2],
 }
 
-impl Type {
+impl TaxelType {
     fn of(code: &str) -> Option<Self> {
-        let mut letters = code.chars();
-        let order = letters.next()?;
-        let (size, infinity, active) = match letters.as_str() {
-            "b1" | "i1" => (1, None, [1, 1]),
-            "u1" | "i2" | "u2" | "i4" | "u4" | "i8" | "u8" => {
-                let size = letters.as_str().get(1..)?.parse().ok()?;
-                (size, None, [1, 255])
-            }
-            "f2" => (2, Some(0x7c00), [0x3c00, 0x5bf8]),
-            "f4" => {
-                let bits = |number: f32| u64::from(number.to_bits());
-                (4, Some(bits(f32::INFINITY)), [bits(1.0), bits(255.0)])
-            }
-            "f8" => (
-                8,
+        let number = NumberType::of(code)?;
+        let single = |number: f32| u64::from(number.to_bits());
+        let (infinity, active) = match (number.kind(), number.size()) {
+            (b'f', 2) => (Some(0x7c00), [0x3c00, 0x5bf8]),
+            (b'f', 4) => (Some(single(f32::INFINITY)), [single(1.0), single(255.0)]),
+            (b'f', _) => (
                 Some(f64::INFINITY.to_bits()),
                 [1_f64.to_bits(), 255_f64.to_bits()],
             ),
-            _ => return None,
+            (b'b', _) | (b'i', 1) => (None, [1, 1]),
+            _ => (None, [1, 255]),
         };
-        matches!(order, '<' | '>' | '|' | '=').then_some(Self {
-            size,
-            big_endian: order == '>',
+        Some(Self {
+            number,
             infinity,
             active,
         })
@@ -127,16 +116,11 @@ impl Type {
 
     /// The bits of a number that is not 0; an error for what is not finite.
     fn value(&self, bytes: &[u8]) -> Result<Option<u64>, ()> {
-        let mut bits = [0; 8];
-        bits[..bytes.len()].copy_from_slice(bytes);
-        if self.big_endian {
-            bits[..bytes.len()].reverse();
-        }
-        let bits = u64::from_le_bytes(bits);
+        let bits = self.number.word(bytes);
         let Some(infinity) = self.infinity else {
             return Ok((bits != 0).then_some(bits));
         };
-        let magnitude = bits & !(1 << (8 * self.size - 1));
+        let magnitude = bits & !(1 << (8 * self.number.size() - 1));
         if magnitude >= infinity {
             return Err(());
         }
@@ -159,7 +143,7 @@ impl Type {
 /// ```
 pub fn read(bytes: &[u8]) -> Result<Imprint, ArrayError> {
     let (header, numbers) = npy::parse(bytes).ok_or(ArrayError::Header)?;
-    let kind = Type::of(&header.code).ok_or_else(|| ArrayError::Type {
+    let kind = TaxelType::of(&header.code).ok_or_else(|| ArrayError::Type {
         found: shortened(&header.code),
     })?;
     let side = |length: &u64| u8::try_from(*length).ok();
@@ -171,7 +155,8 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ArrayError> {
     .ok_or_else(|| ArrayError::Shape {
         found: header.shape.iter().copied().take(8).collect(),
     })?;
-    let expected = usize::from(rows) * usize::from(columns) * kind.size;
+    let size = kind.number.size();
+    let expected = usize::from(rows) * usize::from(columns) * size;
     if numbers.len() != expected {
         let found = numbers.len();
         return Err(ArrayError::Length { found, expected });
@@ -184,7 +169,7 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ArrayError> {
         (rows, columns)
     };
     let taxels = (0..slow).flat_map(|outer| (0..fast).map(move |inner| (outer, inner)));
-    for ((outer, inner), bytes) in taxels.zip(numbers.chunks(kind.size)) {
+    for ((outer, inner), bytes) in taxels.zip(numbers.chunks(size)) {
         let (column, row) = if header.fortran_order {
             (outer, inner)
         } else {

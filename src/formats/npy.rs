@@ -1,7 +1,8 @@
 //! Arrays as numpy reads them: a header and the numbers, little-endian, the last axis fastest.
 //!
 //! Source: <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>. Written are `bool`, unsigned whole
-//! numbers and `f64` in version 1.0; headers are read of any type and shape in versions 1 to 3.
+//! numbers and `f64` in version 1.0; headers are read of any type and shape in versions 1 to 3, and real numbers of any
+//! size in either byte order.
 
 use std::fmt::Write;
 
@@ -48,6 +49,116 @@ impl Dtype {
             Self::F64 => "<f8",
         }
     }
+}
+
+/// How a number stands in a file that is read, from this program or another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct NumberType {
+    /// `b` a truth value, `i` and `u` whole, `f` a float; as in numpy.
+    kind: u8,
+    /// Bytes of a number: 1, 2, 4 or 8.
+    size: usize,
+    /// Whether the highest byte comes first.
+    big_endian: bool,
+}
+
+impl NumberType {
+    /// A kind of number (`b`, `i`, `u` or `f`) of 1, 2, 4 or 8 bytes.
+    #[cfg(feature = "mcap")]
+    pub(super) fn new(kind: u8, size: usize, big_endian: bool) -> Self {
+        Self {
+            kind,
+            size,
+            big_endian,
+        }
+    }
+
+    /// That of a code such as `<f4`.
+    pub(super) fn of(code: &str) -> Option<Self> {
+        let [order, kind, size @ ..] = code.as_bytes() else {
+            return None;
+        };
+        let size = match (kind, size) {
+            (b'b' | b'i' | b'u', b"1") => 1,
+            (b'i' | b'u' | b'f', b"2") => 2,
+            (b'i' | b'u' | b'f', b"4") => 4,
+            (b'i' | b'u' | b'f', b"8") => 8,
+            _ => return None,
+        };
+        matches!(order, b'<' | b'>' | b'|' | b'=').then_some(Self {
+            kind: *kind,
+            size,
+            big_endian: *order == b'>',
+        })
+    }
+
+    /// `b` for truth values, `i` and `u` for whole numbers, `f` for floats.
+    pub(super) fn kind(self) -> u8 {
+        self.kind
+    }
+
+    /// Bytes of a number.
+    pub(super) fn size(self) -> usize {
+        self.size
+    }
+
+    /// The bytes as a word.
+    pub(super) fn word(self, bytes: &[u8]) -> u64 {
+        let mut word = [0; 8];
+        for (slot, byte) in word.iter_mut().zip(bytes) {
+            *slot = *byte;
+        }
+        if self.big_endian {
+            word[..self.size].reverse();
+        }
+        u64::from_le_bytes(word)
+    }
+
+    /// A whole number; none of floats.
+    #[cfg(feature = "frames")]
+    pub(super) fn whole(self, bytes: &[u8]) -> Option<i128> {
+        let word = self.word(bytes);
+        let unused = 64 - 8 * self.size;
+        match self.kind {
+            b'i' => Some(i128::from((word << unused).cast_signed() >> unused)),
+            b'u' | b'b' => Some(i128::from(word)),
+            _ => None,
+        }
+    }
+
+    /// The number, of the nearest float.
+    /// Whole numbers beyond 2^53 become the nearest float.
+    #[cfg(feature = "frames")]
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        reason = "beyond 2^53 the nearest float; halves and singles are cut to their width"
+    )]
+    pub(super) fn value(self, bytes: &[u8]) -> f64 {
+        if let Some(whole) = self.whole(bytes) {
+            return whole as f64;
+        }
+        let word = self.word(bytes);
+        match self.size {
+            2 => half(word as u16),
+            4 => f32::from_bits(word as u32).into(),
+            _ => f64::from_bits(word),
+        }
+    }
+}
+
+/// A number of IEEE 754's binary16.
+/// Sign, five bits of exponent with a bias of 15, ten of fraction; the smallest exponent has no leading 1.
+#[cfg(feature = "frames")]
+fn half(bits: u16) -> f64 {
+    let (exponent, fraction) = (i32::from(bits >> 10 & 31), f64::from(bits & 1023));
+    let value = match exponent {
+        0 => fraction * 2_f64.powi(-24),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        _ => (1024.0 + fraction) * 2_f64.powi(exponent - 25),
+    };
+    if bits >> 15 == 1 { -value } else { value }
 }
 
 /// What stands before the numbers of an array of that shape.

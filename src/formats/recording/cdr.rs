@@ -7,7 +7,7 @@
 //! ```
 //! Source: the OMG's DDS-RTPS specification, encapsulation `CDR_BE` and `CDR_LE`.
 
-use crate::formats::recording::numpy::NumberType;
+use crate::formats::npy::NumberType;
 
 /// Reads a message field by field; None where it ends too early.
 #[derive(Debug)]

@@ -18,6 +18,7 @@ use std::collections::HashMap;
 use std::io::{self, BufRead, BufReader, Read, Take};
 use std::rc::Rc;
 
+use crate::formats::npy::NumberType;
 use crate::formats::recording::cdr::CdrReader;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
@@ -588,7 +589,7 @@ fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<ImageFrame> {
     for row in 0..usize::from(rows) {
         let start = row.checked_mul(step)?;
         let bytes = data.get(start..start.checked_add(line)?)?;
-        let number = super::numpy::NumberType::new(kind, size, big_endian);
+        let number = NumberType::new(kind, size, big_endian);
         values.extend(bytes.chunks(size).map(|bytes| number.value(bytes)));
     }
     Some(ImageFrame::Values(rows, columns))

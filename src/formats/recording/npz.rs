@@ -10,11 +10,11 @@ use std::io::{Read, Seek};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use crate::formats::npy::Header;
+use crate::formats::npy::{Header, NumberType};
 use crate::formats::recording::cell_names::{FieldRole, role};
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
-use crate::formats::recording::numpy::{self, ArrayLayout, NumberType};
+use crate::formats::recording::numpy::{self, ArrayLayout};
 use crate::formats::seconds::{since, to_nanoseconds};
 
 /// Times of more frames than these are not read: 128 MiB of them.

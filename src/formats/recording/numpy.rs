@@ -16,7 +16,7 @@
 use std::io::{ErrorKind, Read};
 
 use crate::formats::npy;
-use crate::formats::npy::Header;
+use crate::formats::npy::{Header, NumberType};
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
@@ -32,108 +32,6 @@ const LONGEST_HEADER: usize = 1 << 20;
 
 /// An array in Fortran order has the values of a frame all over the file: it is read as a whole, up to 256 MiB.
 const LARGEST_FORTRAN: u64 = 1 << 28;
-
-/// How a number stands in the file.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct NumberType {
-    /// `b` a truth value, `i` and `u` whole, `f` a float; as in numpy.
-    kind: u8,
-    /// Bytes of a number: 1, 2, 4 or 8.
-    size: usize,
-    /// Whether the highest byte comes first.
-    big_endian: bool,
-}
-
-impl NumberType {
-    /// A kind of number (`b`, `i`, `u` or `f`) of 1, 2, 4 or 8 bytes.
-    #[cfg(feature = "mcap")]
-    pub(super) fn new(kind: u8, size: usize, big_endian: bool) -> Self {
-        Self {
-            kind,
-            size,
-            big_endian,
-        }
-    }
-
-    /// That of a code such as `<f4`.
-    pub(super) fn of(code: &str) -> Option<Self> {
-        let [order, kind, size @ ..] = code.as_bytes() else {
-            return None;
-        };
-        let size = match (kind, size) {
-            (b'b' | b'i' | b'u', b"1") => 1,
-            (b'i' | b'u' | b'f', b"2") => 2,
-            (b'i' | b'u' | b'f', b"4") => 4,
-            (b'i' | b'u' | b'f', b"8") => 8,
-            _ => return None,
-        };
-        matches!(order, b'<' | b'>' | b'|' | b'=').then_some(Self {
-            kind: *kind,
-            size,
-            big_endian: *order == b'>',
-        })
-    }
-
-    /// Bytes of a number.
-    pub(super) fn size(self) -> usize {
-        self.size
-    }
-
-    /// The bytes as a word.
-    fn word(self, bytes: &[u8]) -> u64 {
-        let mut word = [0; 8];
-        for (slot, byte) in word.iter_mut().zip(bytes) {
-            *slot = *byte;
-        }
-        if self.big_endian {
-            word[..self.size].reverse();
-        }
-        u64::from_le_bytes(word)
-    }
-
-    /// A whole number; none of floats.
-    pub(super) fn whole(self, bytes: &[u8]) -> Option<i128> {
-        let word = self.word(bytes);
-        let unused = 64 - 8 * self.size;
-        match self.kind {
-            b'i' => Some(i128::from((word << unused).cast_signed() >> unused)),
-            b'u' | b'b' => Some(i128::from(word)),
-            _ => None,
-        }
-    }
-
-    /// The number, of the nearest float.
-    /// Whole numbers beyond 2^53 become the nearest float.
-    #[expect(
-        clippy::cast_precision_loss,
-        clippy::cast_possible_truncation,
-        reason = "beyond 2^53 the nearest float; halves and singles are cut to their width"
-    )]
-    pub(super) fn value(self, bytes: &[u8]) -> f64 {
-        if let Some(whole) = self.whole(bytes) {
-            return whole as f64;
-        }
-        let word = self.word(bytes);
-        match self.size {
-            2 => half(word as u16),
-            4 => f32::from_bits(word as u32).into(),
-            _ => f64::from_bits(word),
-        }
-    }
-}
-
-/// A number of IEEE 754's binary16.
-/// Sign, five bits of exponent with a bias of 15, ten of fraction; the smallest exponent has no leading 1.
-fn half(bits: u16) -> f64 {
-    let (exponent, fraction) = (i32::from(bits >> 10 & 31), f64::from(bits & 1023));
-    let value = match exponent {
-        0 => fraction * 2_f64.powi(-24),
-        31 if fraction == 0.0 => f64::INFINITY,
-        31 => f64::NAN,
-        _ => (1024.0 + fraction) * 2_f64.powi(exponent - 25),
-    };
-    if bits >> 15 == 1 { -value } else { value }
-}
 
 /// Reads what stands before the numbers.
 ///
@@ -335,7 +233,7 @@ impl RecordLayout {
                 ("values", &[rows, columns]) => values = Some((size, number, rows, columns)),
                 _ => {}
             }
-            size = size.checked_add(count.checked_mul(number.size)?)?;
+            size = size.checked_add(count.checked_mul(number.size())?)?;
             let after = after.trim_start().strip_prefix(')')?.trim_start();
             rest = after.strip_prefix(',').unwrap_or(after).trim_start();
         }
@@ -392,7 +290,7 @@ pub(super) fn frames(
     if layout.fortran {
         return fortran(input, layout, frame, times, sink);
     }
-    let cells = usize::from(layout.rows) * usize::from(layout.columns) * layout.number.size;
+    let cells = usize::from(layout.rows) * usize::from(layout.columns) * layout.number.size();
     let size = layout.record.as_ref().map_or(cells, |record| record.size);
     let mut bytes = vec![0; size];
     let mut start = None;
@@ -412,7 +310,7 @@ pub(super) fn frames(
         for (slot, bytes) in frame
             .values_mut()
             .iter_mut()
-            .zip(values.chunks(layout.number.size))
+            .zip(values.chunks(layout.number.size()))
         {
             *slot = layout.number.value(bytes);
         }
@@ -440,12 +338,12 @@ fn moment(
 ) -> (Option<f64>, Option<i64>) {
     let time = record
         .time
-        .map(|(at, number)| number.value(&bytes[at..at + number.size]));
+        .map(|(at, number)| number.value(&bytes[at..at + number.size()]));
     let time = time.filter(|time| time.is_finite());
     let time = time.map(|time| since(*start.get_or_insert(time), time));
     let label = record
         .label
-        .and_then(|(at, number)| number.whole(&bytes[at..at + number.size]));
+        .and_then(|(at, number)| number.whole(&bytes[at..at + number.size()]));
     (time, label.and_then(|label| i64::try_from(label).ok()))
 }
 
@@ -499,7 +397,7 @@ fn fortran(
     sink: &mut Sink<'_>,
 ) -> Result<bool, RecordingError> {
     let (rows, columns) = (u64::from(layout.rows), u64::from(layout.columns));
-    let size = layout.number.size as u64;
+    let size = layout.number.size() as u64;
     let expected = (rows * columns * size).checked_mul(layout.frames);
     let Some(expected) = expected.filter(|&bytes| bytes <= LARGEST_FORTRAN) else {
         return Err(RecordingError::damaged(
@@ -511,7 +409,7 @@ fn fortran(
     if (bytes.len() as u64) < expected {
         return Err(short(0, layout.frames));
     }
-    let size = layout.number.size;
+    let size = layout.number.size();
     let (rows, columns) = (usize::from(layout.rows), usize::from(layout.columns));
     let frames = bytes.len() / (rows * columns * size);
     for number in 0..frames {
