@@ -112,3 +112,17 @@ pub enum AcquireError {
     #[error(transparent)]
     Recording(#[from] RecordingError),
 }
+
+impl AcquireError {
+    /// A source that cannot be opened.
+    pub(super) fn opening(error: io::Error) -> Self {
+        let doing = "open it";
+        Self::Io { doing, error }
+    }
+
+    /// A source that cannot be read on.
+    pub(super) fn reading(error: io::Error) -> Self {
+        let doing = "read it";
+        Self::Io { doing, error }
+    }
+}

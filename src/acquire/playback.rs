@@ -2,7 +2,6 @@
 
 use std::cell::RefCell;
 use std::fs::File;
-use std::io;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -155,18 +154,15 @@ pub(super) fn run(
         consumer: RefCell::new(consumer),
     };
     let format = File::open(path).and_then(recognised_input);
-    let format = format.map_err(refused)?.ok_or(RecordingError::Unknown)?;
+    let format = format
+        .map_err(AcquireError::opening)?
+        .ok_or(RecordingError::Unknown)?;
     let is_paced = options.repeat || options.speed != AcquireOptions::default().speed;
     if options.once || is_paced || !format.is_appended_to() {
         player.play(path, format)
     } else {
         player.follow(path, format)
     }
-}
-
-fn refused(error: io::Error) -> AcquireError {
-    let doing = "open it";
-    AcquireError::Io { doing, error }
 }
 
 /// What plays a recording.
@@ -193,7 +189,7 @@ struct Round<'a> {
 impl Player<'_, '_> {
     /// Plays a file, once or again and again.
     fn play(&self, path: &Path, format: RecordingFormat) -> Result<(), AcquireError> {
-        let mut file = File::open(path).map_err(refused)?;
+        let mut file = File::open(path).map_err(AcquireError::opening)?;
         let mut round = Round::default();
         loop {
             let (pace, read) = self.round(format, &mut file, round);
@@ -212,14 +208,15 @@ impl Player<'_, '_> {
 
     /// Plays a file, and what is written at its end meanwhile.
     fn follow(&self, path: &Path, mut format: RecordingFormat) -> Result<(), AcquireError> {
-        let (mut file, growth) = followed_file::open(path).map_err(refused)?;
+        let (mut file, growth) = followed_file::open(path).map_err(AcquireError::opening)?;
         let mut round = Round {
             growth: Some(&growth),
             ..Round::default()
         };
         loop {
             let waiting = &mut || self.tick();
-            let mut followed = FollowedFile::new(file, &growth, waiting).map_err(refused)?;
+            let mut followed =
+                FollowedFile::new(file, &growth, waiting).map_err(AcquireError::opening)?;
             let (pace, read) = self.round(format, &mut followed, round);
             let end;
             (file, end) = followed.into_parts();

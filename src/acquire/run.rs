@@ -19,11 +19,7 @@ pub fn acquire(
     consumer: &mut Consumer<'_>,
 ) -> Result<(), AcquireError> {
     let recording = source.recording(options);
-    let recording = recording.map_err(|error| AcquireError::Io {
-        doing: "open it",
-        error,
-    })?;
-    match recording {
+    match recording.map_err(AcquireError::opening)? {
         Some(path) => playback::run(path, options, stop, consumer),
         None => stream::run(source, options, stop, consumer),
     }

@@ -81,10 +81,7 @@ impl FrameSource {
             Self::Tcp(address) => check_address(address),
             Self::Standard | Self::Serial(_) | Self::Fifo(_) => Ok(()),
         };
-        checked.map_err(|error| AcquireError::Io {
-            doing: "open it",
-            error,
-        })
+        checked.map_err(AcquireError::opening)
     }
 
     /// Refuses to record in the file that is watched, whatever its path, or to describe a recording in it.

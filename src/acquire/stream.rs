@@ -182,7 +182,7 @@ fn first_input(
             let absent = AcquireEvent::Absent(&error);
             Ok(again(open, absent, stop, decoder, consumer))
         }
-        Err(error) => Err(refused("open it", error)),
+        Err(error) => Err(AcquireError::opening(error)),
     }
 }
 
@@ -210,11 +210,7 @@ fn broken(
     error: io::Error,
 ) -> AcquireError {
     let _ = step(decoder, StreamDecoder::finish, clock, consumer);
-    refused("read it", error)
-}
-
-fn refused(doing: &'static str, error: io::Error) -> AcquireError {
-    AcquireError::Io { doing, error }
+    AcquireError::reading(error)
 }
 
 /// Reports why a source is waited for and opens it again, each second, until it is there; none if no more is wanted.
