@@ -255,6 +255,6 @@ pub(crate) fn sync_folder(folder: &Path) -> Result<(), FileError> {
         {
             Ok(())
         }
-        synced => synced.map_err(|error| FileError::new(FileError::SYNC_FOLDER, folder, error)),
+        synced => synced.map_err(|error| FileError::syncing(folder, error)),
     }
 }

@@ -19,16 +19,27 @@ pub struct FileError {
     pub path: PathBuf,
     /// What the system reports.
     pub error: io::Error,
+    /// Whether the new file is in its place.
+    is_in_place: bool,
 }
 
 impl FileError {
-    /// The last step of writing a file; when it fails, the file is already in its place.
-    pub(crate) const SYNC_FOLDER: &str =
-        "sync the folder; it was changed, but a power cut may undo that";
-
     pub(crate) fn new(doing: &'static str, path: &Path, error: io::Error) -> Self {
-        let path = path.to_owned();
-        Self { doing, path, error }
+        Self {
+            doing,
+            path: path.to_owned(),
+            error,
+            is_in_place: false,
+        }
+    }
+
+    /// That the folder was not synced: the last step of writing a file, when it is already in its place.
+    pub(crate) fn syncing(folder: &Path, error: io::Error) -> Self {
+        let doing = "sync the folder; it was changed, but a power cut may undo that";
+        Self {
+            is_in_place: true,
+            ..Self::new(doing, folder, error)
+        }
     }
 
     /// Whether there is a file already, which was to be kept.
@@ -38,7 +49,7 @@ impl FileError {
 
     /// Whether the new file is in its place, though a power cut may undo that.
     pub fn is_in_place(&self) -> bool {
-        self.doing == Self::SYNC_FOLDER
+        self.is_in_place
     }
 
     /// Whether there is no such file, nor a folder where one is expected.
@@ -52,7 +63,7 @@ impl FileError {
     /// The error for a message that names the file itself.
     #[must_use]
     pub fn into_io(self) -> io::Error {
-        if self.is_in_place() {
+        if self.is_in_place {
             let message =
                 "the folder was changed but cannot be synced, so a power cut may undo that";
             io::Error::new(self.error.kind(), format!("{message}: {}", self.error))

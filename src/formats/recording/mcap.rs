@@ -183,39 +183,63 @@ enum Ended {
     ByReader,
 }
 
-/// What is wrong with a file that ends before its footer.
-const TORN: &str = "the file ends without a footer: it was not closed";
-
-fn torn() -> RecordingError {
-    RecordingError::damaged(TORN)
+/// Why no more records can be read.
+#[derive(Debug)]
+enum RecordsError {
+    /// The bytes end within a record, or the file before its footer.
+    Torn,
+    /// Anything else.
+    Other(RecordingError),
 }
 
-/// What is wrong with the records of a chunk, whose bytes are all there or not.
-fn within_chunk(error: RecordingError, is_whole: bool) -> RecordingError {
-    match error {
-        RecordingError::Damaged { message, .. } if is_whole && message == TORN => {
-            RecordingError::damaged("a record reaches beyond its chunk")
+impl From<RecordingError> for RecordsError {
+    fn from(error: RecordingError) -> Self {
+        Self::Other(error)
+    }
+}
+
+impl From<RecordsError> for RecordingError {
+    fn from(error: RecordsError) -> Self {
+        match error {
+            RecordsError::Torn => {
+                Self::damaged("the file ends without a footer: it was not closed")
+            }
+            RecordsError::Other(error) => error,
         }
-        error => error,
+    }
+}
+
+impl RecordsError {
+    /// A damage that is not the end of the bytes.
+    fn damaged(message: impl Into<String>) -> Self {
+        RecordingError::damaged(message).into()
+    }
+
+    /// What is wrong with the records of a chunk, whose bytes are all there or not: if they are, the file is not torn.
+    fn within_chunk(self, is_whole: bool) -> Self {
+        match self {
+            Self::Torn if is_whole => Self::damaged("a record reaches beyond its chunk"),
+            error => error,
+        }
     }
 }
 
 /// Fills all bytes.
 ///
 /// # Errors
-/// [`torn`] if there are fewer.
-fn whole(input: &mut dyn Read, bytes: &mut [u8]) -> Result<(), RecordingError> {
+/// [`RecordsError::Torn`] if there are fewer.
+fn whole(input: &mut dyn Read, bytes: &mut [u8]) -> Result<(), RecordsError> {
     input.read_exact(bytes).map_err(refused)
 }
 
 /// The error of a reader, of the file itself or of what unpacks a chunk.
-fn refused(error: io::Error) -> RecordingError {
+fn refused(error: io::Error) -> RecordsError {
     match error.kind() {
-        io::ErrorKind::UnexpectedEof => torn(),
+        io::ErrorKind::UnexpectedEof => RecordsError::Torn,
         io::ErrorKind::Other | io::ErrorKind::InvalidData => {
-            RecordingError::damaged("a chunk cannot be unpacked")
+            RecordsError::damaged("a chunk cannot be unpacked")
         }
-        _ => error.into(),
+        _ => RecordingError::Io(error).into(),
     }
 }
 
@@ -230,7 +254,7 @@ struct ChunkHead {
 }
 
 impl ChunkHead {
-    fn read(input: &mut dyn Read) -> Result<Self, RecordingError> {
+    fn read(input: &mut dyn Read) -> Result<Self, RecordsError> {
         // Start, end, size, checksum, length of the name.
         let mut head = [0; 32];
         whole(input, &mut head)?;
@@ -244,7 +268,7 @@ impl ChunkHead {
         whole(input, &mut records)?;
         let compression = String::from_utf8_lossy(&name).into_owned();
         if size > LARGEST_CHUNK {
-            return Err(RecordingError::damaged("a chunk of more than 1 GiB"));
+            return Err(RecordsError::damaged("a chunk of more than 1 GiB"));
         }
         Ok(Self {
             size,
@@ -275,18 +299,18 @@ fn text(bytes: &[u8]) -> Option<(&str, &[u8])> {
 }
 
 /// Passes over `length` bytes.
-fn pass_over(input: &mut dyn Read, length: u64) -> Result<(), RecordingError> {
+fn pass_over(input: &mut dyn Read, length: u64) -> Result<(), RecordsError> {
     let passed = io::copy(&mut Read::take(input, length), &mut io::sink()).map_err(refused)?;
-    if passed < length { Err(torn()) } else { Ok(()) }
+    if passed < length {
+        Err(RecordsError::Torn)
+    } else {
+        Ok(())
+    }
 }
 
 impl McapState<'_, '_> {
     /// Reads records, up to the footer or the end of a chunk.
-    fn records(
-        &mut self,
-        input: &mut dyn Read,
-        within: Container,
-    ) -> Result<Ended, RecordingError> {
+    fn records(&mut self, input: &mut dyn Read, within: Container) -> Result<Ended, RecordsError> {
         loop {
             let mut head = [0; 9];
             if within == Container::Chunk && input.read(&mut head[..1]).map_err(refused)? == 0 {
@@ -312,7 +336,7 @@ impl McapState<'_, '_> {
                 MESSAGE if length > LARGEST_RECORD => self.pass_large(input, length)?,
                 SCHEMA | CHANNEL | MESSAGE => {
                     if length > LARGEST_RECORD {
-                        return Err(RecordingError::damaged("a record of more than 16 MiB"));
+                        return Err(RecordsError::damaged("a record of more than 16 MiB"));
                     }
                     let mut record = std::mem::take(&mut self.record);
                     record.clear();
@@ -320,7 +344,7 @@ impl McapState<'_, '_> {
                         .read_to_end(&mut record)
                         .map_err(refused)?;
                     if (read as u64) < length {
-                        return Err(torn());
+                        return Err(RecordsError::Torn);
                     }
                     let is_enough = self.record(kind, &record)?;
                     self.record = record;
@@ -337,19 +361,19 @@ impl McapState<'_, '_> {
     ///
     /// # Errors
     /// If it is a message of frames.
-    fn pass_large(&mut self, input: &mut dyn Read, length: u64) -> Result<(), RecordingError> {
+    fn pass_large(&mut self, input: &mut dyn Read, length: u64) -> Result<(), RecordsError> {
         let mut id = [0; 2];
         whole(input, &mut id)?;
         match self.topics.get(&u16::from_le_bytes(id)) {
             None | Some((_, MessageKind::Image)) => pass_over(input, length - 2),
-            Some((topic, _)) => Err(RecordingError::damaged(format!(
+            Some((topic, _)) => Err(RecordsError::damaged(format!(
                 "{topic}: a message of more than 16 MiB"
             ))),
         }
     }
 
     /// Reads the records of a chunk, unpacked as they come.
-    fn chunk(&mut self, input: &mut dyn Read) -> Result<Ended, RecordingError> {
+    fn chunk(&mut self, input: &mut dyn Read) -> Result<Ended, RecordsError> {
         let head = ChunkHead::read(input)?;
         let mut packed = Read::take(&mut *input, head.length);
         let ended = match head.compression.as_str() {
@@ -364,16 +388,16 @@ impl McapState<'_, '_> {
                     LARGEST_WINDOW,
                 );
                 let unpacked =
-                    unpacked.map_err(|_| RecordingError::damaged("a chunk cannot be unpacked"))?;
+                    unpacked.map_err(|_| RecordsError::damaged("a chunk cannot be unpacked"))?;
                 self.unpacked(unpacked.take(head.size))
             }
             other => {
                 let message =
                     format!("chunks are compressed with {other:?}, expected lz4, zstd or none");
-                return Err(RecordingError::damaged(legible(&message)));
+                return Err(RecordsError::damaged(legible(&message)));
             }
         };
-        let ended = ended.map_err(|error| within_chunk(error, packed.limit() == 0))?;
+        let ended = ended.map_err(|error| error.within_chunk(packed.limit() == 0))?;
         if ended == Ended::OfChunk {
             let left = packed.limit();
             pass_over(&mut packed, left)?;
@@ -382,11 +406,11 @@ impl McapState<'_, '_> {
     }
 
     /// Reads the records of a chunk from what unpacks it, which gives as many bytes as the chunk states.
-    fn unpacked(&mut self, unpacked: Take<impl Read>) -> Result<Ended, RecordingError> {
+    fn unpacked(&mut self, unpacked: Take<impl Read>) -> Result<Ended, RecordsError> {
         let mut unpacked = BufReader::new(unpacked);
         let ended = self.records(&mut unpacked, Container::Chunk);
         let is_whole = unpacked.get_ref().limit() == 0;
-        ended.map_err(|error| within_chunk(error, is_whole))
+        ended.map_err(|error| error.within_chunk(is_whole))
     }
 
     /// Takes a record; true if no more is wanted.
