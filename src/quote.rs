@@ -7,7 +7,7 @@ pub(crate) fn shortened(text: &str) -> String {
 
 /// A message that quotes untrusted text in full: at most 400 characters, then `…`.
 #[cfg(feature = "json")]
-pub(crate) fn legible(message: &str) -> String {
+pub(crate) fn shortened_message(message: &str) -> String {
     cut(message, 400)
 }
 

@@ -12,7 +12,7 @@ use crate::cli::output::charset::Charset;
 use crate::formats::Name;
 use crate::formats::recording::RecordingError;
 use crate::pose::GridError;
-use crate::quote::legible;
+use crate::quote::shortened_message;
 use crate::recognition::{NoiseError, TrainingError};
 use crate::storage::{ArchiveFileError, FileError, LibraryError};
 use crate::sweep::MergeError;
@@ -76,7 +76,7 @@ pub(crate) enum CliError {
     #[error("cannot write: {0}")]
     Write(io::Error),
     /// The library cannot do it: no such shape, no folder, a damaged file.
-    #[error("{}", legible(&.0.to_string()))]
+    #[error("{}", shortened_message(&.0.to_string()))]
     Library(#[from] LibraryError),
     /// The argument is neither the name of a shape nor a file.
     #[error("no stored shape and no file is called {name:?}")]
@@ -232,7 +232,7 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Grid(#[from] GridError),
     /// A recording is damaged, or no recording.
-    #[error("{name}: {}", legible(&.error.to_string()))]
+    #[error("{name}: {}", shortened_message(&.error.to_string()))]
     Recording {
         /// Its name.
         name: String,
@@ -243,7 +243,7 @@ pub(crate) enum CliError {
     #[error("{error}{help}", error = .0, help = advice(.0))]
     Recorder(RecorderError),
     /// A recording does not have what is asked for.
-    #[error("{name}: {}", legible(.message))]
+    #[error("{name}: {}", shortened_message(.message))]
     Frames {
         /// Its name.
         name: String,
@@ -266,7 +266,7 @@ pub(crate) enum CliError {
     #[error(transparent)]
     SweepFile(ArchiveFileError),
     /// A shard that does not fit the others, or that would be replaced.
-    #[error("{}: {reason}", legible(&path.to_string_lossy()))]
+    #[error("{}: {reason}", shortened_message(&path.to_string_lossy()))]
     Shard {
         /// Its file.
         path: PathBuf,

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use crate::quote::legible;
+use crate::quote::shortened_message;
 
 /// A value on one line.
 #[cfg(feature = "tui")]
@@ -80,7 +80,7 @@ fn failure(error: &serde_json::Error) -> String {
 /// What is wrong with a JSON text, in words that do not suppose that one knows its parser; without the position, which
 /// callers report.
 pub(crate) fn message(error: &serde_json::Error) -> String {
-    legible(&plain(&error.to_string()))
+    shortened_message(&plain(&error.to_string()))
 }
 
 /// A message of the parser in our words. Messages that are ours already come back as they are.

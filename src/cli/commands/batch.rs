@@ -10,7 +10,7 @@ use crate::cli::error::CliError;
 use crate::cli::input::lines::{self, LineInput};
 use crate::formats::{DescribedImprint, Job};
 use crate::imprint::Imprint;
-use crate::quote::legible;
+use crate::quote::shortened_message;
 use crate::sensor::Sensor;
 use crate::touch::Plane;
 
@@ -30,7 +30,7 @@ pub(crate) fn answer_lines(
         let (mut plane, mut other) = (Plane::new(sensor), Plane::new(sensor));
         move |line: &[u8], answer: &mut Vec<u8>| {
             let job = Job::read(line, sensor, lookup);
-            let job = job.map_err(|error| legible(&error.to_string()))?;
+            let job = job.map_err(|error| shortened_message(&error.to_string()))?;
             let plane = match &job {
                 // Lines with a sensor of their own do not take the plane of the others.
                 Job::Touch(own, _) if *own != sensor => &mut other,

@@ -25,7 +25,7 @@ use crate::cli::threads;
 use crate::description::{RegionKind, regions};
 use crate::formats::Content;
 use crate::formats::{Name, StoredShape, json};
-use crate::quote::legible;
+use crate::quote::shortened_message;
 use crate::sensor::Sensor;
 use crate::storage::{Library, LibraryEntry, ShapeOrigin};
 
@@ -60,7 +60,7 @@ impl ListLine {
         Self {
             found: found
                 .map(|loaded| ShapeSummary::of(&loaded.shape))
-                .map_err(|error| legible(&error.to_string())),
+                .map_err(|error| shortened_message(&error.to_string())),
             name: entry.name,
             origin: entry.origin,
         }

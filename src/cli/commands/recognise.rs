@@ -29,7 +29,7 @@ use crate::formats::framed::{FrameRows, RuleRecord};
 use crate::formats::json;
 use crate::formats::record::Text;
 use crate::imprint::Imprint;
-use crate::quote::legible;
+use crate::quote::shortened_message;
 use crate::recognition::{Answer, AnswerState, Evidence, Model, Noise};
 
 /// The exit status if the answer is not the expected one.
@@ -371,7 +371,7 @@ impl Line {
         })?;
         let imprint = |key: &str, rows: &[Text<'_>]| {
             Imprint::from_rows(rows.iter().map(|row| &*row.0))
-                .map_err(|error| legible(&format!("{key}: {error}")))
+                .map_err(|error| shortened_message(&format!("{key}: {error}")))
         };
         let framed = framed(line, keys.frame.as_deref())?;
         let touches = match (&keys.imprint, &keys.touches) {

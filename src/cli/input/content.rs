@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use crate::formats::recording::{RecordingFormat, recognised};
 use crate::formats::shape::MAX_BYTES;
 use crate::formats::{Content, ContentError, read_content};
-use crate::quote::legible;
+use crate::quote::shortened_message;
 
 /// Where to read from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,7 +39,7 @@ pub(crate) enum InputError {
     #[error("larger than 1 MiB, the limit for an imprint or a shape")]
     Large,
     /// It is neither an imprint nor a stored shape.
-    #[error("{}", legible(&.0.to_string()))]
+    #[error("{}", shortened_message(&.0.to_string()))]
     Content(#[from] ContentError),
     /// It looks like a recording.
     #[error("{0}; if this is a recording, use taxel frames")]

@@ -19,7 +19,7 @@ use crate::cli::settings::sensors::{
 };
 use crate::formats::stream::StreamFormat;
 use crate::parameter::{Parameter, ParameterError};
-use crate::quote::legible;
+use crate::quote::shortened_message;
 use crate::sensor::Sensor;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
@@ -174,7 +174,7 @@ impl Config {
             return Err((0, Wrong::Large));
         }
         let table = DeTable::parse(text).map_err(|error| {
-            let message = legible(&error.message().replace('\n', "; "));
+            let message = shortened_message(&error.message().replace('\n', "; "));
             let byte = error.span().map_or(0, |span| span.start);
             (byte, Wrong::Syntax(message))
         })?;
@@ -274,7 +274,7 @@ impl Config {
                         unfit(expected, name, value)
                     })?),
                 };
-                let key = one_key(key).ok_or_else(|| (byte, Wrong::Key(legible(key))))?;
+                let key = one_key(key).ok_or_else(|| (byte, Wrong::Key(shortened_message(key))))?;
                 spans.push((byte, value.span().start));
                 self.changes.push(Written {
                     value: Change {
@@ -386,13 +386,13 @@ fn number(value: &Spanned<DeValue<'_>>) -> Result<f64, Refusal> {
 
 /// The error for a key that there is not.
 fn unknown(found: &str, byte: usize, expected: &[&'static str]) -> Refusal {
-    let (found, expected) = (legible(found), expected.to_vec());
+    let (found, expected) = (shortened_message(found), expected.to_vec());
     (byte, Wrong::Unknown { found, expected })
 }
 
 /// The error for a value of the right type that is not a possible one.
 fn unfit(expected: String, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
-    let found = format!("{:?}", legible(found));
+    let found = format!("{:?}", shortened_message(found));
     (value.span().start, Wrong::Value { expected, found })
 }
 

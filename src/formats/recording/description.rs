@@ -20,7 +20,7 @@ use crate::formats::json;
 use crate::formats::recording::answer::{RuleOrigin, SetRule};
 use crate::frame::{LARGEST_VALUE, Rule, Tare};
 use crate::matrix::Matrix;
-use crate::quote::legible;
+use crate::quote::shortened_message;
 
 /// The name of the format.
 const FORMAT: &str = "taxel-touch/1";
@@ -159,8 +159,8 @@ impl RecordingMetadata {
             _ => None,
         };
         Ok(Self {
-            source: legible(&described.source),
-            unit: described.unit.as_deref().map(legible),
+            source: shortened_message(&described.source),
+            unit: described.unit.as_deref().map(shortened_message),
             pitch_mm: described
                 .pitch_mm
                 .filter(|pitch| pitch.iter().all(positive)),
@@ -169,7 +169,7 @@ impl RecordingMetadata {
             tare,
             marks: described.marks,
             ended: described.ended,
-            ended_by: described.ended_by.as_deref().map(legible),
+            ended_by: described.ended_by.as_deref().map(shortened_message),
         })
     }
 

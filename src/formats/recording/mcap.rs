@@ -27,7 +27,7 @@ use crate::formats::recording::text_row::too_large;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::index::wide;
 use crate::parameter::number::counted;
-use crate::quote::legible;
+use crate::quote::shortened_message;
 
 /// The magic number, at the start, where it was recognised already, and at the end.
 const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
@@ -394,7 +394,7 @@ impl McapState<'_, '_> {
             other => {
                 let message =
                     format!("chunks are compressed with {other:?}, expected lz4, zstd or none");
-                return Err(RecordsError::damaged(legible(&message)));
+                return Err(RecordsError::damaged(shortened_message(&message)));
             }
         };
         let ended = ended.map_err(|error| error.within_chunk(packed.limit() == 0))?;
