@@ -180,7 +180,7 @@ pub(super) struct Cursor<'a> {
 
 impl Cursor<'_> {
     /// Line and column of what comes next.
-    pub(super) fn place(&self) -> (usize, usize) {
+    pub(super) fn line_and_column(&self) -> (usize, usize) {
         let before = &self.bytes[..self.at];
         let start = before.iter().rposition(|&byte| byte == b'\n');
         let line = before.split(|&byte| byte == b'\n').count();
@@ -213,7 +213,7 @@ impl Cursor<'_> {
     pub(super) fn number(&mut self) -> (Option<u32>, (usize, usize)) {
         let start = self.at;
         let _ = self.next();
-        let place = self.place();
+        let place = self.line_and_column();
         let digits = self.bytes[self.at..]
             .iter()
             .take_while(|byte| byte.is_ascii_digit())
@@ -245,7 +245,7 @@ impl Cursor<'_> {
                     b'0' => false,
                     b'1' => true,
                     byte => {
-                        let (line, column) = self.place();
+                        let (line, column) = self.line_and_column();
                         return Err(PbmError::Digit { line, column, byte });
                     }
                 };
@@ -263,7 +263,7 @@ impl Cursor<'_> {
     fn bits(&mut self, imprint: &mut Imprint) -> Result<usize, PbmError> {
         // Just one space parts the height from the bits, which may look like spaces.
         if self.bytes.get(self.at) == Some(&b'#') {
-            let (line, column) = self.place();
+            let (line, column) = self.line_and_column();
             return Err(PbmError::Space { line, column });
         }
         let start = (self.at + 1).min(self.bytes.len());

@@ -17,7 +17,7 @@
 use crate::imprint::Imprint;
 use crate::index::wide;
 use crate::recognition::model::{Model, float};
-use crate::recognition::scan::{Observed, places};
+use crate::recognition::scan::{Observed, shift_count};
 
 /// How much leaving out far keys may change a probability.
 pub(super) const NEGLIGIBLE: f64 = 1e-9;
@@ -226,9 +226,9 @@ impl Model {
     fn touches_on(&self, size: (u8, u8)) -> Vec<u64> {
         let mut totals = vec![0; self.shapes().len()];
         for (own, poses) in self.index().boxes().iter().zip(self.poses_by_box()) {
-            let places = places((own.width, own.height), size);
+            let shifts = shift_count((own.width, own.height), size);
             for (total, poses) in totals.iter_mut().zip(poses) {
-                *total += poses * places;
+                *total += poses * shifts;
             }
         }
         totals
@@ -237,7 +237,8 @@ impl Model {
     /// Returns the number of pairs of a key and a place on a matrix of some columns and rows.
     pub fn pairs(&self, size: (u8, u8)) -> u64 {
         let boxes = self.index().boxes().iter();
-        let pairs = boxes.map(|own| own.keys.len() as u64 * places((own.width, own.height), size));
+        let pairs =
+            boxes.map(|own| own.keys.len() as u64 * shift_count((own.width, own.height), size));
         pairs.sum()
     }
 
@@ -282,7 +283,7 @@ impl Model {
     /// By looking up keys: those of the imprint itself, and, if more matter, of all imprints that differ by one taxel. None
     /// if that is not enough.
     fn near(&self, imprint: &Imprint, reach: u32) -> Option<Distances> {
-        let nowhere = places((0, 0), (imprint.columns(), imprint.rows()));
+        let nowhere = shift_count((0, 0), (imprint.columns(), imprint.rows()));
         let at = |imprint: &Imprint, sums: &mut [u64]| {
             // Nothing lies in every place alike.
             let times = if imprint.is_empty() { nowhere } else { 1 };

@@ -70,8 +70,8 @@ pub(super) struct PlacedKey {
     pub(super) place: (u8, u8),
 }
 
-/// The number of places of a box on a matrix; 0 if it does not fit.
-pub(super) fn places((width, height): (u8, u8), (columns, rows): (u8, u8)) -> u64 {
+/// The number of shifts that keep a box on a matrix, its places there; 0 if it does not fit.
+pub(super) fn shift_count((width, height): (u8, u8), (columns, rows): (u8, u8)) -> u64 {
     let fits = |side: u8, of: u8| of.checked_sub(side).map_or(0, |rest| u64::from(rest) + 1);
     fits(width, columns) * fits(height, rows)
 }

@@ -13,7 +13,7 @@ use crate::imprint::Imprint;
 use crate::recognition::key::ImprintKey;
 use crate::recognition::model::{Model, float, share};
 use crate::recognition::noise::Noise;
-use crate::recognition::scan::places;
+use crate::recognition::scan::shift_count;
 use crate::sensor::Sensor;
 
 /// How often noisy touches are named right. The same number of touches is drawn for each shape; in shares and means,
@@ -185,12 +185,12 @@ impl Model {
         /// Chunks whose counts are held at a time: a billion touches would take gigabytes.
         const HELD: usize = 4096;
         let (columns, rows) = (sensor.columns(), sensor.rows());
-        let places = |key: usize| {
+        let shifts = |key: usize| {
             let key = self.keys().get(key);
-            places((key.width, key.height), (columns, rows))
+            shift_count((key.width, key.height), (columns, rows))
         };
         let draws: Vec<Draw> = (0..self.shapes().len())
-            .map(|shape| Draw::new(self, shape, places))
+            .map(|shape| Draw::new(self, shape, shifts))
             .collect();
         let chunks = per_shape.div_ceil(CHUNK);
         let mut tasks =

@@ -77,7 +77,7 @@ pub(crate) fn gather(
 }
 
 /// Column and row of each active taxel, row by row.
-fn places(imprint: &Imprint) -> Vec<[u8; 2]> {
+fn taxels(imprint: &Imprint) -> Vec<[u8; 2]> {
     let rows = 0..imprint.rows();
     let all = rows.flat_map(|row| (0..imprint.columns()).map(move |column| [column, row]));
     all.filter(|&[column, row]| imprint.get(column, row))
@@ -93,8 +93,8 @@ pub(crate) fn json(found: &FlipReport) -> String {
         standard_error: found.standard_error,
         flips: found.flips,
         repeated: found.repeated,
-        stuck_on: places(&found.stuck_on),
-        stuck_off: places(&found.stuck_off),
+        stuck_on: taxels(&found.stuck_on),
+        stuck_off: taxels(&found.stuck_off),
         mask: found.mask().lines().collect(),
     });
     line + "\n"
@@ -118,16 +118,16 @@ pub(crate) fn text(found: &FlipReport) -> String {
         ("stuck on", &found.stuck_on),
         ("stuck off or dead", &found.stuck_off),
     ] {
-        let places: Vec<String> = places(stuck)
+        let taxels: Vec<String> = taxels(stuck)
             .iter()
             .map(|[column, row]| format!("{column},{row}"))
             .collect();
-        let places = if places.is_empty() {
+        let taxels = if taxels.is_empty() {
             "none".to_owned()
         } else {
-            places.join("  ")
+            taxels.join("  ")
         };
-        text += &format!("{what}: {places}\n");
+        text += &format!("{what}: {taxels}\n");
     }
     text
 }

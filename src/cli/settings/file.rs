@@ -135,7 +135,7 @@ impl Config {
     /// The first error in it.
     pub fn read(text: &str) -> Result<Self, ConfigError> {
         Self::of(text).map_err(|(byte, wrong)| {
-            let (line, column) = place(text, byte);
+            let (line, column) = line_and_column(text, byte);
             ConfigError {
                 line,
                 column,
@@ -188,7 +188,7 @@ impl Config {
     /// Takes one entry of the top level.
     fn take(&mut self, text: &str, entry: TomlEntry<'_, '_>) -> Result<(), Refusal> {
         let (key, byte, value) = entry;
-        let line = place(text, byte).0;
+        let line = line_and_column(text, byte).0;
         match key {
             "theme" => self.theme = Some(choice(&Palette::NAMES, value, line)?),
             "color" => self.color = Some(choice(&ColorDepth::NAMES, value, line)?),
@@ -219,7 +219,7 @@ impl Config {
                         .map_err(|error| (value.span().start, error.into()))?;
                     self.sensor_entries.push(Written {
                         value: *parameter,
-                        line: place(text, byte).0,
+                        line: line_and_column(text, byte).0,
                     });
                 }
             }
@@ -244,7 +244,7 @@ impl Config {
                 let names: Vec<&'static str> = rows().map(|row| row.name).collect();
                 unknown(key, byte, &names)
             })?;
-            let line = place(text, byte).0;
+            let line = line_and_column(text, byte).0;
             let value = sensor_value(row, value)?;
             self.sensors.add(row.key, Written { value, line });
             places.push((row.key, byte));
@@ -282,7 +282,7 @@ impl Config {
                         key,
                         action,
                     },
-                    line: place(text, byte).0,
+                    line: line_and_column(text, byte).0,
                 });
             }
         }
@@ -311,7 +311,7 @@ fn entries<'t, 'i>(table: &'t DeTable<'i>) -> Vec<TomlEntry<'t, 'i>> {
 }
 
 /// The line and column of a byte, both from 1.
-fn place(text: &str, byte: usize) -> (usize, usize) {
+fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     let before = text.get(..byte).unwrap_or(text);
     let line = before.split('\n').count();
     let column = before.rfind('\n').map_or(before, |end| &before[end + 1..]);

@@ -112,7 +112,7 @@ impl ConfusionMap {
         };
         layout.cells();
         layout.names(upright);
-        let end = layout.place(self.labels.len(), self.labels.len());
+        let end = layout.position(self.labels.len(), self.labels.len());
         let note = "touches, and their share of the true shape's";
         let note_end = corner.0 + width(note.chars().count());
         layout.text(note, (corner.0, end.1 + TEXT + 6.0), TextAnchor::Start);
@@ -150,7 +150,7 @@ struct MapLayout<'a> {
 impl MapLayout<'_> {
     /// The top left corner of a cell.
     #[expect(clippy::cast_precision_loss, reason = "at most 64 cells")]
-    fn place(&self, row: usize, column: usize) -> Position {
+    fn position(&self, row: usize, column: usize) -> Position {
         (
             self.corner.0 + self.cell.0 * column as f64,
             self.corner.1 + self.cell.1 * row as f64,
@@ -174,7 +174,10 @@ impl MapLayout<'_> {
             let sum: u128 = (0..shapes).map(|column| self.map.count(row, column)).sum();
             for column in 0..shapes {
                 let count = self.map.count(row, column);
-                let (low, high) = (self.place(row, column), self.place(row + 1, column + 1));
+                let (low, high) = (
+                    self.position(row, column),
+                    self.position(row + 1, column + 1),
+                );
                 let share = share(count, sum);
                 if count > 0 {
                     self.marks.push(Element::Fill {
@@ -198,7 +201,10 @@ impl MapLayout<'_> {
         self.line("cells", lines, CELL);
         // The diagonal, what is named right, has a frame.
         let right = (0..shapes).flat_map(|shape| {
-            rectangle(self.place(shape, shape), self.place(shape + 1, shape + 1))
+            rectangle(
+                self.position(shape, shape),
+                self.position(shape + 1, shape + 1),
+            )
         });
         let right: Vec<Segment> = right.collect();
         self.line("diagonal", right, Stroke::black(1.1));
@@ -220,10 +226,10 @@ impl MapLayout<'_> {
     fn names(&mut self, upright: bool) {
         let (shapes, map) = (self.map.labels.len(), self.map);
         for (index, label) in map.labels.iter().enumerate() {
-            let (left, top) = self.place(index, 0);
+            let (left, top) = self.position(index, 0);
             let y = top + self.cell.1 / 2.0 + TEXT * 0.35;
             self.text(label, (left - 6.0, y), TextAnchor::End);
-            let (left, top) = self.place(0, index);
+            let (left, top) = self.position(0, index);
             let x = left + self.cell.0 / 2.0;
             if upright {
                 self.marks.push(Element::Text {
@@ -236,7 +242,7 @@ impl MapLayout<'_> {
                 self.text(label, (x, top - 6.0), TextAnchor::Middle);
             }
         }
-        let end = self.place(shapes, shapes);
+        let end = self.position(shapes, shapes);
         let title = map.title.as_ref().map_or(0.0, |_| TEXT + 6.0);
         let middle = f64::midpoint(self.corner.0, end.0);
         self.text("named", (middle, MARGIN + title + TEXT), TextAnchor::Middle);

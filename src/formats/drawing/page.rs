@@ -128,7 +128,7 @@ impl DrawingPage {
             cell: LARGEST_CELL.min(PLANE / f64::from(columns.max(rows))),
             end: corner,
         };
-        let plane = (corner, layout.place((columns.into(), rows.into())));
+        let plane = (corner, layout.position((columns.into(), rows.into())));
         layout.end = plane.1;
         if let Some(title) = subject.title {
             layout.text(title, (corner.0, MARGIN + TEXT), TextAnchor::Start);
@@ -156,7 +156,7 @@ fn advance(characters: usize) -> f64 {
 
 impl PageLayout<'_> {
     /// Where a point of the plane, in cell sides, is on the page.
-    fn place(&self, (x, y): Position) -> Position {
+    fn position(&self, (x, y): Position) -> Position {
         (self.corner.0 + x * self.cell, self.corner.1 + y * self.cell)
     }
 
@@ -199,12 +199,13 @@ impl PageLayout<'_> {
         let imprint = subject.imprint;
         if let Some(values) = subject.heat {
             for (grey, cells) in heat::shades(values) {
-                let cell = |(x, y): Position| (self.place((x, y)), self.place((x + 1.0, y + 1.0)));
+                let cell =
+                    |(x, y): Position| (self.position((x, y)), self.position((x + 1.0, y + 1.0)));
                 let cells = cells.into_iter().map(cell).collect();
                 self.filled("heat", cells, grey);
             }
             let edges = heat::edges(imprint).into_iter();
-            let edges = edges.map(|step| step.map(|place| self.place(place)));
+            let edges = edges.map(|step| step.map(|place| self.position(place)));
             self.line("imprint", edges.collect(), EDGE);
             return;
         }
@@ -221,7 +222,7 @@ impl PageLayout<'_> {
         ] {
             let cell = |(column, row): (u8, u8)| {
                 let (x, y) = (f64::from(column), f64::from(row));
-                (self.place((x, y)), self.place((x + 1.0, y + 1.0)))
+                (self.position((x, y)), self.position((x + 1.0, y + 1.0)))
             };
             let cells: Vec<_> = taxels.active().map(cell).collect();
             if !cells.is_empty() {
@@ -241,13 +242,13 @@ impl PageLayout<'_> {
         let mut lines = Vec::new();
         for column in 0..=imprint.columns() {
             let x = f64::from(column);
-            lines.push(Segment::Move(self.place((x, 0.0))));
-            lines.push(Segment::Line(self.place((x, rows))));
+            lines.push(Segment::Move(self.position((x, 0.0))));
+            lines.push(Segment::Line(self.position((x, rows))));
         }
         for row in 0..=imprint.rows() {
             let y = f64::from(row);
-            lines.push(Segment::Move(self.place((0.0, y))));
-            lines.push(Segment::Line(self.place((columns, y))));
+            lines.push(Segment::Move(self.position((0.0, y))));
+            lines.push(Segment::Line(self.position((columns, y))));
         }
         self.line("cells", lines, CELLS);
     }
@@ -285,7 +286,7 @@ impl PageLayout<'_> {
 
     /// The outline of the shape, cut off at the rim of the plane; nothing for imprints of unknown shapes.
     fn outline(&mut self) {
-        let place = |place| self.place(place);
+        let place = |place| self.position(place);
         let steps = self.subject.outline.iter().map(|step| step.map(place));
         let steps: Vec<Segment> = steps.collect();
         if !steps.is_empty() {
@@ -305,11 +306,11 @@ impl PageLayout<'_> {
             return;
         };
         let rect = description.rect;
-        let low = self.place((rect.left.into(), rect.top.into()));
-        let high = self.place((rect.right.into(), rect.bottom.into()));
+        let low = self.position((rect.left.into(), rect.top.into()));
+        let high = self.position((rect.right.into(), rect.bottom.into()));
         let (cg, cd) = (description.cg(), description.cd());
         self.line("rectangle", rectangle(low, high), RECTANGLE);
-        let (cg, cd) = (self.place((cg.x, cg.y)), self.place((cd.x, cd.y)));
+        let (cg, cd) = (self.position((cg.x, cg.y)), self.position((cd.x, cd.y)));
         self.line("cd", circle(cd, 3.5), POINT);
         self.line("cg", cross(cg, 3.5), POINT);
     }

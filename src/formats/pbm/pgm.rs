@@ -80,7 +80,7 @@ fn raw_shades(
     taxels: usize,
 ) -> Result<Vec<u32>, PbmError> {
     // Just one space parts the brightest shade from the first one, which may look like a space.
-    let (line, column) = cursor.place();
+    let (line, column) = cursor.line_and_column();
     if cursor.bytes.get(cursor.at) == Some(&b'#') {
         return Err(PbmError::Space { line, column });
     }

@@ -13,7 +13,7 @@ pub enum RecordingError {
     #[error("not a recording of a known format: expected {FORMS}")]
     Unknown,
     /// The file does not follow its format from here on. Lines and columns count from 1; a column is a field of the line.
-    #[error("{}{message}", place(*line, *column))]
+    #[error("{}{message}", prefix(*line, *column))]
     Damaged {
         /// Which line, in a text.
         line: Option<u64>,
@@ -36,7 +36,7 @@ const FORMS: &str = "Tekscan ASCII, XSENSOR CSV, emed .lst, zebris .apd, CSV, NP
                      ros2 topic echo";
 
 /// `line 3, column 2: `; nothing in a file that has no lines.
-fn place(line: Option<u64>, column: Option<u64>) -> String {
+fn prefix(line: Option<u64>, column: Option<u64>) -> String {
     match (line, column) {
         (Some(line), Some(column)) => format!("line {line}, column {column}: "),
         (Some(line), None) => format!("line {line}: "),

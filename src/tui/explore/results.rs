@@ -58,7 +58,7 @@ pub struct Results {
     /// The first column of statistics that is shown.
     column: usize,
     /// Where the cursor of the map is.
-    place: PoseIndex,
+    pose_index: PoseIndex,
     /// The poses that were marked, by letter.
     marks: BTreeMap<char, u64>,
 }
@@ -83,7 +83,7 @@ impl Results {
             selected: 0,
             top: 0,
             column: 0,
-            place: PoseIndex::new([0; 5]),
+            pose_index: PoseIndex::new([0; 5]),
             marks: BTreeMap::new(),
         };
         results.arrange();
@@ -164,13 +164,13 @@ impl Results {
     /// The imprints of each angle at the zooms of the map, None before [`Results::prepare`].
     pub fn angle_curve(&self) -> Option<&AngleCurve> {
         let curve = self.angle_curve.as_deref();
-        curve.filter(|curve| curve.is_at(self.place))
+        curve.filter(|curve| curve.is_at(self.pose_index))
     }
 
     /// Finds what the present page shows and is not kept for every page: the imprints of each angle.
     pub fn prepare(&mut self) {
         if self.page == ExplorePage::Angles && self.angle_curve().is_none() {
-            self.angle_curve = Some(Arc::new(AngleCurve::of(self.sweep(), self.place)));
+            self.angle_curve = Some(Arc::new(AngleCurve::of(self.sweep(), self.pose_index)));
         }
     }
 
@@ -351,25 +351,25 @@ impl Results {
     }
 
     /// Where the map's cursor is.
-    pub fn place(&self) -> PoseIndex {
-        self.place
+    pub fn pose_index(&self) -> PoseIndex {
+        self.pose_index
     }
 
     /// Puts it at an x0 and a y0, or the last ones.
     pub fn point(&mut self, x0: u64, y0: u64) {
         let counts = self.sweep().grid.counts();
-        self.place[Axis::X0] = x0.min(counts[Axis::X0] - 1);
-        self.place[Axis::Y0] = y0.min(counts[Axis::Y0] - 1);
+        self.pose_index[Axis::X0] = x0.min(counts[Axis::X0] - 1);
+        self.pose_index[Axis::Y0] = y0.min(counts[Axis::Y0] - 1);
     }
 
     /// Shows another angle.
     pub fn turn(&mut self, by: i16) {
         let count = self.sweep().grid.counts()[Axis::Angle];
-        let now = self.place[Axis::Angle];
+        let now = self.pose_index[Axis::Angle];
         // The first angle follows the last, as the angles may go all around.
         let forward = u64::from(by.unsigned_abs()) % count;
         let step = if by < 0 { count - forward } else { forward };
-        self.place[Axis::Angle] = (now + step) % count;
+        self.pose_index[Axis::Angle] = (now + step) % count;
     }
 
     /// Shows another zoom, up to the last one.
@@ -384,18 +384,18 @@ impl Results {
     /// Moves the map's cursor along an axis by a number of poses, at most to its ends.
     pub fn move_along(&mut self, axis: Axis, by: i64) {
         let last = self.sweep().grid.counts()[axis] - 1;
-        self.place[axis] = self.place[axis].saturating_add_signed(by).min(last);
+        self.pose_index[axis] = self.pose_index[axis].saturating_add_signed(by).min(last);
     }
 
     /// Puts the map's cursor where a pose is.
     pub fn go_to_pose(&mut self, number: u64) {
-        self.place = self.sweep().grid.index(number);
+        self.pose_index = self.sweep().grid.index(number);
     }
 
     /// The pose that is looked at: of the map and the angles, or the first one of the selected imprint; its number.
     pub fn pose(&self) -> Option<u64> {
         if matches!(self.page, ExplorePage::Map | ExplorePage::Angles) {
-            return Some(self.sweep().grid.number(self.place));
+            return Some(self.sweep().grid.number(self.pose_index));
         }
         let (_, entry) = self.rows_from(self.selected).next()?;
         Some(entry.first_pose)
@@ -564,16 +564,16 @@ mod tests {
             (Axis::Y0, 1, [1, 1, 0, 0, 0]),
         ] {
             results.move_along(axis, by);
-            assert_eq!(results.place().into_array(), place);
+            assert_eq!(results.pose_index().into_array(), place);
         }
         results.point(u64::MAX, u64::MAX);
         results.turn(-1);
         results.zoom(Zoom::X, 1);
-        assert_eq!(results.place().into_array(), [9, 5, 4, 0, 0]);
+        assert_eq!(results.pose_index().into_array(), [9, 5, 4, 0, 0]);
         results.move_along(Axis::Y0, -3);
         results.move_along(Axis::X0, i64::MIN);
         results.turn(1);
-        assert_eq!(results.place().into_array(), [0, 2, 0, 0, 0]);
+        assert_eq!(results.pose_index().into_array(), [0, 2, 0, 0, 0]);
         assert_eq!(results.pose(), Some(20));
         results.next_page(1);
         assert_eq!(results.page(), ExplorePage::Scatter);

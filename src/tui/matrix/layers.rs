@@ -78,7 +78,7 @@ impl<'a> DotGrid<'a> {
     }
 
     /// A place on the plane, in cell sides, among the dots.
-    fn place(&self, x: f64, y: f64) -> DotPosition {
+    fn position(&self, x: f64, y: f64) -> DotPosition {
         let (across, down) = self.dots();
         let (left, top) = (self.grid.columns.first, self.grid.rows.first);
         (
@@ -90,7 +90,7 @@ impl<'a> DotGrid<'a> {
 
 impl Pen<f64> for DotGrid<'_> {
     fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
-        let (from, to) = (self.place(from.x, from.y), self.place(to.x, to.y));
+        let (from, to) = (self.position(from.x, from.y), self.position(to.x, to.y));
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = libm::hypot(dx, dy);
         if length > 0.0 {
@@ -111,7 +111,7 @@ impl Pen<f64> for DotGrid<'_> {
             let (sin, cos) =
                 libm::sincos(std::f64::consts::TAU * f64::from(piece) / f64::from(PIECES));
             let along = |centre: f64, a: f64, b: f64| centre + scale * (a * cos + b * sin);
-            self.place(
+            self.position(
                 along(ellipse.centre.x, ellipse.across.x, ellipse.along.x),
                 along(ellipse.centre.y, ellipse.across.y, ellipse.along.y),
             )
@@ -192,8 +192,8 @@ impl Overlay<'_> {
 /// The circumscribed rectangle of a region, in dashes.
 fn draw_rectangle(dots: &mut DotGrid<'_>, region: &Description) {
     let rect = region.rect;
-    let (left, top) = dots.place(rect.left.into(), rect.top.into());
-    let (right, bottom) = dots.place(rect.right.into(), rect.bottom.into());
+    let (left, top) = dots.position(rect.left.into(), rect.top.into());
+    let (right, bottom) = dots.position(rect.right.into(), rect.bottom.into());
     let (right, bottom) = (right - INSIDE, bottom - INSIDE);
     let shown = |step: u32| step % 4 < 2;
     for y in [top, bottom] {
@@ -211,7 +211,7 @@ fn draw_rectangle(dots: &mut DotGrid<'_>, region: &Description) {
     reason = "within the screen"
 )]
 fn character_at(dots: &DotGrid<'_>, (x, y): DotPosition, screen: Rect) -> Option<Position> {
-    let ((x, y), (width, height)) = (dots.place(x, y), dots.canvas.size());
+    let ((x, y), (width, height)) = (dots.position(x, y), dots.canvas.size());
     let visible = x >= 0.0 && y >= 0.0 && x < width && y < height;
     let place = visible.then(|| {
         let (x, y) = (x as u16 / DOTS.0, y as u16 / DOTS.1);

@@ -171,7 +171,7 @@ impl TaxelGrid {
 
     /// The place of a taxel on the screen, by its indices among the visible columns and rows. Two that share a character
     /// share their place.
-    pub fn place(&self, column: u16, row: u16) -> Rect {
+    pub fn cell_rect(&self, column: u16, row: u16) -> Rect {
         let (width, half_lines) = (self.size.columns(), self.size.half_lines());
         Rect {
             x: self.x + column * width,

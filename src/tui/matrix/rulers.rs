@@ -64,7 +64,7 @@ fn draw_columns(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect
 fn draw_rows(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect) {
     let rows = if grid.size == TaxelSize::Half { 2 } else { 1 };
     for (index, row) in grid.rows.visible().step_by(rows) {
-        let place = grid.place(0, index);
+        let place = grid.cell_rect(0, index);
         let y = place.y + (place.height - 1) / 2;
         let line = write::row(area, usize::from(y - area.y));
         let text = format!("{row:>2}");

@@ -83,7 +83,7 @@ impl<'a> MatrixView<'a> {
         let mut cursor = None;
         for (y, row) in grid.rows.visible().step_by(rows) {
             for (x, column) in grid.columns.visible() {
-                let place = grid.place(x, y);
+                let place = grid.cell_rect(x, y);
                 if grid.taxels(place.x, place.y).any(|at| at == self.cursor) {
                     cursor = Some(place);
                 }

@@ -73,7 +73,7 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
             compare_with(app, loaded.shape.name.as_str(), &loaded.shape.imprint);
         }
         LibraryEvent::Named(_, Ok(loaded)) => {
-            if let Err(reason) = place(app, &loaded) {
+            if let Err(reason) = put_on_matrix(app, &loaded) {
                 refuse(app, reason);
             }
         }
@@ -245,7 +245,7 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
         }
         (Some((name, _)), Purpose::Delete) => ask_removal(app, name),
         (Some((_, Some(Ok(loaded)))), Purpose::Load) => {
-            if let Err(text) = place(app, &loaded) {
+            if let Err(text) = put_on_matrix(app, &loaded) {
                 app.dialogs.push(Dialog::List(list));
                 refuse(app, text);
             }
@@ -283,7 +283,7 @@ fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
 
 /// Brings a shape onto the matrix: with its sensor where that has as many columns and rows, as it is where its taxels
 /// fit, else not at all.
-fn place(app: &mut App, loaded: &LoadedShape) -> Result<(), String> {
+fn put_on_matrix(app: &mut App, loaded: &LoadedShape) -> Result<(), String> {
     let (shape, sensor) = (&loaded.shape, app.history.present().sensor);
     let own = (shape.sensor.columns(), shape.sensor.rows());
     let here = (sensor.columns(), sensor.rows());

@@ -73,7 +73,7 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     let nearest = spread
         .iter()
         .min_by(|one, other| far(one).total_cmp(&far(other)))?;
-    let now = results.place()[Axis::Angle];
+    let now = results.pose_index()[Axis::Angle];
     let by = i16::try_from(nearest.index.cast_signed() - now.cast_signed()).ok()?;
     Some(Message::Explore(ExploreMessage::Angle(by)))
 }
@@ -163,7 +163,7 @@ const CURVES: [(SpreadValue, bool); 3] = [
 
 /// The spread at the chosen angle, or at the nearest one that has a value.
 fn nearest(results: &Results, spread: &[AngleSpread]) -> Option<AngleSpread> {
-    let now = results.place()[Axis::Angle];
+    let now = results.pose_index()[Axis::Angle];
     spread
         .iter()
         .min_by_key(|at| at.index.abs_diff(now))

@@ -89,7 +89,7 @@ impl MapPane {
         };
         let double = scale == MapScale::Letters && 2 * width <= u64::from(across);
         let cell = if double { 2 } else { 1 };
-        let [x0, y0, ..] = results.place().into_array();
+        let [x0, y0, ..] = results.pose_index().into_array();
         let (from_x, seen_x) = seen(x0, width, stride, u64::from(across / cell), 1);
         let rows = u64::from(body.height) * u64::from(lines);
         let (from_y, seen_y) = seen(y0, height, stride, rows, lines.into());
@@ -140,7 +140,7 @@ impl MapPane {
 
     /// The place of the screen where a pose is shown, and whether it is the lower one of two; None where it is not in
     /// sight.
-    pub fn place(&self, (x0, y0): (u64, u64)) -> Option<(Position, bool)> {
+    pub fn position(&self, (x0, y0): (u64, u64)) -> Option<(Position, bool)> {
         let x = x0.checked_sub(self.first.0)? / self.stride;
         let y = y0.checked_sub(self.first.1)? / self.stride;
         let inside = x < self.count.0 && y < self.count.1;

@@ -101,7 +101,7 @@ pub(in crate::tui) fn drawing(results: &Results) -> Option<PageDrawing> {
 /// The angle and the zooms, and how many others there are.
 fn heading(results: &Results) -> String {
     let grid = &results.sweep().grid;
-    let (place, counts) = (results.place(), grid.counts());
+    let (place, counts) = (results.pose_index(), grid.counts());
     let parts = grid
         .axes()
         .filter(|axis| !matches!(axis, Axis::X0 | Axis::Y0))
@@ -123,7 +123,7 @@ fn heading(results: &Results) -> String {
 fn ids(results: &Results, pane: &MapPane) -> Arc<[Option<u32>]> {
     let (x, y) = pane.first;
     let poses = PosesInSight {
-        first: results.place().with(Axis::X0, x).with(Axis::Y0, y),
+        first: results.pose_index().with(Axis::X0, x).with(Axis::Y0, y),
         count: pane.count,
         stride: pane.stride,
     };
@@ -138,7 +138,7 @@ fn sampled(
     (width, height): (u64, u64),
     stride: u64,
 ) -> Vec<Option<u32>> {
-    let place = results.place();
+    let place = results.pose_index();
     if stride == 1 {
         return results.sweep().ids(place, x..x + width, y..y + height);
     }
@@ -185,8 +185,8 @@ fn draw_cells(
             }
         }
     }
-    let [x0, y0, ..] = results.place().into_array();
-    let (cursor, _) = pane.place((x0, y0))?;
+    let [x0, y0, ..] = results.pose_index().into_array();
+    let (cursor, _) = pane.position((x0, y0))?;
     for column in 0..pane.cell {
         if let Some(cell) = buffer.cell_mut(Position::new(cursor.x + column, cursor.y)) {
             // A block that is reversed could not be told from its neighbours.
@@ -273,7 +273,7 @@ fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buff
 fn draw_pose(theme: &Theme, results: &Results, pane: &MapPane, buffer: &mut Buffer) {
     let result = results.sweep();
     let grid = &result.grid;
-    let pose = grid.pose(grid.number(results.place()));
+    let pose = grid.pose(grid.number(results.pose_index()));
     let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
     let entry = results.id(&imprint).and_then(|id| result.atlas.entry(id));
     let (which, poses) = match entry {
