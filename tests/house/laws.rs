@@ -40,6 +40,9 @@ fn violations(files: &[(String, String)]) -> Vec<String> {
         if source.module.is_empty() {
             map(source, &sources, &mut report);
         }
+        if source.module.len() > 1 {
+            folder_map(source, &sources, &mut report);
+        }
         if source.module != ["main"] && !source.module.contains(&"tests") {
             order(source, &sources, &mut edges, &mut report);
         }
@@ -140,6 +143,49 @@ fn map(root: &Source<'_>, all: &[Source<'_>], report: &mut impl FnMut(usize, &st
     }
     if let Some((shown, line)) = rows.next() {
         report(line, shown, "the map shows declared modules only");
+    }
+}
+
+/// The map in the documentation of a folder below a room names the modules that the folder lists, each at the start of a
+/// line or column. A drawing is a map if it begins with one of them; rooms draw the way of their data instead.
+fn folder_map(source: &Source<'_>, all: &[Source<'_>], report: &mut impl FnMut(usize, &str, &str)) {
+    let modules = listed(&source.module, all);
+    let rows: Vec<_> = (source.text.lines().zip(1..))
+        .skip_while(|(line, _)| *line != "//! ```text")
+        .skip(1)
+        .take_while(|(line, _)| *line != "//! ```")
+        .filter_map(|(line, number)| Some((line.strip_prefix("//! ")?, number)))
+        .collect();
+    let names = |row| {
+        let columns = str::split(row, "  ").map(str::trim);
+        columns.filter_map(|column| column.split([' ', ':']).next())
+    };
+    let first = |row| names(row).next().unwrap_or_default();
+    let Some((_, start)) = rows
+        .first()
+        .filter(|(row, _)| modules.contains(&first(row)))
+    else {
+        return;
+    };
+    for (row, line) in &rows {
+        let name = first(row);
+        // A line without a name continues the one above.
+        if !name.is_empty() && !modules.contains(&name) {
+            report(*line, name, "the map of a folder shows its modules only");
+        }
+    }
+    for module in modules {
+        if module != "tests"
+            && !rows
+                .iter()
+                .any(|(row, _)| names(row).any(|name| name == module))
+        {
+            report(
+                *start,
+                module,
+                "the map of a folder shows each of its modules",
+            );
+        }
     }
 }
 
@@ -342,6 +388,8 @@ src/c.rs | | 1: `c`; law: a file is listed
 src/lib.rs | //! # Map¶//! ```text¶//!  b  first of two¶//!  a  of them¶//! ```¶mod a; mod b; | 4: `b`; law: the map shows `a` here
 src/lib.rs | //! # Map¶//! ```text¶//!  a  that one¶//! ```¶mod a; mod b; | 1: `nothing`; law: the map shows `b`
 src/lib.rs | //! # Map¶//! ```text¶//!  a  b  both of them¶//! ```¶mod a; | 4: `b`; law: the map shows declared modules only
+src/x/r.rs | //! ```text¶//! g  one¶//! h  gone¶//! ```¶mod g; | 4: `h`; law: the map of a folder shows its modules only
+src/x/r.rs | //! ```text¶//! g  one¶//! ```¶mod g;¶mod h; | 3: `h`; law: the map of a folder shows each of its modules
 src/main.rs | use ratatui as r; | 2: `ratatui`; law: only src/tui/
 src/tui/mod.rs | mod runtime;¶use clap as c; | 3: `clap`; law: only src/cli/
 src/a.rs | fn f(s: clap_complete::Shell) {} | 2: `clap_complete::Shell`; law: only src/cli/
@@ -359,6 +407,9 @@ src/b.rs | use crate::{a::{self, A}, a as z};¶use super::a::B; use crate::b::ow
 src/b.rs | pub struct A; fn f() { struct A; }¶#[cfg(test)]¶mod tests { pub struct A; }
 src/x/q.rs | use crate::{b, x::p::{self, P}}; use super::p::*; use crate::x::q::own;
 src/x/mod.rs | pub mod q; pub mod p; mod r; use crate::x::q; use crate::a; use super::b;
+src/x/mod.rs | //! ```text¶//! p  then q¶//! ```¶pub mod q; pub mod p; mod r;
+src/x/r.rs | //! ```text¶//! g   one    h: two  i¶//!         and more¶//! j three¶//! ```¶mod g; mod h; mod i; mod j; mod tests;
+src/x/r.rs | //! ```text¶//! in -> g -> out¶//! ```¶mod g; mod h;
 src/x/tests.rs | use super::*; use crate::tui;
 src/tui/mod.rs | mod runtime; use ratatui::Frame; use crossterm::event;
 src/tui/runtime.rs | use std::{fs, io}; fn f() { fs::File::open(p) }

@@ -10,7 +10,7 @@
 //! quit       the end, and the question before it
 //! steps      what a step of the history did, in words
 //! layout     the panes of the screen                    view: draws them
-//! menu, title, status      the lines above and below
+//! menu  title  status      the lines above and below
 //! ```
 
 pub mod document;

@@ -8,6 +8,7 @@
 //! page       what the results know of a page of theirs    pages: the table of pages
 //! imprints  statistics  histogram  map  scatter  angles   the pages           drawing: a page in a file
 //! work       from the form to the results                 update: what keys do over the results
+//! view       tabs, what was swept, and the page
 //! ```
 
 pub mod message;

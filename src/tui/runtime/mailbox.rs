@@ -2,7 +2,7 @@
 //!
 //! A queue, and a socket pair that the loop waits for together with the terminal and the signals. The queue is not
 //! bounded: workers send at most ten events a second and must never wait for a slow terminal. Frames do not go through it:
-//! they wait in `runtime::frames`, and a message here says that some have come.
+//! they wait in `runtime::frame_feed`, and a message here says that some have come.
 
 use std::io::{self, Read, Write};
 use std::os::fd::{AsFd, BorrowedFd};

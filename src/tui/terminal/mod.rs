@@ -9,9 +9,8 @@
 //! session    one way in, one way out
 //! signals    what the system says
 //! job        stopped and continued by a shell
-//! mailbox    messages from workers
 //! outcome    how it ended
-//! event_loop waits for all of them at once
+//! event_loop waits for all of them, and for messages from workers (`runtime::mailbox`)
 //! ```
 //! The loop sleeps until there is something to do, without a tick; it writes only where the screen changes, in one
 //! write a frame; and it ends when the terminal is gone, whether or not a signal says so. Nothing is asked of the
