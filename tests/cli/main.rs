@@ -6,6 +6,9 @@ mod paper;
 #[path = "../common/array.rs"]
 mod array;
 
+#[path = "../common/commands.rs"]
+mod commands;
+
 #[path = "../common/skip.rs"]
 mod skip;
 

@@ -18,6 +18,10 @@ mod examples;
 mod common;
 
 #[cfg(feature = "cli")]
+#[path = "../common/commands.rs"]
+mod commands;
+
+#[cfg(feature = "cli")]
 #[path = "../common/skip.rs"]
 mod skip;
 

@@ -3,46 +3,19 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
+use std::sync::LazyLock;
 
+use crate::commands::commands;
 use crate::docs::documents;
 
 const TAXEL: &str = env!("CARGO_BIN_EXE_taxel");
 
-/// The commands with a help of their own, in the order of `taxel help`; those of `library` are shown by its own help,
-/// those of `model` have one each.
-const COMMANDS: [&str; 24] = [
-    "",
-    "figure",
-    "picture",
-    "describe",
-    "export",
-    "batch",
-    "sweep",
-    "merge",
-    "frames",
-    "watch",
-    "model",
-    "model train",
-    "model show",
-    "model list",
-    "model delete",
-    "model confusion",
-    "model touches",
-    "model separate",
-    "recognise",
-    "library",
-    "script",
-    "config",
-    "completions",
-    "man",
-];
-
-/// The commands of `library`.
-const OF_LIBRARY: [&str; 7] = ["list", "show", "save", "delete", "restore", "path", "check"];
+/// Every command, in the order of `taxel help`.
+static COMMANDS: LazyLock<Vec<String>> =
+    LazyLock::new(|| commands(&|name| shell(&format!("taxel {name} --help"))));
 
 fn is_command(name: &str) -> bool {
-    let of_library = name.strip_prefix("library ");
-    COMMANDS.contains(&name) || of_library.is_some_and(|name| OF_LIBRARY.contains(&name))
+    COMMANDS.iter().any(|command| command == name)
 }
 
 /// What a shell line prints, with this build's `taxel` first on the path and the program's own settings.
@@ -85,10 +58,11 @@ pub(crate) fn study() -> String {
     format!("\n```text\n$ {line}\n{}```\n\n", shell(line))
 }
 
-/// Every help text.
+/// The help texts. Those of the commands of `library` are short, and its own help lists them.
 pub(crate) fn help() -> String {
     COMMANDS
         .iter()
+        .filter(|name| !name.starts_with("library "))
         .map(|name| {
             let line = format!("taxel {name}").trim_end().to_owned();
             format!(

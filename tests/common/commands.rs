@@ -1,0 +1,31 @@
+//! Which commands the program has, as its own helps list them: for tests that look at every command.
+
+/// The names of all commands in the order of the helps, each before those below it; the program itself is the empty name.
+/// `help` gives the help of a command.
+pub(crate) fn commands(help: &dyn Fn(&str) -> String) -> Vec<String> {
+    with_subcommands("", help)
+}
+
+fn with_subcommands(command: &str, help: &dyn Fn(&str) -> String) -> Vec<String> {
+    let text = help(command);
+    let (start, end) = if command.is_empty() {
+        // The program's own are in groups.
+        ("\nTouch:\n", "\nOptions:\n")
+    } else {
+        ("\nCommands:\n", "\n\n")
+    };
+    let listed = text.split_once(start).map_or("", |(_, below)| {
+        let (listed, _) = below.split_once(end).expect("the list ends");
+        listed
+    });
+    let mut found = vec![command.to_owned()];
+    for line in listed.lines().filter_map(|line| line.strip_prefix("  ")) {
+        let name = line.split(' ').next().expect("a word");
+        // Deeper lines continue the words about a command.
+        if !name.is_empty() && name != "help" {
+            let path = format!("{command} {name}");
+            found.extend(with_subcommands(path.trim_start(), help));
+        }
+    }
+    found
+}
