@@ -326,7 +326,9 @@ impl McapState<'_, '_> {
                     let mut magic = [0; MAGIC.len()];
                     whole(input, &mut magic)?;
                     let is_whole = magic == MAGIC;
-                    return is_whole.then_some(Ended::AtFooter).ok_or(RecordsError::Torn);
+                    return is_whole
+                        .then_some(Ended::AtFooter)
+                        .ok_or(RecordsError::Torn);
                 }
                 CHUNK if within == Container::File => {
                     if self.chunk(input)? == Ended::ByReader {

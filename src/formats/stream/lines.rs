@@ -20,6 +20,10 @@ const MOST: usize = 512 * 512;
 
 /// A decoder of lines of numbers.
 #[derive(Debug)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each says something else about the lines so far"
+)]
 pub(super) struct LinesDecoder {
     /// Rows and columns.
     size: FrameSize,
