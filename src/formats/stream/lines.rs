@@ -18,12 +18,17 @@ use crate::frame::{Frame, MAX_FRAME_SIDE};
 /// The most values of a frame.
 const MOST: usize = 512 * 512;
 
+/// What a line is taken for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum LineKind {
+    /// A row of a frame, unless it has all cells.
+    Row,
+    /// A frame, since the last frame was a line: a wrong one is a frame that is lost.
+    Frame,
+}
+
 /// A decoder of lines of numbers.
 #[derive(Debug)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each says something else about the lines so far"
-)]
 pub(super) struct LinesDecoder {
     /// Rows and columns.
     size: FrameSize,
@@ -39,8 +44,8 @@ pub(super) struct LinesDecoder {
     broken_row: Vec<u8>,
     /// Whether there was an empty line.
     parted: bool,
-    /// Whether the last frame was a line, so that a wrong line is a frame that is lost, not a row of one.
-    by_line: bool,
+    /// What the lines are, as far as is known.
+    kind: LineKind,
     /// The frame that is given.
     frame: Frame,
 }
@@ -56,7 +61,10 @@ impl LinesDecoder {
             broken: false,
             broken_row: Vec::new(),
             parted: false,
-            by_line: shape.is_some_and(|(rows, _)| rows == 1),
+            kind: match shape {
+                Some((1, _)) => LineKind::Frame,
+                _ => LineKind::Row,
+            },
             frame: Frame::new(1, 1),
         }
     }
@@ -85,25 +93,12 @@ impl LinesDecoder {
             && (self.size.present().is_some_and(is_frame)
                 || self.size.named() == Some((1, width(count))))
         {
-            if self.rows > 0 && self.begun {
-                // Without an empty line so far, those before it were frames, too.
-                let lost = if self.parted { 1 } else { self.rows };
-                counts.drop_frames(lost.into(), &self.broken_row);
-            }
-            self.by_line = true;
             self.values.drain(..before);
-            self.size.pass_torn();
-            // The line before it was ended.
-            self.begun = true;
-            self.give(counts, sink);
-            self.clear();
+            self.give_line(counts, sink);
             return;
         }
-        // Frames may be in rows from here on, if an empty line parts them.
-        let may_be_row = |(_, columns): (u16, u16)| {
-            self.parted && read.is_some() && count == usize::from(columns)
-        };
-        if self.by_line && self.rows == 0 && !self.size.present().is_some_and(may_be_row) {
+        if self.kind == LineKind::Frame && self.rows == 0 && !self.may_be_row(read.and(Some(count)))
+        {
             self.values.truncate(before);
             self.size.pass_torn();
             if std::mem::replace(&mut self.begun, true) {
@@ -135,6 +130,27 @@ impl LinesDecoder {
         }
     }
 
+    /// Gives the values of a line as a frame. What came before it is none.
+    fn give_line(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+        if self.rows > 0 && self.begun {
+            // Without an empty line so far, those before it were frames, too.
+            let lost = if self.parted { 1 } else { self.rows };
+            counts.drop_frames(lost.into(), &self.broken_row);
+        }
+        self.kind = LineKind::Frame;
+        self.size.pass_torn();
+        // The line before it was ended.
+        self.begun = true;
+        self.give(counts, sink);
+        self.clear();
+    }
+
+    /// Whether a line of so many numbers may begin a frame in rows, which an empty line ends.
+    fn may_be_row(&self, count: Option<usize>) -> bool {
+        let columns = self.size.present().map(|(_, columns)| columns.into());
+        self.parted && count.is_some() && count == columns
+    }
+
     /// Counts a broken line at once where no empty line parts frames, as far as is known.
     fn give_up(&mut self, line: &[u8], counts: &mut StreamCounts) {
         let is_full = |(rows, _)| self.rows > rows;
@@ -158,7 +174,9 @@ impl LinesDecoder {
         let own = (self.rows, columns);
         let fits = !self.broken && (1..=MAX_FRAME_SIDE).contains(&columns);
         if fits && self.size.admits(own) {
-            self.by_line &= self.rows == 1;
+            if self.rows > 1 {
+                self.kind = LineKind::Row;
+            }
             self.give(counts, sink);
         } else {
             if !fits {

@@ -64,7 +64,7 @@ fn the_newest_work_comes_last_whatever_its_name() {
         let path = folder.join(name).with_extension("json");
         std::fs::write(&path, shape(&format!("w{name}"), 1).write()).expect("written");
         let file = std::fs::File::options().write(true).open(&path);
-        let changed = now - std::time::Duration::from_secs(seconds);
+        let changed = now - Duration::from_secs(seconds);
         file.expect("opened").set_modified(changed).expect("set");
     }
     std::fs::remove_file(own).expect("removed");
