@@ -6,7 +6,8 @@ use taxel::formats::recording::{RuleOrigin, SetRule};
 use taxel::frame::Rule;
 use taxel::matrix::Matrix;
 use taxel::tui::app::message::Message;
-use taxel::tui::live::message::LiveMessage;
+use taxel::tui::app::worker_event::WorkerEvent;
+use taxel::tui::live::message::{FrameBatch, LiveEvent, LiveMessage, SourceState};
 use taxel::tui::live::request::WatchRequest;
 use taxel::tui::script::Session;
 
@@ -184,6 +185,22 @@ fn frames_are_shown_while_a_threshold_by_noise_has_no_tare() {
     page.frames(20);
     shows(&page, &["frame 7", "! frames for the tare: found 8"]);
     then(&mut page, "<Enter>", &[refused]);
+}
+
+#[test]
+fn a_notice_does_not_hide_that_the_source_is_lost() {
+    let lost = "lost: Connection reset by peer; trying again each second";
+    for (width, height) in [(80, 24), (60, 20)] {
+        let mut page = watched(2, "t");
+        page.resize(width, height);
+        let mut batch = FrameBatch::default();
+        batch.status.state = SourceState::Lost(lost.to_owned());
+        let event = LiveEvent::Arrived(Arc::new(batch));
+        page.send(Message::Worker(WorkerEvent::Live(1, event)));
+        shows(&page, &["! lost: Connection reset by peer"]);
+        hides(&page, &["tare of the last"]);
+        then(&mut page, "T", &["! no tare; lost: Connection reset"]);
+    }
 }
 
 #[test]

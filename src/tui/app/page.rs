@@ -101,4 +101,9 @@ pub trait Page {
     fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
         None
     }
+
+    /// An error that a notice must not hide: it is shown after the notice. None unless the page says otherwise.
+    fn alarm(&self) -> Option<String> {
+        None
+    }
 }

@@ -183,5 +183,12 @@ fn notice(app: &App, panes: &Panes) -> Option<(String, Role)> {
         Notice::Refusal(text) => (format!("! {text}"), Role::Error),
     });
     let waiting = || Some((app.waiting()?.to_owned(), Role::Key));
-    notice.or_else(waiting).or(remark)
+    let notice = notice.or_else(waiting);
+    match (notice, top.and_then(Page::alarm)) {
+        (Some((text, _)), Some(alarm)) => {
+            let text = text.trim_start_matches("! ");
+            Some((format!("! {text}; {alarm}"), Role::Error))
+        }
+        (notice, _) => notice.or(remark),
+    }
 }

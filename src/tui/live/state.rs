@@ -212,6 +212,19 @@ impl Live {
         self.not_recorded.as_deref()
     }
 
+    /// Why frames are not recorded although that was asked for, and why none come; None where all is well.
+    pub fn trouble(&self) -> Option<String> {
+        let source = match &self.status.state {
+            SourceState::Silent(why) | SourceState::Lost(why) | SourceState::Failed(why) => {
+                Some(why.as_str())
+            }
+            SourceState::Waiting | SourceState::Live | SourceState::Ended => None,
+        };
+        let troubles = self.not_recorded().into_iter().chain(source);
+        let troubles: Vec<&str> = troubles.collect();
+        (!troubles.is_empty()).then(|| troubles.join("; "))
+    }
+
     /// The frames that were marked since the source is watched, in the order in which they came.
     pub fn marks(&self) -> Vec<FrameMark> {
         self.marks.own()
@@ -518,8 +531,9 @@ impl Live {
     pub fn set_recording(&mut self, name: Option<String>) {
         self.recording = name;
         self.not_recorded = None;
-        // That of the one before.
+        // Those of the one before.
         self.status.recorded = None;
+        self.status.record_error = None;
     }
 
     /// Notes that a recording has failed, or cannot be begun, and why.
@@ -540,6 +554,8 @@ impl Live {
         self.number = number;
         self.watched_from = self.history.next_number();
         self.stopped = false;
+        // No recording is asked for now.
+        self.not_recorded = None;
         self.frozen = None;
         self.provisional = None;
         self.held = None;

@@ -301,22 +301,31 @@ pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
         LiveEvent::NotFinished(reason) => return refuse(app, reason.clone()),
         _ => {}
     }
+    let is_open = matches!(app.dialogs.last(), Some(Dialog::Live(_)));
     let Some(page) = page(app).filter(|page| page.number() == number && !page.stopped()) else {
         return;
     };
+    let (trouble, failure) = (page.trouble(), page.not_recorded().map(str::to_owned));
     match event {
         LiveEvent::Waiting | LiveEvent::Recorded(..) | LiveEvent::NotFinished(_) => {}
         LiveEvent::Arrived(batch) => page.take(batch),
         LiveEvent::Recording(name) => {
             page.set_recording(Some(name.clone()));
-            inform(app, format!("recording in {name}"));
+            return inform(app, format!("recording in {name}"));
         }
         LiveEvent::Named(by, named) => page.take_name(*by, Ok((**named).clone())),
         LiveEvent::NotNamed(by, reason) => page.take_name(*by, Err(reason.clone())),
-        LiveEvent::NotRecorded(reason) => {
-            page.fail_recording(reason.clone());
-            refuse(app, reason.clone());
-        }
+        LiveEvent::NotRecorded(reason) => page.fail_recording(reason.clone()),
+    }
+    let now = (page.trouble(), page.not_recorded().map(str::to_owned));
+    if is_open && now.0.is_some() && now.0 != trouble {
+        // The page says it; an old notice, such as that of the beginning of a recording, is no longer true.
+        app.notice = None;
+    } else if !is_open
+        && let (_, Some(reason)) = now
+        && failure.as_ref() != Some(&reason)
+    {
+        refuse(app, reason);
     }
 }
 

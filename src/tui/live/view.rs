@@ -78,21 +78,17 @@ impl Page for Live {
     }
 
     fn remark(&self, _: &Keymap, _: Rect) -> Option<(String, Role)> {
-        let status = self.status();
-        let trouble = self.error().map(ToString::to_string);
-        let trouble = trouble.or_else(|| status.record_error.clone());
-        if let Some(trouble) = trouble {
-            return Some((format!("! {trouble}"), Role::Error));
-        }
-        match &status.state {
-            SourceState::Silent(why) | SourceState::Lost(why) | SourceState::Failed(why) => {
-                Some((format!("! {why}"), Role::Error))
-            }
-            SourceState::Waiting | SourceState::Live | SourceState::Ended => {
-                let note = status.note.as_ref()?;
-                Some((format!("! {note}"), Role::Error))
-            }
-        }
+        let error = self.error().map(ToString::to_string);
+        let troubles: Vec<String> = error.into_iter().chain(self.trouble()).collect();
+        let text = match &troubles[..] {
+            [] => self.status().note.clone()?,
+            troubles => troubles.join("; "),
+        };
+        Some((format!("! {text}"), Role::Error))
+    }
+
+    fn alarm(&self) -> Option<String> {
+        self.trouble()
     }
 }
 

@@ -35,11 +35,16 @@ struct Watched {
 impl Watched {
     /// Starts it; None where there is no mkfifo.
     fn start() -> Option<Self> {
+        Self::started("", "")
+    }
+
+    /// The same after commands of a shell, and with further arguments.
+    fn started(before: &str, arguments: &str) -> Option<Self> {
         let folder = tempfile::tempdir().expect("a folder");
         let pipe = folder.path().join("frames");
         fifo(&pipe).then_some(())?;
         let line = format!(
-            "cd '{}' && exec '{TAXEL}' watch frames --format lines --at-least 9",
+            "cd '{}' && {before} exec '{TAXEL}' watch frames --format lines --at-least 9 {arguments}",
             folder.path().display()
         );
         let program = Program::start(&Start {
@@ -129,6 +134,28 @@ fn a_recording_without_a_frame_leaves_no_file() {
         assert!(!file.exists() && !file.with_extension("json").exists());
         watched.shows_the_first_frame();
     }
+    watched.ends();
+}
+
+/// A limit of the system in place of a full disk.
+const FULL: &str = "trap '' XFSZ; ulimit -f 9;";
+
+#[test]
+fn a_recording_that_fails_takes_the_place_of_the_notice_of_its_beginning() {
+    let Some(mut watched) = Watched::started(FULL, "") else {
+        return;
+    };
+    watched.program.resize((60, 20));
+    watched.shows_the_first_frame();
+    watched.records();
+    watched.sends(1..4000);
+    let failed = "! touch-1.npy: cannot record: File too large";
+    watched.program.shows(failed);
+    let screen = watched.program.rows();
+    assert!(!screen.contains("recording in"), "{screen}");
+    // It stays while there is none, and a key does not hide it.
+    watched.program.types(b"T");
+    watched.program.shows("! there is no tare; touch-1.npy:");
     watched.ends();
 }
 
