@@ -56,6 +56,8 @@ pub struct Live {
     recording: Option<String>,
     /// Why there is none although one was asked for.
     not_recorded: Option<String>,
+    /// Why the recording that was asked for together with the source has failed.
+    write_failure: Option<String>,
     /// The frames that were marked.
     marks: FrameMarks,
     /// The model that names imprints, and its last answer.
@@ -86,6 +88,7 @@ impl Live {
             not_drawn: 0,
             recording: None,
             not_recorded: None,
+            write_failure: None,
             marks: FrameMarks::default(),
             naming: None,
             reading: None,
@@ -210,6 +213,12 @@ impl Live {
     /// Why nothing is recorded although it was asked for; None where it is, or was not asked for.
     pub fn not_recorded(&self) -> Option<&str> {
         self.not_recorded.as_deref()
+    }
+
+    /// Why the recording that was asked for together with the source has failed; None where it has not. Later recordings
+    /// do not change that.
+    pub fn write_failure(&self) -> Option<&str> {
+        self.write_failure.as_deref()
     }
 
     /// Why frames are not recorded although that was asked for, and why none come; None where all is well.
@@ -538,6 +547,12 @@ impl Live {
 
     /// Notes that a recording has failed, or cannot be begun, and why.
     pub fn fail_recording(&mut self, reason: String) {
+        let asked = self.request.write.as_ref();
+        if asked
+            .is_some_and(|(path, _)| self.recording.as_deref() == Some(&*path.to_string_lossy()))
+        {
+            self.write_failure = Some(reason.clone());
+        }
         self.recording = None;
         self.not_recorded = Some(reason);
     }

@@ -25,6 +25,8 @@ use crate::tui::app::state::App;
 use crate::tui::app::view::view;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::action;
+use crate::tui::live::state::Live;
+use crate::tui::live::update::last_page;
 use crate::tui::runtime::World;
 use crate::tui::runtime::effect::TerminalEffect;
 use crate::tui::runtime::mailbox::Mailbox;
@@ -68,12 +70,19 @@ pub(in crate::tui) fn run(
             .world
             .handle(&mut event_loop.app, Message::Terminate);
     }
+    // As in a pipeline: a script must see that the file is not whole.
+    let failure = last_page(&event_loop.app).and_then(Live::write_failure);
+    let mut quit = Outcome::Quit;
+    if let Some(reason) = failure {
+        session::tell(&format!("error: {reason}\n"));
+        quit = Outcome::RecordingFailed;
+    }
     for line in event_loop.world.end(&mut event_loop.app) {
         session::tell(&line);
     }
     let left = session::leave();
     match ended {
-        Ok(Ok(Outcome::Quit)) => left.map(|()| Outcome::Quit),
+        Ok(Ok(Outcome::Quit)) => left.map(|()| quit),
         // A terminal that is gone takes no leave.
         Ok(outcome) => outcome,
         Err(panic) => resume_unwind(panic),

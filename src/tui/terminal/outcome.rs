@@ -8,6 +8,8 @@ use signal_hook::low_level::signal_name;
 pub enum Outcome {
     /// The user left it.
     Quit,
+    /// The user left it after the recording that the command line asked for had failed.
+    RecordingFailed,
     /// A signal of this number asked for it.
     Signal(i32),
     /// The terminal is gone.
@@ -15,10 +17,11 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// The exit status: 0, or 128 and the signal's number as a shell has it; a lost terminal counts as its signal.
+    /// The exit status: 0, 1 after a failure, or 128 and the signal's number as a shell has it; a lost terminal counts as its signal.
     pub fn status(self) -> u8 {
         match self {
             Self::Quit => 0,
+            Self::RecordingFailed => 1,
             Self::Signal(number) => 128_u8.saturating_add(u8::try_from(number).unwrap_or(127)),
             Self::Hangup => Self::Signal(SIGHUP).status(),
         }
@@ -28,7 +31,7 @@ impl Outcome {
     /// signal.
     pub fn signal_name(self) -> Option<&'static str> {
         match self {
-            Self::Quit => None,
+            Self::Quit | Self::RecordingFailed => None,
             Self::Signal(number) => signal_name(number)?.strip_prefix("SIG"),
             Self::Hangup => Self::Signal(SIGHUP).signal_name(),
         }

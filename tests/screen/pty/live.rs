@@ -159,6 +159,20 @@ fn a_recording_that_fails_takes_the_place_of_the_notice_of_its_beginning() {
     watched.ends();
 }
 
+#[test]
+fn a_recording_of_the_command_line_that_fails_is_an_error_at_the_end() {
+    let Some(mut watched) = Watched::started(FULL, "--write a.npy") else {
+        return;
+    };
+    watched.sends(0..4000);
+    let failed = "a.npy: cannot record: File too large";
+    watched.program.shows(&format!("! {failed}"));
+    watched.program.types(b"q");
+    watched.program.types(b"q");
+    watched.program.ends_well(1);
+    watched.program.shows(&format!("error: {failed}"));
+}
+
 /// What the description beside an array says of its end.
 fn is_ended(path: &Path) -> bool {
     let beside = fs::read_to_string(path.with_extension("json")).expect("it is there");
