@@ -204,6 +204,18 @@ fn a_notice_does_not_hide_that_the_source_is_lost() {
 }
 
 #[test]
+fn the_question_at_the_end_says_that_a_recording_ends() {
+    let mut page = watched(6, "+");
+    let event = LiveEvent::Recording("touch-1.npy".to_owned());
+    page.send(Message::Worker(WorkerEvent::Live(1, event)));
+    then(
+        &mut page,
+        "<Enter>q",
+        &["The imprint is not saved; the recording in touch-1.npy ends. Quit anyway?"],
+    );
+}
+
+#[test]
 fn a_frame_that_cannot_be_processed_has_come_all_the_same() {
     let mut page = set(|request| {
         request.processing.gain = Some(Matrix::filled(2, 2, 1.0));

@@ -3,6 +3,8 @@
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, RunState};
+use crate::tui::live::state::Live;
+use crate::tui::live::update::last_page;
 
 /// Quits, after a question if work would be lost.
 /// The imprint on the matrix can be saved from the question; an earlier drawing must be brought back first, so there
@@ -20,7 +22,13 @@ pub(in crate::tui) fn quit(app: &mut App) {
             return;
         }
     };
-    let text = format!("{what} not saved. Quit anyway?");
+    // Its page may not be open.
+    let page = last_page(app).filter(|page| !page.stopped());
+    let recording = page.and_then(Live::recording);
+    let ends = recording.map_or(String::new(), |name| {
+        format!("; the recording in {name} ends")
+    });
+    let text = format!("{what} not saved{ends}. Quit anyway?");
     let question = Question {
         saves_first: can_save_first(app),
         ..Question::new(text, Message::QuitNow)
