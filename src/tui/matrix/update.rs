@@ -205,10 +205,8 @@ fn save(app: &mut App) {
     let own = app
         .stored()
         .filter(|stored| stored.owner == ShapeOrigin::Own);
-    let dialog = match own {
-        Some(stored) => NameDialog::new(&stored.name),
-        None => NameDialog::proposing(&proposed_name(app)),
-    };
+    let name = own.map_or_else(|| proposed_name(app), |stored| stored.name.clone());
+    let dialog = NameDialog::proposing(&name);
     app.dialogs.push(Dialog::Name(dialog));
 }
 

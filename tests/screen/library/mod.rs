@@ -23,6 +23,15 @@ fn mouse(session: &mut Session, kind: MouseKind, column: u16, row: u16) {
 }
 
 #[test]
+fn what_is_typed_replaces_the_name_of_a_saved_shape() {
+    let mut session = session("f<Enter>smy ring<Enter>s");
+    shows(&session, &["Save as: my ring"]);
+    then(&mut session, "yours<Enter>", &["saved as yours"]);
+    // The arrows keep it.
+    then(&mut session, "s<Left><Right>2<Enter>", &["saved as yours2"]);
+}
+
+#[test]
 fn a_shape_is_saved_and_comes_back() {
     let mut session = session("f<Enter>smine");
     shows(&session, &["Save as: mine"]);
