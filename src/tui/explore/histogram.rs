@@ -92,7 +92,7 @@ fn bars(theme: &Theme, histogram: &Histogram, unit: Dimension, buffer: &mut Buff
         let (from, to) = (histogram.from(bin), histogram.from(bin + 1));
         match unit {
             _ if single => format!("{from:.0}"),
-            Dimension::Count if bin + 1 < bins => format!("{from:.0} to {:.0}", to - 1.0),
+            Dimension::Count => format!("{from:.0} to {:.0}", to - 1.0),
             _ if bin + 1 < bins => format!("{from:.decimals$} to <{to:.decimals$}"),
             _ => format!("{from:.decimals$} to  {to:.decimals$}"),
         }
