@@ -145,7 +145,7 @@ fn shown(
             let matrix = evaluation::matrix(own, charset);
             let worst = evaluation::worst_pairs(own, charset);
             let features = charset.lines(&evaluation::features(classifier));
-            let drawn = classifier.map(evaluation::sampled).unwrap_or_default();
+            let drawn: String = classifier.map(evaluation::sampled).into_iter().collect();
             let advice = advice(asked);
             let named = match (&asked.of, classifier) {
                 (_, Some(_)) => NamedBy::Classifier,
