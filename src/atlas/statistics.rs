@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use crate::atlas::feature::{Feature, features};
 use crate::atlas::sums::{Wide, mean, signed_mean};
-use crate::atlas::values::{Row, RowSums, Sum, Table, columns};
+use crate::atlas::values::{Row, RowSums, Sum, Table, columns, row_width};
 use crate::atlas::variance::VarianceParts;
 use crate::index::lower_word;
 
@@ -93,10 +93,10 @@ struct Totals {
 type Squares = [u128; 2];
 
 impl Totals {
-    fn new(columns: usize) -> Self {
+    fn new() -> Self {
         Self {
             rows: RowSums::new(),
-            squares: vec![[0; 2]; columns],
+            squares: vec![[0; 2]; row_width()],
         }
     }
 
@@ -200,15 +200,14 @@ pub(crate) fn statistics(
     ideal: impl Fn(&str) -> Option<f64>,
 ) -> Vec<Statistic> {
     let columns = columns();
-    let nothing = || Totals::new(table.width());
     let totals = (0..counts.len())
         .into_par_iter()
         .with_min_len(1024)
-        .fold(nothing, |mut totals, index| {
+        .fold(Totals::new, |mut totals, index| {
             totals.add(table.row(index), counts[index]);
             totals
         })
-        .reduce(nothing, |one, other| one.merged(&other));
+        .reduce(Totals::new, |one, other| one.merged(&other));
     let sums = totals.rows.sums().into_iter().zip(&columns);
     let of_features = sums.map(|(sum, &(column, _))| Total {
         sum,

@@ -49,6 +49,12 @@ fn width(circular: bool) -> usize {
     if circular { 2 } else { 1 }
 }
 
+/// The length of a row.
+pub(crate) fn row_width() -> usize {
+    let widths = features().iter().map(|feature| width(feature.circular));
+    widths.sum()
+}
+
 /// Where the values of each feature stand in a row, and whether it is circular.
 pub(crate) fn columns() -> Vec<(usize, bool)> {
     let all = features().iter().map(|feature| feature.circular);
@@ -63,9 +69,8 @@ pub(crate) fn columns() -> Vec<(usize, bool)> {
 impl Default for Table {
     /// Of no imprint.
     fn default() -> Self {
-        let widths = features().iter().map(|feature| width(feature.circular));
         Self {
-            width: widths.sum(),
+            width: row_width(),
             parts: Vec::new(),
             imprints: 0,
             extremes: vec![NOTHING; features().len()],
@@ -108,11 +113,6 @@ impl Table {
             values: &part.values[row * self.width..][..self.width],
             missing: part.missing[row],
         }
-    }
-
-    /// The length of a row.
-    pub(crate) fn width(&self) -> usize {
-        self.width
     }
 
     /// The smallest and the largest value of a feature; None if no imprint has one.
@@ -198,12 +198,10 @@ pub(crate) struct RowSums {
 impl RowSums {
     /// Of no row.
     pub(crate) fn new() -> Self {
-        let features = features();
-        let widths = features.iter().map(|feature| width(feature.circular));
         Self {
             poses: 0,
-            columns: vec![0; widths.sum()],
-            missing: vec![0; features.len()],
+            columns: vec![0; row_width()],
+            missing: vec![0; features().len()],
         }
     }
 

@@ -60,8 +60,8 @@ impl Signals {
         Ok(Self { stopped, last })
     }
 
-    /// What a command ends with that failed: that a signal stopped it, if one came, else its own error.
-    pub(crate) fn or(&self, error: CliError) -> CliError {
+    /// The error of a command that failed: a signal stopped it, if one came; else its own error.
+    pub(crate) fn failure_or(&self, error: CliError) -> CliError {
         if self.stopped.load(Ordering::Relaxed) {
             self.failure()
         } else {

@@ -179,11 +179,12 @@ fn advice(asked: &ConfusionArguments) -> String {
     })
 }
 
-/// The matrix as the file that an ending asks for; `knows` says whether the method knows when it is certain.
+/// The matrix as the file that an ending asks for; `knows_certain` says whether the method knows when it is
+/// certain.
 ///
 /// # Errors
 /// [`CliError::TooManyShapes`] for a drawing whose matrix would not be legible.
-fn file(path: &Path, own: &Evaluation, knows: bool) -> Result<Vec<u8>, CliError> {
+fn file(path: &Path, own: &Evaluation, knows_certain: bool) -> Result<Vec<u8>, CliError> {
     let map = || {
         let map = ConfusionMap::new(&own.labels, &own.confusion);
         map.ok_or_else(|| CliError::TooManyShapes {
@@ -192,7 +193,7 @@ fn file(path: &Path, own: &Evaluation, knows: bool) -> Result<Vec<u8>, CliError>
         })
     };
     let mut title = format!("error {}", evaluation::percent(own.error()));
-    if knows {
+    if knows_certain {
         let certain = evaluation::ratio(own.certain, own.touches);
         title += &format!(", certain {}", evaluation::percent(certain));
     }

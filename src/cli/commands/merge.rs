@@ -220,7 +220,7 @@ fn leave_model(model: &Model, wanted: &Wanted) -> Result<String, CliError> {
             wanted.there.existing(),
             &signals.stopped,
         );
-        saved.map_err(|error| signals.or(error.into()))?;
+        saved.map_err(|error| signals.failure_or(error.into()))?;
     }
     let limit = Evaluation::of(model);
     Ok(if wanted.json {

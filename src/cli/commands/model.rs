@@ -86,7 +86,7 @@ pub(crate) fn train(
         error => error.into(),
     })?;
     let saved = save_model(&model, &path, asked.there.existing(), stopped);
-    saved.map_err(|error| signals.or(error.into()))?;
+    saved.map_err(|error| signals.failure_or(error.into()))?;
     trained(&model, &path, "written", asked, charset)
 }
 

@@ -21,6 +21,8 @@
 //!
 //! Refused, with line and field: words where numbers are expected, and lines or blocks of another length. Nothing is
 //! padded, since a value that is missing in the middle would shift all that follow.
+//!
+//! The file is long because how a table is arranged decides how its lines are read.
 
 use std::io::{BufRead, Seek};
 use std::ops::ControlFlow;

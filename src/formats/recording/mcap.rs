@@ -13,6 +13,8 @@
 //! | `tactile_msgs/TactileState` | for each of its sensors a frame of `TOPIC#SENSOR` |
 //!
 //! Others are passed over. Time is that of the log, from the first message with a frame on.
+//!
+//! The file is long because records, chunks and messages are read in one pass, each from within the one before.
 
 use std::collections::HashMap;
 use std::io::{self, BufRead, BufReader, Read, Take};

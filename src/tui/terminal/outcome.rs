@@ -17,7 +17,8 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// The exit status: 0, 1 after a failure, or 128 and the signal's number as a shell has it; a lost terminal counts as its signal.
+    /// The exit status: 0, 1 after a failure, or 128 and the signal's number as in a shell; a lost terminal counts as its
+    /// signal.
     pub fn status(self) -> u8 {
         match self {
             Self::Quit => 0,
