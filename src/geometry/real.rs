@@ -154,7 +154,7 @@ fn quarters(degrees: f64) -> (i32, f64) {
     } else {
         degrees % 360.0
     };
-    let quarter = Real::floor(degrees / 90.0 + 0.5);
+    let quarter = nearest(degrees * (1.0 / 90.0));
     (quarter, degrees - f64::from(quarter) * 90.0)
 }
 
