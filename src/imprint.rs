@@ -157,7 +157,9 @@ impl Imprint {
 }
 
 /// A rectangle of whole taxels, by the plane coordinates of its edges: columns `left..right`, rows `top..bottom`.
+// Four bytes at an odd address, as in an enum, would be copied in parts, and a processor waits for the last one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(align(4))]
 pub struct Bounds {
     /// First column.
     pub left: u8,
