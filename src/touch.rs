@@ -229,8 +229,14 @@ impl Pen<f64> for TouchPen<'_> {
         self.areas.edge(from, to);
     }
 
+    #[inline]
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, material: Side) {
         self.ellipses.add(ellipse, material);
+    }
+
+    fn ring(&mut self, points: &[Point<f64>], material: Side) {
+        self.edges = true;
+        self.areas.ring(points, material);
     }
 }
 

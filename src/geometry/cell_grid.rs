@@ -89,6 +89,11 @@ impl<T: Real> CellGrid<T> {
         T::whole(self.columns)
     }
 
+    /// Whether a rectangle lies on the grid.
+    pub(crate) fn encloses(&self, low: Point<T>, high: Point<T>) -> bool {
+        low.x >= T::ZERO && low.y >= T::ZERO && high.x <= self.right() && high.y <= self.bottom()
+    }
+
     /// The rows that may hold something; all others are empty.
     pub(crate) fn rows(&self) -> Range<usize> {
         let row = |y: T| y.max(T::ZERO).min(self.bottom()).cell().0;

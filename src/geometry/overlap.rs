@@ -41,6 +41,22 @@ impl<T: Real> Overlap<T> {
         &self.grid
     }
 
+    /// Draws an edge from which the material lies on the side of `sign`. `whole` is for edges that do not reach beyond the
+    /// grid.
+    fn side(&mut self, from: Point<T>, to: Point<T>, sign: T, whole: bool) {
+        let Some(edge) = SlopedEdge::between(from, to, sign) else {
+            return;
+        };
+        let part = if whole {
+            Some([edge.left, edge.right])
+        } else {
+            self.clipped(&edge)
+        };
+        if let Some([from, to]) = part {
+            self.inside(&edge, from, to);
+        }
+    }
+
     /// Draws a part of an edge that lies on the grid or at its rim.
     fn inside(&mut self, edge: &SlopedEdge<T>, from: Point<T>, to: Point<T>) {
         let ((mut row, top), (last, _)) = (from.y.cell(), to.y.cell());
@@ -166,6 +182,28 @@ struct SlopedEdge<T> {
 }
 
 impl<T: Real> SlopedEdge<T> {
+    /// The edge between two points, with the material on its right for a sign of +1; None if it is horizontal.
+    fn between(from: Point<T>, to: Point<T>, sign: T) -> Option<Self> {
+        let (left, right, sign) = if from.x < to.x {
+            (from, to, -sign)
+        } else {
+            (to, from, sign)
+        };
+        let (width, height) = (right.x - left.x, right.y - left.y);
+        if height == T::ZERO {
+            return None;
+        }
+        let steepness = height / width;
+        Some(Self {
+            left,
+            right,
+            slope: width / height,
+            steepness,
+            sign,
+            climb: sign * steepness,
+        })
+    }
+
     fn x_at(&self, y: T) -> T {
         self.left.x + (y - self.left.y) * self.slope
     }
@@ -177,41 +215,38 @@ impl<T: Real> SlopedEdge<T> {
 
 impl<T: Real> Pen<T> for Overlap<T> {
     fn edge(&mut self, from: Point<T>, to: Point<T>) {
-        self.grid.draws(from, from);
-        self.grid.draws(to, to);
-        let (left, right, sign) = if from.x < to.x {
-            (from, to, -T::ONE)
-        } else {
-            (to, from, T::ONE)
-        };
-        let (width, height) = (right.x - left.x, right.y - left.y);
-        if height == T::ZERO {
-            return;
-        }
-        let steepness = height / width;
-        let edge = SlopedEdge {
-            left,
-            right,
-            slope: width / height,
-            steepness,
-            sign,
-            climb: sign * steepness,
-        };
-        let (top, end) = (left.y.min(right.y), left.y.max(right.y));
-        let across = left.x < T::ZERO || right.x > self.grid.right();
-        let part = if across || top < T::ZERO || end > self.grid.bottom() {
-            self.clipped(&edge)
-        } else {
-            Some([left, right])
-        };
-        if let Some([from, to]) = part {
-            self.inside(&edge, from, to);
-        }
+        let (low, high) = (
+            Point::new(from.x.min(to.x), from.y.min(to.y)),
+            Point::new(from.x.max(to.x), from.y.max(to.y)),
+        );
+        self.grid.draws(low, high);
+        self.side(from, to, T::ONE, self.grid.encloses(low, high));
     }
 
     fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side) {
         if let Some(curve) = EllipseCuts::of(ellipse) {
             self.arcs.draw(&mut self.grid, &curve, material);
+        }
+    }
+
+    /// Compares the ring with the grid once, not each edge.
+    fn ring(&mut self, points: &[Point<T>], material: Side) {
+        let Some(&last) = points.last() else { return };
+        let (mut low, mut high) = (last, last);
+        for point in points {
+            low = Point::new(low.x.min(point.x), low.y.min(point.y));
+            high = Point::new(high.x.max(point.x), high.y.max(point.y));
+        }
+        self.grid.draws(low, high);
+        let sign = match material {
+            Side::Inside => T::ONE,
+            Side::Outside => -T::ONE,
+        };
+        let whole = self.grid.encloses(low, high);
+        let mut from = last;
+        for &to in points {
+            self.side(from, to, sign, whole);
+            from = to;
         }
     }
 }
