@@ -69,7 +69,7 @@ impl FlipWriter<'_, '_, '_> {
         let start = at + self.steps.first;
         let near = NEAR * self.steps.per_cell;
         let last = f64::from(self.steps.count - 1) + near;
-        let mut column = from_first(Real::floor(start - NEAR) + 1);
+        let mut column = from_first(nearest(start - NEAR + 0.5));
         let mut first = None;
         while column < columns {
             #[expect(clippy::cast_precision_loss, reason = "a column")]

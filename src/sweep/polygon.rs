@@ -204,29 +204,29 @@ impl Polygonal {
                 climbed += piece.rise;
                 open += 1;
             }
-            let (mut from, mut to, mut flat) = (climbed, climbed, true);
+            let (mut from, mut slope, mut flat) = (climbed, 0.0, true);
             for piece in &self.pieces[open..] {
                 if piece.left >= right {
                     break;
                 }
                 if piece.right <= left {
                     from += piece.rise;
-                    to += piece.rise;
                 } else {
                     from += piece.steepness * (left - piece.left);
-                    to += piece.steepness * (right - piece.left);
+                    slope += piece.steepness;
                     flat = false;
                 }
             }
-            self.stretches.push(Stretch {
+            let stretch = Stretch {
                 left,
                 right,
                 from,
-                slope: (to - from) / (right - left),
+                slope,
                 area,
                 flat,
-            });
-            area += (from + to) * 0.5 * (right - left);
+            };
+            self.stretches.push(stretch);
+            area += (from + slope * 0.5 * (right - left)) * (right - left);
         }
         self.stretches.push(Stretch::far(last, f64::INFINITY, area));
     }
@@ -334,19 +334,21 @@ fn monotone(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
     if before == after {
         return;
     }
-    let bend = (final_slope - slope) / (end - start) * 0.5;
+    // In shares of the way: at share `t` the quadratic is `first + rise * t + bend * t²`.
+    let way = end - start;
+    let (rise, bend) = (slope * way, (final_slope - slope) * 0.5 * way);
     let sense = if last > first { 1.0 } else { -1.0 };
-    // Where the quadratic is at a height, and its slope there.
+    // Where the quadratic is at a height, and its slope there, times the way.
     let passage = |height: f64| {
         let gap = first - height;
-        let root = (slope * slope - 4.0 * bend * gap).max(0.0).sqrt();
-        let way = -2.0 * gap / (slope + sense * root);
-        let way = if way.is_finite() { way } else { end - start };
-        ((start + way.max(0.0)).min(end), root)
+        let root = (rise * rise - 4.0 * bend * gap).max(0.0).sqrt();
+        let share = -2.0 * gap / (rise + sense * root);
+        let share = if share.is_finite() { share } else { 1.0 };
+        ((start + way * share.max(0.0)).min(end), root)
     };
     if before != Level::Doubtful && after != Level::Doubtful {
         let (at, steepness) = passage(0.0);
-        if steepness >= STEEP && 8.0 * bend.abs() * DOUBT <= steepness * steepness {
+        if steepness >= STEEP * way && 8.0 * bend.abs() * DOUBT <= steepness * steepness {
             return spans.turn(at, after);
         }
     }
