@@ -160,30 +160,29 @@ impl FinishedFile {
     /// [`ErrorKind::AlreadyExists`] if a file that is to be kept has come meanwhile; else what the system reports. The
     /// old file is there as before, unless syncing the folder failed ([`FileError::is_in_place`]).
     pub fn persist(self) -> Result<(), FileError> {
-        self.persist_open().map(drop)
+        let folder = folder_of(&self.path).to_owned();
+        self.take_name()?;
+        sync_folder(&folder)
     }
 
-    /// The same. Returns the open file, for what is written into it from now on.
+    /// Gives the file its name. Returns the open file, for what is written into it from now on.
     ///
     /// # Errors
     /// As for [`Self::persist`].
-    fn persist_open(self) -> Result<File, FileError> {
+    fn take_name(self) -> Result<File, FileError> {
         let folder = folder_of(&self.path);
         let replace = self.existing == Existing::Replaced;
         let named = self.file.persist(folder, &self.path, replace);
-        let refuse = |error| FileError::new("move it into place", &self.path, error);
-        let file = named.map_err(refuse)?;
-        sync_folder(folder)?;
-        Ok(file)
+        named.map_err(|error| FileError::new("move it into place", &self.path, error))
     }
 }
 
-/// Gives two files that belong together their names. Whenever the program dies, there is never one of these beside an
-/// older one of the other: what stands under the second name is removed first, and named last. Returns the first file,
-/// open, for what is written into it from now on.
+/// Gives two files that belong together their names: both, or neither. Whenever the program dies, there is never one of
+/// these beside an older one of the other: what stands under the second name is removed first, and named last. Returns the
+/// first file, open, for what is written into it from now on.
 ///
 /// # Errors
-/// As for [`FinishedFile::persist`].
+/// As for [`FinishedFile::persist`]. If the second file got no name, the first one has lost it again.
 pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, FileError> {
     let refuse = |doing, error| FileError::new(doing, second.path(), error);
     match second.existing {
@@ -199,8 +198,16 @@ pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, F
         }
         Existing::Kept => {}
     }
-    let file = first.persist_open()?;
-    second.persist()?;
+    let (path, beside) = (first.path().to_owned(), second.path().to_owned());
+    let file = first.take_name()?;
+    // Before the second gets its name: a power cut keeps their order, too.
+    let synced = sync_folder(folder_of(&path));
+    second.take_name().inspect_err(|_| {
+        // Alone it would be taken for complete. If it cannot be removed either, no error says more than the first one.
+        let _ = fs::remove_file(&path);
+    })?;
+    synced?;
+    sync_folder(folder_of(&beside))?;
     Ok(file)
 }
 

@@ -331,6 +331,24 @@ mod tests {
     }
 
     #[test]
+    fn a_pair_whose_second_file_gets_no_name_leaves_none() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (atlas, elsewhere) = (folder.path().join("a.csv"), folder.path().join("gone"));
+        let (result, going) = (result(), AtomicBool::new(false));
+        for existing in [Existing::Kept, Existing::Replaced] {
+            std::fs::create_dir(&elsewhere).expect("made");
+            let file = AtlasFile::new(&atlas).expect("a format");
+            let first = file.prepare(&result, existing, &going).expect("written");
+            let second = PoseFile::new(elsewhere.join("a.npy"), &result.grid, existing);
+            let second = second.expect("begun").finish().expect("written");
+            std::fs::remove_dir_all(&elsewhere).expect("removed");
+            let refused = persist_pair(first, second).expect_err("its folder is gone");
+            assert!(refused.is_missing(), "{refused}");
+            assert_eq!(files(folder.path()), [""; 0], "neither is there");
+        }
+    }
+
+    #[test]
     fn a_file_that_came_meanwhile_is_kept() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("poses.npy");
