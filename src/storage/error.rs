@@ -93,6 +93,9 @@ pub enum LibraryError {
         /// The name asked for.
         name: String,
     },
+    /// No shape was deleted.
+    #[error("the trash is empty")]
+    TrashEmpty,
     /// The shape comes with the program and cannot be changed.
     #[error("{name:?} comes with the program; it can be copied under another name")]
     Shipped {

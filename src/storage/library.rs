@@ -350,16 +350,33 @@ impl Library {
         let missing = || LibraryError::NotInTrash {
             name: name.to_string(),
         };
+        self.restore_newest(|deleted| name.same(deleted), missing)
+    }
+
+    /// Restores the shape that was deleted last, by this program or another, and returns its name.
+    ///
+    /// # Errors
+    /// If the trash is empty, the name is taken again, or the system refuses.
+    pub fn restore_last(&self) -> Result<String, LibraryError> {
+        self.restore_newest(|_| true, || LibraryError::TrashEmpty)
+    }
+
+    /// Restores the newest shape in the trash whose name is wanted.
+    fn restore_newest(
+        &self,
+        is_wanted: impl Fn(&str) -> bool,
+        missing: impl Fn() -> LibraryError,
+    ) -> Result<String, LibraryError> {
         if !self.folder.is_dir() {
             return Err(missing());
         }
         let _lock = Lock::wait(&self.folder, &self.waits)?;
         let trash = Trash::read(self.trash())?;
         let mut newest = trash.newest_first();
-        let deleted = newest.find(|deleted| name.same(&deleted.name));
+        let deleted = newest.find(|deleted| is_wanted(&deleted.name));
         let deleted = deleted.ok_or_else(missing)?;
         folder::regular(&deleted.path)?;
-        if let Some(name) = self.own_name(&name)? {
+        if let Some(name) = self.own_name(&Name::new(&deleted.name)?)? {
             let stamp = stamp(&folder::read(&self.path(&name))?);
             return Err(LibraryError::Exists { name, stamp });
         }

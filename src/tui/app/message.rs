@@ -139,8 +139,8 @@ pub enum Message {
     LoadNamed(String),
     /// Move the shape of that name about.
     PictureNamed(String),
-    /// Bring back the shape of that name that was removed last.
-    Restore(String),
+    /// Bring back the shape that was removed last, of that name or of any.
+    Restore(Option<String>),
     /// Put a document in place of the present one.
     Become(Box<Document>),
     /// Open the command line at the foot.

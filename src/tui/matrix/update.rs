@@ -81,7 +81,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Live(asked) => return live::update::act(app, &asked),
         Message::Recognise(asked) => return recognise::update::act(app, asked),
         Message::Undo if app.removed.is_some() => {
-            let name = app.removed.take()?;
+            let name = app.removed.take();
             return Some(Effect::Library(LibraryRequest::Restore(name)));
         }
         other => match library_request(other) {

@@ -41,9 +41,8 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
     let (name, rest) = line
         .split_once(' ')
         .map_or((line, ""), |(name, rest)| (name, rest.trim()));
-    let complete = || app.keymap().label(Context::Command, &action::NEXT);
     let command = find(name).ok_or_else(|| {
-        let complete = complete();
+        let complete = app.keymap().label(Context::Command, &action::NEXT);
         format!(
             "{:?} is unknown; {complete} shows the commands",
             shortened(name)
@@ -59,13 +58,7 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
         return Err(unexpected());
     };
     match (arguments, &words[..]) {
-        (Arguments::Deleted, []) => match &app.removed {
-            Some(name) => Ok(Message::Restore(name.clone())),
-            None => Err(format!(
-                "restore needs the name of a deleted shape; {} shows them",
-                complete()
-            )),
-        },
+        (Arguments::Deleted, []) => Ok(Message::Restore(None)),
         (_, []) => Err(unexpected()),
         (arguments, words) => with_arguments(arguments, rest, words, app, unexpected),
     }
@@ -92,7 +85,7 @@ fn with_arguments(
         }
         (Arguments::File(FilePurpose::Open), _) => Ok(Message::OpenFile(rest.to_owned())),
         (Arguments::File(FilePurpose::Write), _) => Ok(Message::WriteFile(rest.to_owned())),
-        (Arguments::Deleted, _) => Ok(Message::Restore(name_of(rest)?.to_string())),
+        (Arguments::Deleted, _) => Ok(Message::Restore(Some(name_of(rest)?.to_string()))),
         (Arguments::Name, _) if app.reading().imprint.is_empty() => {
             Err("nothing to save: the matrix is empty".to_owned())
         }

@@ -43,8 +43,8 @@ pub(super) enum DiskRequest {
     Deletable(String),
     /// Delete it.
     Remove(String),
-    /// Restore the shape of that name that was deleted last.
-    Restore(String),
+    /// Restore the shape that was deleted last, of that name or of any.
+    Restore(Option<String>),
     /// Move unsaved work of a program that crashed to the trash, and look for more of it.
     ThrowAway(Box<Orphan>),
     /// Read or write a file, or list some.
@@ -82,7 +82,7 @@ pub(super) enum DiskAnswer {
     ),
     /// The shape of that name was deleted.
     Removed(Result<String, LibraryError>),
-    /// The shape of that name was restored.
+    /// A shape was restored: its name.
     Restored(Result<String, LibraryError>),
     /// The work is in the trash under that name; and the next one, and how many there are.
     ThrownAway(Result<String, LibraryError>, Option<(Box<Orphan>, usize)>),
@@ -110,7 +110,8 @@ impl DiskRequest {
             Self::Store(shape, _) => format!("Saving {}", shape.name),
             Self::Deletable(name) => format!("Looking for {name}"),
             Self::Remove(name) => format!("Deleting {name}"),
-            Self::Restore(name) => format!("Restoring {name}"),
+            Self::Restore(Some(name)) => format!("Restoring {name}"),
+            Self::Restore(None) => "Restoring a shape".to_owned(),
             Self::ThrowAway(_) => "Moving it to the trash".to_owned(),
             Self::File(FileRequest::Write(name, ..)) => format!("Writing {name}"),
             Self::File(FileRequest::Open(name)) => format!("Opening {name}"),
@@ -155,7 +156,7 @@ impl DiskRequest {
                 DiskAnswer::Stored(shape, stored, in_the_way.map(Box::new))
             }
             Self::Remove(name) => DiskAnswer::Removed(library.delete(&name)),
-            Self::Restore(name) => DiskAnswer::Restored(library.restore(&name)),
+            Self::Restore(name) => DiskAnswer::Restored(restore(library, name)),
             Self::ThrowAway(orphan) => throw_away(library, *orphan),
             Self::File(request) => DiskAnswer::File(files::perform(request, access)),
             Self::List => {
@@ -223,6 +224,11 @@ pub(super) fn not_recorded(answer: &DiskAnswer) -> Option<String> {
 #[expect(clippy::needless_pass_by_value, reason = "for `map_err`")]
 fn sentence(error: LibraryError) -> String {
     error.to_string()
+}
+
+/// Restores the shape that was deleted last, of that name or of any.
+fn restore(library: &Library, name: Option<String>) -> Result<String, LibraryError> {
+    name.map_or_else(|| library.restore_last(), |name| library.restore(&name))
 }
 
 /// Moves unsaved work to the trash. Other work is looked for only after this succeeds; otherwise the same work would be

@@ -121,8 +121,8 @@ pub enum LibraryRequest {
     Deletable(String),
     /// Delete a shape.
     Remove(String),
-    /// Restore the shape of that name that was deleted last.
-    Restore(String),
+    /// Restore the shape that was deleted last, of that name or of any.
+    Restore(Option<String>),
     /// Recover the offered unsaved work.
     Recover,
     /// Move it to the trash.

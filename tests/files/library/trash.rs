@@ -1,6 +1,6 @@
 //! Deleting and bringing back.
 
-use taxel::storage::{LibraryError, TRASH_KEPT};
+use taxel::storage::{Library, LibraryError, TRASH_KEPT};
 
 use super::Scratch;
 use super::files;
@@ -47,6 +47,24 @@ fn the_last_deleted_comes_back_first_and_never_over_another() {
 }
 
 #[test]
+fn the_last_deleted_comes_back_without_its_name() {
+    let scratch = Scratch::with(&["one", "two"]);
+    let empty = "the trash is empty";
+    assert_eq!(refusal(scratch.library.restore_last(), &scratch), empty);
+    for name in ["two", "one"] {
+        scratch.library.delete(name).expect("deleted");
+    }
+    // Another program knows it as well.
+    let other = Library::open(scratch.folder.clone());
+    assert_eq!(other.restore_last().expect("restored"), "one");
+    scratch.save("TWO", 3);
+    let taken = other.restore_last();
+    assert!(matches!(&taken, Err(LibraryError::Exists { name, .. }) if name == "TWO"));
+    scratch.library.delete("two").expect("deleted");
+    assert_eq!(other.restore_last().expect("restored"), "TWO");
+}
+
+#[test]
 fn the_last_fifty_are_kept() {
     let scratch = Scratch::new();
     for number in 0..TRASH_KEPT + 5 {
@@ -81,7 +99,7 @@ fn shapes_that_come_with_the_program_are_not_deleted() {
         refusal(scratch.library.delete("nothing"), &scratch),
         "no shape is called \"nothing\""
     );
-    let nowhere = taxel::storage::Library::open(scratch.path("nowhere"));
+    let nowhere = Library::open(scratch.path("nowhere"));
     assert_eq!(
         refusal(nowhere.delete("nothing"), &scratch),
         "no shape is called \"nothing\""
