@@ -89,6 +89,7 @@ impl Name {
     /// use taxel::formats::Name;
     /// let name = Name::new("ΟΔΟΣ.2")?;
     /// assert!(name.same("οδοσ.2") && name.same("οδος.2") && !name.same("οδος"));
+    /// assert!(Name::new("straße")?.same("STRAẞE"));
     /// # Ok::<(), taxel::formats::NameError>(())
     /// ```
     pub fn same(&self, other: &str) -> bool {
@@ -98,14 +99,16 @@ impl Name {
 
 /// The case-folded form of a text. Names with the same folded form are the same name.
 ///
-/// By way of upper case, since some letters have two lower ones (`Σ` has `σ` and `ς`), and a character at a time, since
-/// lower case of a whole text chooses between these by the letters around. `ß` is `ss`.
+/// By way of upper case, since some letters have two lower ones (`Σ` has `σ` and `ς`), and before that of lower case, since
+/// some have two upper ones (`ß` has `SS` and `ẞ`): all of these are one letter. A character at a time, since lower case of
+/// a whole text chooses by the letters around.
 pub fn folded(text: &str) -> String {
     if text.is_ascii() {
         // The same, at once: a library of 100,000 shapes is sorted by this.
         return text.to_ascii_lowercase();
     }
-    let upper = text.chars().flat_map(char::to_uppercase);
+    let lower = text.chars().flat_map(char::to_lowercase);
+    let upper = lower.flat_map(char::to_uppercase);
     upper.flat_map(char::to_lowercase).collect()
 }
 

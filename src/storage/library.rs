@@ -49,6 +49,8 @@ pub struct LibraryEntry {
 pub struct LoadedShape {
     /// The shape, under the name of its file.
     pub shape: StoredShape,
+    /// The name that the file says; another where the file was renamed or copied by hand.
+    pub written_name: Name,
     /// A hash of the file's content.
     pub stamp: u64,
     /// Where it comes from.
@@ -183,6 +185,7 @@ impl Library {
                     };
                     let (shape, stamp) = shipped::load(&name).ok_or_else(unknown)??;
                     return Ok(LoadedShape {
+                        written_name: shape.name.clone(),
                         shape,
                         stamp,
                         origin: ShapeOrigin::Shipped,
@@ -198,6 +201,7 @@ impl Library {
             StoredShape::read(&content).map_err(|error| LibraryError::Broken { path, error })?;
         // A file that was renamed by hand goes by its new name.
         Ok(LoadedShape {
+            written_name: shape.name.clone(),
             shape: shape.renamed(Name::new(&own)?),
             stamp: stamp(&content),
             origin: ShapeOrigin::Own,

@@ -168,6 +168,28 @@ fn figures_are_saved_with_their_sensor_and_source() {
 }
 
 #[test]
+fn names_that_are_not_clear_are_reported() {
+    let shelf = Shelf::new();
+    shelf.does("library|save|ring|-", RING);
+    let file = |name: &str| shelf.folder.join(name);
+    std::fs::rename(file("ring.json"), file("Ma\u{df}.json")).expect("renamed");
+    std::fs::copy(file("Ma\u{df}.json"), file("MASS.json")).expect("copied");
+    let all = taxel::storage::shipped::names().count() + 2;
+    let says = "the file says \"ring\", but its own name counts";
+    assert_eq!(
+        shelf.does("library|check", ""),
+        format!(
+            "name: MASS: {says}\n\
+             name: Ma\u{df}: {says}\n\
+             name: Ma\u{df}: the same as \"MASS\" on a system that ignores case\n\
+             {all} shapes, all intact\n"
+        )
+    );
+    let json = shelf.does("library|check|--json", "");
+    assert!(json.starts_with("[{\"finding\":\"name\",\"name\":\"MASS\",\"reason\":\"the file"));
+}
+
+#[test]
 fn broken_shapes_are_listed_and_checked_with_the_reason() {
     let shelf = Shelf::new();
     shelf.does("library|save|good|-", RING);

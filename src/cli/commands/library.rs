@@ -24,10 +24,11 @@ use crate::cli::output::charset::Charset;
 use crate::cli::threads;
 use crate::description::{RegionKind, regions};
 use crate::formats::Content;
+use crate::formats::name::folded;
 use crate::formats::{Name, StoredShape, json};
 use crate::quote::shortened_message;
 use crate::sensor::Sensor;
-use crate::storage::{Library, LibraryEntry, ShapeOrigin};
+use crate::storage::{Library, LibraryEntry, LoadedShape, ShapeOrigin};
 
 /// A line of the list: a shape of the library.
 struct ListLine {
@@ -39,8 +40,10 @@ struct ListLine {
     found: Result<ShapeSummary, String>,
 }
 
-/// What the list shows of a shape that can be read.
+/// What the list and the check tell of a shape that can be read.
 struct ShapeSummary {
+    /// The name that its file says.
+    written_name: Name,
     /// Columns of its matrix.
     columns: u8,
     /// Rows of its matrix.
@@ -59,7 +62,7 @@ impl ListLine {
         let found = library.load(&entry.name);
         Self {
             found: found
-                .map(|loaded| ShapeSummary::of(&loaded.shape))
+                .map(ShapeSummary::of)
                 .map_err(|error| shortened_message(&error.to_string())),
             name: entry.name,
             origin: entry.origin,
@@ -78,13 +81,15 @@ impl ListLine {
 
 impl ShapeSummary {
     /// Counts the regions of a shape.
-    fn of(shape: &StoredShape) -> Self {
+    fn of(loaded: LoadedShape) -> Self {
+        let shape = &loaded.shape;
         let regions = regions(&shape.imprint);
         let holes = regions
             .iter()
             .filter(|region| region.kind() == RegionKind::Hole);
         let holes = holes.count();
         Self {
+            written_name: loaded.written_name,
             columns: shape.imprint.columns(),
             rows: shape.imprint.rows(),
             na: shape.imprint.count(),
@@ -223,6 +228,9 @@ enum Finding {
     /// A shape that cannot be read.
     #[serde(rename = "broken")]
     Broken { name: String, reason: String },
+    /// A shape whose name is not clear.
+    #[serde(rename = "name")]
+    Name { name: String, reason: String },
     /// A file that is not a shape.
     #[serde(rename = "left over")]
     LeftOver { path: String, reason: &'static str },
@@ -232,9 +240,43 @@ impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Broken { name, reason } => write!(f, "broken: {name}: {reason}"),
+            Self::Name { name, reason } => write!(f, "name: {name}: {reason}"),
             Self::LeftOver { path, reason } => write!(f, "left over: {path}: {reason}"),
         }
     }
+}
+
+/// The user's shapes whose file says another name, and those whose names are one where case does not matter.
+fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let own = lines.iter().filter(|line| line.origin == ShapeOrigin::Own);
+    let mut before: Option<&ListLine> = None;
+    for line in own {
+        let mut find = |reason| {
+            let name = line.name.clone();
+            findings.push(Finding::Name { name, reason });
+        };
+        if let Ok(summary) = &line.found
+            && summary.written_name.as_str() != line.name
+        {
+            let written = &summary.written_name;
+            find(format!(
+                "the file says {:?}, but its own name counts",
+                written.as_str()
+            ));
+        }
+        // They are sorted without regard to case.
+        if let Some(before) = before
+            && folded(&before.name) == folded(&line.name)
+        {
+            find(format!(
+                "the same as {:?} on a system that ignores case",
+                before.name
+            ));
+        }
+        before = Some(line);
+    }
+    findings
 }
 
 /// Reads every shape, and looks for other files in the folder. Returns the report, a line for each finding or an array
@@ -250,12 +292,14 @@ pub(crate) fn check(
     let library = shelf.library()?;
     let lines = lines(&library)?;
     let shapes = lines.len();
+    let names = unclear_names(&lines);
     let broken = lines.into_iter().filter_map(|line| {
         let (name, reason) = (line.name, line.found.err()?);
         Some(Finding::Broken { name, reason })
     });
     let mut findings: Vec<Finding> = broken.collect();
     let broken = findings.len();
+    findings.extend(names);
     findings.extend(library.leftovers()?.into_iter().map(|(path, reason)| {
         let path = path.display().to_string();
         Finding::LeftOver { path, reason }

@@ -95,6 +95,11 @@ fn upper_and_lower_case_are_one_name() {
     for name in ["οδος", "οδοσ", "Οδος"] {
         assert_eq!(scratch.number(name), Some(5), "{name}");
     }
+    // So is one with two upper ones.
+    scratch.save("Maß", 6);
+    for name in ["MAẞ", "mass", "maß"] {
+        assert_eq!(scratch.number(name), Some(6), "{name}");
+    }
     // So it is for the shapes that come with the program.
     assert_eq!(
         refusal(
