@@ -234,42 +234,73 @@ impl Imprint {
     /// # Errors
     /// If a row differs in length from the first, there is another character, or a side is not 1 to 64.
     pub fn from_rows<'a>(rows: impl IntoIterator<Item = &'a str>) -> Result<Self, ImprintError> {
-        let mut imprint: Option<Self> = None;
-        let mut count = 0;
-        for (index, text) in rows.into_iter().enumerate() {
-            let row = index + 1;
-            if row > usize::from(MAX_SIDE) {
-                return Err(ImprintError::Rows);
-            }
-            let foreign = |character: char| !matches!(character, '#' | '.');
-            if let Some((column, found)) = text.chars().enumerate().find(|(_, own)| foreign(*own)) {
-                let column = column + 1;
-                return Err(ImprintError::Character { row, column, found });
-            }
-            let found = text.len();
-            let columns = u8::try_from(found).ok();
-            let columns = columns
-                .filter(|columns| (1..=MAX_SIDE).contains(columns))
-                .ok_or(ImprintError::Columns { row, found })?;
-            let active = text.bytes().map(|byte| u64::from(byte == b'#'));
-            let word = active.rev().fold(0, |word, active| word << 1 | active);
-            let imprint = imprint.get_or_insert_with(|| Self::empty(columns, MAX_SIDE));
-            if columns != imprint.columns {
-                return Err(ImprintError::Ragged {
-                    row,
-                    found,
-                    expected: imprint.columns,
-                });
-            }
-            imprint.words[index] = word;
-            count = u8::try_from(row).unwrap_or(MAX_SIDE);
+        let mut read = ImprintRows::default();
+        for row in rows {
+            read.push(row)?;
         }
-        imprint
-            .map(|imprint| Self {
-                rows: count,
-                ..imprint
-            })
-            .ok_or(ImprintError::Rows)
+        read.imprint()
+    }
+}
+
+/// An imprint of which rows are still being read, one after the other.
+#[derive(Debug, Default)]
+pub(crate) struct ImprintRows {
+    /// The rows so far in a matrix of [`MAX_SIDE`] rows; None before the first.
+    imprint: Option<Imprint>,
+    /// How many these are.
+    count: u8,
+}
+
+impl ImprintRows {
+    /// Takes the next row.
+    ///
+    /// # Errors
+    /// As for [`Imprint::from_rows`].
+    pub(crate) fn push(&mut self, text: &str) -> Result<(), ImprintError> {
+        if self.count == MAX_SIDE {
+            return Err(ImprintError::Rows);
+        }
+        let index = usize::from(self.count);
+        let row = index + 1;
+        let foreign = |character: char| !matches!(character, '#' | '.');
+        if let Some((column, found)) = text.chars().enumerate().find(|(_, own)| foreign(*own)) {
+            let column = column + 1;
+            return Err(ImprintError::Character { row, column, found });
+        }
+        let found = text.len();
+        let columns = u8::try_from(found).ok();
+        let columns = columns
+            .filter(|columns| (1..=MAX_SIDE).contains(columns))
+            .ok_or(ImprintError::Columns { row, found })?;
+        let active = text.bytes().map(|byte| u64::from(byte == b'#'));
+        let word = active.rev().fold(0, |word, active| word << 1 | active);
+        let imprint = self
+            .imprint
+            .get_or_insert_with(|| Imprint::empty(columns, MAX_SIDE));
+        let expected = imprint.columns;
+        if columns != expected {
+            return Err(ImprintError::Ragged {
+                row,
+                found,
+                expected,
+            });
+        }
+        imprint.words[index] = word;
+        self.count += 1;
+        Ok(())
+    }
+
+    /// The imprint of all rows.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub(crate) fn imprint(self) -> Result<Imprint, ImprintError> {
+        let Self { imprint, count } = self;
+        let imprint = imprint.ok_or(ImprintError::Rows)?;
+        Ok(Imprint {
+            rows: count,
+            ..imprint
+        })
     }
 }
 

@@ -77,14 +77,13 @@ impl Job {
             Record {
                 figure: None,
                 picture: None,
-                imprint: Some(content),
+                imprint: Some(imprint),
                 values,
                 ..
             } => {
                 values.only("imprint", &[])?;
                 record.no_sensor("imprint")?;
-                let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
-                Ok(Self::Describe(content.imprint("imprint", &no_name)?))
+                Ok(Self::Describe(*imprint))
             }
             _ => Ok(Self::Touch(sensor, touched(&record, &sensor, lookup)?)),
         }

@@ -15,7 +15,7 @@ use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 
 use crate::figure::FigureKind;
 use crate::formats::json::message;
-use crate::formats::record::{Record, RecordError, RowsOrName, Text, once};
+use crate::formats::record::{ImprintOrName, Record, RecordError, Text, once};
 use crate::imprint::Imprint;
 use crate::parameter::{PARAMETERS, number};
 use crate::picture::Picture;
@@ -126,7 +126,7 @@ pub fn named_shape_of_words(
     }
     let mut record = Record::default();
     if kind == "picture" {
-        record.picture = Some(RowsOrName::Name(Cow::Borrowed(values.trim())));
+        record.picture = Some(ImprintOrName::Name(Cow::Borrowed(values.trim())));
     } else {
         record.figure = Some(Cow::Borrowed(kind));
         for word in values.split_whitespace() {
@@ -153,14 +153,13 @@ fn source(mut record: Record<'_>, lookup: &ShapeLookup<'_>) -> Result<Source, Re
     if let Record {
         figure: None,
         picture: None,
-        imprint: Some(rows),
+        imprint: Some(imprint),
         values,
         ..
     } = &record
     {
         values.only("imprint", &[])?;
-        let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
-        return Ok(Picture::at_home(rows.imprint("imprint", &no_name)?).into());
+        return Ok(Picture::at_home(*imprint).into());
     }
     let kind = record.figure.as_deref().and_then(FigureKind::from_name);
     // A set has all poses of its grid, so the pose that a line gives must not make its file another one. Zooms are sizes.

@@ -5,13 +5,13 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::de::{Deserialize, DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::figure::{Figure, FigureKind};
 use crate::formats::described::Rows;
 use crate::formats::json::plain;
-use crate::imprint::{Imprint, ImprintError};
+use crate::imprint::{Imprint, ImprintRows};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::quote::shortened;
@@ -40,14 +40,6 @@ pub enum RecordError {
     FigureKind {
         /// What was given.
         found: String,
-    },
-    /// Rows that are not an imprint.
-    #[error("{key}: {error}")]
-    Imprint {
-        /// Where they stand.
-        key: &'static str,
-        /// What is wrong with them.
-        error: ImprintError,
     },
     /// None, or several, of the keys that tell what an object is.
     #[error("expected exactly one of the keys {0}")]
@@ -152,28 +144,26 @@ impl Values {
     }
 }
 
-/// Rows of text, or a name.
+/// An imprint, or the name of a shape that has one.
 #[derive(Clone, Debug)]
-pub(crate) enum RowsOrName<'a> {
-    /// Rows of `#` and `.`, not checked yet.
-    Rows(Vec<Cow<'a, str>>),
+pub(crate) enum ImprintOrName<'a> {
+    /// It was given as rows of `#` and `.`.
+    Imprint(Box<Imprint>),
     /// A name.
     Name(Cow<'a, str>),
 }
 
-impl RowsOrName<'_> {
-    /// The imprint in the rows; a name is looked up.
+impl ImprintOrName<'_> {
+    /// The imprint; a name is looked up.
     ///
     /// # Errors
-    /// Where the rows are not an imprint, or the name leads to none.
+    /// Where the name leads to none.
     pub(crate) fn imprint(
         &self,
-        key: &'static str,
         lookup: &dyn Fn(&str) -> Result<Imprint, String>,
     ) -> Result<Imprint, RecordError> {
         match self {
-            Self::Rows(rows) => Imprint::from_rows(rows.iter().map(AsRef::as_ref))
-                .map_err(|error| RecordError::Imprint { key, error }),
+            Self::Imprint(imprint) => Ok(**imprint),
             Self::Name(name) => lookup(name).map_err(RecordError::Name),
         }
     }
@@ -185,9 +175,9 @@ pub(crate) struct Record<'a> {
     /// A figure's name.
     pub(crate) figure: Option<Cow<'a, str>>,
     /// A picture's rows or name.
-    pub(crate) picture: Option<RowsOrName<'a>>,
+    pub(crate) picture: Option<ImprintOrName<'a>>,
     /// A whole matrix.
-    pub(crate) imprint: Option<RowsOrName<'a>>,
+    pub(crate) imprint: Option<Imprint>,
     /// A sensor.
     pub(crate) sensor: Option<Values>,
     /// All keys that are parameters.
@@ -212,7 +202,7 @@ impl Record<'_> {
                 Ok(Source::Figure(self.values.figure(kind, sensor)?))
             }
             (None, Some(content), None) => {
-                let imprint = content.imprint("picture", lookup)?;
+                let imprint = content.imprint(lookup)?;
                 Ok(Source::Picture(self.values.picture(&imprint, sensor)?))
             }
             _ => Err(RecordError::Which("figure, picture, imprint")),
@@ -267,12 +257,27 @@ impl<'a> Record<'a> {
     ) -> Result<(), A::Error> {
         match key {
             "figure" => once("figure", &mut self.figure, map.next_value::<Text<'_>>()?.0),
-            "picture" => once("picture", &mut self.picture, map.next_value()?),
-            "imprint" => once("imprint", &mut self.imprint, map.next_value()?),
-            "sensor" => once("sensor", &mut self.sensor, map.next_value()?),
+            "picture" => once("picture", &mut self.picture, value_of("picture", map)?),
+            "imprint" => {
+                let ImprintRecord(imprint) = value_of("imprint", map)?;
+                once("imprint", &mut self.imprint, imprint)
+            }
+            "sensor" => once("sensor", &mut self.sensor, value_of("sensor", map)?),
             other => self.values.take(other, map, expected),
         }
     }
+}
+
+/// The value of a key; an error names the key, and stays where it was found.
+pub(crate) fn value_of<'de, T: Deserialize<'de>, A: MapAccess<'de>>(
+    key: &str,
+    map: &mut A,
+) -> Result<T, A::Error> {
+    map.next_value().map_err(|error: A::Error| {
+        let text = error.to_string();
+        let position = text.rfind(" at line ").map_or("", |start| &text[start..]);
+        A::Error::custom(format_args!("{key}: {}{position}", plain(&text)))
+    })
 }
 
 /// Stores the value of a key.
@@ -305,10 +310,8 @@ impl Values {
                 shortened(key)
             )));
         };
-        let number = map.next_value::<f64>().map_err(|error| {
-            A::Error::custom(format_args!("{key}: {}", plain(&error.to_string())))
-        })?;
-        once(PARAMETERS[index].key, &mut self.0[index], number)
+        let key = PARAMETERS[index].key;
+        once(key, &mut self.0[index], value_of(key, map)?)
     }
 }
 
@@ -354,33 +357,72 @@ impl<'de: 'a, 'a> Deserialize<'de> for Text<'a> {
     }
 }
 
-impl<'de: 'a, 'a> Deserialize<'de> for RowsOrName<'a> {
+impl<'de: 'a, 'a> Deserialize<'de> for ImprintOrName<'a> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct ContentVisitor;
         impl<'de> Visitor<'de> for ContentVisitor {
-            type Value = RowsOrName<'de>;
+            type Value = ImprintOrName<'de>;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("rows of '#' and '.'")
+                f.write_str(ROWS)
             }
             fn visit_borrowed_str<E: Error>(self, text: &'de str) -> Result<Self::Value, E> {
-                Ok(RowsOrName::Name(Cow::Borrowed(text)))
+                Ok(ImprintOrName::Name(Cow::Borrowed(text)))
             }
             fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
-                Ok(RowsOrName::Name(Cow::Owned(text.to_owned())))
+                Ok(ImprintOrName::Name(Cow::Owned(text.to_owned())))
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
-                let mut rows = Vec::new();
-                while let Some(Text(row)) = list.next_element()? {
-                    rows.push(row);
-                    if rows.len() > usize::from(crate::sensor::MAX_SIDE) {
-                        // One row too many is kept, which tells; the others need no memory.
-                        while list.next_element::<IgnoredAny>()?.is_some() {}
-                    }
-                }
-                Ok(RowsOrName::Rows(rows))
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Self::Value, A::Error> {
+                let ImprintRecord(imprint) = RowsVisitor.visit_seq(list)?;
+                Ok(ImprintOrName::Imprint(Box::new(imprint)))
             }
         }
         deserializer.deserialize_any(ContentVisitor)
+    }
+}
+
+/// An imprint as a list of its rows.
+pub(crate) struct ImprintRecord(pub(crate) Imprint);
+
+impl<'de> Deserialize<'de> for ImprintRecord {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_seq(RowsVisitor)
+    }
+}
+
+struct RowsVisitor;
+
+impl<'de> Visitor<'de> for RowsVisitor {
+    type Value = ImprintRecord;
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(ROWS)
+    }
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
+        let mut rows = ImprintRows::default();
+        while list.next_element_seed(NextRow(&mut rows))?.is_some() {}
+        rows.imprint().map(ImprintRecord).map_err(A::Error::custom)
+    }
+}
+
+/// What an imprint is given as.
+const ROWS: &str = "rows of '#' and '.'";
+
+/// Takes a row of an imprint where it stands, so that an error is reported there.
+struct NextRow<'a>(&'a mut ImprintRows);
+
+impl<'de> DeserializeSeed<'de> for NextRow<'_> {
+    type Value = ();
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_str(self)
+    }
+}
+
+impl Visitor<'_> for NextRow<'_> {
+    type Value = ();
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(ROWS)
+    }
+    fn visit_str<E: Error>(self, row: &str) -> Result<(), E> {
+        self.0.push(row).map_err(E::custom)
     }
 }
 

@@ -6,8 +6,8 @@ use std::fmt;
 
 use crate::formats::described::Rows;
 use crate::formats::json::{self, message};
-use crate::formats::name::{Name, NameError};
-use crate::formats::record::{Record, RecordError, RowsOrName, Values};
+use crate::formats::name::Name;
+use crate::formats::record::{ImprintRecord, Record, RecordError, Values, value_of};
 use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::sensor::Sensor;
@@ -53,15 +53,6 @@ pub enum ShapeError {
     /// A key without which it is not a shape.
     #[error("{0}: missing")]
     Missing(&'static str),
-    /// A value that has no meaning.
-    #[error(transparent)]
-    Record(#[from] RecordError),
-    /// A name that is none.
-    #[error("name: {0}")]
-    Name(NameError),
-    /// A sensor that is none.
-    #[error("sensor: {0}")]
-    Sensor(RecordError),
     /// A source that is none.
     #[error("source: {0}")]
     Source(RecordError),
@@ -123,17 +114,10 @@ impl StoredShape {
         if !file.format {
             return Err(ShapeError::Missing("format"));
         }
-        let name = file.name.ok_or(ShapeError::Missing("name"))?;
-        let name = Name::new(&name).map_err(ShapeError::Name)?;
-        let sensor = file.sensor.ok_or(ShapeError::Missing("sensor"))?;
-        let sensor = sensor
-            .sensor(Sensor::default())
-            .map_err(ShapeError::Sensor)?;
+        let NameRecord(name) = file.name.ok_or(ShapeError::Missing("name"))?;
+        let SensorRecord(sensor) = file.sensor.ok_or(ShapeError::Missing("sensor"))?;
+        let ImprintRecord(imprint) = file.imprint.ok_or(ShapeError::Missing("imprint"))?;
         let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
-        let imprint = file
-            .imprint
-            .ok_or(ShapeError::Missing("imprint"))?
-            .imprint("imprint", &no_name)?;
         let source = file
             .source
             .map(|source| {
@@ -166,17 +150,46 @@ impl Serialize for StoredShape {
     }
 }
 
-/// A file's keys before they are checked.
+/// The name of a file; refused where it stands if it is none.
+struct NameRecord(Name);
+
+impl<'de> Deserialize<'de> for NameRecord {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NameVisitor;
+        impl Visitor<'_> for NameVisitor {
+            type Value = NameRecord;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a text")
+            }
+            fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
+                Name::new(text).map(NameRecord).map_err(E::custom)
+            }
+        }
+        deserializer.deserialize_str(NameVisitor)
+    }
+}
+
+/// The sensor of a file.
+struct SensorRecord(Sensor);
+
+impl<'de> Deserialize<'de> for SensorRecord {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let sensor = Values::deserialize(deserializer)?.sensor(Sensor::default());
+        sensor.map(SensorRecord).map_err(D::Error::custom)
+    }
+}
+
+/// A file's keys.
 #[derive(Default)]
 struct File<'a> {
     /// Whether it says that it is one of [`FORMAT`].
     format: bool,
     /// Its name.
-    name: Option<String>,
+    name: Option<NameRecord>,
     /// The sensor that it was stored on.
-    sensor: Option<Values>,
+    sensor: Option<SensorRecord>,
     /// Its rows.
-    imprint: Option<RowsOrName<'a>>,
+    imprint: Option<ImprintRecord>,
     /// What made it, if that is known.
     source: Option<Record<'a>>,
 }
@@ -211,10 +224,10 @@ impl<'de: 'a, 'a> Deserialize<'de> for File<'a> {
                             }
                             file.format = true;
                         }
-                        "name" => file.name = Some(map.next_value()?),
-                        "sensor" => file.sensor = Some(map.next_value()?),
-                        "imprint" => file.imprint = Some(map.next_value()?),
-                        "source" => file.source = Some(map.next_value()?),
+                        "name" => file.name = Some(value_of("name", &mut map)?),
+                        "sensor" => file.sensor = Some(value_of("sensor", &mut map)?),
+                        "imprint" => file.imprint = Some(value_of("imprint", &mut map)?),
+                        "source" => file.source = Some(value_of("source", &mut map)?),
                         _ => {
                             let keys = &["format", "name", "sensor", "imprint", "source"];
                             return Err(A::Error::unknown_field(&shortened(&key), keys));

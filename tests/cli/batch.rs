@@ -98,7 +98,7 @@ fn bad_lines_are_answered_in_their_places() {
             "9: figure: \\\"\\\\u{1b}\\u00e9\\\" is unknown, expected one of ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon",
         ),
         POINT_ANSWER.to_owned(),
-        error("11: imprint: row 2 has 1 character, expected 2 as in the first row"),
+        error("11: column 20: imprint: row 2 has 1 character, expected 2 as in the first row"),
         error("12: column 33: imprint: given twice"),
         error("13: side: 1e300 is above 16 (allowed: above 0, up to 16)"),
         POINT_ANSWER.to_owned(),

@@ -186,7 +186,7 @@ fn a_bad_shape_is_told_by_line_and_column() {
     bad(
         "#..",
         "#.x",
-        "imprint: row 2, column 3: found 'x', expected '#' or '.'",
+        "line 6, column 26: imprint: row 2, column 3: found 'x', expected '#' or '.'",
     );
     bad(
         "\"side\": 2",
@@ -196,7 +196,7 @@ fn a_bad_shape_is_told_by_line_and_column() {
     bad(
         "corner\"",
         "\u{1b}[31m\"",
-        "line 4, column 12: a control character in a string, expected an escape such as \\n",
+        "line 4, column 12: name: a control character in a string, expected an escape such as \\n",
     );
 }
 

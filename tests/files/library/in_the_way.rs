@@ -168,7 +168,7 @@ fn broken_files_are_listed_told_and_harm_nothing() {
         (
             "cut",
             &good[..good.len() / 2],
-            "line 15, column 20: the end inside a string, expected a closing quote",
+            "line 15, column 20: imprint: the end inside a string, expected a closing quote",
         ),
         ("empty", "", "line 1, column 1: the end, expected a value"),
         (
@@ -179,7 +179,17 @@ fn broken_files_are_listed_told_and_harm_nothing() {
         (
             "ragged",
             &good.replacen("................\"", "...\"", 1),
-            "imprint: row 2 has 3 characters, expected 16 as in the first row",
+            "line 12, column 9: imprint: row 2 has 3 characters, expected 16 as in the first row",
+        ),
+        (
+            "named",
+            &good.replacen("\"x\",", "\"x/y\"\n,", 1),
+            "line 3, column 15: name: '/' cannot be in a name",
+        ),
+        (
+            "wide",
+            &good.replacen("\"columns\": 16", "\"columns\": 99", 1),
+            "line 9, column 3: sensor: columns: 99 is above 64",
         ),
         (
             "other",
@@ -197,7 +207,9 @@ fn broken_files_are_listed_told_and_harm_nothing() {
         let start = format!("FOLDER/{name}.json: ");
         assert!(told.starts_with(&start) && told.contains(message), "{told}");
     }
-    let all = ["cut", "empty", "good", "huge", "newer", "other", "ragged"];
+    let all = [
+        "cut", "empty", "good", "huge", "named", "newer", "other", "ragged", "wide",
+    ];
     assert_eq!(scratch.own(), all);
     assert_eq!(scratch.number("good"), Some(1));
     // A broken file goes into the trash as it is, and comes back as it was.
