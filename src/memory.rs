@@ -11,6 +11,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use crate::formats::value::counted;
 use crate::pose::PoseGrid;
 use crate::sweep::{Sweep, TimingSample};
 
@@ -73,7 +74,7 @@ impl fmt::Display for MemorySize {
                 let number = self.0 as f64 / *bytes as f64;
                 write!(f, "{number:.1}{letter}")
             }
-            None => write!(f, "{} bytes", self.0),
+            None => f.write_str(&counted(self.0, "byte")),
         }
     }
 }

@@ -5,6 +5,7 @@ use serde::Deserialize;
 use crate::frame::{Frame, FrameError, Processing, Rule};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
+use crate::parameter::number::counted;
 use crate::sensor::MAX_SIDE;
 
 /// The keys beside `frame` that say which values are active.
@@ -85,13 +86,14 @@ pub(crate) fn matrix(rows: &[Vec<Option<f64>>]) -> Result<Matrix<f64>, String> {
     };
     let (Some(columns), Some(lines)) = (side(width), side(height)) else {
         return Err(format!(
-            "{height} rows of {width}, expected 1 to {MAX_SIDE} of each"
+            "{} of {width}, expected 1 to {MAX_SIDE} of each",
+            counted(height as u64, "row")
         ));
     };
     if let Some((row, number)) = rows.iter().zip(1..).find(|(row, _)| row.len() != width) {
-        let found = row.len();
+        let found = counted(row.len() as u64, "value");
         return Err(format!(
-            "row {number} has {found} values, expected {width} as in the first row"
+            "row {number} has {found}, expected {width} as in the first row"
         ));
     }
     let mut matrix = Matrix::filled(columns, lines, f64::NAN);
@@ -130,7 +132,7 @@ mod tests {
         assert!(wrong("{\"percent\":0}", frame).contains("above 0"));
         assert_eq!(
             wrong("{\"at_least\":1}", "[[1, 2], [3]]"),
-            "frame: row 2 has 1 values, expected 2 as in the first row"
+            "frame: row 2 has 1 value, expected 2 as in the first row"
         );
         assert_eq!(
             wrong("{\"at_least\":1}", "[]"),
@@ -140,7 +142,7 @@ mod tests {
         assert!(imprint("{\"at_least\":1}", &row_of(64)).is_ok());
         assert_eq!(
             wrong("{\"at_least\":1}", &row_of(65)),
-            "frame: 1 rows of 65, expected 1 to 64 of each"
+            "frame: 1 row of 65, expected 1 to 64 of each"
         );
     }
 }

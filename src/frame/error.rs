@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::matrix::Matrix;
+use crate::parameter::number::counted;
 
 /// What is wrong with a frame or with the way to process it.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,7 +64,9 @@ impl fmt::Display for FrameError {
             ),
             Self::Crop { columns, rows } => write!(
                 f,
-                "the crop reaches beyond the frame, which has {columns} columns and {rows} rows"
+                "the crop reaches beyond the frame, which has {} and {}",
+                counted((*columns).into(), "column"),
+                counted((*rows).into(), "row")
             ),
             Self::Size {
                 what,
@@ -71,8 +74,11 @@ impl fmt::Display for FrameError {
                 expected,
             } => write!(
                 f,
-                "the {what} has {} columns and {} rows, expected {} and {} as the frame has",
-                found.0, found.1, expected.0, expected.1
+                "the {what} has {} and {}, expected {} and {} as the frame has",
+                counted(found.0.into(), "column"),
+                counted(found.1.into(), "row"),
+                expected.0,
+                expected.1
             ),
             Self::Rule { what, expected } => write!(f, "{what}: expected {expected}"),
             Self::Tare { frames, wanted } => {

@@ -211,7 +211,7 @@ mod tests {
         let wrong = seen(&mask("#..")).map_err(|error| error.to_string());
         assert_eq!(
             wrong,
-            Err("the mask has 3 columns and 1 rows, expected 2 and 3 as the frame has".to_owned())
+            Err("the mask has 3 columns and 1 row, expected 2 and 3 as the frame has".to_owned())
         );
     }
 

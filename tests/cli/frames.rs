@@ -495,7 +495,7 @@ fn a_plain_table_of_factors_is_a_gain() {
     assert_eq!(na(&table("1000")), na(&format!("{}\n", table("1000"))));
     assert_ne!(na(&table("1000")), 0);
     std::fs::write(&path, format!("{}\n", ["1"; 20].join(","))).expect("written");
-    refused("tekscan.asf", &flags, "the gain has 20 columns and 1 rows");
+    refused("tekscan.asf", &flags, "the gain has 20 columns and 1 row");
     std::fs::write(&path, "{\"frame\":[1,1]}\n").expect("written");
     refused(
         "tekscan.asf",

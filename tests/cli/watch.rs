@@ -66,7 +66,7 @@ fn a_stream_is_a_filter_in_a_pipeline() {
     assert!(found[4]["time"].as_f64().is_some_and(|time| time >= 0.0));
     assert_eq!(
         run.stderr,
-        "standard input: 1 torn, short, long or garbled frames so far, the last: 1 x\n"
+        "standard input: 1 frame dropped so far (torn, short, long or garbled), the last: 1 x\n"
     );
     let run = taxel("watch - --once", [0xff; 100]);
     assert_eq!(run.status, Some(1));

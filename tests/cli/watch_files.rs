@@ -266,7 +266,10 @@ fn frames_of_another_size_do_not_end_a_recording() {
     assert_eq!(sums, [10, 10, 15, 15, 10]);
     let said = "frame 2 has 1 x 3 cells; the recording has frames of 1 x 2 and leaves out others";
     assert!(run.stderr.contains(said), "{run:?}");
-    assert!(run.stderr.contains("5 torn, short"), "{run:?}");
+    assert!(
+        run.stderr.contains("5 frames dropped so far"),
+        "{run:?}"
+    );
     assert!(
         run.stderr.contains("2 frames of another size not recorded"),
         "{run:?}"
@@ -377,7 +380,7 @@ fn dots_mean_that_values_were_left_out_only_where_they_stand_for_values() {
         "{}",
         run.stderr
     );
-    assert!(run.stderr.contains("2 torn, short"), "{}", run.stderr);
+    assert!(run.stderr.contains("2 frames dropped"), "{}", run.stderr);
     for cut in [
         "data:\n- 0\n- 1\n- '...'\n---\n",
         "array('H', [0, 1, '...'])\n---\n",
@@ -420,7 +423,7 @@ fn why_lines_of_json_are_no_frames_is_said() {
         ),
         (
             format!("{text}{{\"frame\":[[1,2],[3]]}}\n"),
-            "row 2 has 1 values, expected 2",
+            "row 2 has 1 value, expected 2",
         ),
     ] {
         let said = refused(line, &input);

@@ -41,6 +41,7 @@ use crate::cli::settings::pitch::Pitch;
 use crate::formats::recording::{
     ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent, SetRule,
 };
+use crate::formats::value::counted;
 use crate::formats::{StoredShape, json};
 use crate::frame::{FlipReport, Frame, Processed, Processing, Rule, Tare};
 use crate::imprint::Imprint;
@@ -419,7 +420,7 @@ impl Selection {
         let max = processed.max.map_or("–".to_owned(), short);
         let mut values = format!("sum {}{unit}, max {max}{unit}", short(processed.sum));
         if self.tare > 0 {
-            values += &format!(", tare of {} frames", self.tare);
+            values += &format!(", tare of {}", counted(self.tare, "frame"));
         }
         vec![title, values, self.rule_text(&unit)]
     }

@@ -374,7 +374,8 @@ fn described(shape: &NamedShape) -> String {
             format!("{} {}", kind.name(), sizes.collect::<Vec<_>>().join(", "))
         }
         (None, crate::source::Source::Picture(picture)) => {
-            format!("picture of {} taxels", picture.imprint().count())
+            let taxels = counted(picture.imprint().count().into(), "taxel");
+            format!("picture of {taxels}")
         }
         (None, _) => shape.source.noun().to_owned(),
     }

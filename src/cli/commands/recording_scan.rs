@@ -11,6 +11,7 @@ use crate::cli::error::CliError;
 use crate::cli::input::recording::RecordingFile;
 use crate::cli::output::recording_list::ListedChannel;
 use crate::formats::recording::{RecordingError, RecordingEvent, RecordingFormat, RecordingNote};
+use crate::formats::value::counted;
 use crate::frame::{FrameError, View};
 use crate::matrix::Matrix;
 
@@ -97,9 +98,11 @@ impl Scan {
             .find_map(|channel| channel.info.shape)?;
         let (rows, columns) = stated;
         (given? != stated).then(|| {
-            format!(
-                "it states {rows} rows and {columns} columns; --rows and --columns have no effect"
-            )
+            let (rows, columns) = (
+                counted(rows.into(), "row"),
+                counted(columns.into(), "column"),
+            );
+            format!("it states {rows} and {columns}; --rows and --columns have no effect")
         })
     }
 

@@ -11,7 +11,7 @@
 //! ```
 //! Without a threshold frames are answered all the same, with `"imprint":null`. With a tare the first frames wait until
 //! it is complete and are then answered together. What is odd goes to standard error, a line each, headed by the
-//! source: `/dev/ttyUSB0: 12 torn, short, long or garbled frames so far, the last: \x00\x07\xff`. On a terminal the
+//! source: `/dev/ttyUSB0: 12 frames dropped so far (torn, short, long or garbled), the last: \x00\x07\xff`. On a terminal the
 //! screen's live page opens instead ([`request`]). The file is long because a frame is recorded, kept for the tare, named
 //! and answered in one pass.
 
@@ -37,7 +37,7 @@ use crate::formats::recording::{
     RecordingMetadata, SetRule,
 };
 use crate::formats::stream::StreamCounts;
-use crate::formats::value::{counted, grouped};
+use crate::formats::value::counted;
 use crate::frame::{Frame, FrameError, Processing, Tare, TareFrames};
 use crate::matrix::Matrix;
 use crate::tui::live::request::WatchRequest;
@@ -531,10 +531,10 @@ impl Watcher<'_> {
         self.dropped = counts.dropped;
         self.reported = Some(Instant::now());
         let sample = counts.sample.as_deref().unwrap_or("");
-        let dropped = grouped(counts.dropped);
-        let text =
-            format!("{dropped} torn, short, long or garbled frames so far, the last: {sample}");
-        self.say(&text);
+        let dropped = counted(counts.dropped, "frame");
+        self.say(&format!(
+            "{dropped} dropped so far (torn, short, long or garbled), the last: {sample}"
+        ));
     }
 
     /// The end of a source that has one.
@@ -553,10 +553,10 @@ impl Watcher<'_> {
                 let error = RecordingError::Unknown;
                 return Err(CliError::Recording { name, error });
             }
-            let bytes = grouped(counts.bytes);
+            let bytes = counted(counts.bytes, "byte");
             return Err(self.refused(&match &counts.reason {
-                Some(reason) => format!("{bytes} bytes but no frame; the last line: {reason}"),
-                None => format!("{bytes} bytes but no frame; check --rows, --columns and --format"),
+                Some(reason) => format!("{bytes} but no frame; the last line: {reason}"),
+                None => format!("{bytes} but no frame; check --rows, --columns and --format"),
             }));
         }
         Ok(())
@@ -595,11 +595,8 @@ impl Watcher<'_> {
         }
         let given_up = self.lines.given_up;
         if given_up > 0 {
-            let text = format!(
-                "{} frames were recorded but not answered",
-                grouped(given_up)
-            );
-            self.say(&text);
+            let frames = counted(given_up, "frame");
+            self.say(&format!("{frames} recorded but not answered"));
         }
         let name = self.name.clone();
         let written = self.lines.finish();

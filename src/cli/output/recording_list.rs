@@ -139,7 +139,11 @@ fn size(channel: &ListedChannel) -> String {
         format!(" of {rows} × {columns}")
     });
     let cells = counted(channel.cells as u64, "cell");
-    format!("{rows} rows × {columns} columns{whole}, {cells}")
+    let (rows, columns) = (
+        counted(rows.into(), "row"),
+        counted(columns.into(), "column"),
+    );
+    format!("{rows} × {columns}{whole}, {cells}")
 }
 
 /// A name in ten columns, then the value; lines without a value are left out.

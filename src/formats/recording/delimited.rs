@@ -38,6 +38,7 @@ use crate::formats::recording::side::side;
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::seconds::{since, to_nanoseconds};
 use crate::frame::{Frame, MAX_FRAME_SIDE};
+use crate::parameter::number::counted;
 
 /// Lines that are compared to find what stands beside the cells where nothing names it.
 const COMPARED: u16 = 8;
@@ -319,8 +320,9 @@ fn named_cells(
     match cells(names) {
         Some(NamedCells::Grid(rows, columns, fields)) => match options.shape {
             Some((asked_rows, asked_columns)) if (asked_rows, asked_columns) != (rows, columns) => {
+                let rows = counted(rows.into(), "row");
                 let message = format!(
-                    "the header names {rows} rows of {columns} cells, not {asked_rows} of {asked_columns}"
+                    "the header names {rows} of {columns} cells, not {asked_rows} of {asked_columns}"
                 );
                 Err(RecordingError::in_line(number, message))
             }
@@ -337,7 +339,8 @@ fn named_cells(
             Ok(((side, side), fields, Some(RecordingNote::Square { side })))
         }
         Some(NamedCells::Incomplete(rows, columns, found)) => {
-            let message = format!("the header names {found} cells of {rows} rows of {columns}");
+            let (found, rows) = (counted(found as u64, "cell"), counted(rows.into(), "row"));
+            let message = format!("the header names {found} of {rows} of {columns}");
             Err(RecordingError::in_line(number, message))
         }
         None => {
@@ -580,7 +583,8 @@ impl RowBlock {
             return Ok(given);
         }
         let (found, rows) = (self.found, self.frame.rows());
-        let message = format!("the frame ends after {found} rows, expected {rows}");
+        let found = counted(found.into(), "row");
+        let message = format!("the frame ends after {found}, expected {rows}");
         Err(RecordingError::in_line(number, message))
     }
 

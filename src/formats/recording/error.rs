@@ -2,6 +2,8 @@
 
 use std::io;
 
+use crate::parameter::number::counted;
+
 /// Why a recording cannot be read, or not to its end.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -24,7 +26,7 @@ pub enum RecordingError {
     },
     /// The file does not say how its values are arranged.
     /// A list of cells, without rows. The numbers can be named with [`ReadOptions`](super::ReadOptions).
-    #[error("{values} values a frame, but no rows and columns; give --rows and --columns")]
+    #[error("{} a frame, but no rows and columns; give --rows and --columns", counted(*values, "value"))]
     Shape {
         /// How many values a frame has.
         values: u64,

@@ -7,7 +7,7 @@ use crate::formats::recording::answer::{RuleOrigin, SetRule};
 use crate::formats::recording::description::{FrameMark, RecordingMetadata};
 use crate::frame::{Frame, Rule, Tare, View};
 #[cfg(feature = "tui")]
-use crate::parameter::number::short;
+use crate::parameter::number::{counted, short};
 
 /// The formats of recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -232,10 +232,8 @@ impl fmt::Display for RecordingNote {
                 u32::from(*side) * u32::from(*side)
             ),
             Self::Garbled { frames } => {
-                write!(
-                    f,
-                    "{frames} torn, short, long or garbled frames were dropped"
-                )
+                let frames = counted(*frames, "frame");
+                write!(f, "{frames} dropped (torn, short, long or garbled)")
             }
             Self::Cut { records, counted } => write!(
                 f,

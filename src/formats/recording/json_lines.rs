@@ -21,6 +21,7 @@ use crate::formats::recording::side::shape;
 use crate::formats::recording::text_row::too_large;
 use crate::formats::seconds::since;
 use crate::frame::{Frame, LARGEST_VALUE};
+use crate::parameter::number::counted;
 
 /// Reads a recording.
 pub(super) fn read(
@@ -53,8 +54,9 @@ pub(super) fn read(
             }
         }
         if let Some((first_rows, first_columns)) = shape.filter(|own| *own != line.shape) {
+            let found = counted(rows.into(), "row");
             let message = format!(
-                "found {rows} rows of {columns}, expected {first_rows} of {first_columns} as before"
+                "found {found} of {columns}, expected {first_rows} of {first_columns} as before"
             );
             return Err(RecordingError::in_line(number, message));
         }
@@ -143,13 +145,13 @@ impl FrameLine {
         let wrong = |message: String| Err(FrameLineError::Json(1, message));
         if let Some(columns) = values.checked_div(rows) {
             let Some(shape) = shape(rows, columns) else {
-                return wrong(format!(
-                    "{rows} rows of {columns}, expected 1 to 512 of each"
-                ));
+                let rows = counted(rows as u64, "row");
+                return wrong(format!("{rows} of {columns}, expected 1 to 512 of each"));
             };
             if let Some((asked_rows, asked_columns)) = self.asked.filter(|asked| *asked != shape) {
+                let rows = counted(rows as u64, "row");
                 return wrong(format!(
-                    "{rows} rows of {columns}, and {asked_rows} of {asked_columns} were named"
+                    "{rows} of {columns}, and {asked_rows} of {asked_columns} were named"
                 ));
             }
             self.shape = shape;
@@ -160,7 +162,8 @@ impl FrameLine {
         };
         if values != usize::from(rows) * usize::from(columns) {
             return wrong(format!(
-                "found {values} values, expected {}",
+                "found {}, expected {}",
+                counted(values as u64, "value"),
                 u32::from(rows) * u32::from(columns)
             ));
         }
@@ -259,7 +262,8 @@ impl<'de> Visitor<'de> for CellsSeed<'_> {
             let expected = *width.get_or_insert(found);
             if found != expected || cells {
                 let row = **rows;
-                let message = format!("row {row} has {found} values, expected {expected}");
+                let found = counted(found as u64, "value");
+                let message = format!("row {row} has {found}, expected {expected}");
                 return Err(A::Error::custom(message));
             }
         }

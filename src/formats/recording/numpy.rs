@@ -25,6 +25,7 @@ use crate::formats::recording::side::shape;
 use crate::formats::recording::text_row::too_large;
 use crate::formats::seconds::since;
 use crate::frame::{Frame, LARGEST_VALUE};
+use crate::parameter::number::counted;
 use crate::quote::shortened;
 
 /// A longer header is none.
@@ -166,7 +167,7 @@ fn axes_shape(axes: &[u64], options: ReadOptions) -> Result<(u64, u16, u16), Rec
     found.ok_or_else(|| {
         let axes: Vec<String> = axes.iter().take(8).map(ToString::to_string).collect();
         let asked = asked.map_or(String::new(), |(rows, columns)| {
-            format!(", and {rows} rows of {columns} were named")
+            format!(", and {} of {columns} were named", counted(rows.into(), "row"))
         });
         RecordingError::damaged(format!(
             "an array of shape ({}), expected frames, rows and columns, at most 512 rows and columns{asked}",
@@ -270,8 +271,8 @@ pub(super) fn read(
     }
     let ended = frames(input, &layout, 0, &[], sink)?;
     if !ended && layout.record.is_none() && input.read(&mut [0])? > 0 {
-        let count = layout.frames;
-        let message = format!("more bytes than the {count} frames of the header take");
+        let frames = counted(layout.frames, "frame");
+        let message = format!("more bytes than {frames} of the header take");
         return Err(RecordingError::damaged(message));
     }
     Ok(())
@@ -349,8 +350,9 @@ fn moment(
 
 /// The error of an array that is shorter than its header says.
 fn short(frame: u64, frames: u64) -> RecordingError {
+    let frames = counted(frames, "frame");
     RecordingError::damaged(format!(
-        "the file ends inside frame {frame}, expected {frames} frames"
+        "the file ends inside frame {frame}, expected {frames}"
     ))
 }
 

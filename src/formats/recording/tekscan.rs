@@ -32,6 +32,7 @@ use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::seconds::to_nanoseconds;
 use crate::frame::Frame;
+use crate::parameter::number::counted;
 use crate::quote::shortened;
 
 /// The largest difference of a sum that is not an error.
@@ -189,7 +190,10 @@ fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), 
     for row in frame.values_mut().chunks_mut(columns.into()) {
         let is_end = !lines.advance()?;
         if is_end || is_blank(lines.line()) {
-            let message = format!("the frame ends here, expected {rows} rows");
+            let message = format!(
+                "the frame ends here, expected {}",
+                counted(rows.into(), "row")
+            );
             let number = lines.number() + u64::from(is_end);
             return Err(RecordingError::in_line(number, message));
         }

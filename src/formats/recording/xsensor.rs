@@ -30,7 +30,7 @@ use crate::formats::recording::number;
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row;
 use crate::frame::Frame;
-use crate::parameter::number::to_decimals;
+use crate::parameter::number::{counted, to_decimals};
 
 /// No file has more sensors: each has a name of its own.
 const MOST_CHANNELS: usize = 64;
@@ -158,7 +158,10 @@ impl XsensorState {
         frame.reset(columns, rows);
         for row in frame.values_mut().chunks_mut(columns.into()) {
             if !lines.advance_to_content()? {
-                let message = format!("ends inside a frame, expected {rows} rows");
+                let message = format!(
+                    "ends inside a frame, expected {}",
+                    counted(rows.into(), "row")
+                );
                 return Err(RecordingError::in_line(lines.number() + 1, message));
             }
             let (line, number) = (lines.line(), lines.number());

@@ -26,6 +26,7 @@ use crate::formats::recording::number;
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
 use crate::frame::Frame;
+use crate::parameter::number::counted;
 
 /// What stands above the values.
 #[derive(Default)]
@@ -130,7 +131,8 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
     frame.label = Some(1);
     for row in frame.values_mut().chunks_mut(columns.into()) {
         if !lines.advance_to_content()? {
-            let message = format!("ends inside the frame, expected {rows} lines of values");
+            let rows = counted(rows.into(), "line");
+            let message = format!("ends inside the frame, expected {rows} of values");
             return Err(RecordingError::in_line(lines.number() + 1, message));
         }
         let (line, number) = (lines.line(), lines.number());
@@ -145,7 +147,8 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
     let after = lines.number();
     let _ = sink(RecordingEvent::Frame(&frame));
     if more {
-        let message = format!("more values, expected {rows} lines of them as SensCountX says");
+        let rows = counted(rows.into(), "line");
+        let message = format!("more values, expected {rows} of them as SensCountX says");
         return Err(RecordingError::in_line(after, message));
     }
     Ok(())
