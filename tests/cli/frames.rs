@@ -504,6 +504,12 @@ fn a_plain_table_of_factors_is_a_gain() {
     );
     std::fs::write(&path, "a word\n").expect("written");
     refused("tekscan.asf", &flags, "not a recording of a known format");
+    std::fs::copy(sample("tekscan.asf"), &path).expect("copied");
+    refused(
+        "tekscan.asf",
+        &flags,
+        "a recording of several frames, expected a table of factors",
+    );
 }
 
 #[test]

@@ -48,13 +48,18 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
     let mut file = RecordingFile::open(path, ReadOptions::default())?;
     file.prefix_name("--gain ");
     let mut gain = Matrix::filled(1, 1, 1.0);
-    let mut found = None;
+    let (mut found, mut is_recording) = (None, false);
     let mut take = |event: RecordingEvent<'_>| {
         if let RecordingEvent::Frame(frame) = event {
-            found = Some(View::default().of(frame, &mut gain));
-            return ControlFlow::Break(());
+            // A second one is only looked for.
+            is_recording = found.is_some();
+            found.get_or_insert_with(|| View::default().of(frame, &mut gain));
         }
-        ControlFlow::Continue(())
+        if is_recording {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     };
     let read = match file.read(&mut take) {
         // Its lines were taken for frames, or for no table since nothing parts a single column, but it is one table of
@@ -71,6 +76,9 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
         RecordingError::Shape { .. } => file.refused(&"expected a table: a line for each row"),
         error => file.damaged(error),
     })?;
+    if is_recording {
+        return Err(file.refused(&"a recording of several frames, expected a table of factors"));
+    }
     let found = found.ok_or_else(|| file.refused(&"no frame, expected one of factors"))?;
     found.map_err(|error| file.refused(&error))?;
     Ok(gain)
