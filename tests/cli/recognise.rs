@@ -223,6 +223,24 @@ fn lines_are_answered_in_their_order() {
 }
 
 #[test]
+fn standard_input_is_read_once() {
+    let place = place();
+    let run = place.run("recognise - --model r --noise 0.01 --mask -", SQUARE);
+    refused(
+        &run,
+        1,
+        "standard input: cannot read: it can be read only once",
+    );
+    let line = "{\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}\n";
+    let run = place.run("model train - - --out two.npz", line);
+    refused(
+        &run,
+        1,
+        "standard input: cannot read: it can be read only once",
+    );
+}
+
+#[test]
 fn a_pose_is_told_in_cells_degrees_and_mm() {
     let place = place();
     let text = place.done("recognise bar.txt --model r --pose --json");

@@ -20,6 +20,7 @@ use crate::cli::arguments::recognise::RecogniseArguments;
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::content;
+use crate::cli::input::content::InputSource;
 use crate::cli::input::lines::{self, LineInput, MAX_LINE};
 use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{AnswerJson, AnswerText};
@@ -231,7 +232,13 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<Asked, CliError> {
     let (name, input): (String, Box<dyn Read + Send>) = match shelf.locate(what)? {
         Located::Shape(shape) => return Ok(Asked::Imprint(shape.imprint)),
         Located::File(path, file) => (path.to_string_lossy().into_owned(), Box::new(file)),
-        Located::Standard => ("standard input".to_owned(), Box::new(io::stdin())),
+        Located::Standard => {
+            let name = InputSource::Standard.name();
+            match content::standard() {
+                Ok(input) => (name, Box::new(input)),
+                Err(error) => return Err(CliError::Read { name, error }),
+            }
+        }
     };
     let refused = |error: content::InputError| CliError::Input {
         name: name.clone(),

@@ -4,6 +4,7 @@
 
 use std::io::{self, Read};
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::formats::recording::{RecordingFormat, recognised};
 use crate::formats::shape::MAX_BYTES;
@@ -27,6 +28,18 @@ impl InputSource {
             Self::Standard => "standard input".to_owned(),
         }
     }
+}
+
+/// Standard input, for the first who asks: a second reader would take the end that the first one found for an empty input.
+///
+/// # Errors
+/// If it was asked for before.
+pub(crate) fn standard() -> io::Result<io::Stdin> {
+    static IS_TAKEN: AtomicBool = AtomicBool::new(false);
+    if IS_TAKEN.swap(true, Ordering::Relaxed) {
+        return Err(io::Error::other("it can be read only once"));
+    }
+    Ok(io::stdin())
 }
 
 /// Why input cannot be used.

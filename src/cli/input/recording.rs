@@ -50,7 +50,7 @@ impl RecordingFile {
         };
         let opened = || {
             if is_standard {
-                return spooled(io::stdin());
+                return spooled(content::standard()?);
             }
             let file = File::open(path)?;
             // A pipe cannot be read twice.

@@ -11,12 +11,13 @@
 
 use std::ffi::OsStr;
 use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use crate::cli::arguments::model::shape_set::SetArguments;
 use crate::cli::error::CliError;
-use crate::cli::input::content::InputError;
+use crate::cli::input::content;
+use crate::cli::input::content::{InputError, InputSource};
 use crate::cli::input::shapes::Shelf;
 use crate::formats::{ShapeLookup, named_shape, named_shape_of_words};
 use crate::picture::Picture;
@@ -35,12 +36,12 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
     let mut shapes = Vec::new();
     for what in &asked.what {
         if what == "-" {
-            lines(
-                &mut io::stdin().lock(),
-                "standard input",
-                &lookup,
-                &mut shapes,
-            )?;
+            let name = InputSource::Standard.name();
+            let mut file = content::standard().map_err(|error| CliError::Input {
+                name: name.clone(),
+                error: InputError::Read(error),
+            })?;
+            lines(&mut file, &name, &lookup, &mut shapes)?;
         } else if let Some(path) = file_of_lines(what, shelf) {
             let name = path.to_string_lossy().into_owned();
             let mut file = File::open(&path).map_err(|error| CliError::Input {

@@ -6,13 +6,13 @@
 use std::collections::HashMap;
 use std::ffi::OsStr;
 use std::fs::File;
-use std::io::{self, ErrorKind};
+use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use crate::cli::error::CliError;
 use crate::cli::input::content;
-use crate::cli::input::content::InputSource;
+use crate::cli::input::content::{InputError, InputSource};
 use crate::formats::Content;
 use crate::formats::StoredShape;
 use crate::formats::name::folded;
@@ -79,7 +79,9 @@ impl Shelf {
             Located::Shape(shape) => return Ok(Content::Shape(shape)),
             Located::Standard => (
                 InputSource::Standard.name(),
-                content::read_from(io::stdin().lock()),
+                content::standard()
+                    .map_err(InputError::from)
+                    .and_then(content::read_from),
             ),
             Located::File(path, file) => (InputSource::File(path).name(), content::read_from(file)),
         };
