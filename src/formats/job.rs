@@ -7,7 +7,7 @@ use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 
 use crate::formats::framed::{FrameRows, RULE_KEYS, RuleRecord};
 use crate::formats::json::message;
-use crate::formats::record::{Record, RecordError, Text, once};
+use crate::formats::record::{Record, RecordError, Text, once, value_of};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -151,11 +151,11 @@ impl JobLine<'_> {
     ) -> Result<(), A::Error> {
         let rule = &mut self.rule;
         match key {
-            "at_least" => once(key, &mut rule.at_least, map.next_value()?),
-            "percent" => once(key, &mut rule.percent, map.next_value()?),
-            "low" => once(key, &mut rule.low, map.next_value()?),
-            "high" => once(key, &mut rule.high, map.next_value()?),
-            _ => once(key, &mut rule.least, map.next_value()?),
+            "at_least" => once(key, &mut rule.at_least, value_of(key, map)?),
+            "percent" => once(key, &mut rule.percent, value_of(key, map)?),
+            "low" => once(key, &mut rule.low, value_of(key, map)?),
+            "high" => once(key, &mut rule.high, value_of(key, map)?),
+            _ => once(key, &mut rule.least, value_of(key, map)?),
         }
     }
 }
@@ -176,7 +176,7 @@ impl<'de: 'a, 'a> Deserialize<'de> for JobLine<'a> {
                         continue;
                     }
                     if key == "frame" {
-                        once("frame", &mut line.frame, map.next_value()?)?;
+                        once("frame", &mut line.frame, value_of("frame", &mut map)?)?;
                         continue;
                     }
                     let expected = "figure, picture, imprint, frame, sensor or a parameter";

@@ -15,7 +15,7 @@ use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 
 use crate::figure::FigureKind;
 use crate::formats::json::message;
-use crate::formats::record::{ImprintOrName, Record, RecordError, Text, once};
+use crate::formats::record::{ImprintOrName, Record, RecordError, Text, once, value_of};
 use crate::imprint::Imprint;
 use crate::parameter::{PARAMETERS, number};
 use crate::picture::Picture;
@@ -197,8 +197,10 @@ impl<'de: 'a, 'a> Deserialize<'de> for Line<'a> {
                 let mut line = Line::default();
                 while let Some(Text(key)) = map.next_key()? {
                     match key.as_ref() {
-                        "name" => once("name", &mut line.name, map.next_value()?)?,
-                        "weight" => once("weight", &mut line.weight, map.next_value()?)?,
+                        "name" => once("name", &mut line.name, value_of("name", &mut map)?)?,
+                        "weight" => {
+                            once("weight", &mut line.weight, value_of("weight", &mut map)?)?;
+                        }
                         _ => line.record.take(
                             &key,
                             &mut map,

@@ -256,7 +256,10 @@ impl<'a> Record<'a> {
         expected: &str,
     ) -> Result<(), A::Error> {
         match key {
-            "figure" => once("figure", &mut self.figure, map.next_value::<Text<'_>>()?.0),
+            "figure" => {
+                let Text(name) = value_of("figure", map)?;
+                once("figure", &mut self.figure, name)
+            }
             "picture" => once("picture", &mut self.picture, value_of("picture", map)?),
             "imprint" => {
                 let ImprintRecord(imprint) = value_of("imprint", map)?;

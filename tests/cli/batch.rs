@@ -65,7 +65,7 @@ fn sizes_and_pose_have_no_defaults() {
 
 #[test]
 fn bad_lines_are_answered_in_their_places() {
-    let lines: [&[u8]; 14] = [
+    let lines: [&[u8]; 16] = [
         POINT.as_bytes(),
         b"nonsense",
         b"  \r",
@@ -79,6 +79,8 @@ fn bad_lines_are_answered_in_their_places() {
         b"{\"imprint\":[\"##\",\"#\"]}",
         b"{\"imprint\":[\"#\"],\"imprint\":[\"#\"]}",
         b"{\"figure\":\"hexagon\",\"side\":1e300,\"x0\":2,\"y0\":2,\"angle\":0}",
+        b"{\"frame\":[[1]],\"least\":-1}",
+        b"{\"imprint\":\"washer\"}",
         POINT.as_bytes(),
     ];
     let run = taxel("batch", lines.join(&b'\n'));
@@ -90,7 +92,7 @@ fn bad_lines_are_answered_in_their_places() {
         ),
         error("4: side: 99 is above 16 (allowed: above 0, up to 16)"),
         error("5: picture: no shape is called \\\"gasket\\\""),
-        error("6: column 12: not UTF-8, or an escape of no character"),
+        error("6: column 12: figure: not UTF-8, or an escape of no character"),
         error(
             "7: column 1: expected a value: a string in double quotes, a number, a list or an object",
         ),
@@ -101,10 +103,16 @@ fn bad_lines_are_answered_in_their_places() {
         error("11: column 20: imprint: row 2 has 1 character, expected 2 as in the first row"),
         error("12: column 33: imprint: given twice"),
         error("13: side: 1e300 is above 16 (allowed: above 0, up to 16)"),
+        error(
+            "14: column 25: least: found the number -1, expected a whole number from 0 to 4294967295",
+        ),
+        error(
+            "15: column 19: imprint: found the string \\\"washer\\\", expected rows of '#' and '.'",
+        ),
         POINT_ANSWER.to_owned(),
     ];
     assert_eq!(run.stdout, expected.concat());
-    assert_eq!(run.stderr, "error: 9 of 12 lines could not be answered\n");
+    assert_eq!(run.stderr, "error: 11 of 14 lines could not be answered\n");
     assert_eq!(run.status, Some(1));
 }
 
