@@ -318,16 +318,32 @@ fn frames_are_looked_at_as_the_file_says() {
 #[test]
 fn a_number_that_a_flag_cannot_take_is_answered_with_what_it_expects() {
     for (line, expected) in [
-        ("batch --jobs -1", " from 1 to 1024"),
-        ("batch --jobs many", " from 1 to 1024"),
-        ("frames a.csv --rows 0", " from 1 to 512"),
-        ("frames a.csv --frame -1", ", 0 or more"),
-        ("frames a.csv --label nope", ""),
-        ("recognise a.txt --top 0.5", ", 1 or more"),
+        ("batch --jobs -1", "expected a whole number from 1 to 1024"),
+        (
+            "batch --jobs many",
+            "expected a whole number from 1 to 1024",
+        ),
+        (
+            "frames a.csv --rows 0",
+            "expected a whole number from 1 to 512",
+        ),
+        (
+            "frames a.csv --frame -1",
+            "expected a whole number, 0 or more",
+        ),
+        ("frames a.csv --label nope", "expected a whole number"),
+        (
+            "recognise a.txt --top 0.5",
+            "expected a whole number, 1 or more",
+        ),
+        (
+            "recognise a.txt --top 9999999999",
+            "the number is too large",
+        ),
     ] {
         let run = run(&mut taxel(line));
         assert_eq!(run.status, Some(2), "{line}");
-        let expected = format!(">': expected a whole number{expected}\n");
+        let expected = format!(">': {expected}\n");
         assert!(run.stderr.contains(&expected), "{line}: {}", run.stderr);
     }
 }

@@ -6,6 +6,7 @@
 
 use std::ffi::OsString;
 use std::fmt::Display;
+use std::num::{IntErrorKind, ParseIntError};
 use std::ops::{Bound, RangeBounds};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -51,17 +52,22 @@ pub(super) fn whole<T>(
     range: impl RangeBounds<T> + Clone,
 ) -> impl Fn(&str) -> Result<T, String> + Clone
 where
-    T: FromStr + PartialOrd + Display,
+    T: FromStr<Err = ParseIntError> + PartialOrd + Display,
 {
     move |text| {
-        let number = text.trim().parse().ok();
+        let number = text.trim().parse::<T>();
+        let is_too_large = number
+            .as_ref()
+            .is_err_and(|error| *error.kind() == IntErrorKind::PosOverflow);
         number
+            .ok()
             .filter(|number| range.contains(number))
             .ok_or_else(|| {
                 let bounds = match (range.start_bound(), range.end_bound()) {
                     (Bound::Included(least), Bound::Included(most)) => {
                         format!(" from {least} to {most}")
                     }
+                    _ if is_too_large => return "the number is too large".to_owned(),
                     (Bound::Included(least), _) => format!(", {least} or more"),
                     _ => String::new(),
                 };
