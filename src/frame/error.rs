@@ -65,8 +65,8 @@ impl fmt::Display for FrameError {
             Self::Crop { columns, rows } => write!(
                 f,
                 "the crop reaches beyond the frame, which has {} and {}",
-                counted((*columns).into(), "column"),
-                counted((*rows).into(), "row")
+                counted(*columns, "column"),
+                counted(*rows, "row")
             ),
             Self::Size {
                 what,
@@ -75,8 +75,8 @@ impl fmt::Display for FrameError {
             } => write!(
                 f,
                 "the {what} has {} and {}, expected {} and {} as the frame has",
-                counted(found.0.into(), "column"),
-                counted(found.1.into(), "row"),
+                counted(found.0, "column"),
+                counted(found.1, "row"),
                 expected.0,
                 expected.1
             ),

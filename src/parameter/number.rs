@@ -78,9 +78,15 @@ pub fn grouped(count: impl Into<u128>) -> String {
 ///
 /// ```
 /// use taxel::parameter::number::counted;
-/// assert_eq!([0, 1, 2000].map(|count| counted(count, "pose")), ["0 poses", "1 pose", "2,000 poses"]);
+/// assert_eq!([0_u8, 1, 200].map(|count| counted(count, "pose")), ["0 poses", "1 pose", "200 poses"]);
+/// assert_eq!(counted(2000_u64, "touch"), "2,000 touches");
 /// ```
-pub fn counted(count: u64, noun: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{} {noun}{plural}", grouped(count))
+pub fn counted(count: impl Into<u128>, noun: &str) -> String {
+    let count = count.into();
+    let ending = match count {
+        1 => "",
+        _ if noun.ends_with("ch") => "es",
+        _ => "s",
+    };
+    format!("{} {noun}{ending}", grouped(count))
 }

@@ -231,7 +231,7 @@ impl Page for Comparison {
         let [first, second] = &self.names;
         let differ = match self.differing() {
             0 => "   they are alike".to_owned(),
-            count => format!("   they differ in {}", counted(count.into(), "taxel")),
+            count => format!("   they differ in {}", counted(count, "taxel")),
         };
         let pieces = [
             ("A: ", Role::Key),

@@ -266,10 +266,7 @@ fn frames_of_another_size_do_not_end_a_recording() {
     assert_eq!(sums, [10, 10, 15, 15, 10]);
     let said = "frame 2 has 1 x 3 cells; the recording has frames of 1 x 2 and leaves out others";
     assert!(run.stderr.contains(said), "{run:?}");
-    assert!(
-        run.stderr.contains("5 frames dropped so far"),
-        "{run:?}"
-    );
+    assert!(run.stderr.contains("5 frames dropped so far"), "{run:?}");
     assert!(
         run.stderr.contains("2 frames of another size not recorded"),
         "{run:?}"

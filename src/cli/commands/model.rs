@@ -374,7 +374,7 @@ fn described(shape: &NamedShape) -> String {
             format!("{} {}", kind.name(), sizes.collect::<Vec<_>>().join(", "))
         }
         (None, crate::source::Source::Picture(picture)) => {
-            let taxels = counted(picture.imprint().count().into(), "taxel");
+            let taxels = counted(picture.imprint().count(), "taxel");
             format!("picture of {taxels}")
         }
         (None, _) => shape.source.noun().to_owned(),

@@ -30,7 +30,7 @@ use crate::cli::output::evaluation::{self, bar, percent, percent_fine};
 use crate::cli::output::plot;
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
-use crate::formats::value::{counted, grouped};
+use crate::formats::value::counted;
 use crate::formats::{LinePlot, json};
 use crate::recognition::{
     GivenDescriptors, Model, Noise, RecognitionRate, TouchesUntil, TrainingError, random_taxels,
@@ -179,7 +179,7 @@ fn noise_plot(table: &[NoiseRow]) -> LinePlot {
     let plot = LinePlot::new("noise", "right");
     let curves = noise_points(table).into_iter();
     curves.fold(plot, |plot, (dead, points)| {
-        plot.with_curve(&counted(dead.into(), "dead taxel"), &points)
+        plot.with_curve(&counted(dead, "dead taxel"), &points)
     })
 }
 
@@ -191,7 +191,7 @@ fn noise_curves(table: &[NoiseRow], charset: Charset) -> String {
         match (curve.is_empty(), dead) {
             (true, _) => String::new(),
             (false, 0) => format!("\n{curve}"),
-            (false, dead) => format!("\n{}\n{curve}", counted(dead.into(), "dead taxel")),
+            (false, dead) => format!("\n{}\n{curve}", counted(dead, "dead taxel")),
         }
     });
     curves.collect()
@@ -267,8 +267,8 @@ fn noise_text(table: &[NoiseRow], seed: u64, given: bool, charset: Charset) -> S
     let touches = table.first().map_or(0, |row| row.rate.touches);
     let _ = writeln!(
         text,
-        "{} touches a row, seed {seed}; held: {} that some shape leaves without noise",
-        grouped(touches),
+        "{} a row, seed {seed}; held: {} that some shape leaves without noise",
+        counted(touches, "touch"),
         if given { "values" } else { "imprints" }
     );
     text

@@ -103,7 +103,7 @@ pub(crate) fn json(found: &FlipReport) -> String {
 /// The report in words.
 pub(crate) fn text(found: &FlipReport) -> String {
     let frames = counted(found.frames, "frame");
-    let mut text = format!("{frames} of {}\n", counted(u64::from(found.cells), "taxel"));
+    let mut text = format!("{frames} of {}\n", counted(found.cells, "taxel"));
     match (found.noise, found.standard_error) {
         (Some(noise), Some(error)) => {
             text += &format!(

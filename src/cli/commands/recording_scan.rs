@@ -98,10 +98,7 @@ impl Scan {
             .find_map(|channel| channel.info.shape)?;
         let (rows, columns) = stated;
         (given? != stated).then(|| {
-            let (rows, columns) = (
-                counted(rows.into(), "row"),
-                counted(columns.into(), "column"),
-            );
+            let (rows, columns) = (counted(rows, "row"), counted(columns, "column"));
             format!("it states {rows} and {columns}; --rows and --columns have no effect")
         })
     }

@@ -137,8 +137,8 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
         ..
     } = evaluation;
     let mut text = format!(
-        "{} touches of {}, {} distinct\n",
-        number(*touches),
+        "{} of {}, {} distinct\n",
+        counted(*touches, "touch"),
         counted(evaluation.labels.len() as u64, "shape"),
         number(evaluation.keys as u128)
     );

@@ -139,10 +139,7 @@ fn size(channel: &ListedChannel) -> String {
         format!(" of {rows} × {columns}")
     });
     let cells = counted(channel.cells as u64, "cell");
-    let (rows, columns) = (
-        counted(rows.into(), "row"),
-        counted(columns.into(), "column"),
-    );
+    let (rows, columns) = (counted(rows, "row"), counted(columns, "column"));
     format!("{rows} × {columns}{whole}, {cells}")
 }
 

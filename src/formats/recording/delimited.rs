@@ -320,7 +320,7 @@ fn named_cells(
     match cells(names) {
         Some(NamedCells::Grid(rows, columns, fields)) => match options.shape {
             Some((asked_rows, asked_columns)) if (asked_rows, asked_columns) != (rows, columns) => {
-                let rows = counted(rows.into(), "row");
+                let rows = counted(rows, "row");
                 let message = format!(
                     "the header names {rows} of {columns} cells, not {asked_rows} of {asked_columns}"
                 );
@@ -339,7 +339,7 @@ fn named_cells(
             Ok(((side, side), fields, Some(RecordingNote::Square { side })))
         }
         Some(NamedCells::Incomplete(rows, columns, found)) => {
-            let (found, rows) = (counted(found as u64, "cell"), counted(rows.into(), "row"));
+            let (found, rows) = (counted(found as u64, "cell"), counted(rows, "row"));
             let message = format!("the header names {found} of {rows} of {columns}");
             Err(RecordingError::in_line(number, message))
         }
@@ -583,7 +583,7 @@ impl RowBlock {
             return Ok(given);
         }
         let (found, rows) = (self.found, self.frame.rows());
-        let found = counted(found.into(), "row");
+        let found = counted(found, "row");
         let message = format!("the frame ends after {found}, expected {rows}");
         Err(RecordingError::in_line(number, message))
     }

@@ -54,7 +54,7 @@ pub(super) fn read(
             }
         }
         if let Some((first_rows, first_columns)) = shape.filter(|own| *own != line.shape) {
-            let found = counted(rows.into(), "row");
+            let found = counted(rows, "row");
             let message = format!(
                 "found {found} of {columns}, expected {first_rows} of {first_columns} as before"
             );

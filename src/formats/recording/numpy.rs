@@ -167,7 +167,7 @@ fn axes_shape(axes: &[u64], options: ReadOptions) -> Result<(u64, u16, u16), Rec
     found.ok_or_else(|| {
         let axes: Vec<String> = axes.iter().take(8).map(ToString::to_string).collect();
         let asked = asked.map_or(String::new(), |(rows, columns)| {
-            format!(", and {} of {columns} were named", counted(rows.into(), "row"))
+            format!(", and {} of {columns} were named", counted(rows, "row"))
         });
         RecordingError::damaged(format!(
             "an array of shape ({}), expected frames, rows and columns, at most 512 rows and columns{asked}",

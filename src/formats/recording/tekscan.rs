@@ -190,10 +190,7 @@ fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), 
     for row in frame.values_mut().chunks_mut(columns.into()) {
         let is_end = !lines.advance()?;
         if is_end || is_blank(lines.line()) {
-            let message = format!(
-                "the frame ends here, expected {}",
-                counted(rows.into(), "row")
-            );
+            let message = format!("the frame ends here, expected {}", counted(rows, "row"));
             let number = lines.number() + u64::from(is_end);
             return Err(RecordingError::in_line(number, message));
         }

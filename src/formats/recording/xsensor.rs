@@ -158,10 +158,7 @@ impl XsensorState {
         frame.reset(columns, rows);
         for row in frame.values_mut().chunks_mut(columns.into()) {
             if !lines.advance_to_content()? {
-                let message = format!(
-                    "ends inside a frame, expected {}",
-                    counted(rows.into(), "row")
-                );
+                let message = format!("ends inside a frame, expected {}", counted(rows, "row"));
                 return Err(RecordingError::in_line(lines.number() + 1, message));
             }
             let (line, number) = (lines.line(), lines.number());

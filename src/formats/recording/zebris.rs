@@ -131,7 +131,7 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
     frame.label = Some(1);
     for row in frame.values_mut().chunks_mut(columns.into()) {
         if !lines.advance_to_content()? {
-            let rows = counted(rows.into(), "line");
+            let rows = counted(rows, "line");
             let message = format!("ends inside the frame, expected {rows} of values");
             return Err(RecordingError::in_line(lines.number() + 1, message));
         }
@@ -147,7 +147,7 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
     let after = lines.number();
     let _ = sink(RecordingEvent::Frame(&frame));
     if more {
-        let rows = counted(rows.into(), "line");
+        let rows = counted(rows, "line");
         let message = format!("more values, expected {rows} of them as SensCountX says");
         return Err(RecordingError::in_line(after, message));
     }

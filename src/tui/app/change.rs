@@ -207,7 +207,7 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
 /// Says how many taxels set by hand were dropped, if any.
 fn say_dropped(app: &mut App, dropped: u32) {
     if dropped > 0 {
-        let taxels = counted(dropped.into(), "taxel");
+        let taxels = counted(dropped, "taxel");
         let them = if dropped == 1 { "it" } else { "them" };
         let undo = app.key_of(&action::UNDO);
         inform(

@@ -86,6 +86,6 @@ fn of_edits(from: &Document, to: &Document) -> String {
             };
             format!("taxel {column}, {row} {state}")
         }
-        (count, _) => format!("{} switched", counted(count.into(), "taxel")),
+        (count, _) => format!("{} switched", counted(count, "taxel")),
     }
 }

@@ -99,7 +99,7 @@ fn take_digit(app: &mut App, digit: u16) {
     app.count = Some(count.min(MOST_TIMES)).filter(|&count| count > 0);
     let text = match count {
         0 => "a count begins with 1 to 9".to_owned(),
-        1..=MOST_TIMES => counted(count.into(), "time"),
+        1..=MOST_TIMES => counted(count, "time"),
         _ => format!("a key repeats at most {MOST_TIMES} times"),
     };
     inform(app, text);

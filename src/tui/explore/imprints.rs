@@ -318,7 +318,7 @@ fn number(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
 /// All about an imprint in one line.
 fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     let pose = results.sweep().grid.pose(entry.first_pose);
-    let count = |count: u16, noun: &str| counted(count.into(), noun);
+    let count = |count: u16, noun: &str| counted(count, noun);
     format!(
         "imprint {} at {}; {}, {}, {} {}",
         entry.id,

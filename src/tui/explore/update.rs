@@ -147,7 +147,7 @@ fn find(app: &mut App, results: &mut Results) {
                 return;
             }
             let way = |by: i8, noun: &str, [less, more]: [&str; 2]| {
-                let count = counted(by.unsigned_abs().into(), noun);
+                let count = counted(by.unsigned_abs(), noun);
                 let towards = if by < 0 { less } else { more };
                 (by != 0).then(|| format!("{count} {towards}"))
             };

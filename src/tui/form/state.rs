@@ -152,7 +152,7 @@ impl FormDialog {
         let (columns, rows) = (self.shown.sensor.columns(), self.shown.sensor.rows());
         let all = self.before_imprint;
         let lost = all.count() - all.resized(columns, rows).count();
-        let taxels = counted(lost.into(), "active taxel");
+        let taxels = counted(lost, "active taxel");
         (lost > 0).then(|| format!("{taxels} will be cut"))
     }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::value::grouped;
+use crate::formats::value::{counted, grouped};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::tui::app::message::{Endpoint, Message};
@@ -276,11 +276,11 @@ impl Confusion {
         let confusion = &self.trained.evaluation.confusion[row];
         let touches: u128 = confusion.iter().sum();
         let text = format!(
-            "{} named {}: {} of {} touches",
+            "{} named {}: {} of {}",
             self.trained.name(row),
             self.trained.name(column),
             grouped(confusion[column]),
-            grouped(touches),
+            counted(touches, "touch"),
         );
         write::line(buffer, panes.detail, theme, [(text.as_str(), Role::Text)]);
         let Some(example) = &self.example else { return };

@@ -19,7 +19,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::value::{counted, decimal, deviation, grouped};
+use crate::formats::value::{counted, decimal, deviation};
 use crate::imprint::Imprint;
 use crate::pose::{Anchor, Axis};
 use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
@@ -176,7 +176,7 @@ impl Panel<'_> {
             "grid: {} cells, {}°; {}",
             decimal(ranges[Axis::X0].step(), 4),
             decimal(ranges[Axis::Angle].step(), 4),
-            touches(evaluation.touches),
+            counted(evaluation.touches, "touch"),
         );
         self.text(&steps, Role::Quiet);
         let certain = percent_of(evaluation.certain, evaluation.touches);
@@ -269,7 +269,7 @@ impl Panel<'_> {
     fn touches(&mut self, page: &Recognition) {
         if page.kept() > 0 {
             self.gap();
-            let touches = touches(page.kept() as u128);
+            let touches = counted(page.kept() as u64, "touch");
             let forget = self.key(&action::FORGET);
             self.text(&format!("{touches} kept; {forget} forgets"), Role::Text);
         }
@@ -380,13 +380,7 @@ fn spread_of(number: f64, decimals: usize) -> String {
 /// A number of taxels that differ.
 fn differ(count: u32) -> String {
     let verb = if count == 1 { "differs" } else { "differ" };
-    format!("{} {verb}", counted(count.into(), "taxel"))
-}
-
-/// A number of touches.
-fn touches(count: u128) -> String {
-    let ending = if count == 1 { "" } else { "es" };
-    format!("{} touch{ending}", grouped(count))
+    format!("{} {verb}", counted(count, "taxel"))
 }
 
 /// A share of a whole in percent.

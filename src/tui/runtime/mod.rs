@@ -271,7 +271,7 @@ impl World {
     /// The offer of unsaved work, None if there is none.
     fn left(&self) -> Option<Leftover> {
         let (orphan, waiting) = self.orphan.as_ref()?;
-        let taxels = counted(orphan.shape.imprint.count().into(), "taxel");
+        let taxels = counted(orphan.shape.imprint.count(), "taxel");
         let what = match orphan.shape.name.as_str() {
             UNNAMED => taxels,
             name => format!("{taxels} of {name}"),

@@ -187,7 +187,7 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
         line += 1;
     }
     if form.by_hand() > 0 {
-        let taxels = counted(form.by_hand().into(), "taxel");
+        let taxels = counted(form.by_hand(), "taxel");
         let text = format!("without {taxels} set by hand");
         let row = write::row(area, line);
         write::line(buffer, row, theme, [(text.as_str(), Role::Quiet)]);
