@@ -69,6 +69,20 @@ class Screen:
             os.execve(TAXEL, [TAXEL, *arguments], environment)
         fcntl.ioctl(self.master, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))
         self.bytes = b""
+        self.answers = True
+
+    def take(self):
+        """Reads what has come."""
+        before = len(self.bytes)
+        self.bytes += os.read(self.master, 1 << 16)
+        if self.answers:
+            # The question may have come in two pieces.
+            self.answer(self.bytes[max(0, before - 3):])
+
+    def answer(self, shown):
+        """Tells the terminal's status where it is asked for, as terminals do."""
+        for _ in range(shown.count(b"\x1b[5n")):
+            os.write(self.master, b"\x1b[0n")
 
     def read(self, seconds):
         """Reads what comes within a time; how many bytes that were."""
@@ -76,7 +90,7 @@ class Screen:
         while (left := end - time.monotonic()) > 0:
             if select.select([self.master], [], [], left)[0]:
                 try:
-                    self.bytes += os.read(self.master, 1 << 16)
+                    self.take()
                 except OSError:  # the program has ended
                     break
         return len(self.bytes) - before
@@ -88,7 +102,7 @@ class Screen:
             if time.monotonic() - start > seconds:
                 raise SystemExit(f"waited in vain for {pattern}")
             if select.select([self.master], [], [], 0.05)[0]:
-                self.bytes += os.read(self.master, 1 << 16)
+                self.take()
         return time.monotonic() - start
 
     def end(self):
@@ -143,7 +157,7 @@ def memory(folder):
             time.sleep(max(0.0, start + sent / 3000 - time.monotonic()))
             screen.read(0.0)
             while select.select([screen.master], [], [], 0)[0]:
-                os.read(screen.master, 1 << 16)
+                screen.take()
         time.sleep(1.0)
         screen.read(0.2)
         found.append(screen.memory())
@@ -182,14 +196,14 @@ def stopped_terminal(folder):
         if time.monotonic() - start < 1.0:
             screen.read(0.0)
             while select.select([screen.master], [], [], 0)[0]:
-                screen.bytes += os.read(screen.master, 1 << 16)
+                screen.take()
     # Not read for more than ten seconds. Meanwhile all is recorded.
     time.sleep(1.0)
     # What has waited comes first, then the newest picture, then nothing more.
     start = last = time.monotonic()
     while time.monotonic() - last < 0.5:
         if select.select([screen.master], [], [], 0.1)[0]:
-            screen.bytes += os.read(screen.master, 1 << 16)
+            screen.take()
             last = time.monotonic()
     took = last - start
     os.close(line_in)
@@ -218,7 +232,7 @@ def latency(folder):
         os.write(pipe, frame)
         while len(screen.bytes) == at:
             if select.select([screen.master], [], [], 1.0)[0]:
-                screen.bytes += os.read(screen.master, 1 << 16)
+                screen.take()
         took.append(time.monotonic() - start)
     figure("frame to screen, median of 100", f"{1000 * statistics.median(took):.1f} ms", "50 ms", statistics.median(took) <= 0.05)
     # After two seconds it says that no frame comes.
@@ -247,6 +261,33 @@ def draws(folder):
     screen.end()
 
 
+def slow_line(folder):
+    """How long help takes while pictures come, on a line of 2 kB/s behind buffers that take everything, as those of SSH."""
+    fifo = os.path.join(folder, "slow")
+    os.mkfifo(fifo)
+    screen = Screen(["watch", fifo, "--format", "lines", "--rows", "16", "--columns", "16", "--at-least", "1000"], folder)
+    screen.answers = False
+    pipe = os.open(fifo, os.O_WRONLY)
+    start = now = time.monotonic()
+    shown, sent, pressed = 0.0, 0, 0
+    while not pressed or b"subtract the median" not in screen.bytes[pressed:int(shown)]:
+        screen.read(0.01)
+        before, now = now, time.monotonic()
+        if now - start > sent / 20:
+            os.write(pipe, line(sent, 16))
+            sent += 1
+        if now - start > 10.0 and not pressed:
+            pressed = len(screen.bytes)
+            os.write(screen.master, b"?")
+        # What the line has brought by now.
+        brought, shown = shown, min(shown + 2000 * (now - before), len(screen.bytes))
+        screen.answer(screen.bytes[max(0, int(brought) - 3):int(shown)])
+    took = now - start - 10.0
+    figure("help on a line of 2 kB/s while 16 x 16 come at 20 Hz", f"{took:.1f} s", "2 s", took <= 2.0)
+    os.close(pipe)
+    screen.end()
+
+
 def replay(folder):
     if not RECORDING:
         print("SKIPPED: no recording to replay is named")
@@ -262,5 +303,5 @@ def replay(folder):
 
 with tempfile.TemporaryDirectory() as folder:
     print(subprocess.run([TAXEL, "--version"], capture_output=True, text=True).stdout.strip(), "on", os.cpu_count(), "cores")
-    for part in (latency, draws, stopped_terminal, replay, memory, thousand_a_second):
+    for part in (latency, draws, slow_line, stopped_terminal, replay, memory, thousand_a_second):
         part(folder)

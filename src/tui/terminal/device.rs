@@ -5,6 +5,7 @@
 
 use std::io::{self, stdin, stdout};
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd};
+use std::time::{Duration, Instant};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{Mode, OFlags, open};
@@ -76,6 +77,29 @@ impl Device {
             Ok(count) => Ok(Some(count)),
             Err(Errno::AGAIN | Errno::INTR) => Ok(Some(0)),
             Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Reads up to these bytes and drops what it reads; for a while at most, if they do not come.
+    pub(in crate::tui) fn skip_past(&self, end: &[u8], patience: Duration) {
+        let deadline = Instant::now() + patience;
+        let (mut buffer, mut read) = ([0; 256], Vec::<u8>::new());
+        while !read.windows(end.len()).any(|found| found == end) {
+            let left = deadline.saturating_duration_since(Instant::now());
+            let Ok(left) = Timespec::try_from(left) else {
+                return;
+            };
+            let mut fds = [PollFd::new(&self.input, PollFlags::IN)];
+            match poll(&mut fds, Some(&left)) {
+                Ok(1..) => {}
+                Err(Errno::INTR) => continue,
+                Ok(0) | Err(_) => return,
+            }
+            match self.read(&mut buffer) {
+                Ok(Some(count)) => read.extend(&buffer[..count]),
+                // The terminal is gone.
+                Ok(None) | Err(_) => return,
+            }
         }
     }
 

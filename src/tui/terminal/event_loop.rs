@@ -6,6 +6,7 @@
 //!   mail      messages of workers           -> update
 //!   input     bytes -> keys, pastes, mouse  -> update
 //!   nothing   in time: half a sequence is what it is
+//! frames      of a source, once the terminal has drawn those before
 //! draw        what has changed, in one write
 //! ```
 //! It sleeps without a time limit while nothing is pending, so an idle program uses no processor time. A terminal that
@@ -33,6 +34,7 @@ use crate::tui::runtime::mailbox::Mailbox;
 use crate::tui::terminal::device::{Device, WriteOutcome};
 use crate::tui::terminal::input::{Input, InputReader};
 use crate::tui::terminal::outcome::Outcome;
+use crate::tui::terminal::pacing::PicturePacing;
 use crate::tui::terminal::screen::Screen;
 use crate::tui::terminal::settings::TerminalSettings;
 use crate::tui::terminal::signals::{SignalEvent, SignalReceiver};
@@ -80,7 +82,7 @@ pub(in crate::tui) fn run(
     for line in event_loop.world.end(&mut event_loop.app) {
         session::tell(&line);
     }
-    let left = session::leave();
+    let left = session::leave(event_loop.pacing.is_asked());
     match ended {
         Ok(Ok(Outcome::Quit)) => left.map(|()| quit),
         // A terminal that is gone takes no leave.
@@ -96,7 +98,7 @@ fn leave_on_panic() {
     std::panic::set_hook(Box::new(move |info| {
         if std::thread::current().id() == own {
             // Nothing better can be done with an error here than to report the panic all the same.
-            let _ = session::leave();
+            let _ = session::leave(true);
             hook(info);
         } else if !session::tell_later(&format!("{info}\n")) {
             hook(info);
@@ -136,6 +138,8 @@ struct EventLoop<'a> {
     frames_due: Option<Instant>,
     /// When they were taken last.
     frames_at: Option<Instant>,
+    /// Whether the terminal has drawn them.
+    pacing: PicturePacing,
 }
 
 /// What the loop was woken for.
@@ -188,6 +192,7 @@ impl<'a> EventLoop<'a> {
             read_at: Instant::now(),
             frames_due: None,
             frames_at: None,
+            pacing: PicturePacing::new(settings.kind.tells_status()),
         }
     }
 
@@ -202,9 +207,10 @@ impl<'a> EventLoop<'a> {
         if let Some(greeting) = self.world.greeting() {
             self.update(greeting)?;
         }
-        self.draw()?;
+        self.draw(false)?;
         while self.outcome.is_none() {
             let ready = self.wait(self.patience())?;
+            self.pacing.on_time(Instant::now());
             // A signal before keys: who ends the program shall not have to wait for it to read what was typed.
             if ready.signals {
                 self.on_signals()?;
@@ -217,23 +223,26 @@ impl<'a> EventLoop<'a> {
                     self.collect()?;
                 }
                 self.read(&ready)?;
-                self.take_frames()?;
+                let has_frames = self.take_frames()?;
                 self.look_at_changes()?;
-                self.draw()?;
+                self.draw(has_frames)?;
             }
         }
         Ok(self.outcome.unwrap_or(Outcome::Quit))
     }
 
-    /// How long to sleep at most: until half a sequence is what it is, or until frames are taken.
+    /// How long to sleep at most: until half a sequence is what it is, frames are taken, or an answer is given up.
     fn patience(&self) -> Option<Duration> {
-        let reader = self.reader.patience();
+        let reader = self.reader.patience(self.pacing.is_waiting());
         let reader = reader.map(|patience| patience.saturating_sub(self.read_at.elapsed()));
-        let frames = self.frames_due;
-        let frames = frames.map(|due| due.saturating_duration_since(Instant::now()));
-        let changes = self.world.changes_due();
-        let changes = changes.map(|due| due.saturating_duration_since(Instant::now()));
-        reader.into_iter().chain(frames).chain(changes).min()
+        let due = [
+            self.frames_due,
+            self.pacing.deadline(),
+            self.world.changes_due(),
+        ];
+        let due = due.into_iter().flatten().min();
+        let due = due.map(|due| due.saturating_duration_since(Instant::now()));
+        reader.into_iter().chain(due).min()
     }
 
     /// Says what changes of files wait for, if that is another thing than before.
@@ -245,22 +254,25 @@ impl<'a> EventLoop<'a> {
         self.update(Message::Worker(WorkerEvent::Waiting(waiting)))
     }
 
-    /// Takes the frames that have come, if the last picture is old enough; those that come meanwhile are taken together.
-    fn take_frames(&mut self) -> io::Result<()> {
-        if !self.world.has_frames() {
-            self.frames_due = None;
-            return Ok(());
+    /// Takes the frames that have come, if the last picture is old enough and the terminal has drawn it; those that come
+    /// meanwhile are taken together. Returns whether there were any.
+    fn take_frames(&mut self) -> io::Result<bool> {
+        self.frames_due = None;
+        if !self.world.has_frames() || self.pacing.is_waiting() {
+            return Ok(false);
         }
         let now = Instant::now();
         let due = self.frames_at.map_or(now, |last| last + PICTURE);
         if due > now {
             self.frames_due = Some(due);
-            return Ok(());
+            return Ok(false);
         }
-        self.frames_due = None;
         self.frames_at = Some(now);
-        let frames = self.world.take_frames();
-        frames.map_or(Ok(()), |frames| self.update(frames))
+        let Some(frames) = self.world.take_frames() else {
+            return Ok(false);
+        };
+        self.update(frames)?;
+        Ok(true)
     }
 
     /// Sleeps until there is something to do, or for `patience`.
@@ -324,10 +336,13 @@ impl<'a> EventLoop<'a> {
             self.read_at = Instant::now();
             self.reader.read(&buffer[..count])
         } else if ready.late && self.has_timed_out() {
-            self.reader.on_timeout()
+            self.reader.on_timeout(self.pacing.is_waiting())
         } else {
             return Ok(());
         };
+        if self.reader.take_status() {
+            self.pacing.on_answer();
+        }
         for input in inputs {
             (self.watch)(&input);
             let message = match input {
@@ -349,7 +364,7 @@ impl<'a> EventLoop<'a> {
 
     /// Whether nothing more came in time after half a sequence.
     fn has_timed_out(&self) -> bool {
-        let patience = self.reader.patience();
+        let patience = self.reader.patience(self.pacing.is_waiting());
         patience.is_some_and(|patience| self.read_at.elapsed() >= patience)
     }
 
@@ -379,13 +394,17 @@ impl<'a> EventLoop<'a> {
         Ok(())
     }
 
-    /// Writes what has changed on the screen, in one piece.
-    fn draw(&mut self) -> io::Result<()> {
+    /// Writes what has changed on the screen, in one piece; after new frames the terminal is asked whether it has come so
+    /// far.
+    fn draw(&mut self, has_frames: bool) -> io::Result<()> {
         let Ok(_) = self.screen.draw(|frame| {
             view(&self.app, frame);
         });
-        let frame = self.screen.backend_mut().take_frame();
-        self.send(&frame)
+        let mut bytes = self.screen.backend_mut().take_frame();
+        if has_frames && !bytes.is_empty() {
+            bytes.extend(self.pacing.ask(Instant::now()));
+        }
+        self.send(&bytes)
     }
 
     /// Writes something. Where it is cut off, by a signal while the terminal takes nothing, the next frame puts the screen
@@ -393,6 +412,7 @@ impl<'a> EventLoop<'a> {
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         if self.device.write(bytes, self.signals.fd())? == WriteOutcome::Interrupted {
             self.redraw();
+            self.pacing.forget();
         }
         Ok(())
     }
@@ -438,7 +458,7 @@ impl<'a> EventLoop<'a> {
         for line in self.world.flush(&mut self.app) {
             session::tell(&line);
         }
-        session::leave()?;
+        session::leave(self.pacing.is_asked())?;
         // From here on a "continue" is the answer to this stop.
         let before = self.signals.received();
         if let Some(&SignalEvent::End(signal)) = before.first() {
@@ -472,6 +492,9 @@ impl<'a> EventLoop<'a> {
     /// Takes the terminal back after another program had it.
     fn resume(&mut self) -> io::Result<()> {
         session::enter(&self.device, &self.settings, self.mouse)?;
+        // What was under way, half a key or an answer, the other program has read.
+        self.reader = InputReader::default();
+        self.pacing.forget();
         self.measure();
         self.redraw();
         Ok(())

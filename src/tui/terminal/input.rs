@@ -13,6 +13,7 @@
 //! ESC [ < 0 ; x ; y M               mouse, as it is asked for; m at the end when the button is released
 //! ESC [ M button x y                mouse in the old form, which some terminals send all the same
 //! ESC [ 200 ~ … ESC [ 201 ~         pasted text
+//! ESC [ 0 n                         the status of the terminal, which was asked for
 //! ESC ] … BEL   ESC P … ESC \       an answer of the terminal, skipped
 //! ```
 //! Sequences may come in pieces, over a slow line in single bytes. Only a few things have a time limit: an ESC by
@@ -20,7 +21,8 @@
 //! would otherwise be read as keys; and the rest of a pasted text. Unknown sequences are skipped as a whole.
 //!
 //! ESC before a character is the key Esc, then the character: nothing here is bound to Alt, and a quick Esc over a slow
-//! line arrives together with the next key. ESC ESC is Alt-Esc, one Esc.
+//! line arrives together with the next key. ESC ESC is Alt-Esc, one Esc. While the status of the terminal is asked for,
+//! an ESC by itself is a key only when the next byte says so: it may begin the answer, torn by the line.
 //!
 //! The sequences are those of xterm's ctlseqs and of ECMA-48.
 
@@ -66,6 +68,8 @@ enum InputState {
     Ground,
     /// After ESC.
     Escape,
+    /// After an ESC that nothing has followed for a moment, while the status is asked for.
+    LateEscape,
     /// After ESC O.
     Single,
     /// After ESC [.
@@ -89,8 +93,12 @@ pub struct InputReader {
     state: InputState,
     /// The bytes of the sequence so far.
     held: Vec<u8>,
+    /// Whether the sequence begins with a second ESC.
+    doubled: bool,
     /// What was read and is not taken yet.
     found: Vec<Input>,
+    /// Whether the terminal has told its status.
+    has_status: bool,
 }
 
 impl Default for InputReader {
@@ -98,7 +106,9 @@ impl Default for InputReader {
         Self {
             state: InputState::Ground,
             held: Vec::new(),
+            doubled: false,
             found: Vec::new(),
+            has_status: false,
         }
     }
 }
@@ -112,19 +122,30 @@ impl InputReader {
         std::mem::take(&mut self.found)
     }
 
-    /// How long to wait for more before [`InputReader::on_timeout`]; none: for ever.
-    pub fn patience(&self) -> Option<Duration> {
+    /// Whether the terminal has told its status since this was asked last.
+    pub fn take_status(&mut self) -> bool {
+        std::mem::take(&mut self.has_status)
+    }
+
+    /// How long to wait for more before [`InputReader::on_timeout`]; none: for ever. `is_asked`: whether the terminal is asked
+    /// for its status.
+    pub fn patience(&self, is_asked: bool) -> Option<Duration> {
         match self.state {
-            InputState::Escape | InputState::Answer => Some(MOMENT),
+            InputState::LateEscape if is_asked => None,
+            InputState::Escape | InputState::LateEscape | InputState::Answer => Some(MOMENT),
             InputState::Paste => Some(PASTE_MOMENT),
             _ => None,
         }
     }
 
     /// Nothing more came in time.
-    pub fn on_timeout(&mut self) -> Vec<Input> {
+    pub fn on_timeout(&mut self, is_asked: bool) -> Vec<Input> {
         match self.state {
-            InputState::Escape => self.key(Key::Esc),
+            InputState::Escape if is_asked => {
+                self.state = InputState::LateEscape;
+                return Vec::new();
+            }
+            InputState::Escape | InputState::LateEscape => self.key(Key::Esc),
             InputState::Paste => self.paste(self.held.len()),
             _ => {}
         }
@@ -148,6 +169,12 @@ impl InputReader {
         match self.state {
             InputState::Ground => self.plain(byte),
             InputState::Escape => self.after_escape(byte),
+            InputState::LateEscape if byte == b'[' => self.state = InputState::Sequence,
+            InputState::LateEscape => {
+                self.ground();
+                self.key(Key::Esc);
+                self.plain(byte);
+            }
             InputState::Paste => self.in_paste(byte),
             InputState::Answer => self.in_answer(byte),
             InputState::OldMouse => self.in_old_mouse(byte),
@@ -180,7 +207,10 @@ impl InputReader {
         match (byte, self.held.pop()) {
             (BEL, _) | (b'\\', Some(ESC)) => self.ground(),
             (ESC, _) => self.held.push(ESC),
-            (_, Some(ESC)) => self.after_escape(byte),
+            (_, Some(ESC)) => {
+                self.doubled = false;
+                self.after_escape(byte);
+            }
             (..0x20, _) => {
                 self.ground();
                 self.plain(byte);
@@ -242,7 +272,10 @@ impl InputReader {
     /// A byte between sequences.
     fn plain(&mut self, byte: u8) {
         match byte {
-            ESC => self.state = InputState::Escape,
+            ESC => {
+                self.state = InputState::Escape;
+                self.doubled = false;
+            }
             b'\r' | b'\n' => self.key(Key::Enter),
             b'\t' => self.key(Key::Tab),
             // Serial terminals send Ctrl-H for the key that others send DEL for.
@@ -269,7 +302,10 @@ impl InputReader {
             b'O' => self.state = InputState::Single,
             b']' | b'P' | b'_' | b'^' => self.state = InputState::Answer,
             // Alt-Esc; or Alt with a key that is a sequence itself, where the second ESC begins it.
-            ESC => self.state = InputState::Escape,
+            ESC => {
+                self.state = InputState::Escape;
+                self.doubled = true;
+            }
             _ => {
                 self.key(Key::Esc);
                 self.plain(byte);
@@ -310,6 +346,13 @@ impl InputReader {
                 _ => {}
             },
             b'Z' => self.key(Key::BackTab),
+            b'n' => {
+                self.has_status = true;
+                if self.doubled {
+                    // No key is behind this one: the ESC before it was a key of its own.
+                    self.key(Key::Esc);
+                }
+            }
             // The Delete of st; the F1 of others has numbers here, or comes after ESC O.
             b'P' if parameters.is_empty() => self.key(Key::Delete),
             b'u' => match (u8::try_from(first), shifted) {

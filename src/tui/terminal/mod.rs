@@ -6,6 +6,7 @@
 //! style      changes of style -> few bytes
 //! screen     changed cells -> few bytes, frame by frame
 //! device     the terminal's two files
+//! pacing     pictures of a source, no faster than the line
 //! session    one way in, one way out
 //! signals    what the system says
 //! job        stopped and continued by a shell
@@ -13,8 +14,9 @@
 //! event_loop waits for all of them, and for messages from workers (`runtime::mailbox`)
 //! ```
 //! The loop sleeps until there is something to do, without a tick; it writes only where the screen changes, in one
-//! write a frame; and it ends when the terminal is gone, whether or not a signal says so. Nothing is asked of the
-//! terminal: an answer over a slow line would come as keys.
+//! write a frame; and it ends when the terminal is gone, whether or not a signal says so. The terminal is asked for
+//! nothing but its status, after pictures of a source: other answers could be taken for keys, over a slow line or by the
+//! shell.
 
 pub mod settings;
 
@@ -25,6 +27,8 @@ mod style;
 pub mod screen;
 
 mod device;
+
+mod pacing;
 
 mod session;
 

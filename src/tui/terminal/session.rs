@@ -9,6 +9,7 @@
 
 use std::io::{self, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use crossterm::terminal::{Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
 use crossterm::{Command, cursor};
@@ -33,6 +34,11 @@ const PASTE_OFF: &str = "\x1b[?2004l";
 const PLAIN: &str = "\x1b[m";
 /// Moves to the last row: terminals clamp 999 to it.
 const BELOW: &str = "\x1b[999;1H\r\n";
+
+/// The end of the answer of a terminal that is asked for its status: its beginning may have been read already.
+const STATUS_END: &[u8] = b"0n";
+/// How long the shell waits for the terminal until that answer has come. At most a picture is under way before it.
+const LAST_ANSWER: Duration = Duration::from_millis(500);
 
 /// What has to be put back.
 #[derive(Debug)]
@@ -94,8 +100,9 @@ pub(in crate::tui) fn enter(
     device.write_last(hello.as_bytes()).map(drop)
 }
 
-/// Everything as it was found. Outside, nothing.
-pub(in crate::tui) fn leave() -> io::Result<()> {
+/// Everything as it was found. Outside, nothing. `is_asked`: whether the terminal may have been asked for its status and not
+/// have answered yet; what comes for the program would be typed into the shell.
+pub(in crate::tui) fn leave(is_asked: bool) -> io::Result<()> {
     let Some(found) = found().take() else {
         return Ok(());
     };
@@ -121,8 +128,10 @@ pub(in crate::tui) fn leave() -> io::Result<()> {
         goodbye += BELOW;
     }
     let said = found.device.write_last(goodbye.as_bytes());
-    if found.mouse {
-        // Reports that are on their way would be typed into the shell.
+    if is_asked {
+        found.device.skip_past(STATUS_END, LAST_ANSWER);
+    }
+    if found.mouse || is_asked {
         let _ = tcflush(found.device.input(), QueueSelector::IFlush);
     }
     let restored = set(&found.device, &found.attributes);

@@ -39,6 +39,11 @@ impl TerminalKind {
         self >= Self::Console
     }
 
+    /// Whether it may tell its status when it is asked for it (DSR), as all do that have cursor addresses by ECMA-48.
+    pub fn tells_status(self) -> bool {
+        self > Self::Dumb
+    }
+
     /// Whether it may put a text into its clipboard (OSC 52); others would show the text.
     pub fn has_clipboard(self) -> bool {
         self == Self::Window

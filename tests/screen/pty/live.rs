@@ -23,23 +23,23 @@ fn frames(numbers: std::ops::Range<u32>) -> String {
 }
 
 /// The program that watches a pipe in a folder.
-struct Watched {
+pub(super) struct Watched {
     /// The program.
-    program: Program,
+    pub(super) program: Program,
     /// The pipe's other end.
-    pipe: fs::File,
+    pub(super) pipe: fs::File,
     /// The folder, which the program works in.
     folder: tempfile::TempDir,
 }
 
 impl Watched {
     /// Starts it; None where there is no mkfifo.
-    fn start() -> Option<Self> {
+    pub(super) fn start() -> Option<Self> {
         Self::started("", "")
     }
 
     /// The same after commands of a shell, and with further arguments.
-    fn started(before: &str, arguments: &str) -> Option<Self> {
+    pub(super) fn started(before: &str, arguments: &str) -> Option<Self> {
         let folder = tempfile::tempdir().expect("a folder");
         let pipe = folder.path().join("frames");
         fifo(&pipe).then_some(())?;
@@ -66,7 +66,7 @@ impl Watched {
     }
 
     /// Sends frames.
-    fn sends(&mut self, numbers: std::ops::Range<u32>) {
+    pub(super) fn sends(&mut self, numbers: std::ops::Range<u32>) {
         let bytes = frames(numbers);
         self.pipe.write_all(bytes.as_bytes()).expect("it is read");
     }
@@ -85,7 +85,7 @@ impl Watched {
     }
 
     /// Leaves the page and the program.
-    fn ends(self) {
+    pub(super) fn ends(self) {
         let mut program = self.program;
         program.types(b"q");
         program.types(b"q");

@@ -30,6 +30,8 @@ mod hostile;
 
 mod live;
 
+mod links;
+
 /// Becomes the program; see `program`.
 #[test]
 #[ignore = "only as a child of other tests"]

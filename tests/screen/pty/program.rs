@@ -25,6 +25,11 @@ pub(crate) const TAXEL: &str = env!("CARGO_BIN_EXE_taxel");
 
 /// Nothing takes so long, on the busiest machine. Only what fails waits for it.
 const DEADLINE: Duration = Duration::from_secs(120);
+/// Asks a terminal for its status (DSR).
+pub(crate) const QUESTION: &[u8] = b"\x1b[5n";
+/// What it answers.
+const ANSWER: &[u8] = b"\x1b[0n";
+
 /// The output is taken to be over after such a silence, where its length is counted.
 const SILENCE: Duration = Duration::from_millis(60);
 
@@ -68,6 +73,10 @@ pub(crate) struct Program {
     shown: usize,
     /// How many reads that took.
     pub(crate) reads: usize,
+    /// Whether it is told the status of the terminal when it asks, as terminals do.
+    pub(crate) answers: bool,
+    /// How much of what it has written was searched for the question.
+    searched: usize,
 }
 
 /// The part that runs in the child. Without its variables it is a test that does nothing.
@@ -134,6 +143,8 @@ impl Program {
             bytes: Vec::new(),
             shown: 0,
             reads: 0,
+            answers: true,
+            searched: 0,
         }
     }
 
@@ -190,7 +201,28 @@ impl Program {
         self.emulator.process(&waiting[..whole]);
         self.shown += whole;
         self.reads += 1;
+        self.answer_questions();
         count > 0
+    }
+
+    /// Tells the status of the terminal as often as it was asked for since the last time.
+    fn answer_questions(&mut self) {
+        let questions = count(&self.bytes[self.searched..], QUESTION);
+        // The next one may have begun.
+        self.searched = (self.bytes.len() + 1).saturating_sub(QUESTION.len());
+        for _ in 0..if self.answers { questions } else { 0 } {
+            self.answer();
+        }
+    }
+
+    /// Tells the status of the terminal.
+    pub(crate) fn answer(&self) {
+        self.types(ANSWER);
+    }
+
+    /// How often the terminal was asked for its status.
+    pub(crate) fn questions(&self) -> usize {
+        self.count(QUESTION)
     }
 
     /// Reads until something holds.
@@ -275,6 +307,11 @@ impl Program {
         rest.chars().next().expect("a state")
     }
 
+    /// Whether it has ended.
+    pub(crate) fn has_ended(&mut self) -> bool {
+        self.child.try_wait().expect("a child").is_some()
+    }
+
     /// Waits for the end; answers how, and after how long.
     pub(crate) fn ends(&mut self) -> (ExitStatus, Duration) {
         let start = Instant::now();
@@ -336,11 +373,7 @@ impl Program {
 
     /// How often it has written something.
     pub(crate) fn count(&self, mark: &[u8]) -> usize {
-        let found = self
-            .bytes
-            .windows(mark.len())
-            .filter(|found| *found == mark);
-        found.count()
+        count(&self.bytes, mark)
     }
 
     /// A number of /proc/PID/status.
@@ -388,6 +421,12 @@ impl Drop for Program {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+/// How often bytes hold something.
+pub(crate) fn count(bytes: &[u8], mark: &[u8]) -> usize {
+    let found = bytes.windows(mark.len()).filter(|found| *found == mark);
+    found.count()
 }
 
 fn set_size(master: &OwnedFd, (columns, rows): (u16, u16)) {

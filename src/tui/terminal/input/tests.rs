@@ -8,7 +8,7 @@ use proptest::prelude::*;
 fn read(bytes: &[u8]) -> Vec<Input> {
     let mut reader = InputReader::default();
     let mut found = reader.read(bytes);
-    found.extend(reader.on_timeout());
+    found.extend(reader.on_timeout(false));
     found
 }
 
@@ -62,12 +62,61 @@ fn keys_of_many_terminals() {
 fn an_escape_waits_for_a_moment_and_a_sequence_for_ever() {
     let mut reader = InputReader::default();
     assert_eq!(reader.read(b"\x1b"), []);
-    assert_eq!(reader.patience(), Some(MOMENT));
-    assert_eq!(reader.on_timeout(), keys("<Esc>"));
-    assert_eq!(reader.patience(), None);
+    assert_eq!(reader.patience(false), Some(MOMENT));
+    assert_eq!(reader.on_timeout(false), keys("<Esc>"));
+    assert_eq!(reader.patience(false), None);
     assert_eq!(reader.read(b"\x1b["), []);
-    assert_eq!(reader.patience(), None);
+    assert_eq!(reader.patience(false), None);
     assert_eq!(reader.read(b"A"), keys("<Up>"));
+}
+
+#[test]
+fn the_status_of_the_terminal_is_no_key_wherever_it_is_torn() {
+    const STATUS: &[u8] = b"\x1b[0n";
+    for cut in 0..STATUS.len() {
+        let mut reader = InputReader::default();
+        let mut found = reader.read(b"a");
+        found.extend(reader.read(&STATUS[..cut]));
+        assert!(!reader.take_status());
+        // Nothing comes for long.
+        if reader.patience(true).is_some() {
+            found.extend(reader.on_timeout(true));
+        }
+        assert_eq!(reader.patience(true), None);
+        found.extend(reader.read(&STATUS[cut..]));
+        assert!(reader.take_status() && !reader.take_status());
+        found.extend(reader.read(b"b"));
+        assert_eq!(found, keys("ab"), "{cut}");
+    }
+    // One that nobody has asked for is none either.
+    assert_eq!(read(b"\x1b[0nb\x1b[3nc"), keys("bc"));
+}
+
+#[test]
+fn esc_before_the_status_of_the_terminal_is_a_key() {
+    for bytes in ["\x1b\x1b[0n", "\x1b\x1b\x1b[0n"] {
+        let mut reader = InputReader::default();
+        assert_eq!(reader.read(bytes.as_bytes()), keys("<Esc>"), "{bytes:?}");
+        assert!(reader.take_status());
+    }
+    // Long before it, or before another key.
+    for (bytes, notation) in [
+        ("\x1b[0n", "<Esc>"),
+        ("\x1b[A", "<Esc><Up>"),
+        ("\x1b\x1b[A", "<Esc><Up>"),
+        ("j", "<Esc>j"),
+        ("", "<Esc>"),
+    ] {
+        let mut reader = InputReader::default();
+        let mut found = reader.read(b"\x1b");
+        found.extend(reader.on_timeout(true));
+        assert_eq!(found, []);
+        found.extend(reader.read(bytes.as_bytes()));
+        // Nothing is asked any more.
+        assert_eq!(reader.patience(false), bytes.is_empty().then_some(MOMENT));
+        found.extend(reader.on_timeout(false));
+        assert_eq!(found, keys(notation), "{bytes:?}");
+    }
 }
 
 #[test]
@@ -119,13 +168,13 @@ proptest! {
             prop_oneof![
                 Just(b"\x1b[A".to_vec()), Just(b"\x1b".to_vec()), Just(b"\x1b[200~".to_vec()),
                 Just(PASTE_END.to_vec()), Just(b"\x1b[<0;13;6M".to_vec()), Just(b"\x1b]1;".to_vec()),
-                Just(b"\x1b[M".to_vec()), prop::collection::vec(any::<u8>(), 0..6),
+                Just(b"\x1b[M".to_vec()), Just(b"\x1b[0n".to_vec()), prop::collection::vec(any::<u8>(), 0..6),
             ], 0..12)
     ) {
         let bytes = pieces.concat();
         let mut reader = InputReader::default();
         let mut found: Vec<_> = bytes.iter().flat_map(|&byte| reader.read(&[byte])).collect();
-        found.extend(reader.on_timeout());
+        found.extend(reader.on_timeout(false));
         prop_assert_eq!(found, read(&bytes));
     }
 }

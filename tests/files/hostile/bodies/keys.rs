@@ -26,17 +26,21 @@ pub(crate) fn keys(bytes: &[u8]) -> bool {
 pub(crate) fn terminal(bytes: &[u8]) -> bool {
     let mut reader = InputReader::default();
     let mut whole = reader.read(bytes);
-    let patience = reader.patience();
-    whole.extend(reader.on_timeout());
-    assert_eq!(reader.patience(), None, "nothing is waited for any more");
+    let patience = reader.patience(false);
+    whole.extend(reader.on_timeout(false));
+    assert_eq!(
+        reader.patience(false),
+        None,
+        "nothing is waited for any more"
+    );
 
     let mut reader = InputReader::default();
     let mut pieces = Vec::new();
     for byte in bytes.chunks(1) {
         pieces.extend(reader.read(byte));
     }
-    assert_eq!(reader.patience(), patience);
-    pieces.extend(reader.on_timeout());
+    assert_eq!(reader.patience(false), patience);
+    pieces.extend(reader.on_timeout(false));
     assert_eq!(pieces, whole);
 
     for input in whole {
