@@ -450,7 +450,10 @@ fn sets_that_make_no_sense_are_refused_in_one_sentence() {
             "{\"name\":\"a\",\"picture\":\"no such\"}".to_owned(),
             "standard input, line 1: picture",
         ),
-        (String::new(), "0 shapes, expected 1 to 32768"),
+        (
+            "\n \n".to_owned(),
+            "standard input: no shapes, expected a line of JSON for each",
+        ),
     ] {
         let run = train("-", &input);
         assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""), "{input}");

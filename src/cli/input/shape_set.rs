@@ -99,7 +99,7 @@ fn file_of_lines(what: &OsStr, shelf: &Shelf) -> Option<PathBuf> {
 /// Reads a set of shapes, a line of JSON each. Blank lines are skipped.
 ///
 /// # Errors
-/// If the text is larger than [`MAX_SET`], or a line is not a shape. A wrong line ends it: a set with a shape missing
+/// If the text is larger than [`MAX_SET`], has no shape, or a line is not one. A wrong line ends it: a set with a shape missing
 /// would give another limit.
 fn lines(
     input: &mut dyn Read,
@@ -118,6 +118,7 @@ fn lines(
         return Err(refused(name.to_owned(), error.to_owned()));
     }
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
+    let before = shapes.len();
     for (index, line) in text.split(|&byte| byte == b'\n').enumerate() {
         if line.trim_ascii().is_empty() {
             continue;
@@ -125,6 +126,10 @@ fn lines(
         let shape = named_shape(line, lookup);
         let place = || format!("{name}, line {}", index + 1);
         shapes.push(shape.map_err(|error| refused(place(), error.to_string()))?);
+    }
+    if shapes.len() == before {
+        let error = "no shapes, expected a line of JSON for each";
+        return Err(refused(name.to_owned(), error.to_owned()));
     }
     Ok(())
 }
