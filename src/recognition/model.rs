@@ -159,6 +159,14 @@ pub enum ModelError {
         /// Counted from 1.
         number: usize,
     },
+    /// A name that would break the lines it stands in.
+    #[error("name {name:?} of shape {number} has a line break or another control character")]
+    ControlCharacter {
+        /// Counted from 1.
+        number: usize,
+        /// The name.
+        name: String,
+    },
     /// A weight of 0.
     #[error("weight of {name:?}: 0, expected at least 1")]
     Weight {
@@ -203,8 +211,15 @@ pub(super) fn check_shapes(shapes: &[NamedShape]) -> Result<(), ModelError> {
     let mut names = HashSet::new();
     for (index, shape) in shapes.iter().enumerate() {
         let name = || shortened(&shape.name);
-        if shape.name.is_empty() {
-            return Err(ModelError::NoName { number: index + 1 });
+        let number = index + 1;
+        if shape.name.trim().is_empty() {
+            return Err(ModelError::NoName { number });
+        }
+        if shape.name.contains(char::is_control) {
+            return Err(ModelError::ControlCharacter {
+                number,
+                name: name(),
+            });
         }
         if !names.insert(shape.name.as_str()) {
             return Err(ModelError::Name { name: name() });

@@ -500,9 +500,13 @@ fn sets_and_descriptors_that_make_no_sense_are_refused() {
     };
     let disc = Figure::ellipse(2.0, 2.0).on(&sensor(16)).expect("in range");
     assert_eq!(error(vec![]), "0 shapes, expected 1 to 32768");
+    for nothing in ["", "  "] {
+        let nameless = vec![NamedShape::new(nothing, disc)];
+        assert_eq!(error(nameless), "shape 1 has no name");
+    }
     assert_eq!(
-        error(vec![NamedShape::new("", disc)]),
-        "shape 1 has no name"
+        error(vec![NamedShape::new("disc\nright 100 %", disc)]),
+        "name \"disc\\nright 100 %\" of shape 1 has a line break or another control character"
     );
     let twice = vec![NamedShape::new("disc", disc), NamedShape::new("disc", disc)];
     assert_eq!(
