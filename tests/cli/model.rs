@@ -896,3 +896,13 @@ fn a_torn_first_line_is_answered_by_its_error_as_any_other() {
     let run = place.run("recognise - --model m.npz", &shape);
     assert_eq!(run.status, Some(0), "{}", run.stderr);
 }
+
+#[test]
+fn the_name_of_a_written_file_stays_on_its_line() {
+    let place = Place::new();
+    let said = place.done("model train washer --out 'a\nright 100 %.npz' --x0 7 --y0 7 --angle 0");
+    assert!(
+        said.starts_with("written: a\\u{a}right 100 %.npz\n"),
+        "{said}"
+    );
+}

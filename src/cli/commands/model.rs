@@ -108,7 +108,8 @@ fn trained(
         text.insert("file".to_owned(), json!(name));
         json::ascii(&text) + "\n"
     } else {
-        charset.lines(&format!("{done}: {name}\n")) + &evaluation::summary(&limit, NamedBy::Imprint)
+        let said = charset.line(&format!("{done}: {name}")).into_owned();
+        said + "\n" + &evaluation::summary(&limit, NamedBy::Imprint)
     })
 }
 
