@@ -4,7 +4,8 @@
 //! ░░▒▒▒•▓•        two columns a taxel: the second one of a taxel at the edge of the imprint has a mark
 //! ░▒▓•            half a character a taxel: the larger of two; with colours, each has its own. The mark stands beside the
 //!                 imprint, so that no value of a touch is hidden
-//!   12   45•      numbers
+//!      6     7
+//! 12  12   45•    numbers, with rulers
 //! ```
 
 use ratatui::buffer::Buffer;
@@ -20,6 +21,7 @@ use crate::tui::live::state::Live;
 use crate::tui::matrix::layout::AxisWindow;
 use crate::tui::widget::heat;
 use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write::{self, below, right_of};
 
 /// What is drawn.
 pub(super) struct HeatMap<'a> {
@@ -61,6 +63,9 @@ impl<'a> HeatMap<'a> {
     /// Draws it.
     pub(super) fn draw(&self, buffer: &mut Buffer, area: Rect) {
         let area = area.intersection(*buffer.area());
+        self.draw_rulers(buffer, area);
+        let (left, above) = self.grid.rulers;
+        let area = below(right_of(area, area.x.saturating_add(left)), above);
         for (x, column) in self.grid.columns.visible() {
             for (y, row) in self.grid.rows.visible() {
                 match self.grid.form {
@@ -71,6 +76,27 @@ impl<'a> HeatMap<'a> {
                     CellForm::Half => {}
                     CellForm::Number => self.number(buffer, area, (NUMBER * x, y), (column, row)),
                 }
+            }
+        }
+    }
+
+    /// Draws the numbers of columns and rows, where there are rulers.
+    fn draw_rulers(&self, buffer: &mut Buffer, area: Rect) {
+        let (left, above) = self.grid.rulers;
+        if above > 0 {
+            // A column's number ends where its values do.
+            let width = usize::from(NUMBER - 2);
+            let columns = self.grid.columns.visible();
+            let columns = columns.map(|(_, column)| format!("{column:>width$}  "));
+            let text = " ".repeat(left.into()) + &columns.collect::<String>();
+            let pieces = [(text.trim_end(), Role::Quiet)];
+            write::line(buffer, write::row(area, 0), self.theme, pieces);
+        }
+        if left > 0 {
+            for (y, row) in self.grid.rows.visible() {
+                let place = write::row(area, usize::from(y + above));
+                let text = format!("{row:>2}");
+                write::line(buffer, place, self.theme, [(&*text, Role::Quiet)]);
             }
         }
     }
