@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::formats::recording::ChannelInfo;
+use crate::formats::value::decimal;
 use crate::frame::Frame;
 use crate::tui::live::naming::NamedImprint;
 use crate::tui::live::request::WatchRequest;
@@ -107,6 +108,8 @@ pub struct FeedStatus {
     pub lost: u64,
     /// What the last of these looked like.
     pub sample: Option<String>,
+    /// How often the source was lost and came back.
+    pub gaps: SourceGaps,
     /// Frames that came while nobody took them and there was no memory for more.
     pub overflowed: u64,
     /// How many frames are in the recording; None without one.
@@ -115,6 +118,42 @@ pub struct FeedStatus {
     pub record_error: Option<String>,
     /// What is odd in a recording that is played, the first of it.
     pub note: Option<String>,
+}
+
+/// Gaps between the frames of a source that was lost and came back, such as a connection.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SourceGaps {
+    /// How many.
+    pub count: u64,
+    /// The seconds of all until the source was back.
+    pub waited: f64,
+    /// The seconds of all between the last frame before and the first one after.
+    pub missing: f64,
+}
+
+impl SourceGaps {
+    /// Those of them that came after others.
+    #[must_use]
+    pub fn since(self, before: Self) -> Self {
+        Self {
+            count: self.count.saturating_sub(before.count),
+            waited: self.waited - before.waited,
+            missing: self.missing - before.missing,
+        }
+    }
+
+    /// A sentence; None where there are none.
+    pub fn sentence(self) -> Option<String> {
+        let [waited, missing] = [self.waited, self.missing].map(|seconds| decimal(seconds, 1));
+        let lost = match self.count {
+            0 => return None,
+            1 => format!("for {waited} s"),
+            several => format!("{several} times, for {waited} s in all"),
+        };
+        Some(format!(
+            "the connection was lost {lost}; {missing} s of frames are missing"
+        ))
+    }
 }
 
 /// What has become of frames that are recorded.

@@ -8,7 +8,9 @@ use crate::frame::{Frame, FrameError, Processing, Rule, Tare};
 use crate::imprint::Imprint;
 use crate::tui::live::history::{FrameHistory, is_same};
 use crate::tui::live::marks::FrameMarks;
-use crate::tui::live::message::{FeedStatus, FrameBatch, ProvisionalChange, SourceState};
+use crate::tui::live::message::{
+    FeedStatus, FrameBatch, ProvisionalChange, SourceGaps, SourceState,
+};
 use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest};
 use crate::tui::live::range::ShadeRange;
 use crate::tui::live::reading::{HeatLayer, LiveReading, hold};
@@ -39,6 +41,8 @@ pub struct Live {
     frozen: Option<u64>,
     provisional: Option<Arc<Frame>>,
     status: FeedStatus,
+    /// The gaps between frames that the user knows of.
+    seen_gaps: SourceGaps,
     /// Whether no more frames are taken from the source.
     stopped: bool,
     layer: HeatLayer,
@@ -79,6 +83,7 @@ impl Live {
             frozen: None,
             provisional: None,
             status: FeedStatus::default(),
+            seen_gaps: SourceGaps::default(),
             stopped: false,
             layer: HeatLayer::Tared,
             numbers: false,
@@ -221,7 +226,13 @@ impl Live {
         self.write_failure.as_deref()
     }
 
-    /// Why frames are not recorded although that was asked for, and why none come; None where all is well.
+    /// Notes that the user has seen which frames are missing.
+    pub fn see_gaps(&mut self) {
+        self.seen_gaps = self.status.gaps;
+    }
+
+    /// Why frames are not recorded although that was asked for, why none come, and which are missing since the user looked
+    /// last; None where all is well.
     pub fn trouble(&self) -> Option<String> {
         let source = match &self.status.state {
             SourceState::Silent(why) | SourceState::Lost(why) | SourceState::Failed(why) => {
@@ -229,8 +240,9 @@ impl Live {
             }
             SourceState::Waiting | SourceState::Live | SourceState::Ended => None,
         };
+        let gaps = self.status.gaps.since(self.seen_gaps).sentence();
         let troubles = self.not_recorded().into_iter().chain(source);
-        let troubles: Vec<&str> = troubles.collect();
+        let troubles: Vec<&str> = troubles.chain(gaps.as_deref()).collect();
         (!troubles.is_empty()).then(|| troubles.join("; "))
     }
 
@@ -578,6 +590,8 @@ impl Live {
         self.tare.restart();
         self.read();
         self.status.state = SourceState::Waiting;
+        self.status.gaps = SourceGaps::default();
+        self.seen_gaps = SourceGaps::default();
         let choice = self.naming.take().map(|naming| naming.request.choice);
         self.name_by(choice, number);
     }

@@ -100,6 +100,7 @@ pub(in crate::tui) fn in_live(
     message: Message,
 ) -> Option<Effect> {
     let mut effect = None;
+    page.see_gaps();
     match message {
         Message::Cancel | Message::Quit => {
             page.stop();

@@ -240,6 +240,9 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
     say("rate", rate.unwrap_or_else(|| theme.none().to_owned()));
     say("lost", lost(live));
     say("skipped", grouped(live.not_drawn()));
+    if let Some(text) = gaps(live) {
+        say("gaps", text);
+    }
     let marks = live.marks();
     if !marks.is_empty() {
         let numbers = marks.iter().rev().map(|mark| mark.number.to_string());
@@ -250,6 +253,13 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
         say("recording", text);
     }
     lines
+}
+
+/// How often the source was lost, and how many seconds of frames are missing; None where it was not.
+fn gaps(live: &Live) -> Option<String> {
+    let gaps = live.status().gaps;
+    let missing = value::decimal(gaps.missing, 1);
+    (gaps.count > 0).then(|| format!("{}, {missing} s missing", grouped(gaps.count)))
 }
 
 /// The file that is recorded in, and how much; or why there is none although it was asked for.

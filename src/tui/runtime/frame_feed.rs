@@ -10,9 +10,11 @@ use std::mem::take;
 use std::ops::ControlFlow;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, acquire};
 use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
+use crate::formats::value::decimal;
 use crate::frame::Frame;
 use crate::storage::Existing;
 use crate::tui::live::history::bytes_of;
@@ -42,6 +44,10 @@ struct Pending {
     is_new: bool,
     /// The channels so far, and which of them is watched.
     channels: ChannelChoice,
+    /// When the last frame came, by its time.
+    last_time: Option<f64>,
+    /// For how long the source was lost since then; None where it was not.
+    gap: Option<Duration>,
 }
 
 impl FrameFeed {
@@ -190,6 +196,7 @@ impl FrameFeed {
         own.time = time;
         self.change(|pending| {
             pending.note(recorded);
+            pending.note_time(time);
             pending.push(Arc::new(own), request.history_bytes);
         })
     }
@@ -229,15 +236,18 @@ impl FrameFeed {
                 let text = format!("waiting for {name}, trying again each second: {error}");
                 state(SourceState::Lost(text))
             }
-            AcquireEvent::Lost(error) => {
+            AcquireEvent::Lost(error) => self.change(|pending| {
+                pending.gap.get_or_insert_default();
                 let text = format!("lost: {error}; trying again each second");
-                state(SourceState::Lost(text))
-            }
+                pending.batch.status.state = SourceState::Lost(text);
+            }),
             AcquireEvent::Note(note) => self.change(|pending| {
                 let first = &mut pending.batch.status.note;
                 first.get_or_insert_with(|| note.to_string());
             }),
-            AcquireEvent::Back { .. } => state(SourceState::Waiting),
+            AcquireEvent::Back { gap } => self.change(|pending| {
+                pending.batch.status.state = pending.back_after(gap);
+            }),
             AcquireEvent::Anew(how) => state(SourceState::Silent(how.to_string())),
             AcquireEvent::Ended(counts) => self.change(|pending| {
                 pending.batch.status.lost = counts.dropped;
@@ -255,6 +265,27 @@ impl Pending {
             self.batch.status.channel = Some(Arc::new(info.clone()));
         }
         self.batch.status.channels = self.channels.names().len();
+    }
+
+    /// Notes that the source is there after a time, and returns how it is now.
+    fn back_after(&mut self, time: Duration) -> SourceState {
+        let Some(gap) = &mut self.gap else {
+            return SourceState::Waiting;
+        };
+        *gap += time;
+        let seconds = decimal(gap.as_secs_f64(), 1);
+        SourceState::Silent(format!("back after {seconds} s; no frame yet"))
+    }
+
+    /// Notes the time of a frame, which ends a gap.
+    fn note_time(&mut self, time: Option<f64>) {
+        let before = std::mem::replace(&mut self.last_time, time);
+        if let (Some(gap), Some((before, now))) = (self.gap.take(), before.zip(time)) {
+            let gaps = &mut self.batch.status.gaps;
+            gaps.count += 1;
+            gaps.waited += gap.as_secs_f64();
+            gaps.missing += now - before;
+        }
     }
 
     /// Adds a frame; the oldest go where nobody takes them and there is no memory for more.
@@ -381,6 +412,56 @@ mod tests {
             page.reading().and_then(|reading| Some(reading.max?.0)),
             Some(1.0)
         );
+    }
+
+    #[test]
+    fn the_gap_of_a_lost_connection_is_reported_with_the_first_frame_after_it() {
+        let feed = FrameFeed::default();
+        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
+        let (frame, gap) = (Frame::new(2, 2), Duration::from_secs(2));
+        let at = |time| AcquireEvent::Frame {
+            frame: &frame,
+            time: Some(time),
+        };
+        let error = std::io::Error::other("cut");
+        // Waited for before it was there at all: nothing is missing.
+        for event in [
+            AcquireEvent::Absent(&error),
+            AcquireEvent::Back { gap },
+            at(0.0),
+        ] {
+            after(&mut page, &feed, event);
+        }
+        assert_eq!(page.trouble(), None);
+        // Lost again before a frame came: one gap.
+        for _ in 0..2 {
+            after(&mut page, &feed, AcquireEvent::Lost(&error));
+            let lost = page.trouble().expect("it is lost");
+            assert!(lost.starts_with("lost: cut;"), "{lost}");
+            after(&mut page, &feed, AcquireEvent::Back { gap });
+        }
+        assert_eq!(
+            page.trouble().as_deref(),
+            Some("back after 4 s; no frame yet")
+        );
+        after(&mut page, &feed, at(5.5));
+        let once = "the connection was lost for 4 s; 5.5 s of frames are missing";
+        assert_eq!(page.trouble().as_deref(), Some(once));
+        // It stays until the user has seen it.
+        after(&mut page, &feed, at(5.6));
+        assert_eq!(page.trouble().as_deref(), Some(once));
+        for event in [
+            AcquireEvent::Lost(&error),
+            AcquireEvent::Back { gap },
+            at(8.0),
+        ] {
+            after(&mut page, &feed, event);
+        }
+        let twice = "the connection was lost 2 times, for 6 s in all; 7.9 s of frames are missing";
+        assert_eq!(page.trouble().as_deref(), Some(twice));
+        page.see_gaps();
+        assert_eq!(page.trouble(), None);
+        assert_eq!(page.status().gaps.count, 2);
     }
 
     #[test]

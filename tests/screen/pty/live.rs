@@ -546,6 +546,37 @@ fn a_connection_that_is_not_there_yet_is_waited_for() {
 }
 
 #[test]
+fn the_gap_of_a_lost_connection_stays_on_the_page_until_a_key() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = listener.local_addr().expect("an address");
+    let mut program = watching(folder.path(), &format!("tcp://{address} --at-least 9"));
+    for frame in ["frame 2", "frame 5"] {
+        let mut connection = connection(&listener);
+        // What comes first may have been torn.
+        let sent = connection.write_all(frames(0..4).as_bytes());
+        sent.expect("it reads");
+        program.shows(frame);
+        if frame == "frame 2" {
+            program.types(b"t");
+            program.shows("tare of the last");
+        }
+    }
+    program.shows("! the connection was lost for 1");
+    program.shows(" s of frames are missing");
+    program.shows("gaps       1, 1");
+    program.types(b"T");
+    program.shows("no tare");
+    program.until("no gap", |program| {
+        let screen = program.screen().contents();
+        !screen.contains("are missing") && screen.contains("gaps       1, 1")
+    });
+    program.types(b"q");
+    program.types(b"q");
+    program.ends_well(0);
+}
+
+#[test]
 fn a_recording_that_cannot_be_begun_opens_no_page() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
