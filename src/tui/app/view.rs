@@ -33,11 +33,17 @@ use crate::tui::matrix::view::MatrixView;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Draws the whole screen. Returns where the terminal's cursor is; None where it is hidden.
-pub fn view(app: &App, frame: &mut Frame<'_>) -> Option<Position> {
-    let area = frame.area();
+/// Draws the whole screen of a terminal, and shows or hides its cursor.
+pub fn view(app: &App, frame: &mut Frame<'_>) {
+    if let Some(position) = draw(app, frame.buffer_mut()) {
+        frame.set_cursor_position(position);
+    }
+}
+
+/// Draws the whole screen into an empty buffer. Returns where the terminal's cursor is; None where it is hidden.
+pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
+    let area = buffer.area;
     let theme = app.theme();
-    let buffer = frame.buffer_mut();
     let Some(panes) = Panes::of(area, &app.reading().imprint, app.halves()) else {
         too_small(theme, buffer, area);
         return None;
@@ -81,11 +87,7 @@ pub fn view(app: &App, frame: &mut Frame<'_>) -> Option<Position> {
     // A name and a command are typed in the line of notices.
     cursor = status::draw(app, buffer, &panes).or(cursor);
     // The terminal's own cursor shows the place where there are neither colours nor reversed characters.
-    let cursor = cursor.filter(|&position| area.contains(position));
-    if let Some(position) = cursor {
-        frame.set_cursor_position(position);
-    }
-    cursor
+    cursor.filter(|&position| area.contains(position))
 }
 
 /// Says on a screen that is too small for anything what it would need.

@@ -15,14 +15,12 @@
 
 use std::cell::{Ref, RefCell};
 
-use ratatui::Terminal;
-use ratatui::backend::TestBackend;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Notice, Options};
-use crate::tui::app::view::view;
+use crate::tui::app::view::draw;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::key::{Key, KeyError, parse};
 use crate::tui::live::message::{LiveEvent, LiveMessage, SourceState};
@@ -47,8 +45,8 @@ pub struct Session {
 /// A screen in memory, drawn when it is looked at.
 #[derive(Debug)]
 struct DrawnScreen {
-    /// The screen.
-    terminal: Terminal<TestBackend>,
+    /// Its cells.
+    buffer: Buffer,
     /// Where its cursor is; None where it is hidden.
     cursor: Option<Position>,
     /// Whether the state has changed since it was drawn.
@@ -56,15 +54,11 @@ struct DrawnScreen {
 }
 
 impl DrawnScreen {
-    /// Its cells.
-    fn buffer(&self) -> &Buffer {
-        self.terminal.backend().buffer()
-    }
-
     /// Draws the state onto the screen unless it shows it already.
     fn draw(&mut self, app: &App) {
         if std::mem::take(&mut self.is_stale) {
-            let Ok(_) = self.terminal.draw(|frame| self.cursor = view(app, frame));
+            self.buffer.reset();
+            self.cursor = draw(app, &mut self.buffer);
         }
     }
 }
@@ -77,10 +71,8 @@ impl Session {
 
     /// The same of a program that is made ready already.
     pub fn of(app: App, world: World, width: u16, height: u16) -> Self {
-        // A buffer in memory cannot fail: its error type has no values.
-        let Ok(terminal) = Terminal::new(TestBackend::new(width, height));
         let screen = DrawnScreen {
-            terminal,
+            buffer: Buffer::empty(Rect::new(0, 0, width, height)),
             cursor: None,
             is_stale: true,
         };
@@ -164,10 +156,8 @@ impl Session {
 
     /// Gives the screen another size.
     pub fn resize(&mut self, width: u16, height: u16) {
-        let terminal = &mut self.screen.get_mut().terminal;
-        terminal.backend_mut().resize(width, height);
-        // Also where the size is soon the old one again: what was drawn is gone.
-        let Ok(()) = terminal.resize(Rect::new(0, 0, width, height));
+        let area = Rect::new(0, 0, width, height);
+        self.screen.get_mut().buffer.resize(area);
         self.send(Message::Resized(width, height));
     }
 
@@ -184,7 +174,7 @@ impl Session {
 
     /// Columns and rows of the screen.
     pub fn size(&self) -> (u16, u16) {
-        let area = self.screen.borrow().buffer().area;
+        let area = self.screen.borrow().buffer.area;
         (area.width, area.height)
     }
 
@@ -195,37 +185,39 @@ impl Session {
 
     /// The screen, a line a row, blanks at the end cut off.
     pub fn screen(&self) -> String {
-        self.rows(|cell, row| row.push_str(cell.symbol()))
+        self.rows(|_, symbol, row| row.push_str(symbol))
     }
 
     /// The styles of the screen, a letter a character: `R` reversed, `B` bold, `D` dim, `.` plain.
     pub fn styles(&self) -> String {
-        self.rows(|cell, row| row.push(letter(&cell.style())))
+        self.rows(|cell, _, row| row.push(letter(&cell.style())))
     }
 
     /// The screen as SVG, with a title. Its colours are those of a theme that has all of them, as it is where
     /// [`crate::tui::widget::theme::ColorDepth::True`].
     pub fn svg(&self, title: &str) -> String {
-        drawing::svg(self.drawn().buffer(), *self.app.theme(), title)
+        drawing::svg(&self.drawn().buffer, *self.app.theme(), title)
     }
 
-    /// The rows of the screen; a function adds a cell to its row.
-    fn rows(&self, add: impl Fn(&Cell, &mut String)) -> String {
-        let drawn = self.drawn();
-        let buffer = drawn.buffer();
+    /// The rows of the screen; a function adds a cell, of which it gets the symbol too, to its row.
+    fn rows(&self, add: impl Fn(&Cell, &str, &mut String)) -> String {
+        let buffer = &self.drawn().buffer;
         let width = usize::from(buffer.area.width).max(1);
-        let rows = buffer.content.chunks(width).map(|row| {
-            let mut text = String::new();
+        let mut rows = String::with_capacity(buffer.content.len());
+        for row in buffer.content.chunks(width) {
+            let start = rows.len();
             let mut cells = row.iter();
             while let Some(cell) = cells.next() {
-                add(cell, &mut text);
+                let symbol = cell.symbol();
+                add(cell, symbol, &mut rows);
                 // What stands behind a wide character is covered by it.
-                for _ in 1..write::width(cell.symbol()) {
+                for _ in 1..write::width(symbol) {
                     cells.next();
                 }
             }
-            text
-        });
-        rows.map(|row| row.trim_end().to_owned() + "\n").collect()
+            rows.truncate(start + rows[start..].trim_end().len());
+            rows.push('\n');
+        }
+        rows
     }
 }
