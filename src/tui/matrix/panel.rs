@@ -8,6 +8,8 @@
 //! ```
 //! The rows are those of [`DESCRIPTORS`]. A low pane shows them in several columns.
 
+use std::sync::LazyLock;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
@@ -25,6 +27,12 @@ const VALUE: usize = 17;
 
 /// The same in ASCII, where the longest is `120.96, 59.04 deg`.
 const VALUE_IN_ASCII: usize = 19;
+
+/// Columns of the longest name of a descriptor.
+static LONGEST_NAME: LazyLock<usize> = LazyLock::new(|| {
+    let names = DESCRIPTORS.iter().map(|own| write::width(own.name));
+    names.fold(0, usize::max)
+});
 
 /// Draws the panel. Where it has fewer lines than there are descriptors, they stand in several columns.
 pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: Rect) {
@@ -85,7 +93,7 @@ fn draw_descriptor(
     });
     // A word that is cut tells nothing, and names of some descriptors only look as if the others had none.
     let room = usize::from(row.width).saturating_sub(SYMBOL + width);
-    let named = DESCRIPTORS.iter().all(|own| write::width(own.name) <= room);
+    let named = *LONGEST_NAME <= room;
     let remark = match scaled.as_deref() {
         Some(scaled) if write::width(scaled) <= room => scaled,
         None if named && write::width(name) <= room => name,

@@ -11,11 +11,22 @@ use ratatui::text::Span;
 
 /// The columns that a text takes.
 pub fn width(text: &str) -> usize {
+    if is_plain(text) {
+        return text.len();
+    }
     Span::raw(text).width()
+}
+
+/// Whether each byte of a text is a character of one column, as of nearly all text on the screen.
+fn is_plain(text: &str) -> bool {
+    text.bytes().all(|byte| matches!(byte, b' '..=b'~'))
 }
 
 /// As much of the beginning of a text as fits into a number of columns.
 pub(in crate::tui) fn head(text: &str, room: usize) -> &str {
+    if is_plain(text) {
+        return &text[..room.min(text.len())];
+    }
     let mut ends = text
         .char_indices()
         .map(|(at, character)| at + character.len_utf8());
