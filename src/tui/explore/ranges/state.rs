@@ -358,7 +358,11 @@ impl RangesForm {
             Message::Choose(Arrow::Down) => self.move_focus(1),
             message => match self.focused() {
                 Some(field) => {
+                    let before = field.text().to_owned();
                     field.input.take(message);
+                    if field.text() != before {
+                        self.propose();
+                    }
                 }
                 None if matches!(message, Message::Choose(_) | Message::Type(' ')) => {
                     self.other_anchor();
@@ -366,14 +370,14 @@ impl RangesForm {
                 None => {}
             },
         }
-        self.propose();
     }
 
-    /// The other anchor.
-    pub fn other_anchor(&mut self) {
+    /// The other anchor, and the ranges that suit it.
+    fn other_anchor(&mut self) {
         self.anchor = match self.anchor {
             Anchor::Corner => Anchor::Centre,
             Anchor::Centre => Anchor::Corner,
         };
+        self.propose();
     }
 }
