@@ -4,6 +4,7 @@
 //! that of no file, would need the whole folder each time.
 
 use std::collections::HashMap;
+use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
@@ -40,7 +41,11 @@ impl NameIndex {
         name: &Name,
         list: impl FnOnce() -> Result<Vec<String>, LibraryError>,
     ) -> Result<Option<String>, LibraryError> {
-        let changed = folder.metadata().and_then(|found| found.modified()).ok();
+        let changed = folder.metadata().and_then(|found| found.modified());
+        if (changed.as_ref()).is_err_and(|error| error.kind() == ErrorKind::NotFound) {
+            return Ok(None);
+        }
+        let changed = changed.ok();
         // A thread that panicked here left the old list or none.
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let folded_name = folded(name.as_str());
