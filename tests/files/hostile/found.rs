@@ -13,7 +13,7 @@ use super::malice;
 /// A form that shows a smaller sensor: the cursor stood beside it, and the coverage of another taxel was told.
 #[test]
 fn the_cursor_is_on_the_sensor_that_a_form_shows() {
-    body("session")(&[0, 0x07, b'S', b'1']);
+    body("session")(&[0, 0, 0x07, b'S', b'1']);
     let session = session_of("f<Enter>S8<Tab>8");
     assert_eq!(session.app().cursor(), (7, 7));
     let accepted = session_of("f<Enter>S8<Tab>8<Enter>");
@@ -30,7 +30,7 @@ fn a_chosen_region_outlasts_a_form_that_shows_none() {
     let session = session_of(&format!("{form}<Esc>"));
     let app = session.app();
     assert!(app.chosen().is_some() && app.reading().region(app.chosen()).is_some());
-    body("session")(b"\0 \x01\x01 \x0cf\x0c\x930.1\x0c\x930.1");
+    body("session")(b"\0\0 \x01\x01 \x0cf\x0c\x930.1\x0c\x930.1");
 }
 
 /// Two decimals of 16 digits can be one `f64`: they were taken, and written as another range.

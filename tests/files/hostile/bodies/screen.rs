@@ -32,6 +32,7 @@ fn folder() -> PathBuf {
     thread_local! {
         static SCRATCH: LazyCell<TempDir> = LazyCell::new(|| {
             let scratch = tempfile::tempdir().expect("a folder for temporary files");
+            std::fs::create_dir(scratch.path().join(MODELS)).expect("it is ours");
             for (name, content) in FILES {
                 std::fs::write(scratch.path().join(name), content).expect("it is ours");
             }
@@ -41,22 +42,28 @@ fn folder() -> PathBuf {
     SCRATCH.with(|scratch| scratch.path().to_owned())
 }
 
-/// A recording that can be watched and a small model that can be asked.
+/// The folder of the models that can be asked, beside the library.
+const MODELS: &str = "models";
+
+/// A recording that can be watched and a small model.
 const FILES: [(&str, &[u8]); 2] = [
     (
         "touch.jsonl",
         include_bytes!("../seeds/recording/frames_jsonl"),
     ),
-    ("bar.npz", include_bytes!("../seeds/model/bar.npz")),
+    ("models/bar.npz", include_bytes!("../seeds/model/bar.npz")),
 ];
 
 /// An empty library in the scratch folder, below which files are written. What the last input has left there is removed.
 fn world() -> World {
     let folder = folder();
-    for entry in std::fs::read_dir(&folder).expect("it is ours") {
-        let entry = entry.expect("it is ours");
-        if FILES.iter().all(|(name, _)| entry.file_name() != *name) {
-            remove(&entry.path()).expect("it is ours");
+    let models = folder.join(MODELS);
+    for inside in [&folder, &models] {
+        for entry in std::fs::read_dir(inside).expect("it is ours") {
+            let path = entry.expect("it is ours").path();
+            if path != models && FILES.iter().all(|(name, _)| path != folder.join(name)) {
+                remove(&path).expect("it is ours");
+            }
         }
     }
     World::quiet(Library::open(folder.join("library"))).confined_to(folder)
@@ -72,7 +79,7 @@ fn remove(path: &Path) -> io::Result<()> {
 }
 
 /// The most poses of a sweep or a training here.
-const MOST_POSES: u64 = 5_000;
+const MOST_POSES: u64 = 50;
 
 fn options() -> Options {
     Options::plain(false)
@@ -226,21 +233,29 @@ fn work(commands: &[(usize, ScriptCommand)]) -> u64 {
     all
 }
 
-/// How the program may have come so far, after a small model was asked once: from nothing; with a figure, the results of a
-/// small sweep and its ranges remembered; on a small sensor; with a picture that is held.
-const STARTS: [&str; 4] = [
+/// How the program may have come so far, after a small model was asked once: from nothing, with a ring drawn by hand, or
+/// with something that was swept in a few poses, whose ranges are remembered; on the matrix or on one of the pages. So a
+/// short input does something anywhere.
+const STARTS: [&str; 12] = [
     "",
     "f<Enter>:explore --x0 5:5.5:0.25 --y0 5:5.5:0.5 --angle 0:90:45<Enter><Esc>",
-    "S<C-u>8<Tab><C-u>8<Enter>f<Enter>",
-    ":picture washer<Enter><Enter>g",
+    "S<C-u>8<Tab><C-u>8<Enter>f<Enter>:explore --x0 1 --y0 1:1.5:0.5 --angle 0<Enter><Esc>",
+    ":picture washer<Enter><Enter>:explore --x0 1 --y0 1:1.5:0.5 --angle 0:90:45<Enter><Esc>g",
+    "<Space><Right><Space><Right><Space><Down><Space><Down><Space><Left><Space><Left><Space><Up><Space>",
+    "fr<Enter>:explore --x0 5:5.5:0.25 --y0 5:5.5:0.5 --angle 0:90:45<Enter>",
+    "fr<Enter>:explore --x0 5:5.5:0.25 --y0 5:5.5:0.5 --angle 0:90:45<Enter>e",
+    "f<Enter>f<Tab>",
+    "l",
+    "f<Enter>r",
+    "f<Enter>rt",
+    "r:separate --scale 1:2:1 --positions 1 --angle 0<Enter>",
 ];
 
 /// A program that has come so far. It holds what it has found, so that no input has to find it again.
 fn start(number: u8) -> App {
     thread_local! {
-        static APPS: [App; 4] = STARTS.map(|keys| {
-            let model = folder().join(FILES[1].0).display().to_string();
-            session_of(&format!(":recognise {model}<Enter><Esc>{keys}")).app().clone()
+        static APPS: [App; STARTS.len()] = STARTS.map(|keys| {
+            session_of(&format!(":recognise bar<Enter><Esc>{keys}")).app().clone()
         });
     }
     APPS.with(|apps| apps[usize::from(number) % apps.len()].clone())
@@ -250,9 +265,9 @@ fn start(number: u8) -> App {
 /// whenever it is drawn. Any bytes are some input.
 pub(crate) fn session(bytes: &[u8]) -> bool {
     let mut bytes = Bytes(bytes);
-    let first = bytes.next().unwrap_or_default();
-    let (columns, rows) = bytes.size(first / 4);
-    let app = start(first);
+    let app = start(bytes.next().unwrap_or_default());
+    let number = bytes.next().unwrap_or_default();
+    let (columns, rows) = bytes.size(number / 4);
     let world = world().impatient(MOST_POSES);
     let mut session = Session::of(app, world, columns, rows);
     for number in 0..300 {
@@ -265,7 +280,7 @@ pub(crate) fn session(bytes: &[u8]) -> bool {
             break;
         }
         // As in a terminal: what comes at once is drawn at once.
-        if number % 16 == 15 || matches!(byte, 0xf0..0xf2) {
+        if number % 32 == 31 || matches!(byte, 0xf0..0xf2) {
             shows_text(&session);
         }
     }
@@ -349,7 +364,7 @@ const SIZES: [(u16, u16); 12] = [
     (80, 24),
     (100, 30),
     (80, 25),
-    (132, 43),
+    (132, 24),
     (60, 20),
     (40, 24),
     (80, 12),
