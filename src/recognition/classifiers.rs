@@ -15,7 +15,7 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 use crate::atlas::{feature_values, features};
-use crate::description::{Description, Descriptor};
+use crate::description::{Description, Descriptor, Value};
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::given::{GivenTable, ShapeDescriptor};
 use crate::recognition::model::{Model, share};
@@ -426,7 +426,17 @@ impl FeatureTable {
 fn columns(
     descriptions: &[Option<Description>],
 ) -> impl Iterator<Item = (String, &'static Descriptor, Vec<f64>)> {
-    let mut columns = vec![vec![f64::NAN; descriptions.len()]; features().len()];
+    // Counts of an empty imprint are 0; other features of it do not exist.
+    let of_nothing = features().iter().map(|feature| {
+        if feature.descriptor.of_nothing == Value::None {
+            f64::NAN
+        } else {
+            0.0
+        }
+    });
+    let mut columns: Vec<_> = of_nothing
+        .map(|value| vec![value; descriptions.len()])
+        .collect();
     for (key, description) in descriptions.iter().enumerate() {
         if let Some(description) = description {
             feature_values(description, |feature, value| columns[feature][key] = value);
@@ -545,11 +555,39 @@ impl Sample {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::Figure;
+    use crate::recognition::model::NamedShape;
+    use crate::recognition::sets::GridSteps;
+    use crate::recognition::training::Training;
+    use crate::sensor::Sensor;
 
     #[test]
     fn ties_go_to_the_first() {
         assert_eq!(first_two(&[2.0, 1.0, 1.0]), [Some(1), Some(2), Some(2)]);
         assert_eq!(first_two(&[2.0, 1.0, 3.0]), [Some(1), Some(0), None]);
         assert_eq!(first_two(&[2.0]), [Some(0), None, None]);
+    }
+
+    #[test]
+    fn a_pose_that_leaves_nothing_takes_no_count_from_the_features() {
+        let sensor = Sensor::default();
+        let shapes = [
+            ("tri", Figure::triangle(1.2).on(&sensor)),
+            ("bar", Figure::rectangle(6.0, 3.0).on(&sensor)),
+        ];
+        let shapes = shapes.map(|(name, figure)| NamedShape::new(name, figure.expect("in range")));
+        let steps = GridSteps::new(10, 45).expect("divisors");
+        let training = Training::fitting(shapes.to_vec(), steps).expect("they fit");
+        let model = training.run().expect("not stopped");
+        let table = FeatureTable::new(&model, None);
+        let empty = GivenTable::new(&model);
+        assert!(empty.descriptions().iter().any(Option::is_none));
+        for count in ["na", "nae", "ce", "area"] {
+            let kept = table.names.iter().any(|name| name == count);
+            let copy = table.dropped.iter();
+            let copy =
+                copy.filter(|(name, reason)| name == count && *reason == "a copy of another");
+            assert!(kept || copy.count() == 1, "{count}: {:?}", table.dropped);
+        }
     }
 }
