@@ -352,7 +352,7 @@ impl Rounding {
         reason = "values of descriptors over a step of at least 1e-9 are far below 2⁶³"
     )]
     fn steps(&self, number: f64) -> i64 {
-        let (steps, turn) = ((number / self.step).round() as i64, 360.0 / self.step);
+        let (steps, turn) = (round(number / self.step) as i64, 360.0 / self.step);
         let is_circular = self.descriptor.0.dimension == Dimension::Direction;
         let whole_turn = turn.round();
         // A quotient of decimals is a rounding off.
@@ -379,6 +379,18 @@ impl Rounding {
             }
         }
         Some(rounded)
+    }
+}
+
+/// The nearest whole number. Equal values that were computed in different ways differ by rounding errors, which must not
+/// part them half way between two steps: there, all are rounded away from zero.
+fn round(steps: f64) -> f64 {
+    let halves = (2.0 * steps).round();
+    let error = f64::max(1e-9, 16.0 * f64::EPSILON * steps.abs());
+    if (2.0 * steps - halves).abs() <= error {
+        (halves / 2.0).round()
+    } else {
+        steps.round()
     }
 }
 
@@ -428,5 +440,16 @@ mod tests {
         assert_eq!(steps(&format!("{turn}180"), numbers), [1, 1, 0]);
         assert_eq!(steps(&format!("{turn}30"), numbers), [6, 6, 9]);
         assert_eq!(steps("cg_cd=30", numbers), [6, -6, -3]);
+    }
+
+    #[test]
+    fn rounding_errors_do_not_part_equal_values_between_two_steps() {
+        let rounding: Rounding = "cg_cd_direction=10".parse().expect("a rounding");
+        let below = 45.0_f64.next_down().next_down();
+        assert_eq!(
+            [below, 45.0, 44.99].map(|own| rounding.steps(own)),
+            [5, 5, 4]
+        );
+        assert_eq!([-below, -45.0].map(|own| rounding.steps(own)), [31, 31]);
     }
 }
