@@ -246,6 +246,9 @@ fn whole(angle: f64, period: f64) -> usize {
 #[derive(Debug, Default)]
 struct PoseMoments {
     poses: u64,
+    /// The first position, from which the others are measured: squares of large numbers would leave a spread where there is
+    /// none.
+    origin: Option<[f64; 2]>,
     position: [f64; 2],
     squares: [f64; 2],
     cosine: f64,
@@ -257,6 +260,8 @@ impl PoseMoments {
     fn add(&mut self, weight: u64, (from, to): (f64, f64), count: u64, y: f64) {
         let (poses, number) = (float(weight), float(count));
         let middle = f64::midpoint(from, to);
+        let origin = *self.origin.get_or_insert([middle, y]);
+        let (x, y) = (middle - origin[0], y - origin[1]);
         // The variance of equal steps between two ends.
         let own = if count > 1 {
             (to - from).powi(2) * (number + 1.0) / (12.0 * (number - 1.0))
@@ -264,9 +269,9 @@ impl PoseMoments {
             0.0
         };
         self.poses += weight;
-        self.position[0] += poses * middle;
+        self.position[0] += poses * x;
         self.position[1] += poses * y;
-        self.squares[0] += poses * (middle * middle + own);
+        self.squares[0] += poses * (x * x + own);
         self.squares[1] += poses * y * y;
     }
 
@@ -278,13 +283,11 @@ impl PoseMoments {
     }
 
     fn finish(self, angles: Option<(f64, Vec<u64>)>) -> Option<PoseEstimate> {
-        if self.poses == 0 {
-            return None;
-        }
+        let origin = self.origin?;
         let all = float(self.poses);
-        let position = self.position.map(|sum| sum / all);
+        let from_origin = self.position.map(|sum| sum / all);
         let standard_deviation = [0, 1].map(|axis| {
-            let variance: f64 = self.squares[axis] / all - position[axis] * position[axis];
+            let variance: f64 = self.squares[axis] / all - from_origin[axis] * from_origin[axis];
             variance.max(0.0).sqrt()
         });
         let angle = angles.map(|(period, degrees)| {
@@ -295,18 +298,24 @@ impl PoseMoments {
                 (-2.0 * libm::log(length.min(1.0))).max(0.0).sqrt() / std::f64::consts::TAU;
             AngleEstimate {
                 period,
-                mean: directed.then(|| (mean * period).rem_euclid(period)),
+                mean: directed.then(|| within_period(mean * period, period)),
                 standard_deviation: directed.then_some(deviation * period),
                 most: fewest(&degrees, self.poses),
             }
         });
         Some(PoseEstimate {
             poses: self.poses,
-            position,
+            position: [0, 1].map(|axis| origin[axis] + from_origin[axis]),
             standard_deviation,
             angle,
         })
     }
+}
+
+/// An angle from 0 to below a period. The remainder of one just below 0 is rounded to the whole period.
+fn within_period(angle: f64, period: f64) -> f64 {
+    let rest = angle.rem_euclid(period);
+    if rest < period { rest } else { 0.0 }
 }
 
 /// The fewest neighbours on a circle that hold 95 % of all: the first, and how many. The first of equals.
@@ -421,6 +430,19 @@ mod tests {
         );
         let all = estimate(360.0, 180.0, 140.8, (0, 310));
         assert_eq!((all.ends(), all.known()), ((0, 309), None));
+    }
+
+    #[test]
+    fn poses_in_one_place_have_no_spread_and_angles_are_below_the_period() {
+        let mut sums = PoseMoments::default();
+        for x in [53.6, 53.6, 53.6] {
+            sums.add(7, (x, x), 1, 50.2);
+        }
+        let estimate = sums.finish(None).expect("poses");
+        assert_eq!(estimate.position, [53.6, 50.2]);
+        assert_eq!(estimate.standard_deviation, [0.0, 0.0]);
+        assert_eq!(within_period(-1e-17, 45.0), 0.0);
+        assert_eq!(within_period(50.0, 45.0), 5.0);
     }
 
     #[test]
