@@ -74,8 +74,8 @@ pub enum NamedShapeError {
 /// Finds the imprint of a stored shape.
 pub type ShapeLookup<'a> = dyn Fn(&str) -> Result<Imprint, String> + 'a;
 
-/// Reads a shape of a set from a JSON object. A position or an angle may be there and does not matter; a sensor may
-/// not.
+/// Reads a shape of a set from a JSON object. A position, an angle or the zoom of a picture may be there and does not
+/// matter, since a set is touched in the poses of its ranges; a sensor may not.
 ///
 /// # Errors
 /// What is wrong with it, in one sentence.
@@ -162,13 +162,12 @@ fn source(mut record: Record<'_>, lookup: &ShapeLookup<'_>) -> Result<Source, Re
         return Ok(Picture::at_home(*imprint).into());
     }
     let kind = record.figure.as_deref().and_then(FigureKind::from_name);
-    // A set has all poses of its grid, so the pose that a line gives must not make its file another one. Zooms are sizes.
+    // A set has all poses of its grid, so the pose that a line gives must not make its file another one.
     for axis in Axis::ALL {
-        let parameter = axis.parameter();
         if !axis.is_zoom() {
-            record.values.set(parameter, 0.0);
-        } else if kind.is_none() && record.values.get(parameter).is_none() {
-            record.values.set(parameter, 1.0);
+            record.values.set(axis.parameter(), 0.0);
+        } else if kind.is_none() {
+            record.values.set(axis.parameter(), 1.0);
         }
     }
     record.source(&Sensor::LARGEST, lookup)
