@@ -163,12 +163,13 @@ impl FigureBuilder {
     /// # Errors
     /// The first value that is out of range; they are checked in the order of [`FigureKind::parameters`].
     pub fn on(self, sensor: &Sensor) -> Result<Figure, ParameterError> {
-        for &parameter in self.0.kind.parameters() {
-            if let Some(value) = self.0.get(parameter) {
-                sensor.check(parameter, value)?;
+        let mut figure = self.0;
+        for &parameter in figure.kind.parameters() {
+            if let Some(value) = figure.get(parameter) {
+                figure = figure.with(parameter, value, sensor)?;
             }
         }
-        Ok(self.0)
+        Ok(figure)
     }
 }
 
@@ -474,6 +475,13 @@ impl std::fmt::Display for Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_zero_has_one_sign() {
+        let disc = Figure::ellipse(1.0, 1.0).at(-0.0, 2.0);
+        let disc = disc.on(&Sensor::default()).expect("in range");
+        assert_eq!(disc.get(Parameter::X0).map(f64::to_bits), Some(0));
+    }
 
     #[test]
     fn a_new_figure_lies_on_a_sensor_of_any_size() {

@@ -81,9 +81,9 @@ impl PictureBuilder {
     ///
     /// # Errors
     /// The first value that is out of range; they are checked in the order of [`PICTURE_PARAMETERS`].
-    pub fn on(self, sensor: &Sensor) -> Result<Picture, ParameterError> {
-        for (parameter, value) in PICTURE_PARAMETERS.into_iter().zip(self.0.values) {
-            sensor.check(parameter, value)?;
+    pub fn on(mut self, sensor: &Sensor) -> Result<Picture, ParameterError> {
+        for (parameter, value) in PICTURE_PARAMETERS.into_iter().zip(&mut self.0.values) {
+            *value = sensor.check(parameter, *value)?;
         }
         Ok(self.0)
     }

@@ -160,7 +160,7 @@ impl Sensor {
         }
     }
 
-    /// Returns `value` if the parameter may be set to it.
+    /// Returns `value` if the parameter may be set to it, a negative zero as 0.
     ///
     /// # Errors
     /// [`ParameterError::Range`], also for NaN and the infinities.
@@ -168,7 +168,7 @@ impl Sensor {
         let range = self.range(parameter);
         let whole = parameter.row().unit != Unit::Taxels || value.fract() == 0.0;
         if range.contains(value) && whole {
-            Ok(value)
+            Ok(value + 0.0)
         } else {
             Err(ParameterError::Range {
                 parameter,
@@ -257,6 +257,12 @@ mod tests {
             );
         }
         assert_eq!(sensor.step(Parameter::X0, 1.236, 0), 1.24);
+    }
+
+    #[test]
+    fn zero_has_one_sign() {
+        let read = Sensor::default().read(Parameter::X0, "-0.0");
+        assert!(read.is_ok_and(f64::is_sign_positive));
     }
 
     #[test]
