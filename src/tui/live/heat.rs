@@ -1,7 +1,8 @@
 //! The heat map: the values of all taxels in shades or as numbers, and the edge of the imprint.
 //!
 //! ```text
-//! ░░▒▒▒•▓•        two columns a taxel: the second one of a taxel at the edge of the imprint has a mark
+//! ░░▒▒▒•▓•        two columns a taxel: the second one of a taxel at the edge of the imprint has a mark; or two lines of
+//!                 four columns, and so on
 //! ░▒▓•            half a character a taxel: the larger of two; with colours, each has its own. The mark stands beside the
 //!                 imprint, so that no value of a touch is hidden
 //!      6     7
@@ -69,7 +70,10 @@ impl<'a> HeatMap<'a> {
         for (x, column) in self.grid.columns.visible() {
             for (y, row) in self.grid.rows.visible() {
                 match self.grid.form {
-                    CellForm::Wide => self.wide(buffer, area, (2 * x, y), (column, row)),
+                    CellForm::Wide(times) => {
+                        let at = (2 * times * x, times * y);
+                        self.wide(buffer, area, at, times, (column, row));
+                    }
                     CellForm::Half if y % 2 == 0 => {
                         self.half(buffer, area, (x, y / 2), (column, row));
                     }
@@ -156,17 +160,29 @@ impl<'a> HeatMap<'a> {
         near && !both(Some(column))
     }
 
-    /// Draws a taxel of two columns. The second repeats the first, unless it bears the mark of the edge or the taxel is
-    /// low: then it stays empty, so that a field of nothing is not twice as dense.
-    fn wide(&self, buffer: &mut Buffer, area: Rect, at: (u16, u16), (column, row): (u8, u8)) {
+    /// Draws a taxel of two columns, or of several lines of more. All are the same sign, but the mark of the edge stands in
+    /// the middle, and of a low taxel there is a single sign, so that a field of nothing is not as dense as one of something.
+    fn wide(
+        &self,
+        buffer: &mut Buffer,
+        area: Rect,
+        at: (u16, u16),
+        times: u16,
+        (column, row): (u8, u8),
+    ) {
         let (sign, style) = self.taxel(column, row);
-        let second = match sign {
-            _ if self.is_marked(column, row) => heat::edge(self.theme),
-            '·' | '.' if self.is_low(column, row) => ' ',
-            sign => sign,
-        };
-        put(buffer, area, at, sign, style);
-        put(buffer, area, (at.0 + 1, at.1), second, style);
+        let is_single = matches!(sign, '·' | '.') && self.is_low(column, row);
+        let filled = if is_single { ' ' } else { sign };
+        let middle = (at.0 + times, at.1 + times / 2);
+        for y in 0..times {
+            for x in 0..2 * times {
+                put(buffer, area, (at.0 + x, at.1 + y), filled, style);
+            }
+        }
+        put(buffer, area, (middle.0 - 1, middle.1), sign, style);
+        if self.is_marked(column, row) {
+            put(buffer, area, middle, heat::edge(self.theme), style);
+        }
     }
 
     /// Whether a taxel is a single sign, as one of nothing.

@@ -5,7 +5,7 @@
 //! taxels               numbers                beside each other, or on a narrow screen one above the other, unless that
 //!                                             hides taxels
 //! ```
-//! A taxel has two columns where all fit so; else half a character, so that two stand above each other; else a window of
+//! A taxel has two columns where all fit so, or a multiple of these; else half a character, so that two stand above each other; else a window of
 //! these follows the contact. Numbers have rulers, as their window rarely shows all.
 
 use ratatui::layout::Rect;
@@ -19,6 +19,9 @@ const PANEL: u16 = 26;
 /// The same on a narrow screen, where they are cut short.
 const NARROW_PANEL: u16 = 18;
 
+/// The same before taxels are made larger.
+const WIDE_PANEL: u16 = 44;
+
 /// Columns between the heat map and the numbers.
 const GAP: u16 = 2;
 
@@ -31,8 +34,8 @@ pub(super) const NUMBER: u16 = 6;
 /// How a taxel is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CellForm {
-    /// Two columns of one row.
-    Wide,
+    /// Two columns of one row, or this many times that, both across and down.
+    Wide(u16),
     /// Two taxels, one above the other, in one character.
     Half,
     /// A number.
@@ -40,11 +43,11 @@ pub(super) enum CellForm {
 }
 
 impl CellForm {
-    /// Columns of the screen that a taxel has, and rows of taxels in a row of the screen.
+    /// Columns of the screen that a taxel has, and lines; of two that share a character, one each.
     fn size(self) -> (u16, u16) {
         match self {
-            Self::Wide => (2, 1),
-            Self::Half => (1, 2),
+            Self::Wide(times) => (2 * times, times),
+            Self::Half => (1, 1),
             Self::Number => (NUMBER, 1),
         }
     }
@@ -64,16 +67,11 @@ pub(super) struct HeatGrid {
 impl HeatGrid {
     /// The taxels of a matrix in an area, as near to a taxel as the ends allow where not all are visible.
     pub(super) fn of(area: Rect, (columns, rows): (u8, u8), numbers: bool, near: (u8, u8)) -> Self {
-        let fits = |form: CellForm| {
-            let (wide, high) = form.size();
-            u16::from(columns) * wide <= area.width && u16::from(rows).div_ceil(high) <= area.height
-        };
-        let form = if numbers {
-            CellForm::Number
-        } else if fits(CellForm::Wide) {
-            CellForm::Wide
-        } else {
-            CellForm::Half
+        let times = (area.width / (2 * u16::from(columns))).min(area.height / u16::from(rows));
+        let form = match times {
+            _ if numbers => CellForm::Number,
+            0 => CellForm::Half,
+            times => CellForm::Wide(times),
         };
         let (wide, high) = form.size();
         let rulers = if form == CellForm::Number {
@@ -85,8 +83,11 @@ impl HeatGrid {
         let (width, lines) = (area.width - rulers.0, area.height - rulers.1);
         let columns = AxisWindow::new(columns, width / wide, near.0);
         // Which two share a character does not change while the window moves.
-        let step = if form == CellForm::Half { 2 } else { 1 };
-        let rows = AxisWindow::in_steps(rows, lines.saturating_mul(high), near.1, step);
+        let (step, lines) = match form {
+            CellForm::Half => (2, lines.saturating_mul(2)),
+            _ => (1, lines / high),
+        };
+        let rows = AxisWindow::in_steps(rows, lines, near.1, step);
         Self {
             form,
             columns,
@@ -128,17 +129,25 @@ pub(super) struct LivePanes {
 }
 
 impl LivePanes {
-    /// The panes for a matrix of this many columns and rows.
-    pub(super) fn of(area: Rect, size: (u8, u8), numbers: bool) -> Self {
+    /// The panes for a matrix of this many columns and rows; before the first frame there is none.
+    pub(super) fn of(area: Rect, size: Option<(u8, u8)>, numbers: bool) -> Self {
         let title = Rect {
             height: area.height.min(1),
             ..area
         };
         let rest = below(area, 1);
+        let Some(size) = size else {
+            let map = Rect { width: 0, ..rest };
+            return Self {
+                title,
+                map,
+                panel: rest,
+            };
+        };
         let narrow = rest.width < 2 * PANEL;
         let least = if narrow { NARROW_PANEL } else { PANEL };
-        let room = Rect {
-            width: rest.width.saturating_sub(GAP + least),
+        let room = |panel: u16| Rect {
+            width: rest.width.saturating_sub(GAP + panel),
             ..rest
         };
         let map_above = Rect {
@@ -146,7 +155,7 @@ impl LivePanes {
             ..rest
         };
         let grid = |area: Rect| HeatGrid::of(area, size, numbers, (0, 0));
-        let beside = grid(room);
+        let beside = grid(room(least));
         if narrow && grid(map_above).visible() >= beside.visible() {
             return Self {
                 title,
@@ -154,7 +163,12 @@ impl LivePanes {
                 panel: below(rest, map_above.height),
             };
         }
-        let width = beside.width();
+        let large = grid(room(WIDE_PANEL));
+        let width = match (large.form, beside.form) {
+            (CellForm::Wide(_), _) => large.width(),
+            (_, CellForm::Wide(_)) => 2 * u16::from(size.0),
+            _ => beside.width(),
+        };
         Self {
             title,
             map: Rect { width, ..rest },
@@ -171,7 +185,7 @@ mod tests {
     fn visible(columns: u16, rows: u16, numbers: bool) -> u16 {
         // Menu, notice and hints have a line each.
         let area = Rect::new(0, 1, columns, rows - 3);
-        let panes = LivePanes::of(area, (16, 16), numbers);
+        let panes = LivePanes::of(area, Some((16, 16)), numbers);
         assert!(panes.panel.width >= NARROW_PANEL && panes.panel.height > 0);
         HeatGrid::of(panes.map, (16, 16), numbers, (0, 0)).visible()
     }
@@ -184,6 +198,12 @@ mod tests {
         // Numbers in all rows.
         assert_eq!(visible(80, 24, true), 8 * 16);
         assert_eq!(visible(60, 20, true), 4 * 16);
+        // Larger ones where the numbers beside them keep their room.
+        let map = |columns, rows: u16| {
+            let area = Rect::new(0, 1, columns, rows - 3);
+            LivePanes::of(area, Some((16, 16)), false).map.width
+        };
+        assert_eq!([map(80, 24), map(120, 40), map(200, 60)], [32, 64, 96]);
         // The smallest of all.
         assert!(visible(20, 6, false) >= 32);
     }

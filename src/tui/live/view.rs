@@ -60,9 +60,7 @@ impl Page for Live {
         area: Rect,
     ) -> Option<Position> {
         let reading = self.reading();
-        let size = reading.map_or((1, 1), |reading| {
-            (reading.values.columns(), reading.values.rows())
-        });
+        let size = reading.map(|reading| (reading.values.columns(), reading.values.rows()));
         let panes = LivePanes::of(area, size, self.numbers());
         let map = reading.map(|reading| HeatMap::of(self, reading, theme, panes.map));
         let title = title(self, map.as_ref().and_then(HeatMap::window));
