@@ -184,6 +184,16 @@ impl Bounds {
         })
     }
 
+    /// A single taxel.
+    pub fn of_taxel(column: u8, row: u8) -> Self {
+        Self {
+            left: column,
+            top: row,
+            right: column + 1,
+            bottom: row + 1,
+        }
+    }
+
     /// Its columns.
     pub fn columns(&self) -> Range<u8> {
         self.left..self.right

@@ -64,6 +64,38 @@ fn every_size_of_every_screen_is_drawn() {
     }
 }
 
+/// On a matrix that is too large for the screen the described region comes into sight, wherever the cursor is, and a step
+/// of the cursor leads back to it.
+#[test]
+fn the_described_region_comes_into_sight_and_so_does_a_cursor_that_moves() {
+    let options = Options {
+        sensor: Sensor::new(64, 64).expect("in range"),
+        ..Options::plain(false)
+    };
+    let mut page = on(world(), &options, (80, 24), "<Home><PageUp>");
+    let region = "█";
+    hides(&page, &[region]);
+    for (keys, seen) in [
+        ("f<4x:Tab>50", true),
+        ("<Esc>", false),
+        ("f<4x:Tab>50<Enter>", true),
+        ("<Right>", false),
+        ("c", false),
+        ("cc<Tab>", true),
+        ("<Left>", false),
+        ("e", true),
+        ("<Esc><Right>", false),
+        ("<S-Up>", true),
+        ("<Space>", false),
+        ("uu", true),
+        ("<Right>:move 20 0<Enter>", true),
+    ] {
+        press(&mut page, keys);
+        let screen = page.screen();
+        assert_eq!(screen.contains(region), seen, "{keys}\n{screen}");
+    }
+}
+
 /// A locale without Unicode gets nothing but ASCII, on every screen.
 #[test]
 fn ascii_screens_are_ascii() {

@@ -5,15 +5,16 @@ use std::collections::VecDeque;
 use ratatui::layout::Rect;
 
 use crate::formats::{Name, StoredShape};
-use crate::imprint::Imprint;
+use crate::imprint::{Bounds, Imprint};
 use crate::sensor::Sensor;
+use crate::source::Source;
 use crate::storage::{Expected, ShapeOrigin, UNNAMED};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, ReadDocument, Reading};
 use crate::tui::app::history::{History, StoredName};
 use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::Page;
+use crate::tui::app::page::{Page, Slot};
 use crate::tui::explore::results::Results;
 use crate::tui::form::memory::FormMemory;
 use crate::tui::keys::action::{self, Action};
@@ -73,6 +74,28 @@ pub enum MoveKind {
     Turn,
     /// Larger or smaller.
     Zoom,
+}
+
+/// What stays in sight on a matrix that is seen through a window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::tui) enum Followed {
+    /// The taxel under the cursor.
+    Cursor,
+    /// The described region.
+    Region,
+}
+
+/// What decides what the window follows, before or after a message.
+#[derive(Clone, Debug)]
+pub(in crate::tui) struct Attention {
+    /// The taxel under the cursor.
+    cursor: (u8, u8),
+    /// Whether a page stands beside the matrix.
+    accompanied: bool,
+    /// What touches: a small move of it may leave the same taxels active.
+    source: Option<Source>,
+    /// The active taxels.
+    imprint: Imprint,
 }
 
 /// How taxels are shown.
@@ -167,6 +190,8 @@ pub struct App {
     shown: ReadDocument,
     /// The taxel under the cursor: column, row.
     pub(in crate::tui) cursor: (u8, u8),
+    /// What the window of a large matrix follows.
+    pub(in crate::tui) followed: Followed,
     /// The region chosen with Tab; none: the main one.
     pub(in crate::tui) chosen: Option<usize>,
     /// What the arrows do.
@@ -240,6 +265,7 @@ impl App {
             cursor: (options.sensor.columns() / 2, options.sensor.rows() / 2),
             shown: ReadDocument::new(document.clone()),
             history: History::new(document),
+            followed: Followed::Cursor,
             chosen: None,
             mode: Mode::Draw,
             display: Display::Imprint,
@@ -354,7 +380,49 @@ impl App {
     pub(in crate::tui) fn grid(&self) -> Option<TaxelGrid> {
         let area = self.panes()?.matrix;
         let imprint = &self.reading().imprint;
-        Some(TaxelGrid::of(area, imprint, self.cursor(), self.halves()))
+        let (cursor, seen) = (self.cursor(), self.seen());
+        Some(TaxelGrid::of(area, imprint, cursor, seen, self.halves()))
+    }
+
+    /// What the window of a large matrix shows.
+    pub(in crate::tui) fn seen(&self) -> Bounds {
+        let region = self.reading().region(self.chosen);
+        match region.filter(|_| self.followed == Followed::Region) {
+            Some((_, region)) => region.bounds(),
+            None => Bounds::of_taxel(self.cursor().0, self.cursor().1),
+        }
+    }
+
+    /// What decides what the window follows.
+    pub(in crate::tui) fn attention(&self) -> Attention {
+        let page = self.pane().map(Page::slot);
+        Attention {
+            cursor: self.cursor(),
+            accompanied: matches!(page, Some(Slot::Form | Slot::Panel)),
+            source: self.shown().source.clone(),
+            imprint: self.reading().imprint,
+        }
+    }
+
+    /// Has the window follow the cursor after it was moved or its taxel was switched; the described region where the shape or
+    /// the imprint changed otherwise, and where a page opened that is about it. Else it stays.
+    pub(in crate::tui) fn follow(&mut self, before: &Attention) {
+        let now = self.attention();
+        let sides = |imprint: &Imprint| (imprint.columns(), imprint.rows());
+        let same_sensor = sides(&now.imprint) == sides(&before.imprint);
+        let mut changed = now.imprint.differing(&before.imprint);
+        changed.set(now.cursor.0, now.cursor.1, false);
+        let elsewhere = !same_sensor
+            || !changed.is_empty()
+            || now.source != before.source
+            || now.accompanied && !before.accompanied;
+        if same_sensor && now.cursor != before.cursor {
+            self.followed = Followed::Cursor;
+        } else if elsewhere {
+            self.followed = Followed::Region;
+        } else if now.imprint != before.imprint {
+            self.followed = Followed::Cursor;
+        }
     }
 
     /// The results that are open, perhaps under other pages.

@@ -29,8 +29,10 @@ const MOST_TIMES: u16 = 999;
 
 /// Does what a message says. A notice stays until the next message that is not an answer to the last one.
 pub fn update(app: &mut App, message: Message) -> Option<Effect> {
+    let before = app.attention();
     let effect = handle(app, message);
     app.read();
+    app.follow(&before);
     // A message that wants something else is followed by another one.
     let effect = effect.or_else(|| recognise::update::follow(app));
     effect.or_else(|| live::update::follow(app))

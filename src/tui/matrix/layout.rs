@@ -6,13 +6,15 @@
 //! Narrow      one column, one line        coverage of a matrix that is too wide for two
 //! Half        one column, half a line     a matrix that does not fit otherwise: two taxels a character
 //! ```
-//! A matrix that does not fit even so is seen through a window that follows the cursor in steps of half its size: a
-//! move of the cursor changes a few characters, and only now and then all of them. Drawing and the mouse share this
-//! layout.
+//! A matrix that does not fit even so is seen through a window that follows the cursor, or the described region where that
+//! is what has changed, in steps of half its size: a move of the cursor changes a few characters, and only now and then all
+//! of them. Drawing and the mouse share this layout.
+
+use std::ops::Range;
 
 use ratatui::layout::Rect;
 
-use crate::imprint::Imprint;
+use crate::imprint::{Bounds, Imprint};
 use crate::tui::widget::number::{narrow, taxels};
 
 /// Columns of the row ruler.
@@ -86,10 +88,18 @@ impl AxisWindow {
 
     /// The same of a window that begins at a multiple of `step`.
     pub(in crate::tui) fn in_steps(cells: u8, room: u16, cursor: u8, step: u8) -> Self {
+        Self::showing(cells, room, cursor..cursor + 1, step)
+    }
+
+    /// The same of a window that shows all of `seen`, or its beginning where it is too large.
+    fn showing(cells: u8, room: u16, seen: Range<u8>, step: u8) -> Self {
         let count = taxels(room).min(cells);
         let whole_steps = |number: u8| number / step * step;
         let stride = whole_steps(count / 2).max(step);
-        let before = (cursor / stride * stride).saturating_sub(whole_steps(count / 4));
+        let middle = seen.start + (seen.end - seen.start) / 2;
+        let before = (middle / stride * stride).saturating_sub(whole_steps(count / 4));
+        let ending = seen.end.saturating_sub(count).next_multiple_of(step);
+        let before = before.max(ending).min(whole_steps(seen.start));
         let last = (cells - count).next_multiple_of(step);
         let first = if count < cells { before.min(last) } else { 0 };
         Self {
@@ -135,9 +145,15 @@ pub struct TaxelGrid {
 }
 
 impl TaxelGrid {
-    /// The taxels of a matrix in its pane, with the cursor at a taxel. `halves` tells whether two of them may share a
-    /// character.
-    pub fn of(area: Rect, imprint: &Imprint, cursor: (u8, u8), halves: bool) -> Self {
+    /// The taxels of a matrix in its pane, with the cursor at a taxel and the window where `seen` is. `halves` tells whether
+    /// two of them may share a character.
+    pub fn of(
+        area: Rect,
+        imprint: &Imprint,
+        cursor: (u8, u8),
+        seen: Bounds,
+        halves: bool,
+    ) -> Self {
         let size = TaxelSize::fitting(imprint, area, halves);
         let (across, lines) = (
             area.width.saturating_sub(RULER),
@@ -145,9 +161,14 @@ impl TaxelGrid {
         );
         // A line of two taxels keeps its two wherever the window is.
         let step = if size == TaxelSize::Half { 2 } else { 1 };
-        let columns = AxisWindow::new(imprint.columns(), across / size.columns(), cursor.0);
+        let columns = AxisWindow::showing(
+            imprint.columns(),
+            across / size.columns(),
+            seen.columns(),
+            1,
+        );
         let rows = narrow(2 * u32::from(lines) / u32::from(size.half_lines()));
-        let rows = AxisWindow::in_steps(imprint.rows(), rows, cursor.1, step);
+        let rows = AxisWindow::showing(imprint.rows(), rows, seen.rows(), step);
         let whole = columns.count == imprint.columns() && rows.count == imprint.rows();
         Self {
             x: area.x + RULER.min(area.width),

@@ -19,7 +19,7 @@ use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::History;
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message, Purpose};
 use crate::tui::app::quit::quit;
-use crate::tui::app::state::{App, Display, Mode, NarrowPage, RunState, UnfinishedSave};
+use crate::tui::app::state::{App, Display, Followed, Mode, NarrowPage, RunState, UnfinishedSave};
 use crate::tui::form::state::FormDialog;
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
@@ -411,6 +411,8 @@ fn move_cursor(app: &mut App, arrow: Arrow) {
 /// Selects the region that comes `by` further on, the first after the last.
 /// Until one is chosen it is the main region that is described, and the next one counts from there.
 fn choose_region(app: &mut App, by: i8) {
+    // Also where it stays the same: it may be out of sight.
+    app.followed = Followed::Region;
     let seen = app.reading();
     let Some((now, _)) = seen.region(app.chosen) else {
         return inform(app, NO_REGION);

@@ -8,14 +8,14 @@
 //! ```
 //! A taxel of the described region, another active taxel, one of a described hole and an inactive one differ in their
 //! characters, not only in colour. If a matrix is larger than its pane, two of its rows share a line, by half blocks, and
-//! if that is not enough it scrolls with the cursor; one that is much smaller is drawn larger, a whole number of times.
+//! if that is not enough it scrolls with the cursor and the described region; one that is much smaller is drawn larger, a whole number of times.
 //! Coverage is shown in five shades or in percent: two digits where a taxel has room for a space beside them, else the tens alone, so that numbers do not run together.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::description::{Region, RegionKind};
-use crate::imprint::Imprint;
+use crate::imprint::{Bounds, Imprint};
 use crate::source::Source;
 use crate::tui::app::document::Reading;
 use crate::tui::app::page::{Page, PoseLayer};
@@ -34,6 +34,8 @@ pub struct MatrixView<'a> {
     pub pitch_mm: f64,
     /// The taxel under the cursor: column, row.
     pub cursor: (u8, u8),
+    /// What is in the window where not all of the matrix fits.
+    pub seen: Bounds,
     /// The index of the chosen region, None for the main one.
     pub chosen: Option<usize>,
     /// How taxels are shown.
@@ -55,6 +57,7 @@ impl<'a> MatrixView<'a> {
             reading: app.reading(),
             pitch_mm: app.shown().sensor.pitch_mm(),
             cursor: app.cursor(),
+            seen: app.seen(),
             chosen: app.chosen(),
             display: app.display,
             compared: app.pane().and_then(Page::compared_with),
@@ -67,7 +70,7 @@ impl<'a> MatrixView<'a> {
     /// Where the taxels are in an area.
     fn grid(&self, area: Rect) -> TaxelGrid {
         let halves = self.display == Display::Imprint && self.compared.is_none();
-        TaxelGrid::of(area, &self.reading.imprint, self.cursor, halves)
+        TaxelGrid::of(area, &self.reading.imprint, self.cursor, self.seen, halves)
     }
 
     /// Draws the matrix. Returns where the cursor is, None where it is not visible.

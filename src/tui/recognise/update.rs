@@ -14,7 +14,6 @@ use crate::tui::explore::message::SweepProgress;
 use crate::tui::keys::action;
 use crate::tui::matrix;
 use crate::tui::matrix::layers::Layers;
-use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::recognise::confusion::Confusion;
 use crate::tui::recognise::message::{Prepared, RecogniseMessage, RecognitionEvent};
 use crate::tui::recognise::quiz::Quiz;
@@ -115,13 +114,7 @@ fn not_trained(app: &mut App) {
 /// Shows the outlines of poses if they are not seen, otherwise hides them.
 /// They start shown or hidden by how large taxels are, so the switch asks what is seen, not what was set.
 fn show_poses(app: &mut App) {
-    let Some(panes) = app.panes() else { return };
-    let grid = TaxelGrid::of(
-        panes.matrix,
-        &app.reading().imprint,
-        app.cursor(),
-        app.halves(),
-    );
+    let Some(grid) = app.grid() else { return };
     let Some(page) = state(app) else { return };
     let seen = Layers::shown(page.outlines(), &grid);
     page.show_outlines(!seen);
