@@ -144,3 +144,29 @@ fn forms_begin_with_the_values_that_were_accepted_last() {
         &["ellipse rx 4.00 ry 4.00"],
     );
 }
+
+#[test]
+fn a_key_gives_forms_their_defaults_and_another_sensor_has_its_own_values() {
+    let folder = folder();
+    let world = || World::new(Library::open(folder.path().to_owned()));
+    let accepted = "f<Tab>2.5<Enter>e<Down><Down><C-u>0:80:20<Enter>qu";
+    press(&mut started(world(), ""), accepted);
+    // What was placed on a sensor of another size may lie anywhere on this one.
+    let mut other = started(world(), ":sensor --columns 20 --rows 16<Enter>f");
+    shows(&other, &["ellipse rx 4.00"]);
+    press(&mut other, "<Esc>");
+    drop(other);
+    let mut second = started(world(), "f");
+    shows(&second, &["ellipse rx 2.50", "Ctrl-D defaults"]);
+    then(&mut second, "<Tab><Tab>3<C-d>", &["ellipse rx 4.00 ry 4.00"]);
+    then(&mut second, "1", &["ellipse rx 4.00 ry 1.00"]);
+    press(&mut second, "<Enter>e");
+    shows(&second, &["0:80:20", "Ctrl-D defaults"]);
+    press(&mut second, "<C-d>");
+    hides(&second, &["0:80:20"]);
+    shows(&second, &["0:359:1"]);
+    // A picture is back in its place, a sensor is that of the paper.
+    then(&mut second, "<Esc>pwasher<Enter>", &["zoom 1.00"]);
+    then(&mut second, "3<C-d>", &["at 0.00, 0.00"]);
+    then(&mut second, "<Esc>S20<C-d>", &["16 × 16"]);
+}

@@ -30,7 +30,7 @@ const SCENES: [(&str, &str, &str, usize); 9] = [
         "<Space>",
         57,
     ),
-    ("a form opens", "f<CR>", "f", 690),
+    ("a form opens", "f<CR>", "f", 700),
     ("a field is edited", "f<CR>f<Tab>", "3", 151),
     ("a page of Explore", SWEPT, "2", 1575),
     ("a row of Explore", SWEPT, "<Down>", 360),

@@ -49,6 +49,8 @@ pub enum Message {
     PointAt(u8, u8),
     /// Switch the taxel under the cursor on or off.
     Toggle,
+    /// Give all fields of a form their defaults.
+    Defaults,
     /// A digit of the count for the next message.
     Count(u16),
     /// Undo the last change.

@@ -2,10 +2,11 @@
 //!
 //! A line for each kind of figure, the last accepted one last, and one for the ranges of Explore:
 //! ```text
-//! figure ellipse radius_x 3 radius_y 4 x0 5 y0 5 angle 0
-//! ranges picture centre angle 0:89:1 zoom_x 1
+//! figure ellipse columns 16 rows 16 radius_x 3 radius_y 4 x0 5 y0 5 angle 0
+//! ranges picture centre columns 16 rows 16 angle 0:89:1 zoom_x 1
 //! ```
-//! Ranges of x0 and y0 suit one shape, so they are taken only for another of its kind, and only where they were typed.
+//! A figure suits the sensor that it was placed on, and is taken only for one of as many columns and rows. Ranges of x0 and
+//! y0 suit one shape on one sensor, so they are taken only for another of its kind there, and only where they were typed.
 
 use std::collections::BTreeMap;
 
@@ -18,6 +19,8 @@ use crate::sensor::Sensor;
 const FIGURE: &str = "figure";
 /// The word before ranges.
 const RANGES: &str = "ranges";
+/// The parameters that say the size of a sensor.
+const SIDES: [Parameter; 2] = [Parameter::Columns, Parameter::Rows];
 
 /// What is remembered. The default remembers nothing: forms begin with the defaults each time, as a script needs it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,6 +38,8 @@ pub struct FormMemory {
 struct RememberedFigure {
     /// Its kind.
     kind: FigureKind,
+    /// Columns and rows of its sensor.
+    sides: (u8, u8),
     /// The values that it has.
     values: Vec<(Parameter, f64)>,
 }
@@ -44,6 +49,8 @@ struct RememberedFigure {
 pub struct RememberedRanges {
     /// What the shape is called.
     pub of: String,
+    /// Columns and rows of the sensor.
+    pub sides: (u8, u8),
     /// What x0 and y0 place.
     pub anchor: Anchor,
     /// The ranges that were asked for, in the order of their fields.
@@ -51,13 +58,14 @@ pub struct RememberedRanges {
 }
 
 impl RememberedRanges {
-    /// The range for an axis of a shape; None if none is remembered that suits it.
-    pub fn get(&self, of: &str, axis: Axis) -> Option<DecimalRange> {
+    /// The range for an axis of a shape on a sensor; None if none is remembered that suits it.
+    pub fn get(&self, of: &str, sensor: &Sensor, axis: Axis) -> Option<DecimalRange> {
         let place = matches!(axis, Axis::X0 | Axis::Y0);
+        let suits = of == self.of && self.sides == sides(sensor);
         let mut known = self.ranges.iter().filter(|(own, _)| *own == axis);
         known
             .next()
-            .filter(|_| !place || of == self.of)
+            .filter(|_| !place || suits)
             .map(|(_, range)| *range)
     }
 }
@@ -89,7 +97,7 @@ impl FormMemory {
     /// What is remembered, as lines.
     pub fn lines(&self) -> Vec<String> {
         let figure = |figure: &RememberedFigure| {
-            let mut line = format!("{FIGURE} {}", figure.kind.name());
+            let mut line = format!("{FIGURE} {}", figure.kind.name()) + &on(figure.sides);
             for (parameter, value) in &figure.values {
                 line += &format!(" {} {value}", parameter.row().key);
             }
@@ -97,6 +105,7 @@ impl FormMemory {
         };
         let ranges = |known: &RememberedRanges| {
             let mut line = format!("{RANGES} {} {}", known.of, known.anchor.name());
+            line += &on(known.sides);
             for (axis, range) in &known.ranges {
                 line += &format!(" {} {range}", axis.name());
             }
@@ -106,12 +115,13 @@ impl FormMemory {
         figures.chain(self.ranges.iter().map(ranges)).collect()
     }
 
-    /// Remembers a figure.
-    pub fn note_figure(&mut self, figure: &Figure) {
+    /// Remembers a figure that was placed on a sensor.
+    pub fn note_figure(&mut self, figure: &Figure, sensor: &Sensor) {
         let parameters = figure.kind().parameters().iter();
         let values = parameters.filter_map(|&own| Some((own, figure.get(own)?)));
         self.add(RememberedFigure {
             kind: figure.kind(),
+            sides: sides(sensor),
             values: values.collect(),
         });
     }
@@ -130,7 +140,8 @@ impl FormMemory {
 
     /// The last figure of a kind; None if there is none, or not one for this sensor.
     pub fn figure(&self, kind: FigureKind, sensor: &Sensor) -> Option<Figure> {
-        let own = self.figures.iter().find(|figure| figure.kind == kind)?;
+        let mut own = self.figures.iter().filter(|figure| figure.kind == kind);
+        let own = own.find(|figure| figure.sides == sides(sensor))?;
         let value = |parameter: Parameter| {
             let mut values = own.values.iter();
             let known = values.find(|(own, _)| *own == parameter);
@@ -153,6 +164,28 @@ impl FormMemory {
     }
 }
 
+/// Columns and rows of a sensor.
+fn sides(sensor: &Sensor) -> (u8, u8) {
+    (sensor.columns(), sensor.rows())
+}
+
+/// The same in a line.
+fn on((columns, rows): (u8, u8)) -> String {
+    let [across, down] = SIDES.map(|side| side.row().key);
+    format!(" {across} {columns} {down} {rows}")
+}
+
+/// What a line says of them.
+fn sides_of(pairs: &[&str]) -> Option<(u8, u8)> {
+    let side = |parameter: Parameter| {
+        let mut pairs = pairs.chunks_exact(2);
+        let pair = pairs.find(|pair| pair[0] == parameter.row().key)?;
+        pair[1].parse().ok()
+    };
+    let [columns, rows] = SIDES;
+    Some((side(columns)?, side(rows)?))
+}
+
 /// The figure that a line says; None if it says none.
 fn figure_of(kind: &str, pairs: &[&str]) -> Option<RememberedFigure> {
     let kind = FigureKind::from_name(kind)?;
@@ -168,6 +201,7 @@ fn figure_of(kind: &str, pairs: &[&str]) -> Option<RememberedFigure> {
     let values = parameters.filter_map(|&own| Some((own, *known.get(own.row().key)?)));
     Some(RememberedFigure {
         kind,
+        sides: sides_of(pairs)?,
         values: values.collect(),
     })
 }
@@ -179,9 +213,12 @@ fn ranges_of(of: &str, anchor: &str, pairs: &[&str]) -> Option<RememberedRanges>
         let axis = Axis::ALL.into_iter().find(|axis| axis.name() == pair[0]);
         Some((axis?, pair[1].parse().ok()?))
     };
-    let ranges: Option<Vec<_>> = pairs.chunks_exact(2).map(range).collect();
+    let is_side = |pair: &&[&str]| SIDES.iter().any(|side| side.row().key == pair[0]);
+    let axes = pairs.chunks_exact(2).filter(|pair| !is_side(pair));
+    let ranges: Option<Vec<_>> = axes.map(range).collect();
     Some(RememberedRanges {
         of: of.to_owned(),
+        sides: sides_of(pairs)?,
         anchor,
         ranges: ranges?,
     })
@@ -198,12 +235,13 @@ mod tests {
         let ellipse = Figure::ellipse(2.5, 1.005).at(-1.0, 3.0).on(&sensor);
         let ellipse = ellipse.expect("in range");
         let ring = Figure::default_of(FigureKind::Hexagon, &sensor);
-        memory.note_figure(&ellipse);
-        memory.note_figure(&ring);
-        memory.note_figure(&ellipse);
+        for figure in [&ellipse, &ring, &ellipse] {
+            memory.note_figure(figure, &sensor);
+        }
         let range = |text: &str| text.parse::<DecimalRange>().expect("a range");
         memory.note_ranges(RememberedRanges {
             of: "ellipse".to_owned(),
+            sides: (16, 16),
             anchor: Anchor::Centre,
             ranges: vec![
                 (Axis::X0, range("5:5.9:0.1")),
@@ -228,13 +266,18 @@ mod tests {
         assert_eq!(read.figure(FigureKind::Ellipse, &sensor), Some(ellipse));
         assert_eq!(read.figure(FigureKind::Octagon, &sensor), None);
         let ranges = read.ranges().expect("noted");
-        assert_eq!(ranges.get("ellipse", Axis::X0), Some(range("5:5.9:0.1")));
-        assert_eq!(ranges.get("picture", Axis::X0), None);
-        assert_eq!(ranges.get("picture", Axis::Angle), Some(range("0:80:20")));
-        let small = Sensor::new(2, 2).expect("in range");
-        assert_eq!(read.figure(FigureKind::Ellipse, &small), None);
+        let found = |of, sensor: &Sensor, axis| ranges.get(of, sensor, axis);
+        let [place, angles] = [range("5:5.9:0.1"), range("0:80:20")];
+        assert_eq!(found("ellipse", &sensor, Axis::X0), Some(place));
+        assert_eq!(found("picture", &sensor, Axis::X0), None);
+        assert_eq!(found("picture", &sensor, Axis::Angle), Some(angles));
+        // What fits on another sensor as well is not in its place there.
+        let other = Sensor::new(16, 17).expect("in range");
+        assert_eq!(read.figure(FigureKind::Ellipse, &other), None);
+        assert_eq!(found("ellipse", &other, Axis::X0), None);
+        assert_eq!(found("ellipse", &other, Axis::Angle), Some(angles));
         let mut none = FormMemory::default();
-        none.note_figure(&ellipse);
+        none.note_figure(&ellipse, &sensor);
         assert_eq!(none, FormMemory::default());
     }
 }

@@ -211,6 +211,27 @@ impl FormDialog {
         ParameterField::new(parameter, value, optional)
     }
 
+    /// Gives the fields the defaults of what the form is about; a picture's are those of the place where it was stored.
+    pub fn set_defaults(&mut self) {
+        let (sensor, focus) = (self.before.sensor, self.form.focus());
+        match &self.subject {
+            FormSubject::Figure(kind) => {
+                self.begun = Some(Source::Figure(Figure::default_of(*kind, &sensor)));
+            }
+            FormSubject::Picture(name, imprint) => {
+                let picture = Picture::at_home(**imprint).named(name);
+                self.begun = Some(Source::Picture(picture));
+            }
+            FormSubject::Sensor => self.shown = self.before.on(Sensor::default()),
+        }
+        // Nor do other kinds of figure begin with anything else from here on.
+        self.memory = FormMemory::default();
+        self.hidden.clear();
+        self.form = ParameterForm::new(Vec::new(), sensor);
+        self.fill();
+        self.edit(|form| form.set_focus(focus));
+    }
+
     /// Changes the fields by `change`, and the matrix follows.
     pub fn edit(&mut self, change: impl FnOnce(&mut ParameterForm)) {
         change(&mut self.form);

@@ -22,7 +22,7 @@ pub(in crate::tui) fn update(
         Message::Accept => match dialog.form().error() {
             None => {
                 if let Some(figure) = dialog.made_figure() {
-                    app.forms.note_figure(figure);
+                    app.forms.note_figure(figure, &dialog.shown().sensor);
                 }
                 replace(app, dialog.shown().clone());
                 return None;
@@ -44,6 +44,7 @@ pub(in crate::tui) fn update(
                 refuse(app, format!("no kind is called {text:?}: {kinds}"));
             }
         }
+        Message::Defaults => dialog.set_defaults(),
         Message::Step(direction) => dialog.edit(|form| form.step(direction)),
         other => dialog.edit(|form| form.take(&other)),
     }

@@ -237,6 +237,7 @@ actions! {
         DOWN "down" [] Message::Choose(Arrow::Down);
         INCREASE "increase" [] Message::Step(1);
         DECREASE "decrease" [] Message::Step(-1);
+        DEFAULTS "defaults" [] Message::Defaults;
         ERASE_BEFORE "erase-before" [] Message::Erase(Erase::Before);
         ERASE_UNDER "erase-under" [] Message::Erase(Erase::Under);
         ERASE_ALL "erase-all" [] Message::Erase(Erase::All);

@@ -104,6 +104,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "" "choose the kind (or by its letter); move, change field";
         [PageUp => INCREASE, PageDown => DECREASE]
             "step" "change the number by its last decimal";
+        [Ctrl('d') => DEFAULTS] "defaults" "the defaults, not what was accepted last";
         [Enter => ACCEPT] "accept" "accept; refused while a field is invalid";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "close it and change nothing";
         [Char('?') => HELP] "help" "these keys";
@@ -172,6 +173,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Tab => NEXT, BackTab => PREVIOUS] "field" "next, previous field";
         [LEFT => LEFT, RIGHT => RIGHT, UP => UP, DOWN => DOWN]
             "" "move within and between fields; change the anchor";
+        [Ctrl('d') => DEFAULTS] "defaults" "the defaults, not what was accepted last";
         [Enter => ACCEPT] "start" "sweep all poses; refused while a range is invalid";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "close it and change nothing";
         [Char('?') => HELP] "help" "these keys";

@@ -110,9 +110,19 @@ impl RangesForm {
             Some(_) => document.edits.count(),
             None => 0,
         };
+        Self::begun((document.sensor, by_hand), source, earlier, last)
+    }
+
+    /// The same for a sensor, and a number of taxels that were set by hand.
+    fn begun(
+        (sensor, by_hand): (Sensor, u32),
+        source: Source,
+        earlier: Option<&PoseGrid>,
+        last: Option<&RememberedRanges>,
+    ) -> Self {
         let ranges = earlier.map_or_else(Ranges::default, |grid| *grid.ranges());
         let last = last.filter(|_| earlier.is_none());
-        let known = |axis| last.and_then(|last| last.get(source.kind_name(), axis));
+        let known = |axis| last.and_then(|last| last.get(source.kind_name(), &sensor, axis));
         let fields = Axis::of(&source).map(|axis| RangeField {
             axis,
             input: TextField::new(known(axis).unwrap_or(ranges[axis]).to_string(), LONGEST),
@@ -125,7 +135,7 @@ impl RangesForm {
         let mut form = Self {
             fields,
             source,
-            sensor: document.sensor,
+            sensor,
             anchor: match (earlier, last) {
                 (Some(grid), _) => grid.anchor(),
                 (None, Some(last)) => last.anchor,
@@ -182,12 +192,22 @@ impl RangesForm {
         }
     }
 
+    /// The defaults in all fields.
+    fn set_defaults(&mut self) {
+        let of = (self.sensor, self.by_hand);
+        let fresh = Self::begun(of, self.source.clone(), None, None);
+        let (focus, measured) = (self.focus, self.measured.take());
+        *self = Self { measured, ..fresh };
+        self.set_focus(focus);
+    }
+
     /// What is remembered of it: ranges that were typed or taken over, not those that follow the others.
     pub fn remembered(&self) -> RememberedRanges {
         let own = self.fields.iter().filter(|field| field.proposed.is_none());
         let ranges = own.filter_map(|field| Some((field.axis, field.text().parse().ok()?)));
         RememberedRanges {
             of: self.source.kind_name().to_owned(),
+            sides: (self.sensor.columns(), self.sensor.rows()),
             anchor: self.anchor,
             ranges: ranges.collect(),
         }
@@ -354,6 +374,7 @@ impl RangesForm {
         match message {
             Message::Field(by) => self.move_focus(*by),
             Message::ToField(row) => self.point(row.unwrap_or(self.fields.len())),
+            Message::Defaults => self.set_defaults(),
             Message::Choose(Arrow::Up) => self.move_focus(-1),
             Message::Choose(Arrow::Down) => self.move_focus(1),
             message => match self.focused() {
