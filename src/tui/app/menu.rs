@@ -185,7 +185,7 @@ fn of_menu(context: Context, keymap: &Keymap) -> Vec<&Binding> {
 }
 
 /// What leads on from a page, out of it, or to its keys.
-const LEADING: [Message; 8] = [
+const LEADING: [Message; 7] = [
     Message::Accept,
     Message::Decline,
     Message::Save,
@@ -193,7 +193,6 @@ const LEADING: [Message; 8] = [
     Message::Quit,
     Message::Help,
     Message::Explore(ExploreMessage::Stop),
-    Message::Terminate,
 ];
 
 /// The row of Help on the matrix.

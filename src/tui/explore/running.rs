@@ -135,7 +135,11 @@ fn draw(theme: &Theme, running: &Running, buffer: &mut Buffer, area: Rect) {
     }
     let time = speed(running);
     write::line(buffer, row(3), theme, [(time.as_str(), Role::Text)]);
-    let end = if running.stopping { "stopping" } else { end };
+    let end = if running.stopping {
+        "stopping; Ctrl-C quits at once"
+    } else {
+        end
+    };
     write::line(buffer, row(4), theme, [(end, Role::Quiet)]);
 }
 

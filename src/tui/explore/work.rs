@@ -18,7 +18,7 @@ use crate::storage::{Existing, is_poses};
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
-use crate::tui::app::state::{App, Mode};
+use crate::tui::app::state::{App, Mode, RunState};
 use crate::tui::explore::drawing::drawn_format;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress};
@@ -163,13 +163,16 @@ pub(crate) fn in_ranges(
 }
 
 /// Handles a message over work in progress. To close it means to stop the work.
-/// The page stays until the worker has answered: only then it is known what is complete.
+/// The page stays until the worker has answered: only then it is known what is complete. To quit meanwhile means to quit:
+/// nothing else would end the program while a worker hangs, and unsaved work is offered at the next start.
 pub(crate) fn in_running(app: &mut App, mut running: Running, message: &Message) -> Option<Effect> {
     let stops = matches!(
         message,
         Message::Explore(ExploreMessage::Stop) | Message::Cancel | Message::Quit
     );
-    if stops {
+    if running.stopping && *message == Message::Quit {
+        app.run_state = RunState::Terminated;
+    } else if stops {
         running.stopping = true;
         inform(app, "stopping");
     }

@@ -258,7 +258,6 @@ actions! {
         EXPLORE "explore" [] Explore(ExploreMessage::Open);
         RANGES "ranges" [] Explore(ExploreMessage::Ranges);
         STOP "stop" [] Explore(ExploreMessage::Stop);
-        QUIT_AT_ONCE "quit-at-once" [] Message::Terminate;
         IMPRINTS "imprints" [] Explore(ExploreMessage::Page(ExplorePage::Imprints));
         STATISTICS "statistics" [] Explore(ExploreMessage::Page(ExplorePage::Statistics));
         HISTOGRAM "histogram" [] Explore(ExploreMessage::Page(ExplorePage::Histogram));

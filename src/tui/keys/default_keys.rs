@@ -179,11 +179,11 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "these keys";
     }
 
-    /// Ctrl+C ends the program here: nothing else would while a worker hangs. Elsewhere it closes a page, or asks.
+    /// Ctrl-C stops the work as it closes a page elsewhere, and quits while a worker does not stop.
     Running {
         [Esc => STOP, Char('s') => STOP, Ctrl('g') => STOP]
             "stop" "stop; a sweep keeps what is complete";
-        [Ctrl('c') => QUIT_AT_ONCE] "quit" "quit at once; unsaved work is offered next time";
+        [Ctrl('c') => QUIT] "" "stop; again while it stops: quit at once";
     }
 
     /// A page of Explore looks here for keys that it has no row for.

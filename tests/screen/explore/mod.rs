@@ -106,11 +106,21 @@ fn escape_stops_too_and_the_end_does_not_wait() {
     program.press("e<C-u>");
     program.press("0:9.999:0.001<Enter>");
     program.until("poses a second");
-    program.press("<C-c>");
+    program.press("<C-c><C-c>");
     assert!(program.session.app().ended());
 }
 
-/// Ctrl-C asks nothing; the work on the matrix is offered by the next program.
+#[test]
+fn ctrl_c_stops_a_sweep_before_it_quits() {
+    let mut program = Beside::new("fr<Enter>");
+    program.press(LONG);
+    program.until("poses a second");
+    program.then("<C-c>", &["stopping; Ctrl-C quits at once"]);
+    program.until("a part: ");
+    assert!(!program.session.app().ended());
+}
+
+/// A second Ctrl-C asks nothing; the work on the matrix is offered by the next program.
 #[test]
 fn ctrl_c_while_a_sweep_runs_keeps_unsaved_work() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
@@ -118,7 +128,7 @@ fn ctrl_c_while_a_sweep_runs_keeps_unsaved_work() {
     let mut program = Beside::within(world(), "fr<Enter>");
     program.press(LONG);
     program.until("poses a second");
-    program.press("<C-c>");
+    program.press("<C-c><C-c>");
     assert!(program.session.app().ended());
     drop(program);
     let next = Beside::within(world(), "");

@@ -111,12 +111,12 @@ fn keys_end_it_with_status_0() {
     }
 }
 
-/// Ctrl-C while a sweep runs: nobody waits for the sweep, and unsaved work is kept.
+/// Two Ctrl-C while a sweep runs: nobody waits for the sweep, and unsaved work is kept.
 #[test]
 fn a_running_sweep_does_not_hold_it() {
     let took = (0..3).map(|_| {
         let mut program = in_state(&Start::default(), STATES[6]);
-        program.types(b"\x03");
+        program.types(b"\x03\x03");
         let (ended, took) = program.ends();
         assert_eq!(ended.code(), Some(0));
         program.is_left();
