@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::atlas::canonical::Classes;
 use crate::atlas::counter::ImprintCounter;
-use crate::atlas::feature::{ImprintSummary, feature_values};
+use crate::atlas::feature::{ImprintSummary, features};
 use crate::atlas::packing::Layout;
 use crate::imprint::Imprint;
 use crate::index::{narrow, wide};
@@ -191,15 +191,8 @@ impl Atlas {
     /// The value of a feature for every imprint, in their order; None where it does not exist. `feature` is its index
     /// in [`features`](crate::atlas::feature::features).
     pub fn values(&self, feature: usize) -> Vec<Option<f64>> {
-        let value = |summary: &ImprintSummary| {
-            let mut found = None;
-            feature_values(summary.description.as_ref()?, |index, value| {
-                if index == feature {
-                    found = Some(value);
-                }
-            });
-            found
-        };
+        let feature = features().get(feature);
+        let value = |summary: &ImprintSummary| feature?.value(summary.description.as_ref()?);
         self.summaries
             .par_iter()
             .with_min_len(1024)

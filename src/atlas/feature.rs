@@ -21,6 +21,22 @@ pub struct Feature {
     pub descriptor: &'static Descriptor,
     /// A direction that goes all around, in degrees: its mean and its deviation are circular ones.
     pub circular: bool,
+    /// Which of the descriptor's parts it is.
+    part: usize,
+}
+
+impl Feature {
+    /// Its value; None where it does not exist. Of all descriptors only its own is measured.
+    pub fn value(&self, description: &Description) -> Option<f64> {
+        let (mut index, mut found) = (0, None);
+        each_part((self.descriptor.measure)(description), |value| {
+            if index == self.part {
+                found = Some(value);
+            }
+            index += 1;
+        });
+        found
+    }
 }
 
 /// All of them, in the order of [`DESCRIPTORS`].
@@ -52,10 +68,11 @@ fn all() -> Vec<Feature> {
             Value::Rect(_) => &["_left", "_top", "_right", "_bottom"],
             _ => &[""],
         };
-        all.extend(parts.iter().map(|part| Feature {
+        all.extend(parts.iter().enumerate().map(|(index, part)| Feature {
             key: format!("{}{part}", descriptor.key),
             descriptor,
             circular: descriptor.dimension == Dimension::Direction && part.is_empty(),
+            part: index,
         }));
     }
     all
@@ -65,20 +82,27 @@ fn all() -> Vec<Feature> {
 pub fn feature_values(description: &Description, mut take: impl FnMut(usize, f64)) {
     let mut index = 0;
     for descriptor in DESCRIPTORS {
-        let mut part = |value: f64| {
-            take(index, value);
-            index += 1;
-        };
         match (descriptor.measure)(description) {
             Value::None => index += 1,
-            Value::Count(count) => part(f64::from(count)),
-            Value::Number(number) => part(number),
-            Value::Point(point) => [point.x, point.y].into_iter().for_each(part),
-            Value::Pair(pair) => pair.into_iter().for_each(part),
-            Value::Rect(rect) => {
-                let sides = [rect.left, rect.top, rect.right, rect.bottom];
-                sides.into_iter().map(f64::from).for_each(part);
-            }
+            value => each_part(value, |part| {
+                take(index, part);
+                index += 1;
+            }),
+        }
+    }
+}
+
+/// Calls `take` with each number of a value.
+fn each_part(value: Value, mut take: impl FnMut(f64)) {
+    match value {
+        Value::None => {}
+        Value::Count(count) => take(f64::from(count)),
+        Value::Number(number) => take(number),
+        Value::Point(point) => [point.x, point.y].into_iter().for_each(take),
+        Value::Pair(pair) => pair.into_iter().for_each(take),
+        Value::Rect(rect) => {
+            let sides = [rect.left, rect.top, rect.right, rect.bottom];
+            sides.into_iter().map(f64::from).for_each(take);
         }
     }
 }

@@ -12,7 +12,7 @@
 use rayon::prelude::*;
 
 use crate::atlas::distinct::Atlas;
-use crate::atlas::feature::{ImprintSummary, feature_values, features};
+use crate::atlas::feature::{ImprintSummary, features};
 use crate::quote::shortened;
 
 /// Conditions that all have to hold.
@@ -168,25 +168,19 @@ impl AtlasFilter {
     /// Whether an imprint fulfils all conditions.
     #[expect(clippy::cast_precision_loss, reason = "compared with a typed number")]
     fn fits(&self, id: usize, count: u64, summary: &ImprintSummary) -> bool {
-        let mut met = 0;
-        for condition in &self.conditions {
+        self.conditions.iter().all(|condition| {
             let value = match condition.quantity {
-                Quantity::Id => id as f64,
-                Quantity::Count => count as f64,
-                Quantity::Pieces => summary.pieces.into(),
-                Quantity::Holes => summary.holes.into(),
-                Quantity::Feature(_) => continue,
+                Quantity::Id => Some(id as f64),
+                Quantity::Count => Some(count as f64),
+                Quantity::Pieces => Some(summary.pieces.into()),
+                Quantity::Holes => Some(summary.holes.into()),
+                Quantity::Feature(index) => {
+                    let description = summary.description.as_ref();
+                    description.and_then(|description| features()[index].value(description))
+                }
             };
-            met += usize::from(condition.holds(value));
-        }
-        if let Some(description) = &summary.description {
-            feature_values(description, |index, value| {
-                let own = self.conditions.iter();
-                let own = own.filter(|own| own.quantity == Quantity::Feature(index));
-                met += own.filter(|own| own.holds(value)).count();
-            });
-        }
-        met == self.conditions.len()
+            value.is_some_and(|value| condition.holds(value))
+        })
     }
 }
 

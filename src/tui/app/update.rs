@@ -35,6 +35,7 @@ pub fn update(app: &mut App, message: Message) -> Option<Effect> {
     app.follow(&before);
     // A message that wants something else is followed by another one.
     let effect = effect.or_else(|| recognise::update::follow(app));
+    let effect = effect.or_else(|| explore::work::follow(app));
     effect.or_else(|| live::update::follow(app))
 }
 
@@ -348,6 +349,7 @@ fn on_worker(app: &mut App, event: WorkerEvent) {
         }
         WorkerEvent::Estimate(grid, time) => explore::work::on_estimate(app, &grid, time),
         WorkerEvent::Swept(number, findings) => explore::work::take_findings(app, number, findings),
+        WorkerEvent::Angles(findings, curve) => explore::work::on_angles(app, &findings, curve),
         WorkerEvent::Written(number, name) => explore::work::on_written(app, number, &name),
         WorkerEvent::Exists(number, name) => explore::work::on_existing(app, number, name),
         WorkerEvent::Failed(number, reason) => {

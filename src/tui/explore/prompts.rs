@@ -129,7 +129,6 @@ pub(crate) fn in_mark(app: &mut App, dialog: MarkDialog, message: &Message) -> O
 fn go_to(results: &mut Results, pose: u64) -> Result<(), String> {
     if matches!(results.page(), ExplorePage::Map | ExplorePage::Angles) {
         results.go_to_pose(pose);
-        results.prepare();
         return Ok(());
     }
     let id = results.id_at(pose);

@@ -37,6 +37,8 @@ pub struct Results {
     across: (usize, Vec<Option<f64>>),
     /// The imprints of each angle, once the page of angles was looked at.
     angle_curve: Option<Arc<AngleCurve>>,
+    /// Where those were asked for last.
+    angles_asked: Option<PoseIndex>,
     /// The imprints that the map shows.
     map_sight: MapSight,
     /// How often the map was zoomed in, from its whole range on.
@@ -47,6 +49,8 @@ pub struct Results {
     heading: ListColumn,
     /// What rows have to fulfil, as it was typed; empty for nothing.
     filter: String,
+    /// The numbers of all imprints, sorted. A filter is typed letter by letter, and none of them changes the order.
+    order: Vec<u32>,
     /// Whether it keeps each imprint, by number; empty if it keeps all.
     kept: Vec<bool>,
     /// The numbers of the imprints that it keeps, sorted.
@@ -72,12 +76,14 @@ impl Results {
             values: findings.sweep.atlas.values(0),
             across: (ACROSS, findings.sweep.atlas.values(ACROSS)),
             angle_curve: None,
+            angles_asked: None,
             map_sight: MapSight::default(),
             closer: 0,
             findings,
             sort: (ListColumn::Poses, true),
             heading: ListColumn::Poses,
             filter: String::new(),
+            order: Vec::new(),
             kept: Vec::new(),
             rows: Vec::new(),
             selected: 0,
@@ -161,17 +167,24 @@ impl Results {
         self.across = (number, self.sweep().atlas.values(number));
     }
 
-    /// The imprints of each angle at the zooms of the map, None before [`Results::prepare`].
+    /// The imprints of each angle at the zooms of the map, None until a worker has found them.
     pub fn angle_curve(&self) -> Option<&AngleCurve> {
         let curve = self.angle_curve.as_deref();
         curve.filter(|curve| curve.is_at(self.pose_index))
     }
 
-    /// Finds what the present page shows and is not kept for every page: the imprints of each angle.
-    pub fn prepare(&mut self) {
-        if self.page == ExplorePage::Angles && self.angle_curve().is_none() {
-            self.angle_curve = Some(Arc::new(AngleCurve::of(self.sweep(), self.pose_index)));
-        }
+    /// Where the page needs imprints of each angle that nobody was asked for yet. From now on they count as asked for.
+    pub fn missing_angles(&mut self) -> Option<PoseIndex> {
+        let missing = self.page == ExplorePage::Angles
+            && self.angle_curve().is_none()
+            && self.angles_asked != Some(self.pose_index);
+        self.angles_asked = missing.then_some(self.pose_index).or(self.angles_asked);
+        missing.then_some(self.pose_index)
+    }
+
+    /// Takes the imprints of each angle.
+    pub fn take_angles(&mut self, curve: Arc<AngleCurve>) {
+        self.angle_curve = Some(curve);
     }
 
     /// The imprints that the map showed last.
@@ -260,7 +273,7 @@ impl Results {
         } else {
             filter.keeps(&self.sweep().atlas)
         };
-        self.arrange();
+        self.sift();
     }
 
     /// Whether the filter keeps an imprint.
@@ -281,12 +294,18 @@ impl Results {
         &self.marks
     }
 
-    /// Sorts and sifts, and keeps the selected imprint selected; where the filter took it, another one near the same row.
+    /// Sorts and sifts.
     fn arrange(&mut self) {
-        let selected = self.rows.get(self.selected).copied();
         let (by, descending) = self.sort;
-        let rows = by.order(self.sweep(), &self.values, descending);
-        self.rows = rows.into_iter().filter(|&id| self.keeps(id)).collect();
+        self.order = by.order(self.sweep(), &self.values, descending);
+        self.sift();
+    }
+
+    /// Sifts, and keeps the selected imprint selected; where the filter took it, another one near the same row.
+    fn sift(&mut self) {
+        let selected = self.rows.get(self.selected).copied();
+        let rows = self.order.iter().copied();
+        self.rows = rows.filter(|&id| self.keeps(id)).collect();
         if !selected.is_some_and(|id| self.find(id)) {
             self.select(self.selected);
         }

@@ -83,7 +83,6 @@ pub(crate) fn in_results(
             let area = app.panes().map(|panes| panes.area(results.slot()));
             let page = area.map_or(Rect::default(), |area| ResultPanes::of(area).page);
             (pages::row(results.page()).update)(&mut results, &message, page);
-            results.prepare();
         }
     }
     app.dialogs.push(Dialog::Results(results));

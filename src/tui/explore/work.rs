@@ -19,6 +19,7 @@ use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Mode, RunState};
+use crate::tui::explore::angles::curve::AngleCurve;
 use crate::tui::explore::drawing::drawn_format;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress};
@@ -199,6 +200,28 @@ pub(in crate::tui) fn on_estimate(app: &mut App, grid: &PoseGrid, time: Duration
     });
     if let Some(form) = form {
         form.take_estimate(grid, time);
+    }
+}
+
+/// Has a worker find what the open page shows and is not kept for every page: the imprints of each angle.
+pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
+    let Some(Dialog::Results(results)) = app.dialogs.last_mut() else {
+        return None;
+    };
+    let place = results.missing_angles()?;
+    let findings = Arc::clone(results.findings());
+    Some(Effect::Work(Work::Angles(findings, place)))
+}
+
+/// Takes the imprints of each angle, if these results are still there.
+pub(in crate::tui) fn on_angles(app: &mut App, findings: &Arc<Findings>, curve: Arc<AngleCurve>) {
+    let open = app.dialogs.iter_mut().find_map(|dialog| match dialog {
+        Dialog::Results(results) => Some(results),
+        _ => None,
+    });
+    let results = open.or(app.results.as_mut());
+    if let Some(results) = results.filter(|own| Arc::ptr_eq(own.findings(), findings)) {
+        results.take_angles(curve);
     }
 }
 

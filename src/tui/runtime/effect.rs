@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::formats::StoredShape;
 use crate::formats::recording::{FrameMark, RecordingMetadata};
 use crate::imprint::Imprint;
-use crate::pose::PoseGrid;
+use crate::pose::{PoseGrid, PoseIndex};
 use crate::recognition::SeparationPoint;
 use crate::storage::{Existing, Expected};
 use crate::tui::app::message::Purpose;
@@ -62,6 +62,8 @@ pub enum Work {
     Measure(Box<PoseGrid>),
     /// Sweep a grid.
     Sweep(u64, Box<PoseGrid>),
+    /// Find the imprints of each angle at the zooms of a place.
+    Angles(Arc<Findings>, PoseIndex),
     /// Write the result of a sweep to a file.
     Write(u64, Arc<Findings>, String, Existing),
     /// Stop the work in progress.

@@ -4,6 +4,7 @@
 //! ```text
 //! Measure(grid)        -> Estimate         best of several short runs, stopped by the next piece of work
 //! Sweep(number, grid)  -> Progress …, then Swept, also after Stop, with what is complete
+//! Angles(results, …)   -> Angles
 //! Write(number, …)     -> Progress …, then Written, Exists or Failed; after Stop no file stays
 //! ```
 //! When the program ends, a running sweep ends with it; an export is stopped first, so that no partial file stays. A
@@ -16,10 +17,11 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::memory::MemoryGuard;
-use crate::pose::PoseGrid;
+use crate::pose::{PoseGrid, PoseIndex};
 use crate::storage::{ArchiveFileError, AtlasFile, Existing, ModelCache, PoseFile, is_poses};
 use crate::sweep::{Sweep, SweepResult, TimingSample};
 use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::explore::angles::curve::AngleCurve;
 use crate::tui::explore::message::Findings;
 use crate::tui::live::naming::NamingRequest;
 use crate::tui::runtime::effect::Work;
@@ -126,6 +128,7 @@ impl Workers {
             }
             Work::Measure(grid) => self.measure(grid),
             Work::Sweep(number, grid) => self.sweep(number, grid),
+            Work::Angles(findings, place) => self.angles(findings, place),
             Work::Write(number, findings, name, existing) => {
                 match self.access.path(&name, existing) {
                     Ok(path) => self.write(number, findings, (name, path), existing),
@@ -220,6 +223,19 @@ impl Workers {
             post(guarded(number, || sweep(number, &grid, &progress)));
         });
         thread.err()
+    }
+
+    /// Finds the imprints of each angle, on a thread of its own if there is a receiver and the system has one to give.
+    fn angles(&self, findings: Arc<Findings>, place: PoseIndex) -> Option<WorkerEvent> {
+        let run = move || {
+            let curve = AngleCurve::of(&findings.sweep, place);
+            WorkerEvent::Angles(Arc::clone(&findings), Arc::new(curve))
+        };
+        let beside = self.post.as_ref().is_some_and(|post| {
+            let run = run.clone();
+            on_a_thread(0, post, move |post| post(guarded(0, run))).is_ok()
+        });
+        (!beside).then(run)
     }
 
     /// Writes what was found to a file, on a thread of its own if there is a receiver.

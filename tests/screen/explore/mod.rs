@@ -136,6 +136,15 @@ fn ctrl_c_while_a_sweep_runs_keeps_unsaved_work() {
 }
 
 #[test]
+fn keys_do_not_wait_for_the_plot_of_angles() {
+    let mut program = Beside::new("fr<Enter>");
+    program.press(":explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>");
+    program.until("distinct imprints");
+    program.then("6", &["computing"]);
+    program.until("angle 0°: min");
+}
+
+#[test]
 fn the_time_is_told_while_ranges_are_typed() {
     let mut program = Beside::new("fh<Enter>e");
     shows(&program.session, &["3,600,000 poses"]);

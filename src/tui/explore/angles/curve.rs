@@ -2,9 +2,11 @@
 //! angle.
 //!
 //! The imprints of an angle are found by sweeping its positions again. A large grid is sampled: only every n-th angle
-//! and every m-th y0 are swept, so that the plot is there at once.
+//! and every m-th y0 are swept, so that the plot is there within a second. Until then the page says so.
 
 use std::collections::BTreeMap;
+
+use rayon::prelude::*;
 
 use crate::atlas::Feature;
 use crate::index::{index, wide};
@@ -18,7 +20,7 @@ const MOST_ANGLES: u64 = 720;
 const MOST_ROWS: u64 = 8_000;
 
 /// How often which imprints occur at the angles of a sweep, at one zoom.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct AngleCurve {
     /// The zooms, as a place at the first position and angle.
     zooms: PoseIndex,
@@ -76,11 +78,12 @@ impl AngleCurve {
             }
             (angle, imprints)
         };
+        let sampled: Vec<u64> = (0..angles).step_by(index(every_angle)).collect();
         Self {
             zooms,
             every_angle,
             every_row,
-            angles: (0..angles).step_by(index(every_angle)).map(found).collect(),
+            angles: sampled.into_par_iter().map(found).collect(),
         }
     }
 

@@ -105,7 +105,10 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     }
     let spread = spread(results);
     let Some(here) = nearest(results, &spread) else {
-        let text = "no pose has a value";
+        let text = match results.angle_curve() {
+            Some(_) => "no pose has a value",
+            None => "computing",
+        };
         write::line(buffer, write::row(page, 1), theme, [(text, Role::Quiet)]);
         return None;
     };
