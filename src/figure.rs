@@ -447,13 +447,21 @@ impl Pen<f64> for HolePen {
     }
 }
 
+impl Figure {
+    /// Its kind with its sizes, as its summary begins: `hexagon side 4.00`.
+    pub fn kind_and_sizes(&self) -> String {
+        let sizes = self.kind.sizes().iter().zip(self.sizes);
+        let sizes = sizes.map(|(parameter, size)| {
+            format!(" {} {}", parameter.row().short, parameter.format(size))
+        });
+        self.kind.name().to_owned() + &sizes.collect::<String>()
+    }
+}
+
 impl std::fmt::Display for Figure {
     /// A summary in one line.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}", self.kind.name())?;
-        for (&parameter, size) in self.kind.sizes().iter().zip(self.sizes) {
-            write!(f, " {} {}", parameter.row().short, parameter.format(size))?;
-        }
+        f.write_str(&self.kind_and_sizes())?;
         let (x0, y0) = (Parameter::X0.format(self.x0), Parameter::Y0.format(self.y0));
         write!(
             f,

@@ -7,6 +7,7 @@
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use crate::formats::shape::StoredShape;
 use crate::storage::atomic_file;
@@ -167,6 +168,12 @@ impl Orphan {
             return None;
         }
         Some(Self { shape, path, lock })
+    }
+
+    /// How long ago it was written; None where the system does not say, or its clock was set back since.
+    pub fn age(&self) -> Option<Duration> {
+        let written = fs::symlink_metadata(&self.path).ok()?.modified().ok()?;
+        written.elapsed().ok()
     }
 
     /// The work is elsewhere now, or is not wanted.

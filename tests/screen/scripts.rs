@@ -206,7 +206,7 @@ fn a_signal_keeps_unsaved_work() {
     )
     .expect("it holds");
     run(
-        "Expect /Unsaved work was left: 52 taxels/\nKeys y\nExpect /rx 4.00/",
+        "Expect /unsaved work from last time: ellipse rx 4.00 ry 4.00, 52 taxels/\nKeys y\nExpect /rx 4.00/",
         &[],
         &settings,
         world(),
@@ -237,14 +237,14 @@ fn a_script_sets_the_scene() {
         assert!(sensor.contains(part), "{sensor}");
     }
     let script = format!(
-        "Set leftover {PAIR}\nExpect /Unsaved work was left: 2 taxels of pair/\nKeys y\nExpect /brought back/\n\
+        "Set leftover {PAIR}\nExpect /unsaved work from last time: pair, 2 taxels/\nKeys y\nExpect /brought back/\n\
          Expect /NA 2 in all/"
     );
     // Another test of this binary that starts a program holds, until that runs, a copy of every open file: so for that
     // moment the work seems to be that of a running program, and is asked for the next time.
     let held = (0..100).all(|_| {
         let result = output(&script, false);
-        let asked = |message: &str| message.contains("no /Unsaved work was left");
+        let asked = |message: &str| message.contains("no /unsaved work from last time");
         let again = matches!(&result, Err(failure) if asked(&failure.to_string()));
         if again {
             std::thread::sleep(std::time::Duration::from_millis(50));

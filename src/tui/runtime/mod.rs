@@ -21,6 +21,7 @@
 //! source           what the name of a source of frames stands for
 //! journal_writer   unsaved work, written beside the program
 //! write_access     where files may be written
+//! leftover         unsaved work in a few words
 //! reminders        what is remembered for the next run
 //! shape_log        which stored shapes were used, for a record
 //! mailbox          messages from the workers, which wake the event loop
@@ -66,6 +67,8 @@ mod reading;
 
 mod shape_log;
 
+mod leftover;
+
 mod reminders;
 
 pub use crate::tui::runtime::progress::WorkerEventSink;
@@ -88,9 +91,8 @@ use crate::tui::runtime::workers::Workers;
 use crate::tui::runtime::write_access::WriteAccess;
 
 use crate::formats::StoredShape;
-use crate::formats::value::counted;
 use crate::storage::{
-    Expected, Journal, Library, LibraryError, ModelCache, Orphan, ScratchFolder, UNNAMED,
+    Expected, Journal, Library, LibraryError, ModelCache, Orphan, ScratchFolder,
 };
 use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
@@ -271,13 +273,10 @@ impl World {
     /// The offer of unsaved work, None if there is none.
     fn left(&self) -> Option<Leftover> {
         let (orphan, waiting) = self.orphan.as_ref()?;
-        let taxels = counted(orphan.shape.imprint.count(), "taxel");
-        let what = match orphan.shape.name.as_str() {
-            UNNAMED => taxels,
-            name => format!("{taxels} of {name}"),
-        };
-        let waiting = *waiting;
-        Some(Leftover { what, waiting })
+        Some(Leftover {
+            what: leftover::described(orphan),
+            waiting: *waiting,
+        })
     }
 
     /// Updates the state by a message, performs the effect, and goes on with the answer until there is no effect left.

@@ -183,7 +183,7 @@ fn on_stored(app: &mut App, name: String, stamp: u64) {
     }
 }
 
-/// Asks whether to bring back the unsaved work of a program that crashed.
+/// Asks whether to restore the unsaved work of a program that crashed.
 /// Work of several crashes is offered one after the other; no answer keeps it for the next start.
 fn offer(app: &mut App, before: &str, left: &Leftover) {
     let key = |answer| app.keymap().label(Context::Question, answer);
@@ -194,7 +194,7 @@ fn offer(app: &mut App, before: &str, left: &Leftover) {
         all => format!(" (1 of {all})"),
     };
     let text = format!(
-        "{before}Unsaved work was left{of}: {}. Bring it back? ({yes}: yes, {no}: to the trash, {later}: ask again next time)",
+        "{before}There is unsaved work from last time{of}: {}. Restore it? ({yes}: yes, {no}: to the trash, {later}: ask again next time)",
         left.what
     );
     let question = Question {

@@ -21,17 +21,17 @@ fn unsaved_work_is_offered_back_once() {
     let lost = session_on(folder.path(), "f<Enter><Space>");
     // Saved work is not offered, and a running program's work is its own.
     let running = session_on(folder.path(), "<Space>");
-    assert!(!running.screen().contains("Unsaved work"));
+    assert!(!running.screen().contains("unsaved work"));
     drop((lost, running));
     let mut later = session_on(folder.path(), "");
     shows(
         &later,
-        &["Unsaved work was left (1 of 2): 1 taxel. Bring it back?"],
+        &["There is unsaved work from last time (1 of 2): 1 taxel, less than a minute ago.\nRestore it?"],
     );
     then(
         &mut later,
         "n",
-        &["unsaved 1 is in the trash. Unsaved work was left: 51 taxels."],
+        &["unsaved 1 is in the trash. There is unsaved work from last time: ellipse"],
     );
     then(
         &mut later,
@@ -50,7 +50,7 @@ fn unsaved_work_is_offered_back_once() {
     assert!(
         !session_on(folder.path(), "")
             .screen()
-            .contains("Unsaved work")
+            .contains("unsaved work")
     );
 }
 
@@ -72,7 +72,7 @@ fn unsaved_work_that_cannot_go_to_the_trash_stays() {
     let own = |entry: &LibraryEntry| entry.origin == ShapeOrigin::Own;
     assert!(!listed.expect("listed").iter().any(own));
     let again = session_on(folder.path(), "");
-    shows(&again, &["Unsaved work was left: 1 taxel."]);
+    shows(&again, &["There is unsaved work from last time: 1 taxel, less than a minute ago."]);
 }
 
 #[test]
@@ -127,5 +127,5 @@ fn work_that_could_not_be_kept_is_kept_later() {
     std::fs::remove_file(&journal).expect("removed");
     drop(session);
     let later = session_on(folder.path(), "");
-    shows(&later, &["Unsaved work was left: 1 taxel."]);
+    shows(&later, &["There is unsaved work from last time: 1 taxel, less than a minute ago."]);
 }

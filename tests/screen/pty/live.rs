@@ -645,7 +645,7 @@ fn unsaved_work_that_was_left_keeps_no_source_from_being_recorded() {
             library: Some(&place),
             ..Start::default()
         });
-        program.shows("Unsaved work was left: 3 taxels of lost");
+        program.shows("There is unsaved work from last time: lost, 3 taxels");
         program.types(answer);
         program.shows("ended");
         program.types(b"\x1b");

@@ -69,7 +69,7 @@ fn a_record_shows_the_same_screens() {
         size: (72, 22),
         ..Start::default()
     });
-    program.shows("Unsaved work was left: 3 taxels of lost");
+    program.shows("There is unsaved work from last time: lost, 3 taxels");
     // Keys, and what is then on the screen.
     let acts: [(&[u8], &str); 10] = [
         (b"y", "brought back"),
