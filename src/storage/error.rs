@@ -102,6 +102,12 @@ pub enum LibraryError {
         /// Its name.
         name: String,
     },
+    /// The shape comes with the program and cannot be deleted.
+    #[error("{name:?} is shipped with taxel and cannot be deleted")]
+    NotDeletable {
+        /// Its name.
+        name: String,
+    },
     /// The name is taken.
     #[error("{name:?} already exists")]
     Exists {

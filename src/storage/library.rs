@@ -275,7 +275,7 @@ impl Library {
         let shipped = shipped::has(&name);
         let name = name.to_string();
         Err(if shipped {
-            LibraryError::Shipped { name }
+            LibraryError::NotDeletable { name }
         } else {
             LibraryError::Unknown { name }
         })

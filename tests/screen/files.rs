@@ -25,7 +25,7 @@ fn the_matrix_is_written_by_the_ending_and_opened_by_the_content() {
         then(
             &mut session,
             &format!("n:open {place}/made.{ending}<Enter>"),
-            &["opened: Space draws", "NA 51 in all"],
+            &["opened\n", "NA 51 in all"],
         );
     }
     // Some editors begin a text with a byte order mark.

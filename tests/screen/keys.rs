@@ -247,7 +247,7 @@ fn a_shape_is_nudged_and_turned() {
 #[test]
 fn toggles_that_a_new_touch_drops_are_said_to_be_dropped() {
     shows("f<Enter><Space>", &["+ 1 by hand"]);
-    shows("f<Enter><Space>>", &["1 taxel set by hand dropped"]);
+    shows("f<Enter><Space>>", &["1 taxel set by hand was dropped; u restores it"]);
     shows("f<Enter><Space>>u", &["+ 1 by hand"]);
     shows(
         "<Space><Right><Space>f<Enter>",
@@ -629,7 +629,7 @@ fn the_confusion_matrix_starts_at_the_worst_pair() {
     );
     shows(
         &format!("{open}<Enter>"),
-        &["likely: ellipse", "confused imprint: Space draws"],
+        &["likely: ellipse", "\nconfused imprint\n"],
     );
     shows(&format!("{open}<Esc>"), &["Recognise:"]);
 }

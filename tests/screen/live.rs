@@ -308,12 +308,12 @@ fn the_imprint_goes_to_the_matrix_and_the_source_stays() {
         &page,
         &[
             "the imprint of frame 5; w goes back",
-            "frame 5: Space draws",
+            "\nimprint of frame 5, touch.csv\n",
         ],
     );
     // The history names the frame, and not the sensor that came with it.
-    then(&mut page, "u", &["undone: frame 5"]);
-    then(&mut page, "<C-r>", &["redone: frame 5"]);
+    then(&mut page, "u", &["undone: imprint of frame 5"]);
+    then(&mut page, "<C-r>", &["redone: imprint of frame 5"]);
     then(&mut page, "w", &["frame 5", "threshold  5"]);
     then(&mut page, "<Esc>w", &["frame 5"]);
     shows("w", &["! no source yet: ':watch SOURCE'"]);

@@ -91,7 +91,7 @@ fn a_set_that_does_not_exist_changes_nothing() {
         assert!(!screen.contains(text), "{text:?} on\n{screen}");
     };
     let mut session = started(world(), ":recognise nope<Enter>");
-    shows(&session, &[refused, ":recognise nope", "Region 0 of 0"]);
+    shows(&session, &[refused, ":recognise nope", "The matrix is empty"]);
     shows_no(&session, "Recognise: model");
     press(&mut session, "<Esc>r");
     shows(&session, &["Recognise: the seven figures", "t quiz"]);
@@ -100,7 +100,7 @@ fn a_set_that_does_not_exist_changes_nothing() {
     press(&mut session, ":recognise nope<Enter>");
     shows(&session, &[refused, "Recognise: the seven figures"]);
     press(&mut session, "<Esc><Esc>:recognise nope<Enter><Esc>");
-    shows(&session, &["Region 0 of 0"]);
+    shows(&session, &["The matrix is empty"]);
 }
 
 #[test]

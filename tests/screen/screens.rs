@@ -238,7 +238,7 @@ fn a_list_tells_what_is_out_of_sight() {
 #[test]
 fn matrix_and_descriptors_change_places_only_where_one_of_them_is_seen() {
     let mut wide = sized((80, 24), false, "i");
-    assert!(wide.screen().contains("both in sight"), "{}", wide.screen());
+    assert!(wide.screen().contains("both visible"), "{}", wide.screen());
     wide.resize(40, 24);
     assert!(!wide.screen().contains("NA     –"), "{}", wide.screen());
     // The hint names what the key leads to.

@@ -208,11 +208,15 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
 fn say_dropped(app: &mut App, dropped: u32) {
     if dropped > 0 {
         let taxels = counted(dropped, "taxel");
-        let them = if dropped == 1 { "it" } else { "them" };
+        let (were, them) = if dropped == 1 {
+            ("was", "it")
+        } else {
+            ("were", "them")
+        };
         let undo = app.key_of(&action::UNDO);
         inform(
             app,
-            format!("{taxels} set by hand dropped; {undo} brings {them} back"),
+            format!("{taxels} set by hand {were} dropped; {undo} restores {them}"),
         );
     }
 }

@@ -93,6 +93,10 @@ fn source(app: &App, panes: &Panes) -> String {
                 "stored shape",
                 format!("{place} moves and turns it, {draw} draws"),
             ),
+            // What came from elsewhere is there to be read, not to be drawn on.
+            Some(brought_by) if !app.reading().imprint.is_empty() => {
+                return name + brought_by;
+            }
             brought_by => (
                 brought_by.unwrap_or("drawn by hand"),
                 format!("{draw} draws, {figure} places a figure"),

@@ -144,9 +144,10 @@ fn take(app: &mut App, page: Box<Live>, document: Document) {
     let number = page.reading().map(|reading| reading.frame.number);
     let channel = page.status().channel.as_deref();
     let without_mm = channel.and_then(ChannelInfo::why_not_in_mm);
+    let source = page.request().name();
     app.live = Some(page);
     let frame = number.map_or("a frame".to_owned(), |number| format!("frame {number}"));
-    begin_unsaved(app, document, &frame);
+    begin_unsaved(app, document, &format!("imprint of {frame}, {source}"));
     let back = app.key_of(&action::WATCH);
     let mut text = format!("the imprint of {frame}; {back} goes back to the source");
     if let Some(reason) = without_mm {

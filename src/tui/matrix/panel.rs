@@ -38,15 +38,16 @@ static LONGEST_NAME: LazyLock<usize> = LazyLock::new(|| {
 pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let (seen, chosen) = (matrix.reading, matrix.chosen);
     let described = seen.region(chosen).zip(seen.description(chosen));
-    let which = match &described {
+    // What follows is plain as the values, so that a toggle changes little here.
+    let (title, which) = match &described {
         Some(((index, region), _)) => {
             let (number, kind) = (index + 1, region.kind().name());
-            format!("{number} of {}: {kind}", seen.regions.len())
+            let all = seen.regions.len();
+            ("Region ", format!("{number} of {all}: {kind}"))
         }
-        None => "0 of 0: the matrix is empty".to_owned(),
+        None => ("The matrix is empty", String::new()),
     };
-    // Plain as the values, so that a toggle changes no style here.
-    let heading = [("Region ", Role::Title), (which.as_str(), Role::Text)];
+    let heading = [(title, Role::Title), (which.as_str(), Role::Text)];
     write::line(buffer, area, theme, heading);
     let lines = usize::from(area.height.saturating_sub(1)).max(1);
     let columns = DESCRIPTORS.len().div_ceil(lines);

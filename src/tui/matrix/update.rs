@@ -239,9 +239,9 @@ fn switch_mouse(app: &mut App) -> Effect {
     app.mouse = !app.mouse;
     let key = app.key_of(&action::MOUSE);
     let text = if app.mouse {
-        format!("the mouse sets taxels; {key} leaves it to the terminal")
+        format!("the mouse draws; {key} gives it back to the terminal")
     } else {
-        format!("the mouse selects text; {key} lets it set taxels")
+        format!("the mouse selects text; {key} lets it draw")
     };
     inform(app, text);
     Effect::Terminal(TerminalEffect::Mouse(app.mouse))
@@ -289,7 +289,7 @@ fn edit(app: &mut App, message: &Message) {
         Message::Display => next_display(app),
         Message::Layer(layer) => switch_layer(app, layer),
         Message::SwitchPage if app.panes().is_some_and(|panes| panes.panel.is_some()) => {
-            inform(app, "matrix and descriptors are both in sight");
+            inform(app, "matrix and descriptors are both visible");
         }
         Message::SwitchPage => {
             app.page = match app.page {

@@ -93,7 +93,7 @@ fn the_last_fifty_are_kept() {
 #[test]
 fn shapes_that_come_with_the_program_are_not_deleted() {
     let scratch = Scratch::new();
-    let message = "\"Washer\" comes with the program; it can be copied under another name";
+    let message = "\"Washer\" is shipped with taxel and cannot be deleted";
     assert_eq!(refusal(scratch.library.delete("Washer"), &scratch), message);
     assert_eq!(
         refusal(scratch.library.delete("nothing"), &scratch),
