@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! p: perimeter against na: active taxels; 62 imprints      what is shown; how many have both values
-//! p
-//! 24 ┤      ⠂⠐⠄                                            a dot an imprint, the selected one is marked
+//! p                     · 1   o 2–9   O 10–99   @ 100+     how many imprints share a character
+//! 24 ┤      · oX O                                         X where the selected one is
 //!    └────┬────┬──── na
 //! imprint 5: na 22, p 20; 4 poses                          the selected one
 //! ```
@@ -22,7 +22,7 @@ use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
-use crate::tui::widget::plot::{DotKind, PlotField};
+use crate::tui::widget::plot::{PlotField, draw_no_room};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -125,19 +125,19 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
         let text = detail(theme, results, &entry);
         write::line(buffer, foot, theme, [(text.as_str(), Role::Text)]);
     }
-    let field = field(page, &points)?;
-    let mut canvas = field.canvas();
-    for &(_, point) in &points {
-        canvas.set(field.dot(point));
-    }
+    let Some(field) = field(page, &points) else {
+        draw_no_room(theme, buffer, page);
+        return None;
+    };
     let across = features()[results.across()].key.as_str();
     field.draw_axes(theme, buffer, [results.feature().key.as_str(), across]);
     let style = theme.style(Role::Chosen);
-    field.draw_dots(theme, buffer, &canvas, DotKind::Points, style);
+    let all = points.iter().map(|(_, point)| *point);
+    field.draw_points(theme, buffer, all, style);
     let (_, entry) = selected?;
     let at = field.character(point(results, &entry)?)?;
     if let Some(cell) = buffer.cell_mut(at) {
-        cell.set_char('o').set_style(theme.style(Role::Cursor));
+        cell.set_char('X').set_style(theme.style(Role::Cursor));
     }
     Some(at)
 }

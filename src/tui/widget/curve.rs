@@ -13,7 +13,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::formats::axis_ends;
-use crate::tui::widget::plot::{DotKind, PlotField};
+use crate::tui::widget::plot::PlotField;
 use crate::tui::widget::theme::{Role, Theme};
 
 /// A curve.
@@ -62,7 +62,7 @@ impl Curve<'_> {
         }
         for (canvas, role) in [(&marks, Role::Quiet), (&line, Role::Chosen)] {
             let style = theme.style(role);
-            plot.draw_dots(theme, buffer, canvas, DotKind::Lines, style);
+            plot.draw_lines(theme, buffer, canvas, style);
         }
     }
 }

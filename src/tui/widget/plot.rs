@@ -2,13 +2,12 @@
 //!
 //! ```text
 //! p                             the label of the upward axis
-//! 24 ┤      ⠂⠐⠄                 its numbers; the field, eight dots a character
-//! 22 ┤  ⠐⠂⠄
+//! 24 ┤      ⣀⠤⠒⠉               its numbers; the field: lines of eight dots a character, or points,
+//! 22 ┤  · o@O                   of which many may share a character: a mark says about how many
 //!    └────┬────┬────
 //!        18   20     na         the numbers of the other axis, and its label
 //! ```
-//! Numbers that have no room are left out. Where the terminal has no Braille, points are shown as shades by how many of
-//! a character's dots are set, and lines as strokes.
+//! Numbers that have no room are left out. Where the terminal has no Braille, lines are shown as strokes.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -25,14 +24,11 @@ const APART: u16 = 10;
 /// Lines between two numbers of the upward axis, about.
 const LINES: u16 = 2;
 
-/// What the dots of a field are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DotKind {
-    /// Points that have nothing to do with their neighbours.
-    Points,
-    /// Parts of lines.
-    Lines,
-}
+/// The marks of points: each for this many that share a character, and more.
+const MARKS: [(u32, char); 4] = [(1, '·'), (2, 'o'), (10, 'O'), (100, '@')];
+
+/// What the marks mean.
+const LEGEND: &str = "· 1   o 2–9   O 10–99   @ 100+";
 
 /// A field between two axes.
 #[derive(Clone, Debug)]
@@ -195,48 +191,66 @@ impl PlotField {
         }
     }
 
-    /// Draws the dots of a canvas into the field.
-    pub fn draw_dots(
+    /// Draws the lines of a canvas into the field.
+    pub fn draw_lines(
         &self,
         theme: &Theme,
         buffer: &mut Buffer,
         canvas: &DotCanvas,
-        kind: DotKind,
         style: Style,
     ) {
         for (column, row, dots) in canvas.characters() {
-            let sign = match kind {
-                DotKind::Lines => glyph(theme, dots),
-                DotKind::Points => speck(theme, dots),
-            };
             let at = Position::new(self.field.x + column, self.field.y + row);
             if let Some(cell) = buffer.cell_mut(at) {
-                cell.set_char(sign).set_style(style);
+                cell.set_char(glyph(theme, dots)).set_style(style);
             }
+        }
+    }
+
+    /// Draws points into the field, in each character a mark by how many there are, and above it what the marks mean.
+    pub fn draw_points(
+        &self,
+        theme: &Theme,
+        buffer: &mut Buffer,
+        points: impl IntoIterator<Item = (f64, f64)>,
+        style: Style,
+    ) {
+        let mut counts = vec![0_u32; usize::from(self.field.width) * usize::from(self.field.height)];
+        let index = |at: Position| {
+            let (column, row) = (at.x - self.field.x, at.y - self.field.y);
+            usize::from(row) * usize::from(self.field.width) + usize::from(column)
+        };
+        for point in points {
+            if let Some(at) = self.character(point) {
+                counts[index(at)] += 1;
+            }
+        }
+        for (at, count) in self.field.positions().zip(counts) {
+            let marks = MARKS.iter().rev();
+            let mark = marks.copied().find(|(least, _)| count >= *least);
+            if let (Some((_, mark)), Some(cell)) = (mark, buffer.cell_mut(at)) {
+                let mark = if theme.ascii && mark == '·' { '.' } else { mark };
+                cell.set_char(mark).set_style(style);
+            }
+        }
+        let legend = if theme.ascii {
+            LEGEND.replace('·', ".").replace('–', "-")
+        } else {
+            LEGEND.to_owned()
+        };
+        let width = narrow(write::width(&legend));
+        // Beside the label of the axis, which is a word.
+        if width < self.field.width {
+            let place = write::right_of(self.line_at(self.area.y), self.area.right() - width);
+            write::line(buffer, place, theme, [(legend.as_str(), Role::Quiet)]);
         }
     }
 }
 
-/// The character for points in a character's dots: Braille, or a shade by how many dots there are.
-fn speck(theme: &Theme, dots: u8) -> char {
-    let count = dots.count_ones();
-    match (theme.ascii, theme.console) {
-        (false, false) => glyph(theme, dots),
-        (true, _) => match count {
-            0 => ' ',
-            1 => '.',
-            2 => ':',
-            3 | 4 => '+',
-            _ => '#',
-        },
-        (false, true) => match count {
-            0 => ' ',
-            1 => '·',
-            2 => '░',
-            3 | 4 => '▒',
-            _ => '▓',
-        },
-    }
+/// Says under the title of a page that it has no room for its plot.
+pub fn draw_no_room(theme: &Theme, buffer: &mut Buffer, page: Rect) {
+    let text = "no room for the plot";
+    write::line(buffer, write::row(page, 1), theme, [(text, Role::Quiet)]);
 }
 
 #[cfg(test)]
@@ -248,13 +262,9 @@ mod tests {
         let Some(field) = PlotField::of(area, (0.0, 10.0), (-1.0, 1.0)) else {
             return "no room".to_owned();
         };
-        let mut canvas = field.canvas();
-        for &point in points {
-            canvas.set(field.dot(point));
-        }
         field.draw_axes(&theme, &mut buffer, ["up", "right"]);
         let style = theme.style(Role::Chosen);
-        field.draw_dots(&theme, &mut buffer, &canvas, DotKind::Points, style);
+        field.draw_points(&theme, &mut buffer, points.iter().copied(), style);
         let rows = area.rows().map(|row| {
             let cells = row.columns().map(|cell| buffer[(cell.x, cell.y)].symbol());
             cells.collect::<String>().trim_end().to_owned()
@@ -276,7 +286,7 @@ mod tests {
         let lines: Vec<&str> = ascii.lines().collect();
         assert_eq!(lines[0], "up");
         assert!(
-            lines[4].starts_with(" 0 +") && lines[4].contains(':'),
+            lines[4].starts_with(" 0 +") && lines[4].contains('o'),
             "{ascii}"
         );
         assert!(
@@ -291,18 +301,29 @@ mod tests {
             lines[8].ends_with("right") && lines[8].contains(" 5 "),
             "{ascii}"
         );
-        let braille = shown(Theme::plain(false), area, &points);
-        assert!(
-            braille.contains(" 0 ┤") && braille.contains('└'),
-            "{braille}"
-        );
-        assert_eq!(
-            braille
-                .chars()
-                .filter(|c| ('\u{2800}'..'\u{2900}').contains(c))
-                .count(),
-            3
-        );
+        let plain = shown(Theme::plain(false), area, &points);
+        assert!(plain.contains(" 0 ┤") && plain.contains('└'), "{plain}");
+        assert_eq!(plain.matches(['·', 'o']).count(), 3, "{plain}");
+    }
+
+    #[test]
+    fn a_mark_says_how_many_points_share_a_character() {
+        let area = Rect::new(0, 0, 50, 9);
+        let times = |count: usize, x: f64| std::iter::repeat_n((x, 0.0), count);
+        let points: Vec<(f64, f64)> = [(1, 1.0), (9, 3.0), (10, 5.0), (99, 7.0), (100, 9.0)]
+            .into_iter()
+            .flat_map(|(count, x)| times(count, x))
+            .collect();
+        for (theme, marks, legend) in [
+            (Theme::plain(true), ".oOO@", ". 1   o 2-9   O 10-99   @ 100+"),
+            (Theme::plain(false), "·oOO@", "· 1   o 2–9   O 10–99   @ 100+"),
+        ] {
+            let plot = shown(theme, area, &points);
+            let (head, field) = plot.split_once('\n').expect("lines");
+            assert!(head.ends_with(legend), "{plot}");
+            let found = field.chars().filter(|mark| marks.contains(*mark));
+            assert_eq!(found.collect::<String>(), marks, "{plot}");
+        }
     }
 
     #[test]

@@ -24,7 +24,7 @@ use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
-use crate::tui::widget::plot::{DotKind, PlotField};
+use crate::tui::widget::plot::{PlotField, draw_no_room};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -117,7 +117,10 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
         let text = detail(&here);
         write::line(buffer, foot, theme, [(text.as_str(), Role::Text)]);
     }
-    let field = field(page, &spread)?;
+    let Some(field) = field(page, &spread) else {
+        draw_no_room(theme, buffer, page);
+        return None;
+    };
     let key = results.feature().key.as_str();
     let across = if theme.ascii { "angle/deg" } else { "angle/°" };
     field.draw_axes(theme, buffer, [key, across]);
@@ -145,7 +148,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
         } else {
             theme.style(Role::Chosen)
         };
-        field.draw_dots(theme, buffer, &canvas, DotKind::Lines, style);
+        field.draw_lines(theme, buffer, &canvas, style);
     }
     let at = field.character((here.degrees, here.mean))?;
     if let Some(cell) = buffer.cell_mut(at) {
