@@ -7,7 +7,7 @@
 //! imprint 7 at x0 5.00, y0 5.00; 1 piece, 0 holes, na 36         everything about the selected one
 //! ```
 //! A row has the number of the imprint, how many poses leave it and their share, its first pose, pieces and holes, and
-//! the value of the chosen descriptor. The first pose gives way first where there is little room, then the thumbnails.
+//! the value of the chosen descriptor. Where there is little room the thumbnails give way first, then the first pose.
 //! Left and right choose a heading, and `s` sorts by it; a click on a heading does both.
 
 use std::collections::BTreeMap;
@@ -119,13 +119,8 @@ impl ImprintList {
         let full = short + place.iter().map(|(_, width)| width + 1).sum::<usize>();
         let room = usize::from(page.width);
         let thumbnail = usize::from(grid.sensor().columns().min(16)) + 2;
-        let (width, beside) = if full + thumbnail <= room {
-            (full, true)
-        } else if short + thumbnail <= room {
-            (short, true)
-        } else {
-            (if full <= room { full } else { short }, false)
-        };
+        let width = if full <= room { full } else { short };
+        let beside = width + thumbnail <= room;
         let table = Rect {
             width: narrow(width).min(page.width),
             ..page
