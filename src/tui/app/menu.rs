@@ -3,6 +3,7 @@
 //! ```text
 //! n New   l Load   f Figure   p Picture   s Save   d Delete   q Quit   ? Help      on the matrix, from 70 columns on
 //! New  Load  Figure  Picture  Save  Delete  Quit  ? Help                           the key is the bold letter
+//! n l f p s d  q Quit  ? Help                                                      where that has no room either
 //! Enter accept   Esc cancel   ? help                                               in a form or a list
 //! Tab page   d D descriptor   x export   e ranges   ? help   Esc close             on all pages of Explore
 //! ```
@@ -104,8 +105,11 @@ pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
     };
     let brief = options && area.width < WIDE;
     let all = placed(area, gap, Role::Text, brief, &rows);
-    if options || all.len() == rows.len() {
+    if all.len() == rows.len() {
         return all;
+    }
+    if options {
+        return placed(area, gap, Role::Text, false, &keys_alone(&rows));
     }
     // The first row and the way out stay, as long as they fit together; what gives way is among the hints.
     let mut rows = rows;
@@ -118,6 +122,17 @@ pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
         }
     }
     all
+}
+
+/// The paper's options by their keys alone. The way out and the list of all keys keep their names, and so does an option that
+/// no key leads to.
+fn keys_alone<'a>(rows: &[(&'a Binding, &'a str)]) -> Vec<(&'a Binding, &'a str)> {
+    let kept = [Message::Quit, Message::Help];
+    let rows = rows.iter().map(|&(row, name)| {
+        let named = row.keys.is_empty() || by_default(row).is_some_and(|own| kept.contains(&own));
+        (row, if named { name } else { "" })
+    });
+    rows.collect()
 }
 
 /// The hints: the keys that mean something now and are not in the menu, as many as fit.
@@ -226,11 +241,8 @@ fn placed<'a>(
         if brief && name.to_lowercase().starts_with(&keys) {
             keys.clear();
         }
-        let before = match keys.chars().count() {
-            0 => 0,
-            keys => keys + 1,
-        };
-        let width = narrow(before + name.chars().count());
+        let between = usize::from(!keys.is_empty() && !name.is_empty());
+        let width = narrow(keys.chars().count() + between + name.chars().count());
         if area.height == 0 || x.saturating_add(width) > area.right() {
             break;
         }
@@ -241,6 +253,7 @@ fn placed<'a>(
             keys,
             role,
         });
+        let gap = if name.is_empty() { 1 } else { gap };
         x = x.saturating_add(width + gap);
     }
     items
