@@ -672,3 +672,16 @@ fn help_lists_the_keys_of_a_held_shape() {
     // A prompt has its own keys, whatever is held below.
     shows("f<Enter>g:<F1>", &["In the command line"]);
 }
+
+/// A page of help goes on where the one before ended: its last line comes first.
+#[test]
+fn help_is_read_page_by_page() {
+    let body = |keys: &str| {
+        let screen = session(keys).screen();
+        let lines = screen.lines().skip(1).take(19);
+        lines.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let [first, second] = ["?", "?<PageDown>"].map(body);
+    assert_eq!(second.first(), first.last(), "{second:#?}");
+    assert_eq!(body("?<PageDown><PageUp>"), first);
+}

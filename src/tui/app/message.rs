@@ -107,6 +107,8 @@ pub enum Message {
     Decline,
     /// Scroll or go on in a list by lines.
     Scroll(i16),
+    /// Scroll by as many lines as are seen, this many times; negative goes up.
+    ScrollScreen(i8),
     /// To the first or the last line of a list.
     ScrollTo(Endpoint),
     /// Open the prompt that searches in help.

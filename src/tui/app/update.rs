@@ -215,6 +215,11 @@ fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
     let mut refused = None;
     match *message {
         Message::Scroll(lines) => help.scroll(lines, keymap, room),
+        Message::ScrollScreen(by) => {
+            // A line of the page before stays, to go on reading from.
+            let page = room.1.saturating_sub(1).max(1).cast_signed();
+            help.scroll(page.saturating_mul(by.into()), keymap, room);
+        }
         Message::Match(by) if !help.go_to_match(by, keymap, room) => {
             refused = Some(no_search(keymap, Context::Help));
         }

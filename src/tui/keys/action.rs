@@ -250,6 +250,8 @@ actions! {
         SCROLL_DOWN "scroll-down" [] Message::Scroll(1);
         PAGE_UP "page-up" [] Message::Scroll(-10);
         PAGE_DOWN "page-down" [] Message::Scroll(10);
+        SCREEN_UP "screen-up" [] Message::ScrollScreen(-1);
+        SCREEN_DOWN "screen-down" [] Message::ScrollScreen(1);
         FIRST "first" [] Message::ScrollTo(Endpoint::First);
         LAST "last" [] Message::ScrollTo(Endpoint::Last);
         SEARCH "search" [] Message::Search;

@@ -387,7 +387,8 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     /// Esc leaves the search first, so that it does not close more than is meant; the other keys close help at once.
     Help {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "scroll" "scroll by a line";
-        [PageUp => PAGE_UP, PageDown => PAGE_DOWN, Char(' ') => PAGE_DOWN] "" "scroll by a page";
+        [PageUp => SCREEN_UP, PageDown => SCREEN_DOWN, Char(' ') => SCREEN_DOWN]
+            "" "scroll by a page";
         [Char('/') => SEARCH] "search" "search for a key or what it does";
         [Char('n') => NEXT_MATCH, Char('N') => PREVIOUS_MATCH] "match" "next, previous match";
         [Char('q') => QUIT, Char('?') => QUIT, F1 => QUIT, Enter => QUIT] "close" "close";
