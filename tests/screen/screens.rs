@@ -321,3 +321,16 @@ fn a_title_names_sensor_and_shape() {
     let ascii = title(sized((80, 24), true, "").screen());
     assert_eq!(ascii, "16 x 16, threshold 0.50");
 }
+
+/// A low and narrow screen shows every value to its end.
+#[test]
+fn no_descriptor_is_cut_on_a_small_screen() {
+    for keys in ["f<Enter>i", "fr<Enter>i"] {
+        let screen = sized((40, 12), false, keys).screen();
+        assert!(!screen.contains('…'), "{keys}\n{screen}");
+        let symbols = ["NumX ", "P ", "Round ", "Diag ", "Fill ", "CG-CD ", "dir "];
+        for symbol in symbols {
+            assert!(screen.contains(symbol), "{keys}: no {symbol}\n{screen}");
+        }
+    }
+}
