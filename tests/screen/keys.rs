@@ -685,3 +685,11 @@ fn help_is_read_page_by_page() {
     assert_eq!(second.first(), first.last(), "{second:#?}");
     assert_eq!(body("?<PageDown><PageUp>"), first);
 }
+
+#[test]
+fn a_drawing_says_how_it_can_be_moved() {
+    shows("g", &["! nothing to move: f places a figure"]);
+    let how = "! a drawing cannot be moved: save it (s), then place it (p)";
+    shows("<Space>g", &[how]);
+    shows("<Space><S-Left>", &[how]);
+}

@@ -221,8 +221,14 @@ fn say_dropped(app: &mut App, dropped: u32) {
     }
 }
 
-/// Says that there is nothing to move, and how to get something.
+/// Says that there is nothing to move, and how to get something. A drawing has no place that could be changed: once it is
+/// stored, it can be placed as a picture.
 fn refuse_to_move(app: &mut App) {
+    if !app.reading().imprint.is_empty() {
+        let (save, place) = (app.key_of(&action::SAVE), app.key_of(&action::PICTURE));
+        let text = format!("a drawing cannot be moved: save it ({save}), then place it ({place})");
+        return refuse(app, text);
+    }
     let (figure, picture) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
     refuse(
         app,
