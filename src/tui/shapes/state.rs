@@ -20,6 +20,8 @@ pub struct ListDialog {
     purpose: Purpose,
     /// All shapes of the list.
     entries: Vec<LibraryEntry>,
+    /// The names of those that are left out because they cannot be deleted.
+    undeletable: Vec<String>,
     /// What was typed.
     filter: TextField,
     /// The entries that the filter leaves, by their place in `entries`.
@@ -42,6 +44,7 @@ impl ListDialog {
         Self {
             purpose,
             entries: Vec::new(),
+            undeletable: Vec::new(),
             filter: TextField::new("", LONGEST),
             matching: Vec::new(),
             selected: 0,
@@ -58,7 +61,8 @@ impl ListDialog {
             return;
         }
         if self.purpose == Purpose::Delete {
-            entries.retain(|entry| entry.origin == ShapeOrigin::Own);
+            let shipped = entries.extract_if(.., |entry| entry.origin != ShapeOrigin::Own);
+            self.undeletable = shipped.map(|entry| entry.name).collect();
         }
         self.entries = entries;
         self.listed = true;
@@ -88,6 +92,13 @@ impl ListDialog {
     /// What was typed.
     pub fn filter(&self) -> &str {
         self.filter.text()
+    }
+
+    /// A shipped shape that the filter would leave if it could be deleted.
+    pub fn undeletable(&self) -> Option<&str> {
+        let wanted = folded(self.filter());
+        let mut fitting = self.undeletable.iter().map(String::as_str);
+        fitting.find(|name| !wanted.is_empty() && folded(name).contains(&wanted))
     }
 
     /// How many shapes there are without the filter.

@@ -99,10 +99,11 @@ fn draw(
     let end = write::line(buffer, area, theme, head);
     draw_count(theme, dialog, buffer, write::right_of(area, end));
     if dialog.rows().len() == 0 {
-        let text = match (dialog.total(), dialog.purpose()) {
+        let text = match (dialog.undeletable(), dialog.total(), dialog.purpose()) {
             _ if !dialog.is_listed() => "the library is being read".to_owned(),
-            (0, Purpose::Delete) => "there are no shapes of your own".to_owned(),
-            (0, _) => "the library is empty".to_owned(),
+            (Some(name), ..) => format!("{name} is shipped with taxel and cannot be deleted"),
+            (_, 0, Purpose::Delete) => "there are no shapes of your own".to_owned(),
+            (_, 0, _) => "the library is empty".to_owned(),
             _ => {
                 let key = keymap.label(Context::List, &action::ERASE_BEFORE);
                 format!("no name contains this; {key} shortens it")

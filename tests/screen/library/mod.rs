@@ -11,7 +11,7 @@ use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
-use crate::session::{press, session, shows, started, then};
+use crate::session::{hides, press, session, shows, started, then};
 
 /// On a library that stays.
 fn session_on(folder: &Path, keys: &str) -> Session {
@@ -341,4 +341,14 @@ fn the_shape_whose_name_was_typed_comes_first() {
     assert!(line("washers ") < line("turned washer"), "{screen}");
     press(&mut session, "<Enter>");
     assert_eq!(session.app().stored_name(), Some("washer"));
+}
+
+/// Only shapes of one's own are listed to be deleted: a name that is not says why.
+#[test]
+fn the_list_says_of_a_shipped_shape_that_it_cannot_be_deleted() {
+    let why = "washer is shipped with taxel and cannot be deleted";
+    shows("dwasher", &[why]);
+    shows("<Space>smine<Enter>dWash", &[why]);
+    hides("<Space>smine<Enter>dmi", &["is shipped"]);
+    shows("<Space>smine<Enter>dzzz", &["no name contains this"]);
 }
