@@ -405,3 +405,8 @@ fn commands_are_completed_and_recalled() {
     );
     then(&mut session, "<Down>", &[":new"]);
 }
+
+#[test]
+fn a_seed_is_confirmed() {
+    shows(":seed 3<Enter>", &["random touches begin with the seed 3"]);
+}

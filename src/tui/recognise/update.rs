@@ -76,6 +76,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
         RecogniseMessage::WriteSizes(name) => separate::update::write(app, name),
         RecogniseMessage::Seed(seed) => {
             state(app)?.random = Pcg64::seed_from_u64(seed);
+            inform(app, format!("random touches begin with the seed {seed}"));
             None
         }
         RecogniseMessage::Select(_)
