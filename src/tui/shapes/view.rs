@@ -94,8 +94,15 @@ fn draw(
         Purpose::Picture => "Picture",
         Purpose::Compare => "Compare",
     };
-    let filter = format!("  filter: {}", dialog.filter());
-    let head = [(title, Role::Title), (filter.as_str(), Role::Text)];
+    let label = "  filter: ";
+    let room = usize::from(area.width).saturating_sub(write::width(title) + write::width(label));
+    let typed = write::width(dialog.filter());
+    let (filter, _) = write::field_text(dialog.filter(), typed, room, theme);
+    let head = [
+        (title, Role::Title),
+        (label, Role::Text),
+        (&*filter, Role::Text),
+    ];
     let end = write::line(buffer, area, theme, head);
     draw_count(theme, dialog, buffer, write::right_of(area, end));
     if dialog.rows().len() == 0 {

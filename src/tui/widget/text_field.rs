@@ -91,9 +91,11 @@ impl TextField {
                 return true;
             }
             Message::Paste(text) => {
-                text.trim()
-                    .chars()
-                    .for_each(|character| self.insert(character));
+                // A line break ends a word, and has no other place in a line.
+                let lines = text.split(['\r', '\n']).map(str::trim);
+                let lines: Vec<&str> = lines.filter(|line| !line.is_empty()).collect();
+                let text = lines.join(" ");
+                text.chars().for_each(|character| self.insert(character));
                 return true;
             }
             Message::Choose(Arrow::Left) => InputRequest::GoToPrevChar,
@@ -180,6 +182,8 @@ mod tests {
     fn it_takes_no_more_than_it_has_room_for_and_nothing_that_steers_a_terminal() {
         let pasted = Message::Paste("  d\u{1b}\te f g\n".to_owned());
         assert_eq!(after(&[pasted]), ("abcde ".to_owned(), 6));
+        let lines = Message::Paste("1\r\n\n2\r3".to_owned());
+        assert_eq!(after(&[Message::Erase(Erase::All), lines]).0, "1 2 3");
         let mut field = TextField::new("abc", 6);
         assert!(!field.take(&Message::Accept));
         assert!(!field.take(&Message::Choose(Arrow::Up)));

@@ -352,3 +352,14 @@ fn the_list_says_of_a_shipped_shape_that_it_cannot_be_deleted() {
     hides("<Space>smine<Enter>dmi", &["is shipped"]);
     shows("<Space>smine<Enter>dzzz", &["no name contains this"]);
 }
+
+/// The end of a filter is what one types, so it stays in sight.
+#[test]
+fn a_long_filter_shows_its_end() {
+    let mut list = session("l");
+    press(&mut list, &"x".repeat(60));
+    press(&mut list, "end");
+    let screen = list.screen();
+    let head = screen.lines().find(|line| line.contains("filter: "));
+    assert!(head.is_some_and(|head| head.contains("xend")), "{screen}");
+}
