@@ -128,7 +128,9 @@ fn described(app: &App, seen: &Reading) -> String {
         Some(format!("{} {text}", descriptor.symbol))
     };
     let main = ["na", "nae", "p", "f"].iter().filter_map(text);
-    let all = (seen.regions.len() > 1).then_some(all);
+    // Where the region is all there is, its own count says so.
+    let rest = description.na != seen.imprint.count();
+    let all = rest.then_some(all);
     main.chain(all).collect::<Vec<_>>().join("  ")
 }
 

@@ -1,6 +1,6 @@
 //! The lines of a form in its pane.
 //!
-//! With enough room each field has two lines, the second for errors; otherwise one. The field that has the focus is
+//! With enough room each field has two lines, the second for errors, and so has the kind; otherwise one. The field that has the focus is
 //! always visible: fields above it scroll out of a low pane.
 
 use ratatui::layout::Rect;
@@ -27,12 +27,13 @@ impl FormRows {
     /// The lines of a form in its pane; the field that has the focus is visible.
     pub fn of(area: Rect, dialog: &FormDialog) -> Self {
         let fields = dialog.form().fields().len();
-        let head = 1 + u16::from(dialog.kind().is_some());
-        let spacing = if area.height >= head + 2 * narrow(fields) {
+        let kinds = u16::from(dialog.kind().is_some());
+        let spacing = if area.height > 2 * (kinds + narrow(fields)) {
             2
         } else {
             1
         };
+        let head = 1 + kinds * spacing;
         let visible = usize::from(area.height.saturating_sub(head) / spacing);
         let first = dialog
             .form()

@@ -3,6 +3,7 @@
 //! ```text
 //! Figure                                              title
 //! Kind      < ellipse   > e r t p h o                 kind, and the letters that choose one (figures only)
+//!
 //! Radius x  4.00      above 0, up to 16 cells         label, text, what the field takes
 //!   ! expected a number                               what is wrong with it
 //! Thickness           above 0, up to 16 cells
