@@ -115,8 +115,12 @@ impl ExportDialog {
 impl LinePrompt for ExportDialog {
     const CONTEXT: Context = Context::Export;
 
+    /// A page without a drawing looks as if its own numbers were written.
     fn label(&self) -> &'static str {
-        "Export to: "
+        match self.what {
+            ExportKind::Sweep { drawing: false, .. } => "Export all imprints to: ",
+            _ => "Export to: ",
+        }
     }
 
     fn field(&self) -> &TextField {
