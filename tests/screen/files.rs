@@ -81,6 +81,14 @@ fn what_cannot_be_opened_or_written_is_said() {
 }
 
 #[test]
+fn recordings_to_watch_are_completed() {
+    shows(
+        ":watch tests/scripts/touch.c<Tab>",
+        &[":watch tests/scripts/touch.csv"],
+    );
+}
+
+#[test]
 fn paths_are_completed() {
     let folder = folder();
     let place = folder.path().to_str().expect("a name in ASCII").to_owned();

@@ -127,11 +127,16 @@ impl Arguments {
         }
     }
 
-    /// Whether the rest of the line is the name of a shape, a model or a file, which may have spaces.
+    /// Whether the rest of the line is the name of a shape, a model, a file or a source, which may have spaces.
     pub fn is_name(self) -> bool {
         matches!(
             self,
-            Self::Shape(_) | Self::Deleted | Self::Name | Self::Model | Self::File(_)
+            Self::Shape(_)
+                | Self::Deleted
+                | Self::Name
+                | Self::Model
+                | Self::File(_)
+                | Self::FrameSource
         )
     }
 }
