@@ -55,6 +55,9 @@ pub(in crate::tui) fn on_library(app: &mut App, answer: LibraryEvent) -> Option<
             }
         }
         LibraryEvent::Trash(Ok(names)) => {
+            if names.is_empty() {
+                inform(app, "nothing has been deleted");
+            }
             if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
                 command.complete_asked(&names);
             }

@@ -363,3 +363,8 @@ fn a_long_filter_shows_its_end() {
     let head = screen.lines().find(|line| line.contains("filter: "));
     assert!(head.is_some_and(|head| head.contains("xend")), "{screen}");
 }
+
+#[test]
+fn completion_says_that_nothing_can_be_restored() {
+    shows(":restore <Tab>", &["nothing has been deleted"]);
+}
