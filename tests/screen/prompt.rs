@@ -410,3 +410,12 @@ fn commands_are_completed_and_recalled() {
 fn a_seed_is_confirmed() {
     shows(":seed 3<Enter>", &["random touches begin with the seed 3"]);
 }
+
+#[test]
+fn an_unknown_flag_is_answered_by_those_of_the_command() {
+    shows(
+        ":sensor --cols 3<Enter>",
+        &["! --cols is unknown, expected one of --columns, --rows, --threshold, --pitch"],
+    );
+    shows(":figure hexagon --sid 3<Enter>", &["expected one of --side, --x0,"]);
+}

@@ -16,7 +16,7 @@ use crate::formats::Name;
 use crate::parameter::{Parameter, number};
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, RangeError, default_ranges};
 use crate::quote::shortened;
-use crate::sensor::Sensor;
+use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
 use crate::tui::app::document::Document;
 use crate::tui::app::message::{Message, Purpose};
@@ -178,15 +178,19 @@ fn name_of(text: &str) -> Result<Name, String> {
     Name::new(text).map_err(|error| error.to_string())
 }
 
-/// The numbers of flags; `example` is one of them.
+/// The numbers of flags, which are those of these parameters; `example` is one of them.
 fn numbers(
     words: &[&str],
-    example: &str,
+    (example, parameters): (&str, &[Parameter]),
     sensor: &Sensor,
 ) -> Result<Vec<(Parameter, f64)>, String> {
     let known = |flag: &str| {
         let parameter = Parameter::from_flag(flag.trim_start_matches("--"));
-        parameter.ok_or_else(|| format!("{} is unknown", shortened(flag)))
+        parameter.ok_or_else(|| {
+            let flags = parameters.iter().map(|own| format!("--{}", own.flag()));
+            let flags = flags.collect::<Vec<_>>().join(", ");
+            format!("{} is unknown, expected one of {flags}", shortened(flag))
+        })
     };
     let number = |(_, parameter, text): Flag<'_, Parameter>| {
         let value = sensor.read(parameter, text);
@@ -207,7 +211,7 @@ fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
             FigureKind::ALL.map(FigureKind::name).join(", ")
         )
     })?;
-    let values = numbers(words, "--side", &sensor)?;
+    let values = numbers(words, ("--side", kind.parameters()), &sensor)?;
     if let Some((foreign, _)) = values
         .iter()
         .find(|(parameter, _)| !kind.parameters().contains(parameter))
@@ -232,7 +236,7 @@ fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
 /// `sensor --columns 32 …`. Parameters that are not given keep their values.
 fn sensor(words: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
-    let values = numbers(words, "--columns", &Sensor::LARGEST)?;
+    let values = numbers(words, ("--columns", &SENSOR_PARAMETERS), &Sensor::LARGEST)?;
     let sensor = values
         .into_iter()
         .try_fold(document.sensor, |sensor, (parameter, value)| {
