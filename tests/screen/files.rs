@@ -166,7 +166,11 @@ fn a_key_gives_forms_their_defaults_and_another_sensor_has_its_own_values() {
     drop(other);
     let mut second = started(world(), "f");
     shows(&second, &["ellipse rx 2.50", "Ctrl-D defaults"]);
-    then(&mut second, "<Tab><Tab>3<C-d>", &["ellipse rx 4.00 ry 4.00"]);
+    then(
+        &mut second,
+        "<Tab><Tab>3<C-d>",
+        &["ellipse rx 4.00 ry 4.00"],
+    );
     then(&mut second, "1", &["ellipse rx 4.00 ry 1.00"]);
     press(&mut second, "<Enter>e");
     shows(&second, &["0:80:20", "Ctrl-D defaults"]);

@@ -171,6 +171,10 @@ fn clicks_on_the_lines_of_keys_do_what_the_keys_do() {
 #[test]
 fn the_menu_of_a_narrow_screen_has_every_option() {
     let menu = |width| sized((width, 12), false, "").screen();
-    assert!(menu(40).starts_with("n l f p s d q Quit  ? Help\n"), "{}", menu(40));
+    assert!(
+        menu(40).starts_with("n l f p s d q Quit  ? Help\n"),
+        "{}",
+        menu(40)
+    );
     assert!(menu(60).starts_with("New  Load  Figure"), "{}", menu(60));
 }

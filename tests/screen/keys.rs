@@ -247,7 +247,10 @@ fn a_shape_is_nudged_and_turned() {
 #[test]
 fn toggles_that_a_new_touch_drops_are_said_to_be_dropped() {
     shows("f<Enter><Space>", &["+ 1 by hand"]);
-    shows("f<Enter><Space>>", &["1 taxel set by hand was dropped; u restores it"]);
+    shows(
+        "f<Enter><Space>>",
+        &["1 taxel set by hand was dropped; u restores it"],
+    );
     shows("f<Enter><Space>>u", &["+ 1 by hand"]);
     shows(
         "<Space><Right><Space>f<Enter>",

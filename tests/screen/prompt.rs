@@ -417,5 +417,8 @@ fn an_unknown_flag_is_answered_by_those_of_the_command() {
         ":sensor --cols 3<Enter>",
         &["! --cols is unknown, expected one of --columns, --rows, --threshold, --pitch"],
     );
-    shows(":figure hexagon --sid 3<Enter>", &["expected one of --side, --x0,"]);
+    shows(
+        ":figure hexagon --sid 3<Enter>",
+        &["expected one of --side, --x0,"],
+    );
 }

@@ -91,7 +91,10 @@ fn a_set_that_does_not_exist_changes_nothing() {
         assert!(!screen.contains(text), "{text:?} on\n{screen}");
     };
     let mut session = started(world(), ":recognise nope<Enter>");
-    shows(&session, &[refused, ":recognise nope", "The matrix is empty"]);
+    shows(
+        &session,
+        &[refused, ":recognise nope", "The matrix is empty"],
+    );
     shows_no(&session, "Recognise: model");
     press(&mut session, "<Esc>r");
     shows(&session, &["Recognise: the seven figures", "t quiz"]);

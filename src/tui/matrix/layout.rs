@@ -147,13 +147,7 @@ pub struct TaxelGrid {
 impl TaxelGrid {
     /// The taxels of a matrix in its pane, with the cursor at a taxel and the window where `seen` is. `halves` tells whether
     /// two of them may share a character.
-    pub fn of(
-        area: Rect,
-        imprint: &Imprint,
-        cursor: (u8, u8),
-        seen: Bounds,
-        halves: bool,
-    ) -> Self {
+    pub fn of(area: Rect, imprint: &Imprint, cursor: (u8, u8), seen: Bounds, halves: bool) -> Self {
         let size = TaxelSize::fitting(imprint, area, halves);
         let (across, lines) = (
             area.width.saturating_sub(RULER),

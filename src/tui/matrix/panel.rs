@@ -82,7 +82,9 @@ fn columns(cells: &[PanelCell], area: Rect) -> (usize, Vec<PanelColumn>) {
     }
     let own = |lines: usize| {
         let columns = cells.chunks(lines).map(|cells| {
-            let symbols = cells.iter().map(|cell| write::width(cell.descriptor.symbol));
+            let symbols = cells
+                .iter()
+                .map(|cell| write::width(cell.descriptor.symbol));
             let symbol = symbols.fold(0, usize::max) + 1;
             (needed(cells, symbol) + 1, symbol)
         });

@@ -57,7 +57,9 @@ pub(in crate::tui) fn in_command(
             app.dialogs.push(Dialog::Command(dialog));
             // The names are completed when they are known.
             return wanted.map(|names| match names {
-                Arguments::File(_) | Arguments::FrameSource => Effect::File(FileRequest::Paths(last_word)),
+                Arguments::File(_) | Arguments::FrameSource => {
+                    Effect::File(FileRequest::Paths(last_word))
+                }
                 Arguments::Model => Effect::Library(LibraryRequest::Models),
                 Arguments::Deleted => Effect::Library(LibraryRequest::Trash),
                 _ => Effect::Library(LibraryRequest::List),

@@ -91,9 +91,7 @@ use crate::tui::runtime::workers::Workers;
 use crate::tui::runtime::write_access::WriteAccess;
 
 use crate::formats::StoredShape;
-use crate::storage::{
-    Expected, Journal, Library, LibraryError, ModelCache, Orphan, ScratchFolder,
-};
+use crate::storage::{Expected, Journal, Library, LibraryError, ModelCache, Orphan, ScratchFolder};
 use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
 use crate::tui::app::update::update;

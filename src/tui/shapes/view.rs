@@ -105,23 +105,9 @@ fn draw(
     ];
     let end = write::line(buffer, area, theme, head);
     draw_count(theme, dialog, buffer, write::right_of(area, end));
-    if dialog.rows().len() == 0 {
-        let text = match (dialog.undeletable(), dialog.total(), dialog.purpose()) {
-            _ if !dialog.is_listed() => "the library is being read".to_owned(),
-            (Some(name), ..) => format!("{name} is shipped with taxel and cannot be deleted"),
-            (_, 0, Purpose::Delete) => "there are no shapes of your own".to_owned(),
-            (_, 0, _) => "the library is empty".to_owned(),
-            _ => {
-                let key = keymap.label(Context::List, &action::ERASE_BEFORE);
-                format!("no name contains this; {key} shortens it")
-            }
-        };
-        write::line(
-            buffer,
-            write::row(area, usize::from(LIST_HEAD)),
-            theme,
-            [(text.as_str(), Role::Quiet)],
-        );
+    if let Some(reason) = why_empty(keymap, dialog) {
+        let row = write::row(area, usize::from(LIST_HEAD));
+        write::line(buffer, row, theme, [(reason.as_str(), Role::Quiet)]);
     }
     let first = list_first(area, dialog.rows().len(), dialog.selected());
     let lines = usize::from(area.height.saturating_sub(LIST_HEAD));
@@ -139,6 +125,25 @@ fn draw(
         draw_preview(theme, entry, read, buffer, preview);
     }
     Position::new(end.min(area.right().saturating_sub(1)), area.y)
+}
+
+/// Why no shape is shown; None if there are some.
+fn why_empty(keymap: &Keymap, dialog: &ListDialog) -> Option<String> {
+    if dialog.rows().len() > 0 {
+        return None;
+    }
+    Some(
+        match (dialog.undeletable(), dialog.total(), dialog.purpose()) {
+            _ if !dialog.is_listed() => "the library is being read".to_owned(),
+            (Some(name), ..) => format!("{name} is shipped with taxel and cannot be deleted"),
+            (_, 0, Purpose::Delete) => "there are no shapes of your own".to_owned(),
+            (_, 0, _) => "the library is empty".to_owned(),
+            _ => {
+                let key = keymap.label(Context::List, &action::ERASE_BEFORE);
+                format!("no name contains this; {key} shortens it")
+            }
+        },
+    )
 }
 
 /// Draws how many shapes the filter leaves, and that typing makes one as long as there is none.

@@ -192,13 +192,7 @@ impl PlotField {
     }
 
     /// Draws the lines of a canvas into the field.
-    pub fn draw_lines(
-        &self,
-        theme: &Theme,
-        buffer: &mut Buffer,
-        canvas: &DotCanvas,
-        style: Style,
-    ) {
+    pub fn draw_lines(&self, theme: &Theme, buffer: &mut Buffer, canvas: &DotCanvas, style: Style) {
         for (column, row, dots) in canvas.characters() {
             let at = Position::new(self.field.x + column, self.field.y + row);
             if let Some(cell) = buffer.cell_mut(at) {
@@ -215,7 +209,8 @@ impl PlotField {
         points: impl IntoIterator<Item = (f64, f64)>,
         style: Style,
     ) {
-        let mut counts = vec![0_u32; usize::from(self.field.width) * usize::from(self.field.height)];
+        let mut counts =
+            vec![0_u32; usize::from(self.field.width) * usize::from(self.field.height)];
         let index = |at: Position| {
             let (column, row) = (at.x - self.field.x, at.y - self.field.y);
             usize::from(row) * usize::from(self.field.width) + usize::from(column)
@@ -229,7 +224,11 @@ impl PlotField {
             let marks = MARKS.iter().rev();
             let mark = marks.copied().find(|(least, _)| count >= *least);
             if let (Some((_, mark)), Some(cell)) = (mark, buffer.cell_mut(at)) {
-                let mark = if theme.ascii && mark == '·' { '.' } else { mark };
+                let mark = if theme.ascii && mark == '·' {
+                    '.'
+                } else {
+                    mark
+                };
                 cell.set_char(mark).set_style(style);
             }
         }
@@ -315,8 +314,16 @@ mod tests {
             .flat_map(|(count, x)| times(count, x))
             .collect();
         for (theme, marks, legend) in [
-            (Theme::plain(true), ".oOO@", ". 1   o 2-9   O 10-99   @ 100+"),
-            (Theme::plain(false), "·oOO@", "· 1   o 2–9   O 10–99   @ 100+"),
+            (
+                Theme::plain(true),
+                ".oOO@",
+                ". 1   o 2-9   O 10-99   @ 100+",
+            ),
+            (
+                Theme::plain(false),
+                "·oOO@",
+                "· 1   o 2–9   O 10–99   @ 100+",
+            ),
         ] {
             let plot = shown(theme, area, &points);
             let (head, field) = plot.split_once('\n').expect("lines");

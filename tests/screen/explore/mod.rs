@@ -132,7 +132,10 @@ fn ctrl_c_while_a_sweep_runs_keeps_unsaved_work() {
     assert!(program.session.app().ended());
     drop(program);
     let next = Beside::within(world(), "");
-    shows(&next.session, &["There is unsaved work from last time: rectangle length 6.00 width 3.00, 18\n"]);
+    shows(
+        &next.session,
+        &["There is unsaved work from last time: rectangle length 6.00 width 3.00, 18\n"],
+    );
 }
 
 #[test]

@@ -26,7 +26,9 @@ fn unsaved_work_is_offered_back_once() {
     let mut later = session_on(folder.path(), "");
     shows(
         &later,
-        &["There is unsaved work from last time (1 of 2): 1 taxel, less than a minute ago.\nRestore it?"],
+        &[
+            "There is unsaved work from last time (1 of 2): 1 taxel, less than a minute ago.\nRestore it?",
+        ],
     );
     then(
         &mut later,
@@ -72,7 +74,10 @@ fn unsaved_work_that_cannot_go_to_the_trash_stays() {
     let own = |entry: &LibraryEntry| entry.origin == ShapeOrigin::Own;
     assert!(!listed.expect("listed").iter().any(own));
     let again = session_on(folder.path(), "");
-    shows(&again, &["There is unsaved work from last time: 1 taxel, less than a minute ago."]);
+    shows(
+        &again,
+        &["There is unsaved work from last time: 1 taxel, less than a minute ago."],
+    );
 }
 
 #[test]
@@ -127,5 +132,8 @@ fn work_that_could_not_be_kept_is_kept_later() {
     std::fs::remove_file(&journal).expect("removed");
     drop(session);
     let later = session_on(folder.path(), "");
-    shows(&later, &["There is unsaved work from last time: 1 taxel, less than a minute ago."]);
+    shows(
+        &later,
+        &["There is unsaved work from last time: 1 taxel, less than a minute ago."],
+    );
 }
