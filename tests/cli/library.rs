@@ -124,7 +124,8 @@ fn an_existing_shape_is_replaced_by_force_only() {
     let shipped = "\"washer\" comes with the program; it can be copied under another name";
     shelf.refuses("library|save|washer|key|--force", shipped);
     shelf.refuses("figure|hexagon|--save|washer|--force", shipped);
-    shelf.refuses("library|delete|washer", shipped);
+    let undeletable = "\"washer\" is shipped with taxel and cannot be deleted";
+    shelf.refuses("library|delete|washer", undeletable);
     shelf.refuses(
         "library|restore|washer",
         "nothing called \"washer\" is in the trash",

@@ -179,6 +179,7 @@ fn a_key_gives_forms_their_defaults_and_another_sensor_has_its_own_values() {
     shows(&second, &["0:359:1"]);
     // A picture is back in its place, a sensor is that of the paper.
     then(&mut second, "<Esc>pwasher<Enter>", &["zoom 1.00"]);
-    then(&mut second, "3<C-d>", &["at 0.00, 0.00"]);
+    then(&mut second, "3", &["at 3.00, 2.00"]);
+    then(&mut second, "<C-d>", &["at 2.00, 2.00"]);
     then(&mut second, "<Esc>S20<C-d>", &["16 × 16"]);
 }

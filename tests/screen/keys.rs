@@ -239,7 +239,7 @@ fn a_shape_is_nudged_and_turned() {
         ],
     );
     shows("g", &["nothing to move"]);
-    shows("<Space>>", &["nothing to move"]);
+    shows("<Space>>", &["a drawing cannot be moved"]);
     // A hundred steps of a hundredth are exactly one.
     shows("f<Enter>g<100x:Right>", &["at 5.00, 4.00"]);
 }
@@ -254,7 +254,7 @@ fn toggles_that_a_new_touch_drops_are_said_to_be_dropped() {
     shows("f<Enter><Space>>u", &["+ 1 by hand"]);
     shows(
         "<Space><Right><Space>f<Enter>",
-        &["2 taxels set by hand dropped"],
+        &["2 taxels set by hand were dropped; u restores them"],
     );
     shows("f<Enter><Space>n", &["empty"]);
 }

@@ -357,7 +357,7 @@ fn a_refused_prompt_stays_open() {
         ("delete nope", "! no shape is called \"nope\""),
         (
             "delete arrow",
-            "! \"arrow\" comes with the program; it can be copied under another name",
+            "! \"arrow\" is shipped with taxel and cannot be deleted",
         ),
         ("move 0 -100", "! y0: -96 is below -16"),
         (

@@ -106,8 +106,8 @@ fn draw(
     let end = write::line(buffer, area, theme, head);
     draw_count(theme, dialog, buffer, write::right_of(area, end));
     if let Some(reason) = why_empty(keymap, dialog) {
-        let row = write::row(area, usize::from(LIST_HEAD));
-        write::line(buffer, row, theme, [(reason.as_str(), Role::Quiet)]);
+        let place = write::below(area, LIST_HEAD);
+        write::wrapped(buffer, place, theme, &reason, Role::Quiet);
     }
     let first = list_first(area, dialog.rows().len(), dialog.selected());
     let lines = usize::from(area.height.saturating_sub(LIST_HEAD));

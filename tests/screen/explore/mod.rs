@@ -89,7 +89,10 @@ fn work_is_shown_and_stopped_and_what_is_complete_is_kept() {
         &["a part: ", " of 36,000,000,000 poses", "stopped after "],
     );
     // What cannot be written is not offered.
-    program.then("x", &["Export to: rectangle.csv   (.csv .jsonl .npz)"]);
+    program.then(
+        "x",
+        &["Export all imprints to: rectangle.csv   (.csv .jsonl .npz)"],
+    );
     program.then("poses.npy<Enter>", &[".npy needs all poses: only "]);
     program.then("<Esc>4))", &["not swept"]);
     program.then("g", &["this pose was not swept"]);
@@ -190,7 +193,10 @@ fn a_stored_shape_is_explored_under_its_name() {
     page.then("", &["Explore: cross"]);
     page.press("<Esc>:explore --x0 0:1:0.5 --y0 0 --angle 0<Enter>");
     page.until("cross: 3 poses");
-    page.then("x", &["Export to: cross.csv   (.csv .jsonl .npz .npy)"]);
+    page.then(
+        "x",
+        &["Export all imprints to: cross.csv   (.csv .jsonl .npz .npy)"],
+    );
     page.then("<Esc>4x", &["Export to: cross-map.svg", ".npy .svg .png)"]);
     // No imprint has a thousand taxels: there is none to compare, to follow or to put onto the matrix.
     page.press("<Esc>1/na>=1000<Enter>");

@@ -265,7 +265,7 @@ fn the_mouse_draws_and_points() {
     // "f Figure", then the field Radius y, then a place without anything.
     mouse(&mut session, MouseKind::Press, 20, 0);
     shows(&session, &["Kind", "Radius x"]);
-    mouse(&mut session, MouseKind::Press, 50, 6);
+    mouse(&mut session, MouseKind::Press, 50, 7);
     then(&mut session, "2", &["ellipse rx 4.00 ry 2.00"]);
     mouse(&mut session, MouseKind::Press, 79, 19);
     mouse(&mut session, MouseKind::Press, 65535, 65535);
@@ -346,7 +346,7 @@ fn the_shape_whose_name_was_typed_comes_first() {
 /// Only shapes of one's own are listed to be deleted: a name that is not says why.
 #[test]
 fn the_list_says_of_a_shipped_shape_that_it_cannot_be_deleted() {
-    let why = "washer is shipped with taxel and cannot be deleted";
+    let why = "washer is shipped with taxel and cannot be\ndeleted";
     shows("dwasher", &[why]);
     shows("<Space>smine<Enter>dWash", &[why]);
     hides("<Space>smine<Enter>dmi", &["is shipped"]);
