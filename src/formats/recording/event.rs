@@ -6,8 +6,9 @@ use std::ops::ControlFlow;
 use crate::formats::recording::answer::{RuleOrigin, SetRule};
 use crate::formats::recording::description::{FrameMark, RecordingMetadata};
 use crate::frame::{Frame, Rule, Tare, View};
+use crate::parameter::number::counted;
 #[cfg(feature = "tui")]
-use crate::parameter::number::{counted, short};
+use crate::parameter::number::short;
 
 /// The formats of recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
