@@ -282,11 +282,25 @@ impl Figure {
         value: f64,
         sensor: &Sensor,
     ) -> Result<Self, ParameterError> {
+        self.set(parameter, value, sensor)?;
+        Ok(self)
+    }
+
+    /// Changes one value, or nothing if it is refused.
+    pub(crate) fn set(
+        &mut self,
+        parameter: Parameter,
+        value: f64,
+        sensor: &Sensor,
+    ) -> Result<(), ParameterError> {
         let slot = match parameter {
             Parameter::X0 => Some(&mut self.x0),
             Parameter::Y0 => Some(&mut self.y0),
             Parameter::Angle => Some(&mut self.angle),
-            Parameter::Thickness => Some(self.thickness.get_or_insert(value)),
+            Parameter::Thickness => {
+                self.thickness = Some(sensor.check(parameter, value)?);
+                return Ok(());
+            }
             _ => {
                 let mut sizes = self.kind.sizes().iter().zip(&mut self.sizes);
                 sizes.find_map(|(&own, size)| (own == parameter).then_some(size))
@@ -300,7 +314,7 @@ impl Figure {
             });
         };
         *slot = sensor.check(parameter, value)?;
-        Ok(self)
+        Ok(())
     }
 
     /// Returns its kind.

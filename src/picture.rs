@@ -146,6 +146,17 @@ impl Picture {
         value: f64,
         sensor: &Sensor,
     ) -> Result<Self, ParameterError> {
+        self.set(parameter, value, sensor)?;
+        Ok(self)
+    }
+
+    /// Changes one value, or nothing if it is refused.
+    pub(crate) fn set(
+        &mut self,
+        parameter: Parameter,
+        value: f64,
+        sensor: &Sensor,
+    ) -> Result<(), ParameterError> {
         let Some(index) = PICTURE_PARAMETERS.iter().position(|&own| own == parameter) else {
             return Err(ParameterError::Foreign {
                 parameter,
@@ -154,7 +165,7 @@ impl Picture {
             });
         };
         self.values[index] = sensor.check(parameter, value)?;
-        Ok(self)
+        Ok(())
     }
 
     /// Returns one of its values; None for a parameter that it does not have.

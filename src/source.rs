@@ -52,14 +52,25 @@ impl Source {
     /// # Errors
     /// If the value is out of range on the sensor, or the shape does not have the parameter.
     pub fn with(
-        self,
+        mut self,
         parameter: Parameter,
         value: f64,
         sensor: &Sensor,
     ) -> Result<Self, ParameterError> {
+        self.set(parameter, value, sensor)?;
+        Ok(self)
+    }
+
+    /// Changes one value, or nothing if it is refused.
+    pub(crate) fn set(
+        &mut self,
+        parameter: Parameter,
+        value: f64,
+        sensor: &Sensor,
+    ) -> Result<(), ParameterError> {
         match self {
-            Self::Figure(figure) => figure.with(parameter, value, sensor).map(Self::Figure),
-            Self::Picture(picture) => picture.with(parameter, value, sensor).map(Self::Picture),
+            Self::Figure(figure) => figure.set(parameter, value, sensor),
+            Self::Picture(picture) => picture.set(parameter, value, sensor),
         }
     }
 

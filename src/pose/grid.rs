@@ -173,22 +173,23 @@ impl PoseGrid {
             Anchor::Corner => pose,
             Anchor::Centre => pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0),
         };
-        let set = |pose: Pose| {
-            self.axes().fold(self.source.clone(), |source, axis| {
-                let set = source
-                    .clone()
-                    .with(axis.parameter(), pose[axis], &self.sensor);
-                set.unwrap_or(source)
-            })
-        };
         match self.anchor {
-            Anchor::Corner => Placed::at_corner(set(corner)),
+            Anchor::Corner => Placed::at_corner(self.source_in(corner)),
             Anchor::Centre => Placed::at_centre(
-                set(corner),
-                set(corner.with(Axis::Angle, 0.0)),
+                self.source_in(corner),
+                self.source_in(corner.with(Axis::Angle, 0.0)),
                 (pose[Axis::X0], pose[Axis::Y0]),
             ),
         }
+    }
+
+    /// The shape with the values of a pose, but for those beyond the range of their parameter.
+    fn source_in(&self, pose: Pose) -> Source {
+        let mut source = self.source.clone();
+        for axis in self.axes() {
+            let _ = source.set(axis.parameter(), pose[axis], &self.sensor);
+        }
+        source
     }
 
     /// Where the point that the shape turns about lies in a pose, whatever the anchor: x and y in cells.
@@ -206,14 +207,7 @@ impl PoseGrid {
         if self.anchor == Anchor::Centre {
             return [pose[Axis::X0], pose[Axis::Y0]];
         }
-        let upright = pose.with(Axis::Angle, 0.0);
-        let upright = self.axes().fold(self.source.clone(), |source, axis| {
-            let set = source
-                .clone()
-                .with(axis.parameter(), upright[axis], &self.sensor);
-            set.unwrap_or(source)
-        });
-        let centre = centre::<f64>(&upright);
+        let centre = centre::<f64>(&self.source_in(pose.with(Axis::Angle, 0.0)));
         [centre.x, centre.y]
     }
 
