@@ -79,7 +79,7 @@ fn remove(path: &Path) -> io::Result<()> {
 }
 
 /// The most poses of a sweep or a training here.
-const MOST_POSES: u64 = 50;
+const MOST_POSES: u64 = 20;
 
 fn options() -> Options {
     Options::plain(false)
@@ -238,12 +238,12 @@ fn work(commands: &[(usize, ScriptCommand)]) -> u64 {
 /// short input does something anywhere.
 const STARTS: [&str; 12] = [
     "",
-    "f<Enter>:explore --x0 5:5.5:0.25 --y0 5:5.5:0.5 --angle 0:90:45<Enter><Esc>",
+    "f<Enter>:explore --x0 5:5.5:0.5 --y0 5 --angle 0:90:45<Enter><Esc>",
     "S<C-u>8<Tab><C-u>8<Enter>f<Enter>:explore --x0 1 --y0 1:1.5:0.5 --angle 0<Enter><Esc>",
     ":picture washer<Enter><Enter>:explore --x0 1 --y0 1:1.5:0.5 --angle 0:90:45<Enter><Esc>g",
     "<Space><Right><Space><Right><Space><Down><Space><Down><Space><Left><Space><Left><Space><Up><Space>",
-    "fr<Enter>:explore --x0 5:5.5:0.25 --y0 5:5.5:0.5 --angle 0:90:45<Enter>",
-    "fr<Enter>:explore --x0 5:5.5:0.25 --y0 5:5.5:0.5 --angle 0:90:45<Enter>e",
+    "fr<Enter>:explore --x0 5:5.5:0.5 --y0 5 --angle 0:90:45<Enter>",
+    "fr<Enter>:explore --x0 5:5.5:0.5 --y0 5 --angle 0:90:45<Enter>e",
     "f<Enter>f<Tab>",
     "l",
     "f<Enter>r",
