@@ -204,6 +204,19 @@ fn a_notice_does_not_hide_that_the_source_is_lost() {
 }
 
 #[test]
+fn a_source_that_is_silent_has_no_rate() {
+    let mut page = watched(3, "");
+    shows(&page, &["rate       10/s"]);
+    let mut batch = FrameBatch::default();
+    batch.status.state = SourceState::Silent("no frame for 2 s".to_owned());
+    let event = LiveEvent::Arrived(Arc::new(batch));
+    page.send(Message::Worker(WorkerEvent::Live(1, event)));
+    shows(&page, &["! no frame for 2 s", "rate       –"]);
+    page.frames(1);
+    shows(&page, &["frame 3", "rate       10/s"]);
+}
+
+#[test]
 fn the_question_at_the_end_says_that_a_recording_ends() {
     let mut page = watched(6, "+");
     let event = LiveEvent::Recording("touch-1.npy".to_owned());

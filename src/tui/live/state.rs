@@ -349,8 +349,15 @@ impl Live {
         self.range.ends(self.reading.as_ref())
     }
 
-    /// Frames a second, by the times of the last ones; what the recording says where they have none.
+    /// Frames a second, by the times of the last ones; what the recording says where they have none. None while the source
+    /// is silent or lost.
     pub fn rate(&self) -> Option<f64> {
+        if matches!(
+            self.status.state,
+            SourceState::Silent(_) | SourceState::Lost(_)
+        ) {
+            return None;
+        }
         let stated = || {
             let step = self.status.channel.as_deref()?.seconds_per_frame?;
             (step > 0.0).then(|| 1.0 / step)
