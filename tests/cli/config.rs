@@ -209,7 +209,7 @@ fn menu_hints_help_and_notices_name_the_keys_of_the_file() {
             "? u                     undo the last",
         ],
     );
-    shows("f<Enter>x>", &["by hand dropped; ? brings it back"]);
+    shows("f<Enter>x>", &["by hand was dropped; ? restores it"]);
     shows(":mouse<Enter>", &[":mouse lets it set taxels"]);
     shows("f", &["Ctrl-N field"]);
     shows(

@@ -45,26 +45,7 @@ pub(in crate::tui) fn in_command(
                 Err(error) => refuse(app, error),
             }
         }
-        Message::Field(_) => {
-            let wanted = wants_names(dialog.field.text());
-            match wanted {
-                None => dialog.complete(&[]),
-                Some(_) => dialog.ask(),
-            }
-            let line = dialog.field.text().trim_start();
-            let rest = line.split_once(' ').map_or("", |(_, rest)| rest);
-            let last_word = rest.trim_start().to_owned();
-            app.dialogs.push(Dialog::Command(dialog));
-            // The names are completed when they are known.
-            return wanted.map(|names| match names {
-                Arguments::File(_) | Arguments::FrameSource => {
-                    Effect::File(FileRequest::Paths(last_word))
-                }
-                Arguments::Model => Effect::Library(LibraryRequest::Models),
-                Arguments::Deleted => Effect::Library(LibraryRequest::Trash),
-                _ => Effect::Library(LibraryRequest::List),
-            });
-        }
+        Message::Field(_) => return complete(app, dialog),
         Message::Choose(Arrow::Down) if dialog.recalls() => dialog.later(&app.commands),
         Message::Choose(Arrow::Down) => {
             dialog.pick(true);
@@ -78,6 +59,25 @@ pub(in crate::tui) fn in_command(
     }
     app.dialogs.push(Dialog::Command(dialog));
     None
+}
+
+/// Completes what is typed, at once or when the names are known that it may be.
+fn complete(app: &mut App, mut dialog: CommandDialog) -> Option<Effect> {
+    let wanted = wants_names(dialog.field.text());
+    match wanted {
+        None => dialog.complete(&[]),
+        Some(_) => dialog.ask(),
+    }
+    let line = dialog.field.text().trim_start();
+    let rest = line.split_once(' ').map_or("", |(_, rest)| rest);
+    let last_word = rest.trim_start().to_owned();
+    app.dialogs.push(Dialog::Command(dialog));
+    wanted.map(|names| match names {
+        Arguments::File(_) | Arguments::FrameSource => Effect::File(FileRequest::Paths(last_word)),
+        Arguments::Model => Effect::Library(LibraryRequest::Models),
+        Arguments::Deleted => Effect::Library(LibraryRequest::Trash),
+        _ => Effect::Library(LibraryRequest::List),
+    })
 }
 
 /// Does what a prompt asks for.

@@ -90,7 +90,7 @@ fn m_gives_it_back_to_the_terminal_and_takes_it_again() {
         program.screen().mouse_protocol_mode() == vt100::MouseProtocolMode::None
     });
     program.types(b"m");
-    program.shows("the mouse sets taxels");
+    program.shows("the mouse draws");
     program.until("the mouse", |program| {
         program.screen().mouse_protocol_mode() == vt100::MouseProtocolMode::ButtonMotion
     });
