@@ -11,77 +11,31 @@
 //! Quotes around a field do not count. An empty field, `NaN`, `null`, `none` and `NA` stand for no cell. Lines that begin
 //! with `#` are passed over.
 //!
-//! How the fields are arranged is found from the first lines; the file is then read from its beginning. A header names
-//! the cells, see [`cell_names`](super::cell_names). Without one, rows and columns have to be known beforehand, unless
-//! the table is in blocks of a row a line; numbers before or behind the cells are then recognised by how they grow from
-//! line to line ([`without_header`]).
+//! How the fields are arranged is found from the first lines, see [`table_layout`](super::table_layout); the file is then
+//! read from its beginning.
 //!
 //! A line of commas alone between two frames is one without cells, unless frames have a number or a time; elsewhere it is
 //! an empty line, as spreadsheet programs write it.
 //!
 //! Refused, with line and field: words where numbers are expected, and lines or blocks of another length. Nothing is
 //! padded, since a value that is missing in the middle would shift all that follow.
-//!
-//! The file is long because how a table is arranged decides how its lines are read.
 
 use std::io::{BufRead, Seek};
 use std::ops::ControlFlow;
 
-use crate::formats::recording::cell_names::{FieldRole, NamedCells, cells, role};
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{
-    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
-};
-use crate::formats::recording::lines::{TextLines, is_blank, text};
+use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
+use crate::formats::recording::lines::{TextLines, is_blank};
 use crate::formats::recording::separator::Separator;
+#[cfg(feature = "cli")]
 use crate::formats::recording::side::side;
+use crate::formats::recording::table_layout::{
+    FrameFields, LineLayout, TableLayout, is_comment, layout, whole,
+};
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::seconds::{since, to_nanoseconds};
-use crate::frame::{Frame, MAX_FRAME_SIDE};
+use crate::frame::Frame;
 use crate::parameter::number::counted;
-
-/// Lines that are compared to find what stands beside the cells where nothing names it.
-const COMPARED: u16 = 8;
-
-/// How a table is arranged.
-#[derive(Debug)]
-struct TableLayout {
-    /// What parts fields, in all lines.
-    separator: Separator,
-    /// Rows and columns of a frame.
-    shape: (u16, u16),
-    /// What a line holds.
-    lines: LineLayout,
-    /// What was assumed, if anything.
-    note: Option<RecordingNote>,
-}
-
-/// What a line of a table holds.
-#[derive(Debug)]
-enum LineLayout {
-    /// A frame.
-    Frame(FrameFields),
-    /// A row; whether an empty line ends a frame.
-    Row {
-        /// If not, the next frame begins after as many rows as a frame has.
-        parted: bool,
-    },
-}
-
-/// The fields of a line that is a frame.
-#[derive(Debug)]
-struct FrameFields {
-    /// How many fields a line has.
-    count: usize,
-    /// The line with the names.
-    header: Option<u64>,
-    /// The field of each cell, row by row.
-    cells: Vec<usize>,
-    /// The field with what the recording calls the frame.
-    label: Option<usize>,
-    /// The field with the time, and what makes seconds of it.
-    time: Option<(usize, f64)>,
-}
 
 /// Reads a recording.
 pub(super) fn read(
@@ -150,285 +104,6 @@ pub(crate) fn read_rows(text: &[u8], sink: &mut Sink<'_>) -> Result<(), Recordin
         parted: false,
     };
     block.read(&mut TextLines::new(text), sink)
-}
-
-/// Whether a line is a comment, wherever it stands.
-pub(super) fn is_comment(line: &[u8]) -> bool {
-    line.trim_ascii_start().starts_with(b"#")
-}
-
-/// Finds out how the table is arranged, from its first lines.
-///
-/// # Errors
-/// [`RecordingError::Unknown`] of what is not a table; [`RecordingError::Shape`] if rows and columns have to be named.
-fn layout(
-    lines: &mut TextLines<impl BufRead>,
-    options: ReadOptions,
-) -> Result<TableLayout, RecordingError> {
-    while lines.advance_to_content()? && is_comment(lines.line()) {}
-    let first = lines.line().to_owned();
-    if is_blank(&first) || is_comment(&first) {
-        return Err(RecordingError::Unknown);
-    }
-    let separator = Separator::of(&first);
-    let names: Vec<String> = separator.fields(&first).map(text).collect();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let has_words = separator
-        .fields(&first)
-        .any(|field| !separator.is_numeric(field));
-    let counts = || {
-        names[0] == "0"
-            && matches!(cells(&names), Some(NamedCells::Counted(0, length)) if length == names.len())
-    };
-    if !has_words && !counts() {
-        return of_numbers(lines, separator, &first, options);
-    }
-    let layout = with_header(&names, separator, lines.number(), options);
-    // Words above words are not a table.
-    if lines.advance_to_content()? && is_mostly_numeric(separator, lines.line()) {
-        layout
-    } else {
-        Err(RecordingError::Unknown)
-    }
-}
-
-/// Whether a line has numbers in half of its fields or more.
-fn is_mostly_numeric(separator: Separator, line: &[u8]) -> bool {
-    let (mut all, mut numeric) = (0, 0);
-    for field in separator.fields(line) {
-        all += 1;
-        numeric += usize::from(separator.is_numeric(field));
-    }
-    numeric > 0 && 2 * numeric >= all
-}
-
-/// The arrangement of a table without names, whose first line is `first`.
-///
-/// A line is a row if it has as many fields as a frame has columns, or if nothing is known beforehand and an empty line
-/// ends the first block. Otherwise it is a frame.
-fn of_numbers(
-    lines: &mut TextLines<impl BufRead>,
-    separator: Separator,
-    first: &[u8],
-    options: ReadOptions,
-) -> Result<TableLayout, RecordingError> {
-    let numbers = separator.numbers(first);
-    let (values, number) = (numbers.len(), lines.number());
-    let cells = |(rows, columns)| usize::from(rows) * usize::from(columns);
-    // A file that grows is read no further than the answer needs.
-    let enough = match (options.shape, side(values)) {
-        (Some((rows, columns)), Some(width)) if width == columns && rows > 1 => rows + 1,
-        (Some(shape), _) if values == cells(shape) + 2 => COMPARED,
-        (Some(_), _) => 2,
-        (None, _) => MAX_FRAME_SIDE + 1,
-    };
-    let (mut block, mut parted) = (1_u16, false);
-    let mut compared = vec![numbers];
-    while block < enough && lines.advance()? {
-        if is_blank(lines.line()) {
-            parted = true;
-            break;
-        }
-        if is_comment(lines.line()) {
-            continue;
-        }
-        if block < COMPARED {
-            compared.push(separator.numbers(lines.line()));
-        }
-        block += 1;
-    }
-    let (shape, lines) = match (options.shape, side(values)) {
-        (Some(shape), Some(width)) if width == shape.1 && shape.0 > 1 => {
-            (shape, LineLayout::Row { parted })
-        }
-        (Some(shape), _) => {
-            let fields = without_header(shape, number, &compared)?;
-            (shape, LineLayout::Frame(fields))
-        }
-        (None, Some(width)) if parted && block > 1 => ((block, width), LineLayout::Row { parted }),
-        (None, _) => {
-            let values = values as u64;
-            return Err(RecordingError::Shape { values });
-        }
-    };
-    Ok(TableLayout {
-        separator,
-        shape,
-        lines,
-        note: None,
-    })
-}
-
-/// The arrangement that the names in line `number` describe.
-///
-/// # Errors
-/// If the names are those of another number of rows and columns than was asked for.
-fn with_header(
-    names: &[&str],
-    separator: Separator,
-    number: u64,
-    options: ReadOptions,
-) -> Result<TableLayout, RecordingError> {
-    let roles: Vec<Option<FieldRole>> = names.iter().map(|name| role(name)).collect();
-    let (shape, cells, note) = named_cells(names, &roles, number, options)?;
-    let expected = usize::from(shape.0) * usize::from(shape.1);
-    if cells.len() != expected {
-        return Err(text_row::count(number, cells.len(), expected));
-    }
-    // A line may have millions of names.
-    let mut is_cell = vec![false; names.len()];
-    for &cell in &cells {
-        is_cell[cell] = true;
-    }
-    let others = || {
-        let roles = roles.iter().enumerate();
-        roles.filter(|&(field, _)| !is_cell[field])
-    };
-    let label = others().find(|(_, role)| **role == Some(FieldRole::Label));
-    let time = others().find_map(|(field, role)| match role {
-        Some(FieldRole::Time(factor)) => Some((field, *factor)),
-        _ => None,
-    });
-    Ok(TableLayout {
-        separator,
-        shape,
-        note,
-        lines: LineLayout::Frame(FrameFields {
-            count: names.len(),
-            header: Some(number),
-            label: label.map(|(field, _)| field),
-            time,
-            cells,
-        }),
-    })
-}
-
-/// Rows and columns, the field of each cell, and what was assumed to find them.
-type CellFields = ((u16, u16), Vec<usize>, Option<RecordingNote>);
-
-/// The cells that names describe.
-///
-/// - Names of rows and columns say all. Rows and columns that are asked for must be the same.
-/// - Names that only count are taken as the rows and columns that are asked for, else as a square, which is noted.
-/// - Other names: all fields between those at the beginning and at the end which have a known role.
-fn named_cells(
-    names: &[&str],
-    roles: &[Option<FieldRole>],
-    number: u64,
-    options: ReadOptions,
-) -> Result<CellFields, RecordingError> {
-    match cells(names) {
-        Some(NamedCells::Grid(rows, columns, fields)) => match options.shape {
-            Some((asked_rows, asked_columns)) if (asked_rows, asked_columns) != (rows, columns) => {
-                let rows = counted(rows, "row");
-                let message = format!(
-                    "the header names {rows} of {columns} cells, not {asked_rows} of {asked_columns}"
-                );
-                Err(RecordingError::in_line(number, message))
-            }
-            _ => Ok(((rows, columns), fields, None)),
-        },
-        Some(NamedCells::Counted(start, length)) => {
-            let fields = (start..start + length).collect();
-            if let Some(shape) = options.shape {
-                return Ok((shape, fields, None));
-            }
-            let side = (1..=MAX_FRAME_SIDE).find(|side| usize::from(*side).pow(2) == length);
-            let values = length as u64;
-            let side = side.ok_or(RecordingError::Shape { values })?;
-            Ok(((side, side), fields, Some(RecordingNote::Square { side })))
-        }
-        Some(NamedCells::Incomplete(rows, columns, found)) => {
-            let (found, rows) = (counted(found as u64, "cell"), counted(rows, "row"));
-            let message = format!("the header names {found} of {rows} of {columns}");
-            Err(RecordingError::in_line(number, message))
-        }
-        None => {
-            let leading = roles.iter().take_while(|role| role.is_some()).count();
-            let trailing = roles.iter().rev().take_while(|role| role.is_some()).count();
-            let end = names.len().saturating_sub(trailing).max(leading);
-            let values = (end - leading) as u64;
-            let shape = options.shape.ok_or(RecordingError::Shape { values })?;
-            Ok((shape, (leading..end).collect(), None))
-        }
-    }
-}
-
-/// The arrangement of lines without names: the cells alone; a number or a time before them, or both; or a number and
-/// milliseconds behind them. What grows from line to line says which it is; of a single line they are taken to stand behind.
-/// The first of them is line `number` of the file.
-///
-/// # Errors
-/// If the line has fewer fields than a frame has cells, or others that are none of these or may be either.
-fn without_header(
-    (rows, columns): (u16, u16),
-    number: u64,
-    lines: &[Vec<f64>],
-) -> Result<FrameFields, RecordingError> {
-    let cells = usize::from(rows) * usize::from(columns);
-    let first = &lines[0];
-    let arranged = |start: usize, label, time| {
-        Ok(FrameFields {
-            count: first.len(),
-            header: None,
-            cells: (start..start + cells).collect(),
-            label,
-            time,
-        })
-    };
-    let growth_is = |field, fits: fn(f64) -> bool| grows(&lines[..lines.len().min(2)], field, fits);
-    match first.len().checked_sub(cells) {
-        Some(0) => arranged(0, None, None),
-        Some(1) if lines.len() > 1 && growth_is(0, |step| step == 1.0) => {
-            arranged(1, Some(0), None)
-        }
-        Some(1) if growth_is(0, |step| step > 0.0) => arranged(1, None, Some((0, 1.0))),
-        // The offset of a message of ROS.
-        Some(1) if first[0] == 0.0 && growth_is(0, |step| step == 0.0) => arranged(1, None, None),
-        Some(2) => match number_and_time(number, lines, cells)? {
-            Some((label, time)) if label < cells => arranged(2, Some(label), Some((time, 1.0))),
-            Some((label, time)) => arranged(0, Some(label), Some((time, 1e-3))),
-            None => Err(text_row::count(number, first.len(), cells)),
-        },
-        _ => Err(text_row::count(number, first.len(), cells)),
-    }
-}
-
-/// Whether the steps of a field from line to line are all as they should be; they are in a single line.
-fn grows(lines: &[Vec<f64>], field: usize, fits: fn(f64) -> bool) -> bool {
-    let value = |line: &[f64]| line.get(field).copied().unwrap_or(f64::NAN);
-    let mut pairs = lines.windows(2);
-    pairs.all(|pair| fits(value(&pair[1]) - value(&pair[0])))
-}
-
-/// The fields of a number that counts frames and of a time, both before the cells or both behind them; None where there are
-/// none. As many lines are compared as it takes until one of the two is ruled out: the last one may be torn.
-///
-/// # Errors
-/// If none is.
-fn number_and_time(
-    number: u64,
-    lines: &[Vec<f64>],
-    cells: usize,
-) -> Result<Option<(usize, usize)>, RecordingError> {
-    for count in lines.len().min(2)..=lines.len() {
-        let lines = &lines[..count];
-        let fits = |&(label, time): &(usize, usize)| {
-            whole(lines[0][label]).is_some()
-                && grows(lines, label, |step| step == 1.0)
-                && grows(lines, time, |step| step >= 0.0)
-        };
-        let before = [(0, 1), (1, 0)].into_iter().find(fits);
-        let behind = Some((cells, cells + 1)).filter(fits);
-        if count == 1 || before.is_none() || behind.is_none() {
-            return Ok(behind.or(before));
-        }
-    }
-    let message = format!(
-        "2 numbers more than the {cells} cells, before or behind them: name the columns in a line above, such as \
-         frame,time,r0c0"
-    );
-    Err(RecordingError::in_line(number, message))
 }
 
 /// Reads frames of a line each.
@@ -525,12 +200,6 @@ impl FrameFields {
         frame.label = label;
         Ok(time)
     }
-}
-
-/// A number without a fraction, as labels are; None of any other, and beyond what a float counts exactly.
-#[expect(clippy::cast_possible_truncation, reason = "checked")]
-fn whole(value: f64) -> Option<i64> {
-    (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64)
 }
 
 /// A frame of several lines, of which some have been read.

@@ -6,12 +6,12 @@
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
-use crate::formats::recording::delimited::is_comment;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
 use crate::formats::recording::lines::is_blank;
 #[cfg(feature = "mcap")]
 use crate::formats::recording::mcap;
+use crate::formats::recording::table_layout::is_comment;
 use crate::formats::recording::{
     delimited, emed, flexitac, json_lines, npz, numpy, popu, ros_text, tekscan, xsensor, zebris,
 };

@@ -6,13 +6,8 @@
 //! decoders in Rust. The records are read here, since the crate `mcap` needs 18 others, more than this project allows itself.
 //! Source: <https://mcap.dev/spec>.
 //!
-//! | message | its frames |
-//! |---|---|
-//! | `std_msgs/*MultiArray` | a frame; rows and columns from the layout's first two sizes, if it has them |
-//! | `sensor_msgs/Image` | a frame; `mono8`, `8UC1`, `mono16`, `16UC1` and `32FC1` |
-//! | `tactile_msgs/TactileState` | for each of its sensors a frame of `TOPIC#SENSOR` |
-//!
-//! Others are passed over. Time is that of the log, from the first message with a frame on.
+//! What messages have frames, [`ros_message`](super::ros_message) says; a sensor of a tactile state is the channel
+//! `TOPIC#SENSOR`. Others are passed over. Time is that of the log, from the first message with a frame on.
 //!
 //! The file is long because records, chunks and messages are read in one pass, each from within the one before.
 
@@ -20,11 +15,12 @@ use std::collections::HashMap;
 use std::io::{self, BufRead, BufReader, Read, Take};
 use std::rc::Rc;
 
-use crate::formats::npy::NumberType;
 use crate::formats::recording::cdr::CdrReader;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
-use crate::formats::recording::side::shape;
+use crate::formats::recording::ros_message::{
+    ImageFrame, MessageKind, header, image, matrix_shape, multi_array,
+};
 use crate::formats::recording::text_row::too_large;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::index::wide;
@@ -62,45 +58,6 @@ const CHANNEL: u8 = 4;
 const MESSAGE: u8 = 5;
 /// Records behind a head of their own.
 const CHUNK: u8 = 6;
-
-/// A kind of message that has frames.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum MessageKind {
-    /// A `MultiArray` of numbers: their kind, as of numpy, and bytes.
-    Array(u8, usize),
-    /// Grey pixels, a row after the other, which may be padded.
-    Image,
-    /// Lists of values, each with the name of its sensor.
-    TactileState,
-}
-
-impl MessageKind {
-    /// That of a schema such as `std_msgs/msg/UInt16MultiArray`.
-    fn of(schema: &str) -> Option<Self> {
-        let (package, name) = (schema.split('/').next()?, schema.rsplit('/').next()?);
-        match (package, name) {
-            ("sensor_msgs", "Image") => Some(Self::Image),
-            ("tactile_msgs", "TactileState") => Some(Self::TactileState),
-            ("std_msgs", name) => {
-                let (kind, size) = match name.strip_suffix("MultiArray")? {
-                    "Int8" => (b'i', 1),
-                    "UInt8" | "Byte" | "Char" => (b'u', 1),
-                    "Int16" => (b'i', 2),
-                    "UInt16" => (b'u', 2),
-                    "Int32" => (b'i', 4),
-                    "UInt32" => (b'u', 4),
-                    "Int64" => (b'i', 8),
-                    "UInt64" => (b'u', 8),
-                    "Float32" => (b'f', 4),
-                    "Float64" => (b'f', 8),
-                    _ => return None,
-                };
-                Some(Self::Array(kind, size))
-            }
-            _ => None,
-        }
-    }
-}
 
 /// A channel that was reported.
 struct GivenChannel {
@@ -477,21 +434,8 @@ impl McapState<'_, '_> {
         let mut cdr = CdrReader::new(data)?;
         match kind {
             MessageKind::Array(kind, size) => {
-                let mut sizes = Vec::new();
-                for _ in 0..cdr.count(12)? {
-                    cdr.text()?;
-                    sizes.push(cdr.word()?);
-                    cdr.word()?;
-                }
-                let offset = usize::try_from(cdr.word()?).ok()?;
-                self.values.clear();
-                cdr.numbers(kind, size, &mut self.values)?;
-                self.values.drain(..offset.min(self.values.len()));
-                let shape = match sizes[..] {
-                    [rows, columns] | [rows, columns, 1] => shape(rows, columns),
-                    _ => None,
-                };
-                Some(self.give(topic, shape))
+                let sizes = multi_array(&mut cdr, kind, size, &mut self.values)?;
+                Some(self.give(topic, matrix_shape(&sizes)))
             }
             MessageKind::Image => match image(&mut cdr, &mut self.values)? {
                 ImageFrame::Values(rows, columns) => Some(self.give(topic, Some((rows, columns)))),
@@ -578,47 +522,4 @@ impl McapState<'_, '_> {
         self.given[channel].frames += 1;
         Ok((self.sink)(RecordingEvent::Frame(&self.frame)).is_break())
     }
-}
-
-/// Passes over a `std_msgs/Header`.
-fn header(cdr: &mut CdrReader<'_>) -> Option<()> {
-    cdr.word()?;
-    cdr.word()?;
-    cdr.text().map(drop)
-}
-
-/// What an image is.
-enum ImageFrame {
-    /// A frame of so many rows and columns.
-    Values(u16, u16),
-    /// No frame: in another encoding than one value a pixel, or too large.
-    OfCamera,
-}
-
-/// Reads an image.
-/// `step` is the number of bytes from a row to the next. None if it is broken.
-fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<ImageFrame> {
-    header(cdr)?;
-    let (height, width) = (cdr.word()?, cdr.word()?);
-    let (kind, size) = match cdr.text()? {
-        "mono8" | "8UC1" => (b'u', 1),
-        "mono16" | "16UC1" => (b'u', 2),
-        "32FC1" => (b'f', 4),
-        _ => return Some(ImageFrame::OfCamera),
-    };
-    let big_endian = cdr.byte()? != 0;
-    let step = usize::try_from(cdr.word()?).ok()?;
-    let data = cdr.bytes()?;
-    let Some((rows, columns)) = shape(height, width) else {
-        return Some(ImageFrame::OfCamera);
-    };
-    let line = usize::from(columns) * size;
-    values.clear();
-    for row in 0..usize::from(rows) {
-        let start = row.checked_mul(step)?;
-        let bytes = data.get(start..start.checked_add(line)?)?;
-        let number = NumberType::new(kind, size, big_endian);
-        values.extend(bytes.chunks(size).map(|bytes| number.value(bytes)));
-    }
-    Some(ImageFrame::Values(rows, columns))
 }

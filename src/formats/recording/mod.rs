@@ -46,14 +46,19 @@ mod zebris;
 
 mod separator;
 
-mod delimited;
-
 mod cell_names;
+
+mod table_layout;
+
+mod delimited;
 
 mod numpy;
 
 #[cfg(feature = "mcap")]
 mod cdr;
+
+#[cfg(feature = "mcap")]
+mod ros_message;
 
 #[cfg(feature = "mcap")]
 mod mcap;
