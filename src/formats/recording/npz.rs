@@ -4,8 +4,11 @@
 //! Its channels are named as the arrays, without `.npy`. Times may be in s, ms, µs or ns, which their name tells
 //! (`time_ms`), and count from the first one. Whole nanoseconds since 1970 lose nothing: the difference is taken before
 //! they become floats. What `numpy.savez` and `numpy.savez_compressed` write is read.
+//!
+//! The checksum of an array says only that some of its bytes are wrong, and only at its end. Its frames are given as they
+//! are read, then the error: to check it first would take twice the time and give none of the frames that are right.
 
-use std::io::{Read, Seek};
+use std::io::{ErrorKind, Read, Seek};
 
 use zip::ZipArchive;
 use zip::result::ZipError;
@@ -29,6 +32,24 @@ fn damaged(error: ZipError) -> RecordingError {
         ZipError::Io(error) => RecordingError::Io(error),
         error => RecordingError::damaged(format!("a broken archive: {error}")),
     }
+}
+
+/// What is wrong with the array of that name: bytes that cannot be unpacked or whose checksum does not hold are a damage of
+/// the array, not of the disk.
+fn in_array(name: &str, error: RecordingError) -> RecordingError {
+    let message = match error {
+        RecordingError::Damaged { message, .. } => message,
+        RecordingError::Io(error)
+            if matches!(
+                error.kind(),
+                ErrorKind::InvalidData | ErrorKind::InvalidInput | ErrorKind::UnexpectedEof
+            ) =>
+        {
+            "the array is damaged, so some of its values may be wrong".to_owned()
+        }
+        error => return error,
+    };
+    RecordingError::damaged(format!("{name}: {message}"))
 }
 
 /// An array of the archive.
@@ -77,16 +98,12 @@ pub(super) fn read(
     for (channel, (array, layout)) in channels.iter().enumerate() {
         let times = times(&mut archive, &arrays, layout.frames())?;
         let mut file = archive.by_index(array.index).map_err(damaged)?;
-        numpy::header(&mut file)?;
-        let named = |error| match error {
-            RecordingError::Damaged { message, .. } => {
-                RecordingError::damaged(format!("{}: {message}", array.name))
-            }
-            error => error,
-        };
+        let named = |error| in_array(&array.name, error);
+        numpy::header(&mut file).map_err(named)?;
         if numpy::frames(&mut file, layout, channel, &times, sink).map_err(named)? {
             break;
         }
+        numpy::end(&mut file, layout).map_err(named)?;
     }
     Ok(())
 }
@@ -104,7 +121,7 @@ fn arrays(archive: &mut ZipArchive<impl Read + Seek>) -> Result<Vec<ArchiveArray
         let Some(name) = name.strip_suffix(".npy").map(str::to_owned) else {
             continue;
         };
-        let header = numpy::header(&mut file)?;
+        let header = numpy::header(&mut file).map_err(|error| in_array(&name, error))?;
         arrays.push(ArchiveArray {
             index,
             name,
@@ -166,13 +183,14 @@ fn times<'a>(
         return Ok(Vec::new());
     };
     let mut file = archive.by_index(array.index).map_err(damaged)?;
-    numpy::header(&mut file)?;
+    let named = |error| in_array(&array.name, error);
+    numpy::header(&mut file).map_err(named)?;
     let mut bytes = [0; 8];
     let bytes = &mut bytes[..number.size()];
     let mut times = Vec::new();
     let (mut first, mut first_whole) = (None, None);
     for _ in 0..frames {
-        if numpy::fill(&mut file, bytes)? < bytes.len() {
+        if numpy::fill(&mut file, bytes).map_err(named)? < bytes.len() {
             let message = format!("{}: ends before its {frames} times", array.name);
             return Err(RecordingError::damaged(message));
         }
@@ -192,5 +210,7 @@ fn times<'a>(
         }
         times.push(to_nanoseconds(time * factor));
     }
+    // Wrong times are worse than none, and the end of the list tells whether its checksum holds.
+    numpy::fill(&mut file, &mut [0]).map_err(named)?;
     Ok(times)
 }

@@ -270,7 +270,18 @@ pub(super) fn read(
         return Ok(());
     }
     let ended = frames(input, &layout, 0, &[], sink)?;
-    if !ended && layout.record.is_none() && input.read(&mut [0])? > 0 {
+    if !ended && layout.record.is_none() {
+        end(input, &layout)?;
+    }
+    Ok(())
+}
+
+/// Reads the end of an array behind its frames. An entry of an archive tells only there whether its checksum holds.
+///
+/// # Errors
+/// If there are more bytes than the header says; what the reader says of the end.
+pub(super) fn end(input: &mut impl Read, layout: &ArrayLayout) -> Result<(), RecordingError> {
+    if fill(input, &mut [0])? > 0 {
         let frames = counted(layout.frames, "frame");
         let message = format!("more bytes than {frames} of the header take");
         return Err(RecordingError::damaged(message));

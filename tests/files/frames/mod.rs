@@ -1,5 +1,7 @@
 //! Recordings of sensors: those of `../shared/reference`, where they are at hand, and small ones made up here.
 
+mod checksums;
+
 mod reference;
 
 mod samples;
