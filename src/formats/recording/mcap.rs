@@ -9,11 +9,17 @@
 //! What messages have frames, [`ros_message`](super::ros_message) says; a sensor of a tactile state is the channel
 //! `TOPIC#SENSOR`. Others are passed over. Time is that of the log, from the first message with a frame on.
 //!
+//! Writers may leave out a checksum; it is 0 then. One that is there is that of a whole chunk, or of all that comes before
+//! the end of the data, so it tells that a message is damaged, but not which: messages are given as they are read, then
+//! the error.
+//!
 //! The file is long because records, chunks and messages are read in one pass, each from within the one before.
 
 use std::collections::HashMap;
 use std::io::{self, BufRead, BufReader, Read, Take};
 use std::rc::Rc;
+
+use flate2::CrcReader;
 
 use crate::formats::recording::cdr::CdrReader;
 use crate::formats::recording::error::RecordingError;
@@ -58,6 +64,8 @@ const CHANNEL: u8 = 4;
 const MESSAGE: u8 = 5;
 /// Records behind a head of their own.
 const CHUNK: u8 = 6;
+/// Ends the messages. It has the checksum of all that comes before it.
+const DATA_END: u8 = 15;
 
 /// A channel that was reported.
 struct GivenChannel {
@@ -112,8 +120,9 @@ pub(super) fn read(
         record: Vec::new(),
         sink,
     };
-    pass_over(input, MAGIC.len() as u64)?;
-    let ended = state.records(input, Container::File)?;
+    let mut input = SummedInput::new(input);
+    pass_over(&mut input, MAGIC.len() as u64)?;
+    let ended = state.records(&mut input, Container::File)?;
     if state.given.is_empty() && ended == Ended::AtFooter {
         return Err(RecordingError::damaged(
             "no messages with frames, expected std_msgs/*MultiArray, sensor_msgs/Image or tactile_msgs/TactileState",
@@ -121,6 +130,9 @@ pub(super) fn read(
     }
     Ok(())
 }
+
+/// What records are read from, with the checksum of what has been read.
+type SummedInput<'a> = CrcReader<&'a mut dyn Read>;
 
 /// What records stand in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -206,6 +218,8 @@ fn refused(error: io::Error) -> RecordsError {
 struct ChunkHead {
     /// Bytes of its records, unpacked.
     size: u64,
+    /// The checksum of its records, unpacked.
+    checksum: u32,
     /// How they are packed; empty where they are not.
     compression: String,
     /// Bytes that they take in the file.
@@ -217,10 +231,9 @@ impl ChunkHead {
         // Start, end, size, checksum, length of the name.
         let mut head = [0; 32];
         whole(input, &mut head)?;
-        let [_, _, size, _] = [&head[..8], &head[8..16], &head[16..24], &head[24..]];
-        let size = size.try_into().map_or(0, u64::from_le_bytes);
-        let [.., a, b, c, d] = head;
-        let length = u32::from_le_bytes([a, b, c, d]);
+        let size = head[16..24].try_into().map_or(0, u64::from_le_bytes);
+        let word = |at: usize| head[at..at + 4].try_into().map_or(0, u32::from_le_bytes);
+        let (checksum, length) = (word(24), word(28));
         let mut name = vec![0; wide(length.min(40))];
         whole(input, &mut name)?;
         let mut records = [0; 8];
@@ -231,6 +244,7 @@ impl ChunkHead {
         }
         Ok(Self {
             size,
+            checksum,
             compression,
             length: u64::from_le_bytes(records),
         })
@@ -257,6 +271,18 @@ fn text(bytes: &[u8]) -> Option<(&str, &[u8])> {
     Some((str::from_utf8(text).ok()?, rest))
 }
 
+/// Compares a checksum with that of the bytes it is for.
+///
+/// # Errors
+/// If it is another one. Nothing is wrong with 0: it was not computed.
+fn check_sum(stated: u32, found: u32, of: &str) -> Result<(), RecordsError> {
+    if stated == 0 || stated == found {
+        return Ok(());
+    }
+    let message = format!("the checksum of {of} does not hold, so a message in it is damaged");
+    Err(RecordsError::damaged(message))
+}
+
 /// Passes over `length` bytes.
 fn pass_over(input: &mut dyn Read, length: u64) -> Result<(), RecordsError> {
     let passed = io::copy(&mut Read::take(input, length), &mut io::sink()).map_err(refused)?;
@@ -269,8 +295,13 @@ fn pass_over(input: &mut dyn Read, length: u64) -> Result<(), RecordsError> {
 
 impl McapState<'_, '_> {
     /// Reads records, up to the footer or the end of a chunk.
-    fn records(&mut self, input: &mut dyn Read, within: Container) -> Result<Ended, RecordsError> {
+    fn records(
+        &mut self,
+        input: &mut SummedInput<'_>,
+        within: Container,
+    ) -> Result<Ended, RecordsError> {
         loop {
+            let sum = input.crc().sum();
             let mut head = [0; 9];
             if within == Container::Chunk && input.read(&mut head[..1]).map_err(refused)? == 0 {
                 return Ok(Ended::OfChunk);
@@ -293,6 +324,11 @@ impl McapState<'_, '_> {
                     if self.chunk(input)? == Ended::ByReader {
                         return Ok(Ended::ByReader);
                     }
+                }
+                DATA_END if within == Container::File && length == 4 => {
+                    let mut stated = [0; 4];
+                    whole(input, &mut stated)?;
+                    check_sum(u32::from_le_bytes(stated), sum, "the file")?;
                 }
                 MESSAGE if length > LARGEST_RECORD => self.pass_large(input, length)?,
                 SCHEMA | CHANNEL | MESSAGE => {
@@ -338,10 +374,10 @@ impl McapState<'_, '_> {
         let head = ChunkHead::read(input)?;
         let mut packed = Read::take(&mut *input, head.length);
         let ended = match head.compression.as_str() {
-            "" => self.records(&mut packed, Container::Chunk),
+            "" => self.unpacked(&head, Read::take(&mut packed, head.length)),
             "lz4" => {
                 let unpacked = lz4_flex::frame::FrameDecoder::new(&mut packed);
-                self.unpacked(unpacked.take(head.size))
+                self.unpacked(&head, unpacked.take(head.size))
             }
             "zstd" => {
                 let unpacked = ruzstd::decoding::StreamingDecoder::new_with_max_window_size(
@@ -350,7 +386,7 @@ impl McapState<'_, '_> {
                 );
                 let unpacked =
                     unpacked.map_err(|_| RecordsError::damaged("a chunk cannot be unpacked"))?;
-                self.unpacked(unpacked.take(head.size))
+                self.unpacked(&head, unpacked.take(head.size))
             }
             other => {
                 let message =
@@ -367,11 +403,22 @@ impl McapState<'_, '_> {
     }
 
     /// Reads the records of a chunk from what unpacks it, which gives as many bytes as the chunk states.
-    fn unpacked(&mut self, unpacked: Take<impl Read>) -> Result<Ended, RecordsError> {
+    fn unpacked(
+        &mut self,
+        head: &ChunkHead,
+        unpacked: Take<impl Read>,
+    ) -> Result<Ended, RecordsError> {
         let mut unpacked = BufReader::new(unpacked);
-        let ended = self.records(&mut unpacked, Container::Chunk);
+        let mut summed = SummedInput::new(&mut unpacked);
+        let ended = self.records(&mut summed, Container::Chunk);
+        let found = summed.crc().sum();
         let is_whole = unpacked.get_ref().limit() == 0;
-        ended.map_err(|error| error.within_chunk(is_whole))
+        let ended = ended.map_err(|error| error.within_chunk(is_whole))?;
+        // A chunk that lacks bytes is torn; what follows says so.
+        if ended == Ended::OfChunk && is_whole {
+            check_sum(head.checksum, found, "a chunk")?;
+        }
+        Ok(ended)
     }
 
     /// Takes a record; true if no more is wanted.

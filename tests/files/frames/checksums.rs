@@ -87,3 +87,66 @@ fn an_array_whose_checksum_does_not_hold_is_a_damage() {
         (3, Some(expected))
     );
 }
+
+/// A record of an MCAP file.
+fn record(kind: u8, content: &[u8]) -> Vec<u8> {
+    [&[kind][..], &(content.len() as u64).to_le_bytes(), content].concat()
+}
+
+/// A text behind its length.
+fn text(text: &str) -> Vec<u8> {
+    let length = u32::try_from(text.len()).expect("short");
+    [&length.to_le_bytes()[..], text.as_bytes()].concat()
+}
+
+/// A file with three frames of 1 × 2 bytes. The checksums are computed if they are 1.
+fn mcap(of_chunk: u32, of_data: u32) -> Vec<u8> {
+    let schema = [
+        &[1, 0][..],
+        &text("std_msgs/msg/UInt8MultiArray"),
+        &text("ros2msg"),
+    ]
+    .concat();
+    let channel = [&[1, 0, 1, 0][..], &text("/pad"), &text("cdr"), &[0; 4]].concat();
+    let mut records = [record(3, &schema), record(4, &channel)].concat();
+    for value in 1..=3 {
+        let cdr = [&[0, 1, 0, 0][..], &[0; 8], &[2, 0, 0, 0, value, value]].concat();
+        records.extend(record(5, &[&[1, 0][..], &[0; 20], &cdr].concat()));
+    }
+    let length = (records.len() as u64).to_le_bytes();
+    let sum = (of_chunk * crc32(&records)).to_le_bytes();
+    let head = [&[0; 16][..], &length, &sum, &[0; 4], &length].concat();
+    let magic = b"\x89MCAP0\r\n";
+    let chunk = record(6, &[head, records].concat());
+    let data = [
+        &magic[..],
+        &record(1, &[&text("ros2")[..], &text("")].concat()),
+        &chunk,
+    ]
+    .concat();
+    let sum = (of_data * crc32(&data)).to_le_bytes();
+    [data, record(15, &sum), record(2, &[0; 20]), magic.to_vec()].concat()
+}
+
+#[test]
+fn a_chunk_or_a_file_of_messages_whose_checksum_does_not_hold_is_a_damage() {
+    let of_chunk = "the checksum of a chunk does not hold, so a message in it is damaged";
+    let of_data = "the checksum of the file does not hold, so a message in it is damaged";
+    for (sums, expected) in [
+        ((1, 1), Some(of_chunk)),
+        ((1, 0), Some(of_chunk)),
+        ((0, 1), Some(of_data)),
+        // They were not computed.
+        ((0, 0), None),
+    ] {
+        let bytes = mcap(sums.0, sums.1);
+        let whole = recorded(&bytes, Some((1, 2)));
+        assert_eq!((whole.frames.len(), error(&whole)), (3, None));
+        let mut damaged = bytes.clone();
+        let last = position(&bytes, &[2, 0, 0, 0, 3, 3]) + 5;
+        damaged[last] ^= 0x40;
+        let damaged = recorded(&damaged, Some((1, 2)));
+        assert_eq!(first_two(&damaged), first_two(&whole));
+        assert_eq!(error(&damaged).as_deref(), expected, "{sums:?}");
+    }
+}
