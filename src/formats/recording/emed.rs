@@ -27,6 +27,7 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, RecordingEvent, RecordingNote, Sink};
 use crate::formats::recording::lines::{TextLines, text};
 use crate::formats::recording::number;
+use crate::formats::recording::separator::Separator;
 use crate::formats::recording::side::side;
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::seconds::to_nanoseconds;
@@ -199,9 +200,8 @@ impl EmedState {
             let (line, number) = (lines.line(), lines.number());
             text_row::fill(
                 &mut fields,
-                line,
+                Separator::Byte(b'\t').split(line),
                 number,
-                b'\t',
                 |field| match text_row::value(field) {
                     Field::NoCell => Field::Wrong,
                     field => field,

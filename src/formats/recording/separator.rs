@@ -18,11 +18,35 @@ pub(super) enum Separator {
 }
 
 impl Separator {
-    /// That of a line: the first of semicolon, comma and tab which it has, otherwise blanks.
+    /// That of a line: the first of semicolon, comma and tab which it has outside of quotes, otherwise blanks.
     pub(super) fn of(line: &[u8]) -> Self {
         let marks = *b";,\t";
-        let found = marks.into_iter().find(|mark| line.contains(mark));
+        let found = marks
+            .into_iter()
+            .find(|&mark| Self::Byte(mark).split(line).nth(1).is_some());
         found.map_or(Self::Spaces, Self::Byte)
+    }
+
+    /// What stands between the separators of a line, without blanks and quotes around it. A separator in quotes is part of
+    /// its field; where a quote is not closed, quotes are letters like others, as in `width in "`.
+    pub(super) fn split(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
+        let quotes: usize = line.iter().map(|byte| usize::from(*byte == b'"')).sum();
+        let (has_quotes, mut is_quoted) = (quotes > 0 && quotes.is_multiple_of(2), false);
+        let is_end = move |byte: &u8| {
+            is_quoted ^= has_quotes && *byte == b'"';
+            let is_mark = match self {
+                Self::Byte(mark) => *byte == mark,
+                Self::Spaces => byte.is_ascii_whitespace(),
+            };
+            is_mark && !is_quoted
+        };
+        line.split(is_end).map(|field| {
+            let field = field.trim_ascii();
+            let inner = field
+                .strip_prefix(b"\"")
+                .and_then(|field| field.strip_suffix(b"\""));
+            inner.map_or(field, <[u8]>::trim_ascii)
+        })
     }
 
     /// The fields of a line, as [`Self::fields`]; but where one is missing to `expected`, a separator at the end of the line
@@ -44,21 +68,11 @@ impl Separator {
             Self::Byte(mark) => line.strip_suffix(&[mark]).unwrap_or(line),
             Self::Spaces => line,
         };
-        let is_end = move |byte: &u8| match self {
-            Self::Byte(mark) => *byte == mark,
-            Self::Spaces => byte.is_ascii_whitespace(),
-        };
-        let fields = line.split(is_end).map(|field| {
-            let field = field.trim_ascii();
-            let inner = field
-                .strip_prefix(b"\"")
-                .and_then(|field| field.strip_suffix(b"\""));
-            inner.unwrap_or(field)
-        });
+        let fields = self.split(line);
         fields.filter(move |field| self != Self::Spaces || !field.is_empty())
     }
 
-    /// What a field says of its cell. A decimal comma is read as a point, in numbers of up to 32 characters.
+    /// What a field says of its cell. With semicolons, a comma is the decimal sign.
     pub(super) fn value(self, field: &[u8]) -> Field {
         let is_none = field.is_empty()
             || [&b"nan"[..], b"null", b"none", b"na"]
@@ -67,20 +81,9 @@ impl Separator {
         if is_none {
             return Field::NoCell;
         }
-        let decimal_comma = self == Self::Byte(b';') && field.contains(&b',');
-        if !decimal_comma {
-            return text_row::value(field);
-        }
-        let mut pointed = [0; 32];
-        match pointed.get_mut(..field.len()) {
-            Some(pointed) => {
-                pointed.copy_from_slice(field);
-                for byte in pointed.iter_mut().filter(|byte| **byte == b',') {
-                    *byte = b'.';
-                }
-                text_row::value(pointed)
-            }
-            None => Field::Wrong,
+        match self {
+            Self::Byte(b';') => decimal(field),
+            _ => text_row::value(field),
         }
     }
 
@@ -97,4 +100,19 @@ impl Separator {
         };
         self.fields(line).map(value).collect()
     }
+}
+
+/// A number whose decimal sign may be a comma; of up to 32 characters, if it is.
+pub(super) fn decimal(field: &[u8]) -> Field {
+    if !field.contains(&b',') {
+        return text_row::value(field);
+    }
+    let mut pointed = [0; 32];
+    let Some(pointed) = pointed.get_mut(..field.len()) else {
+        return Field::Wrong;
+    };
+    for (slot, &byte) in pointed.iter_mut().zip(field) {
+        *slot = if byte == b',' { b'.' } else { byte };
+    }
+    text_row::value(pointed)
 }

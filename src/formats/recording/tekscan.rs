@@ -28,6 +28,7 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, RecordingEvent, RecordingNote, Sink};
 use crate::formats::recording::lines::{TextLines, is_blank, text, unpadded};
 use crate::formats::recording::number;
+use crate::formats::recording::separator::Separator;
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::seconds::to_nanoseconds;
@@ -195,7 +196,8 @@ fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), 
             return Err(RecordingError::in_line(number, message));
         }
         let (line, number) = (lines.line(), lines.number());
-        text_row::fill(row, line, number, b',', |field| match field {
+        let fields = Separator::Byte(b',').split(line);
+        text_row::fill(row, fields, number, |field| match field {
             b"B" | b"b" => Field::NoCell,
             field => text_row::value(field),
         })?;

@@ -28,22 +28,20 @@ pub(crate) fn value(field: &[u8]) -> Field {
     }
 }
 
-/// Fills a row of values from the fields of a line, parted by `separator`, blanks around them aside. Fields beyond the
-/// values must be empty.
+/// Fills a row of values from the fields of a line. Fields beyond the values must be empty.
 ///
 /// # Errors
 /// If a field is wrong, or there are more or fewer than values.
-pub(crate) fn fill(
+pub(crate) fn fill<'a>(
     values: &mut [f64],
-    line: &[u8],
+    fields: impl Iterator<Item = &'a [u8]>,
     number: u64,
-    separator: u8,
     read: impl Fn(&[u8]) -> Field,
 ) -> Result<(), RecordingError> {
     let expected = values.len();
-    let mut fields = line.split(|&byte| byte == separator).enumerate();
+    let mut fields = fields.zip(1..);
     for (slot, found) in values.iter_mut().zip(0..) {
-        let field = fields.next().map(|(_, field)| field.trim_ascii());
+        let field = fields.next().map(|(field, _)| field);
         let Some(field) = field.filter(|field| !field.is_empty()) else {
             return Err(count(number, found, expected));
         };
@@ -53,15 +51,10 @@ pub(crate) fn fill(
             Field::Wrong => return Err(wrong(number, found + 1, field)),
         };
     }
-    if fields.any(|(_, field)| !field.trim_ascii().is_empty()) {
-        let fields = line.split(|&byte| byte == separator);
-        let last = fields
-            .enumerate()
-            .filter(|(_, field)| !field.trim_ascii().is_empty());
-        let found = last.last().map_or(0, |(index, _)| index + 1);
-        return Err(count(number, found, expected));
+    match fields.filter(|(field, _)| !field.is_empty()).last() {
+        Some((_, found)) => Err(count(number, found, expected)),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// A line with another number of values.

@@ -27,6 +27,7 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink};
 use crate::formats::recording::lines::{TextLines, text, unpadded};
 use crate::formats::recording::number;
+use crate::formats::recording::separator::Separator;
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row;
 use crate::frame::Frame;
@@ -162,7 +163,8 @@ impl XsensorState {
                 return Err(RecordingError::in_line(lines.number() + 1, message));
             }
             let (line, number) = (lines.line(), lines.number());
-            text_row::fill(row, line, number, b',', text_row::value)?;
+            let fields = Separator::Byte(b',').split(line);
+            text_row::fill(row, fields, number, text_row::value)?;
         }
         Ok(())
     }

@@ -23,6 +23,7 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink};
 use crate::formats::recording::lines::{TextLines, text};
 use crate::formats::recording::number;
+use crate::formats::recording::separator::Separator;
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
 use crate::frame::Frame;
@@ -136,11 +137,10 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
             return Err(RecordingError::in_line(lines.number() + 1, message));
         }
         let (line, number) = (lines.line(), lines.number());
-        text_row::fill(row, line, number, b'\t', |field| {
-            match text_row::value(field) {
-                Field::Value(-1.0) => Field::NoCell,
-                field => field,
-            }
+        let fields = Separator::Byte(b'\t').split(line);
+        text_row::fill(row, fields, number, |field| match text_row::value(field) {
+            Field::Value(-1.0) => Field::NoCell,
+            field => field,
         })?;
     }
     let more = lines.advance_to_content()? && !lines.line().starts_with(b"[");

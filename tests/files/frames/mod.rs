@@ -8,6 +8,8 @@ mod samples;
 
 mod streams;
 
+mod tables;
+
 use std::io::Cursor;
 use std::ops::ControlFlow;
 

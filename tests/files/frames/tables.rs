@@ -1,0 +1,29 @@
+//! Tables as various programs write them.
+
+use taxel::frame::Frame;
+
+use super::recorded;
+
+/// Label, time and values of each frame of a table.
+fn frames(text: &str, shape: Option<(u16, u16)>) -> Vec<(Option<i64>, Option<f64>, Vec<f64>)> {
+    let found = recorded(text.as_bytes(), shape);
+    assert!(found.error.is_none(), "{text}: {:?}", found.error);
+    let parts = |frame: &Frame| (frame.label, frame.time, frame.values().to_vec());
+    found.frames.iter().map(parts).collect()
+}
+
+fn values(text: &str, shape: Option<(u16, u16)>) -> Vec<Vec<f64>> {
+    frames(text, shape)
+        .into_iter()
+        .map(|frame| frame.2)
+        .collect()
+}
+
+#[test]
+fn a_separator_in_quotes_is_part_of_a_field() {
+    let text = "time,\"(0,0)\",\"(0,1)\",\"(1,0)\",\"(1,1)\"\n1,1,2,3,4\n";
+    assert_eq!(values(text, None), [[1.0, 2.0, 3.0, 4.0]]);
+    // A quote that is not closed is a letter.
+    let text = "time,width 5\",r0c0,r0c1\n1,0.5,1,2\n";
+    assert_eq!(values(text, None), [[1.0, 2.0]]);
+}
