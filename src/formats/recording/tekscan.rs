@@ -1,7 +1,8 @@
 //! Tekscan's ASCII export (I-Scan, F-Scan): a header of keys, then the frames, row by row.
 //!
-//! `COMMENTS` may run over several lines that look like keys or frames, so the first `ROWS` and `COLS` count, and
-//! frames begin only after `ASCII_DATA @@`. Spreadsheet programs add a byte order mark and pad lines with commas. `B`
+//! `COMMENTS` may run over several lines that look like keys or frames. What stands above them counts as it stands there
+//! first, so of `ROWS`, `COLS` and others the first line; `UNITS` stands below them, so its last line counts. Frames begin
+//! only after `ASCII_DATA @@`. Spreadsheet programs add a byte order mark and pad lines with commas. `B`
 //! stands where the sensor has no cell.
 //! ```text
 //! DATA_TYPE MOVIE
@@ -33,13 +34,13 @@ use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::seconds::to_nanoseconds;
 use crate::frame::Frame;
-use crate::parameter::number::counted;
+use crate::parameter::number::{counted, to_decimals};
 use crate::quote::shortened;
 
 /// The largest difference of a sum that is not an error.
 const ROUNDING: f64 = 0.5;
 
-/// What the header says; of each key the first value counts.
+/// What the header says; of each key the first value counts, but of `UNITS` the last.
 #[derive(Default)]
 struct TekscanHeader {
     /// `ROWS`.
@@ -78,7 +79,7 @@ impl TekscanHeader {
                 let seconds = number::read(value).filter(|&seconds| seconds > 0.0);
                 self.info.seconds_per_frame = seconds;
             }
-            b"UNITS" if self.info.unit.is_none() => self.info.unit = Some(text(value)),
+            b"UNITS" => self.info.unit = Some(text(value)),
             b"TIME" if self.info.start.is_none() => self.info.start = Some(text(value)),
             _ => {}
         }
@@ -87,7 +88,7 @@ impl TekscanHeader {
 }
 
 /// A length with its unit, in mm; none without a unit.
-/// `1.27 mm`, `0.5 centimeters` or `0.05 inches`. Without a unit it may be any, so the pitch stays unknown.
+/// `1.27 mm`, `0.5 centimeters`, `1.27e-003 meters` or `0.05 inches`. Without a unit it may be any, so the pitch stays unknown.
 fn spacing(value: &[u8]) -> Option<f64> {
     let end = value.iter().position(u8::is_ascii_whitespace)?;
     let (length, unit) = value.split_at(end);
@@ -95,6 +96,7 @@ fn spacing(value: &[u8]) -> Option<f64> {
     match unit.trim_ascii().to_ascii_lowercase().as_slice() {
         b"mm" | b"millimeters" | b"millimetres" => Some(length),
         b"cm" | b"centimeters" | b"centimetres" => Some(length * 10.0),
+        b"m" | b"meters" | b"metres" => Some(to_decimals(length * 1000.0, 9)),
         b"in" | b"inch" | b"inches" => Some(length * 25.4),
         _ => None,
     }

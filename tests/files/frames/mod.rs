@@ -10,6 +10,8 @@ mod streams;
 
 mod tables;
 
+mod vendors;
+
 use std::io::Cursor;
 use std::ops::ControlFlow;
 
