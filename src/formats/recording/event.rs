@@ -20,7 +20,7 @@ pub enum RecordingFormat {
     Xsensor,
     /// novel's emed `.lst` export.
     Emed,
-    /// A zebris `.apd` picture.
+    /// zebris `.apd` pictures.
     Zebris,
     /// Numbers parted by commas, semicolons, tabs or spaces: a frame a line, or a row a line.
     Csv,
@@ -204,6 +204,8 @@ pub enum RecordingNote {
         /// How many the header counts.
         counted: u64,
     },
+    /// A picture is left out: it is the maximum of the others (zebris).
+    Maximum,
     /// The description beside the recording is broken or cannot be read, and is left out.
     Description {
         /// What is wrong with it, headed by its path.
@@ -239,6 +241,9 @@ impl fmt::Display for RecordingNote {
             Self::Cut { records, counted } => write!(
                 f,
                 "the file was cut off: it has {records} of the {counted} frames that its header counts"
+            ),
+            Self::Maximum => f.write_str(
+                "the picture [Data] is the maximum of the numbered ones and is left out",
             ),
             Self::Description { complaint } => f.write_str(complaint),
         }

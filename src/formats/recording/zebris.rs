@@ -1,4 +1,4 @@
-//! A zebris `.apd` picture: INI sections, then the values, parted by tabs; -1 where nothing was recorded.
+//! A zebris `.apd` file: INI sections, then a picture or several, parted by tabs; -1 where nothing was recorded.
 //!
 //! `SensCountX` counts the lines and `SensCountY` the values of a line, so the file's x is down and its y to the right.
 //! ```text
@@ -14,18 +14,20 @@
 //! [Data]
 //! -1    -1    1.0    3.0    …
 //! ```
-//! One file is one picture. Sections are not told apart: their keys differ. A value below 0 other than -1 is a value.
-//! Source: pedcad import files of zebris.
+//! Of a step, pictures are numbered (`[Data12]`, `[Data13]`, …), `TimeDiff` in `UnitTime` apart; `[Data]` is then their
+//! maximum, which is no frame and is left out. A file with `[Data]` alone is one picture. Other sections are not told
+//! apart: their keys differ. A value below 0 other than -1 is a value. Source: pedcad import files of zebris.
 
 use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink};
+use crate::formats::recording::event::{ChannelInfo, RecordingEvent, RecordingNote, Sink};
 use crate::formats::recording::lines::{TextLines, text};
 use crate::formats::recording::number;
 use crate::formats::recording::separator::Separator;
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
+use crate::formats::seconds::to_nanoseconds;
 use crate::frame::Frame;
 use crate::parameter::number::counted;
 
@@ -48,6 +50,14 @@ struct ZebrisHeader {
     date: Option<String>,
     /// `Time`, as it is written.
     time: Option<String>,
+    /// `TimeDiff`: from a picture to the next.
+    time_difference: Option<f64>,
+    /// Seconds a unit of time.
+    seconds: Option<f64>,
+    /// `MinIdx`: the number of the first picture.
+    first: Option<i64>,
+    /// `MaxIdx`: the number of the last picture.
+    last: Option<i64>,
 }
 
 impl ZebrisHeader {
@@ -77,6 +87,16 @@ impl ZebrisHeader {
             "UnitPressure" => self.unit = Some(value.to_owned()),
             "Date" => self.date = Some(value.to_owned()),
             "Time" => self.time = Some(value.to_owned()),
+            "TimeDiff" => self.time_difference = positive(),
+            "UnitTime" => {
+                self.seconds = match value.to_ascii_lowercase().as_str() {
+                    "ms" => Some(1e-3),
+                    "s" => Some(1.0),
+                    _ => None,
+                };
+            }
+            "MinIdx" => self.first = value.parse().ok(),
+            "MaxIdx" => self.last = value.parse().ok(),
             _ => {}
         }
         Ok(())
@@ -92,64 +112,151 @@ impl ZebrisHeader {
                 (Some(date), Some(time)) => Some(format!("{date} {time}")),
                 (date, time) => date.clone().or(time.clone()),
             },
+            seconds_per_frame: self
+                .time_difference
+                .zip(self.seconds)
+                .map(|(step, factor)| to_nanoseconds(step * factor)),
             pitch_mm: distances
                 .zip(self.factor)
                 .map(|((x, y), factor)| [x * factor, y * factor]),
             ..ChannelInfo::default()
         }
     }
+
+    /// That pictures are missing which `MinIdx` and `MaxIdx` count.
+    fn cut(&self, frames: u64) -> Option<RecordingNote> {
+        let counted = self.last?.checked_sub(self.first?)?.checked_add(1)?;
+        let counted = u64::try_from(counted).ok()?;
+        let records = frames;
+        (records < counted).then_some(RecordingNote::Cut { records, counted })
+    }
 }
 
-/// Reads a recording, which has one frame.
+/// A section of values.
+#[derive(Clone, Copy)]
+enum ZebrisSection {
+    /// `[Data]`: the only picture, or the maximum of those with a number.
+    Data,
+    /// `[Data12]`: the picture of that number.
+    Picture(i64),
+}
+
+impl ZebrisSection {
+    /// That which a line begins; None of any other line.
+    fn of(line: &str) -> Option<Self> {
+        let name = line.trim().strip_prefix('[')?.strip_suffix(']')?;
+        match name.to_ascii_lowercase().strip_prefix("data")? {
+            "" => Some(Self::Data),
+            number => number.parse().ok().map(Self::Picture),
+        }
+    }
+}
+
+/// Reads a recording.
 ///
 /// # Errors
-/// If there are fewer or more lines of values than `SensCountX` says; the picture is reported before the second of
-/// these.
+/// If a picture has fewer or more lines of values than `SensCountX` says; it is reported before the second of these.
 pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(input);
     let mut header = ZebrisHeader::default();
-    loop {
+    let mut section = loop {
         if !lines.advance()? {
             return Err(RecordingError::damaged(
                 "ends without values, expected a section [Data]",
             ));
         }
         let line = text(lines.line());
-        if line.trim().eq_ignore_ascii_case("[data]") {
-            break;
+        if let Some(section) = ZebrisSection::of(&line) {
+            break section;
         }
         header.line(&line, lines.number())?;
-    }
+    };
     let Some((rows, columns)) = header.rows.zip(header.columns) else {
         let message = "no SensCountX or no SensCountY before the values";
         return Err(RecordingError::in_line(lines.number(), message));
     };
-    if sink(RecordingEvent::Channel(&header.info())).is_break() {
+    let info = header.info();
+    if sink(RecordingEvent::Channel(&info)).is_break() {
         return Ok(());
     }
     let mut frame = Frame::new(columns, rows);
-    // A picture is the first of its file.
-    frame.label = Some(1);
+    let mut first = None;
+    loop {
+        values(&mut lines, &mut frame)?;
+        let next = next_section(&mut lines, rows);
+        let is_only = frame.number == 0 && !matches!(next, Ok(Some(_)));
+        #[expect(clippy::cast_precision_loss, reason = "fewer than 2^52 pictures")]
+        let given = match section {
+            ZebrisSection::Data if !is_only => sink(RecordingEvent::Note(&RecordingNote::Maximum)),
+            _ => {
+                frame.label = Some(1);
+                if let ZebrisSection::Picture(label) = section {
+                    let steps = label.saturating_sub(*first.get_or_insert(label)) as f64;
+                    let time = |step: f64| to_nanoseconds(steps * step);
+                    frame.label = Some(label);
+                    frame.time = info.seconds_per_frame.map(time);
+                }
+                let given = sink(RecordingEvent::Frame(&frame));
+                frame.number += 1;
+                given
+            }
+        };
+        if given.is_break() {
+            return Ok(());
+        }
+        match next? {
+            Some(next) => section = next,
+            None => break,
+        }
+    }
+    if let Some(note) = header.cut(frame.number).filter(|_| first.is_some()) {
+        let _ = sink(RecordingEvent::Note(&note));
+    }
+    Ok(())
+}
+
+/// Reads the values of a picture.
+///
+/// # Errors
+/// If there are fewer lines than the frame has rows, or one has another number of values.
+fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), RecordingError> {
+    let (rows, columns) = (frame.rows(), frame.columns());
     for row in frame.values_mut().chunks_mut(columns.into()) {
         if !lines.advance_to_content()? {
             let rows = counted(rows, "line");
             let message = format!("ends inside the frame, expected {rows} of values");
             return Err(RecordingError::in_line(lines.number() + 1, message));
         }
-        let (line, number) = (lines.line(), lines.number());
-        let fields = Separator::Byte(b'\t').split(line);
-        text_row::fill(row, fields, number, |field| match text_row::value(field) {
-            Field::Value(-1.0) => Field::NoCell,
-            field => field,
+        let fields = Separator::Byte(b'\t').split(lines.line());
+        text_row::fill(row, fields, lines.number(), |field| {
+            match text_row::value(field) {
+                Field::Value(-1.0) => Field::NoCell,
+                field => field,
+            }
         })?;
     }
-    let more = lines.advance_to_content()? && !lines.line().starts_with(b"[");
-    let after = lines.number();
-    let _ = sink(RecordingEvent::Frame(&frame));
-    if more {
-        let rows = counted(rows, "line");
-        let message = format!("more values, expected {rows} of them as SensCountX says");
-        return Err(RecordingError::in_line(after, message));
-    }
     Ok(())
+}
+
+/// Goes to the next section of values; None at the end of the file.
+///
+/// # Errors
+/// If there are more lines of values in this one.
+fn next_section(
+    lines: &mut TextLines<impl BufRead>,
+    rows: u16,
+) -> Result<Option<ZebrisSection>, RecordingError> {
+    let mut is_first = true;
+    while lines.advance_to_content()? {
+        let found = ZebrisSection::of(&text(lines.line()));
+        if found.is_some() {
+            return Ok(found);
+        }
+        if std::mem::take(&mut is_first) && !lines.line().starts_with(b"[") {
+            let rows = counted(rows, "line");
+            let message = format!("more values, expected {rows} of them as SensCountX says");
+            return Err(RecordingError::in_line(lines.number(), message));
+        }
+    }
+    Ok(None)
 }
