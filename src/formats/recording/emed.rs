@@ -1,10 +1,11 @@
 //! novel's emed `.lst` export: pages with a header, the printed window of the matrix with its indices, and sums of
 //! forces.
 //!
-//! The printed window is the frame; the numbers of its first row and column are reported with it. Pages without a
-//! `Pict-No.`, which summarise (MVP, MPP), are passed over.
+//! The printed window is the frame; the numbers of its first row and column are reported with it. A picture that is too
+//! wide or too high for a page is printed on several, which the numbers of their rows and columns join again. Pages
+//! without a `Pict-No.`, which summarise (MVP, MPP), are passed over.
 //! ```text
-//! (fields are parted by tabs)
+//! (fields are parted by tabs, or end where those of the heading end and are empty for 0)
 //!     Page 1
 //!
 //!     File: …\2.dat     Matrix: 64x95
@@ -17,8 +18,8 @@
 //! …
 //! Force    0.00    0.00    0.38    …
 //! ```
-//! `Matrix` counts columns × rows of the whole sensor, of which only the loaded part is printed. Values are kPa; each
-//! row ends in its force in N, which is checked. Time is the number of the picture times `Time/picture`. Source:
+//! `Matrix` counts columns × rows of the whole sensor, of which only the loaded part is printed. Values are kPa; the
+//! forces of rows, of columns and of all are in N, and are checked. Time is the number of the picture times `Time/picture`. Source:
 //! exports of novel's emed software.
 
 use std::io::BufRead;
@@ -28,7 +29,7 @@ use crate::formats::recording::event::{ChannelInfo, RecordingEvent, RecordingNot
 use crate::formats::recording::lines::{TextLines, text};
 use crate::formats::recording::number;
 use crate::formats::recording::separator::Separator;
-use crate::formats::recording::side::side;
+use crate::formats::recording::side::{shape, side};
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::seconds::to_nanoseconds;
 use crate::frame::{Frame, MAX_FRAME_SIDE};
@@ -37,6 +38,9 @@ use crate::frame::{Frame, MAX_FRAME_SIDE};
 const NEWTON: f64 = 0.1;
 /// Values and forces have two decimals.
 const ROUNDING: f64 = 0.005;
+
+/// No picture is printed on more pages.
+const MOST_PAGES: usize = 16;
 
 /// What the headers so far say; a value holds until another page says another.
 #[derive(Default)]
@@ -47,43 +51,40 @@ struct EmedState {
     pitch_mm: Option<[f64; 2]>,
     /// From a picture to the next.
     seconds: Option<f64>,
+    /// Whether a page has begun whose values have not come yet.
+    in_header: bool,
     /// `Pict-No.` of the picture whose window comes next; None on other pages.
     label: Option<i64>,
-    /// Pictures so far.
+    /// Whether that line says that windows end in a line of forces.
+    has_forces: bool,
+    /// The pages so far of the picture that was read last; another page may follow.
+    picture: Vec<EmedWindow>,
+    /// Whether pictures so far have forces of rows, which their last page prints.
+    has_row_forces: bool,
+    /// Pictures that were given.
     frames: u64,
 }
 
 /// Reads a recording.
 ///
 /// # Errors
-/// If a picture has a header but no window; those of the window.
+/// If a page has a header but no window; those of the window; if the pages of a picture leave out cells.
 pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(input);
     let mut state = EmedState::default();
-    let mut frame = Frame::new(1, 1);
-    while lines.advance_to_content()? {
-        let line = text(lines.line());
-        if line.contains("Page") {
-            state.label = None;
+    let ended = match state.pages(&mut lines, sink) {
+        Ok(true) => return Ok(()),
+        Ok(false) if state.lacks_pages() => {
+            let message = "ends before the last page of a picture";
+            Err(RecordingError::in_line(lines.number() + 1, message))
         }
-        state.line(&line);
-        let is_window = line.starts_with(['\t', ' '])
-            && line
-                .split_whitespace()
-                .next()
-                .is_some_and(|word| word.parse::<u32>().is_ok());
-        if state.label.is_some() && is_window {
-            let notes = state.window(&mut lines, &mut frame)?;
-            if state.give(&mut frame, notes, sink) {
-                break;
-            }
-        }
+        Ok(false) => Ok(()),
+        Err(error) => Err(error),
+    };
+    if !state.lacks_pages() {
+        state.give(sink)?;
     }
-    if state.label.is_some() {
-        let message = "ends before the values of a picture";
-        return Err(RecordingError::in_line(lines.number() + 1, message));
-    }
-    Ok(())
+    ended
 }
 
 /// The line above a window: the numbers of its columns, and `Force` if each row ends in its sum.
@@ -99,6 +100,20 @@ struct EmedHeading {
     columns: u16,
     /// Whether rows have a sum, and a line of sums follows them.
     has_force: bool,
+    /// Where fields end; none where tabs part them.
+    ends: Vec<usize>,
+}
+
+/// The words of a line, each with the position of its end.
+fn words(line: &[u8]) -> impl Iterator<Item = (&[u8], usize)> {
+    let mut end = 0;
+    let fields = line.split(u8::is_ascii_whitespace);
+    let words = fields.map(move |word| {
+        let own = end + word.len();
+        end = own + 1;
+        (word, own)
+    });
+    words.filter(|(word, _)| !word.is_empty())
 }
 
 impl EmedHeading {
@@ -106,14 +121,15 @@ impl EmedHeading {
     ///
     /// # Errors
     /// If its numbers do not follow one another, or are more than a frame has columns.
-    fn of(line: &str, number: u64) -> Result<Self, RecordingError> {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        let has_force = words.last() == Some(&"Force");
-        let numbers = &words[..words.len() - usize::from(has_force)];
-        let first = numbers.first().and_then(|first| first.parse::<u32>().ok());
+    fn of(line: &[u8], number: u64) -> Result<Self, RecordingError> {
+        let (names, ends): (Vec<&[u8]>, Vec<usize>) = words(line).unzip();
+        let has_force = names.last().is_some_and(|last| *last == b"Force");
+        let numbers = &names[..names.len() - usize::from(has_force)];
+        let column = |name: &[u8]| str::from_utf8(name).ok()?.parse::<u32>().ok();
+        let first = numbers.first().and_then(|first| column(first));
         let first = first.filter(|&first| {
-            let mut expected = (u64::from(first)..).zip(numbers);
-            expected.all(|(number, word)| word.parse() == Ok(number))
+            let mut expected = (first..).zip(numbers);
+            expected.all(|(number, name)| column(name) == Some(number))
         });
         let Some((first_column, columns)) = first.zip(side(numbers.len())) else {
             let message = "expected the numbers of columns, one after the other";
@@ -123,28 +139,160 @@ impl EmedHeading {
             first_column,
             columns,
             has_force,
+            ends: if line.contains(&b'\t') {
+                Vec::new()
+            } else {
+                ends
+            },
         })
+    }
+
+    /// The fields of a line below the heading: the number of its row, its values, and its force if rows have one.
+    fn fields<'a>(&self, line: &'a [u8]) -> Vec<&'a [u8]> {
+        if self.ends.is_empty() {
+            return Separator::Byte(b'\t').split(line).collect();
+        }
+        let mut fields = vec![&b"0"[..]; 1 + self.ends.len()];
+        for (index, (word, end)) in words(line).enumerate() {
+            let column = self.ends.iter().position(|own| *own == end);
+            match column.filter(|_| index > 0) {
+                Some(column) => fields[column + 1] = word,
+                None if index == 0 => fields[0] = word,
+                // Not in columns, so none is left out.
+                None => return words(line).map(|(word, _)| word).collect(),
+            }
+        }
+        fields
+    }
+
+    /// Reads a line of numbers into as many values. `name` stands for the first field, if that is none.
+    fn fill(
+        &self,
+        values: &mut [f64],
+        (line, number): (&[u8], u64),
+        name: Option<&[u8]>,
+    ) -> Result<(), RecordingError> {
+        let fields = self.fields(line).into_iter().enumerate();
+        let fields = fields.map(|(index, field)| name.filter(|_| index == 0).unwrap_or(field));
+        text_row::fill(values, fields, number, |field| {
+            match text_row::value(field) {
+                Field::NoCell => Field::Wrong,
+                field => field,
+            }
+        })
+    }
+}
+
+/// The window that a page prints, or several joined to that of a picture.
+struct EmedWindow {
+    /// `Pict-No.` of its page.
+    label: i64,
+    /// The row of the whole sensor that it begins at.
+    first_row: u32,
+    /// The column of the whole sensor that it begins at.
+    first_column: u32,
+    /// Rows of the window.
+    rows: u16,
+    /// Columns of the window.
+    columns: u16,
+    /// Its values, row by row.
+    values: Vec<f64>,
+    /// The force of each row, if it is printed.
+    row_forces: Vec<f64>,
+    /// The force of each column, and that of all behind them, if they are printed.
+    column_forces: Vec<f64>,
+}
+
+impl EmedWindow {
+    /// Reads the rows of the window below its heading; the line behind them is read, too.
+    ///
+    /// # Errors
+    /// If rows are not numbered one after the other, or the window ends before the line of forces.
+    fn read(
+        heading: &EmedHeading,
+        lines: &mut TextLines<impl BufRead>,
+        label: i64,
+        has_forces: bool,
+    ) -> Result<Self, RecordingError> {
+        let columns = usize::from(heading.columns);
+        let mut fields = vec![0.0; columns + 1 + usize::from(heading.has_force)];
+        let mut window = Self {
+            label,
+            first_row: 0,
+            first_column: heading.first_column,
+            rows: 0,
+            columns: heading.columns,
+            values: Vec::new(),
+            row_forces: Vec::new(),
+            column_forces: Vec::new(),
+        };
+        while window.has_next_row(lines, has_forces)? {
+            let (line, number) = (lines.line(), lines.number());
+            heading.fill(&mut fields, (line, number), None)?;
+            if window.rows == 0 {
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "saturates; the next row would not follow it"
+                )]
+                let first = fields[0] as u32;
+                window.first_row = first;
+            }
+            let expected = f64::from(window.first_row) + f64::from(window.rows);
+            if fields[0] != expected {
+                let message = format!("found row {}, expected row {expected}", fields[0]);
+                return Err(RecordingError::in_field(number, 1, message));
+            }
+            if window.rows == MAX_FRAME_SIDE {
+                let message = format!("more than {MAX_FRAME_SIDE} rows");
+                return Err(RecordingError::in_line(number, message));
+            }
+            window.rows += 1;
+            window.values.extend_from_slice(&fields[1..=columns]);
+            window.row_forces.extend(fields.get(columns + 1).copied());
+        }
+        Ok(window)
     }
 
     /// Goes to the next row of the window; false at its end: the line of forces, or without them an empty line.
     ///
     /// # Errors
     /// If the window ends before its first row, or without its line of forces.
-    fn next_row(
+    fn has_next_row(
         &self,
         lines: &mut TextLines<impl BufRead>,
-        rows: u16,
+        has_forces: bool,
     ) -> Result<bool, RecordingError> {
         let content = lines.advance()? && !lines.line().trim_ascii().is_empty();
-        if content && !lines.line().starts_with(b"Force") {
+        if content && !is_forces(lines.line()) {
             return Ok(true);
         }
-        if self.has_force && !content || rows == 0 {
+        if has_forces && !content || self.rows == 0 {
             let message = "the picture ends here, expected more rows, then their Force";
             return Err(RecordingError::in_line(lines.number(), message));
         }
         Ok(false)
     }
+
+    /// Rows and columns of the whole sensor, from the first to the one behind the last.
+    fn ranges(&self) -> [(u32, u32); 2] {
+        let behind = |first: u32, count: u16| (first, first.saturating_add(count.into()));
+        [
+            behind(self.first_row, self.rows),
+            behind(self.first_column, self.columns),
+        ]
+    }
+
+    /// Whether both print a cell of the sensor.
+    fn overlaps(&self, other: &Self) -> bool {
+        let mut pairs = self.ranges().into_iter().zip(other.ranges());
+        pairs.all(|(own, other)| own.0 < other.1 && other.0 < own.1)
+    }
+}
+
+/// Whether a line has the forces of columns.
+fn is_forces(line: &[u8]) -> bool {
+    line.trim_ascii_start().starts_with(b"Force")
 }
 
 /// The number that follows a word.
@@ -157,6 +305,40 @@ fn after(line: &str, word: &str) -> Option<f64> {
 }
 
 impl EmedState {
+    /// Reads all pages; true if no more is wanted.
+    fn pages(
+        &mut self,
+        lines: &mut TextLines<impl BufRead>,
+        sink: &mut Sink<'_>,
+    ) -> Result<bool, RecordingError> {
+        while lines.advance_to_content()? {
+            let line = text(lines.line());
+            if line.contains("Page") {
+                (self.label, self.in_header) = (None, true);
+            }
+            self.line(&line);
+            let is_window = line.starts_with(['\t', ' '])
+                && line
+                    .split_whitespace()
+                    .next()
+                    .is_some_and(|word| word.parse::<u32>().is_ok());
+            // A page that summarises need not have a window.
+            let is_summary = line.contains("MVP") || line.contains("MPP");
+            self.in_header &= !is_window && !is_summary;
+            let Some(label) = self.label.filter(|_| is_window) else {
+                continue;
+            };
+            if self.window(lines, label, sink)? {
+                return Ok(true);
+            }
+        }
+        if self.in_header || self.label.is_some() {
+            let message = "ends before the values of a picture";
+            return Err(RecordingError::in_line(lines.number() + 1, message));
+        }
+        Ok(false)
+    }
+
     /// Takes from a header line what it says; there may be several things in one line.
     fn line(&mut self, line: &str) {
         if let Some(area) = after(line, "Sensor area:") {
@@ -179,89 +361,71 @@ impl EmedState {
             #[expect(clippy::cast_possible_truncation, reason = "the number of a picture")]
             let label = label as i64;
             self.label = Some(label);
+            self.has_forces = line.contains("Force");
         }
     }
 
-    /// Reads the window below the line of column numbers. Returns sums that do not hold.
+    /// Reads the window below the line of column numbers, and gives the picture before it; true if no more is wanted.
     ///
     /// # Errors
     /// If columns or rows are not numbered one after the other, or the window ends before the line of forces.
     fn window(
-        &self,
+        &mut self,
         lines: &mut TextLines<impl BufRead>,
-        frame: &mut Frame,
-    ) -> Result<Vec<RecordingNote>, RecordingError> {
-        let heading = EmedHeading::of(&text(lines.line()), lines.number())?;
-        let columns = usize::from(heading.columns);
-        let mut fields = vec![0.0; columns + 1 + usize::from(heading.has_force)];
-        let (mut values, mut forces, mut first_row) = (Vec::new(), Vec::new(), 0);
-        let mut rows = 0_u16;
-        while heading.next_row(lines, rows)? {
-            let (line, number) = (lines.line(), lines.number());
-            text_row::fill(
-                &mut fields,
-                Separator::Byte(b'\t').split(line),
-                number,
-                |field| match text_row::value(field) {
-                    Field::NoCell => Field::Wrong,
-                    field => field,
-                },
-            )?;
-            if rows == 0 {
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "saturates; the next row would not follow it"
-                )]
-                let first = fields[0] as u32;
-                first_row = first;
+        label: i64,
+        sink: &mut Sink<'_>,
+    ) -> Result<bool, RecordingError> {
+        let heading = EmedHeading::of(lines.line(), lines.number())?;
+        let has_forces = self.has_forces || heading.has_force;
+        let mut window = EmedWindow::read(&heading, lines, label, has_forces)?;
+        let mut forces = Ok(());
+        if is_forces(lines.line()) {
+            let line = (lines.line(), lines.number());
+            let mut fields =
+                vec![0.0; 1 + usize::from(heading.columns) + usize::from(heading.has_force)];
+            forces = heading.fill(&mut fields, line, Some(b"0"));
+            if forces.is_ok() {
+                window.column_forces = fields.split_off(1);
             }
-            let (found, expected) = (fields[0], f64::from(first_row) + f64::from(rows));
-            if found != expected {
-                let message = format!("found row {found}, expected row {expected}");
-                return Err(RecordingError::in_field(number, 1, message));
-            }
-            if rows == MAX_FRAME_SIDE {
-                let message = format!("more than {MAX_FRAME_SIDE} rows");
-                return Err(RecordingError::in_line(number, message));
-            }
-            rows += 1;
-            values.extend_from_slice(&fields[1..=columns]);
-            forces.extend(fields.get(columns + 1).copied());
         }
-        frame.reset(heading.columns, rows);
-        frame.values_mut().copy_from_slice(&values);
-        frame.first = Some((first_row, heading.first_column));
+        // The values are whole even if the line of forces is not.
+        self.label = None;
+        let joins = |own: &EmedWindow| own.label == label && !own.overlaps(&window);
+        if !self.picture.iter().all(joins) && self.give(sink)? {
+            return Ok(true);
+        }
+        if self.picture.len() == MOST_PAGES {
+            let message = format!("picture {label} has more than {MOST_PAGES} pages");
+            return Err(RecordingError::in_line(lines.number(), message));
+        }
+        self.picture.push(window);
+        forces.map(|()| false)
+    }
+
+    /// Whether a page of the picture that was read last is missing where the file ends or is damaged: the one that is damaged,
+    /// or the last one, with the forces of rows that earlier pictures have.
+    fn lacks_pages(&self) -> bool {
+        let label = self.picture.first().map(|window| window.label);
+        let has_row_forces = self
+            .picture
+            .iter()
+            .any(|window| !window.row_forces.is_empty());
+        label.is_some() && (self.label == label || self.has_row_forces && !has_row_forces)
+    }
+
+    /// Gives the picture that was read last, if there is one; true if no more is wanted.
+    ///
+    /// # Errors
+    /// If its pages leave out cells, or are more than a frame.
+    fn give(&mut self, sink: &mut Sink<'_>) -> Result<bool, RecordingError> {
+        let pages = std::mem::take(&mut self.picture);
+        let Some(first) = pages.first() else {
+            return Ok(false);
+        };
+        let mut frame = joined(first, &pages)?;
+        self.has_row_forces |= pages.iter().any(|page| !page.row_forces.is_empty());
         frame.number = self.frames;
-        frame.label = self.label;
-        Ok(self.sums(frame, &forces))
-    }
-
-    /// The forces of rows that are not those of the values.
-    /// A force has two decimals, and so has each value it is the sum of: the difference may be half of the last digit
-    /// for each.
-    fn sums(&self, frame: &Frame, stated: &[f64]) -> Vec<RecordingNote> {
-        let Some(area) = self.area_cm2 else {
-            return Vec::new();
-        };
-        let rows = frame.values().chunks(frame.columns().into());
-        let note = |(row, &stated): (&[f64], &f64)| {
-            let found = row.iter().sum::<f64>() * area * NEWTON;
-            let rounding =
-                ROUNDING * (1.0 + f64::from(frame.columns()) * area * NEWTON) + 1e-9 * found.abs();
-            ((found - stated).abs() > rounding).then_some(RecordingNote::Checksum {
-                frame: frame.number,
-                label: frame.label,
-                what: "the force of a row",
-                stated,
-                found,
-            })
-        };
-        rows.zip(stated).filter_map(note).collect()
-    }
-
-    /// Gives the frame; true if no more is wanted.
-    fn give(&mut self, frame: &mut Frame, notes: Vec<RecordingNote>, sink: &mut Sink<'_>) -> bool {
+        frame.label = Some(first.label);
         if self.frames == 0 {
             let info = ChannelInfo {
                 shape: Some((frame.rows(), frame.columns())),
@@ -271,19 +435,117 @@ impl EmedState {
                 ..ChannelInfo::default()
             };
             if sink(RecordingEvent::Channel(&info)).is_break() {
-                return true;
+                return Ok(true);
             }
         }
         #[expect(clippy::cast_precision_loss, reason = "fewer than 2^52 pictures")]
         let number = self.frames as f64;
         frame.time = self.seconds.map(|seconds| to_nanoseconds(seconds * number));
         self.frames += 1;
-        self.label = None;
-        for note in notes {
+        for note in self.odd_sums(&frame, &pages) {
             if sink(RecordingEvent::Note(&note)).is_break() {
-                return true;
+                return Ok(true);
             }
         }
-        sink(RecordingEvent::Frame(frame)).is_break()
+        Ok(sink(RecordingEvent::Frame(&frame)).is_break())
     }
+
+    /// The forces of rows, of columns and of all that are not those of the values. Of a row on several pages only the last
+    /// one prints its force; where several do, nothing says what is summed.
+    ///
+    /// A force has two decimals, and so has each value it is the sum of: the difference may be half of the last digit
+    /// for each. That of all may be the sum of those of the rows or of the columns.
+    fn odd_sums(&self, frame: &Frame, pages: &[EmedWindow]) -> Vec<RecordingNote> {
+        let (Some(area), Some((top, left))) = (self.area_cm2, frame.first) else {
+            return Vec::new();
+        };
+        let columns = usize::from(frame.columns());
+        let mut notes = Vec::new();
+        let mut check = |what, stated: f64, cells: &mut dyn Iterator<Item = f64>, sums: u16| {
+            let (mut found, mut count) = (0.0, 0.0);
+            cells.for_each(|cell| (found, count) = (found + cell, count + 1.0));
+            found *= area * NEWTON;
+            let rounding =
+                ROUNDING * (f64::from(sums) + count * area * NEWTON) + 1e-9 * found.abs();
+            if (found - stated).abs() > rounding {
+                notes.push(RecordingNote::Checksum {
+                    frame: frame.number,
+                    label: frame.label,
+                    what,
+                    stated,
+                    found,
+                });
+            }
+        };
+        let values = frame.values();
+        for row in 0..frame.rows() {
+            let number = top + u32::from(row);
+            let stated = pages.iter().filter_map(|page| {
+                let index = number.checked_sub(page.first_row)?;
+                page.row_forces.get(usize::try_from(index).ok()?)
+            });
+            if let [stated] = stated.collect::<Vec<_>>()[..] {
+                let start = usize::from(row) * columns;
+                let mut cells = values[start..start + columns].iter().copied();
+                check("the force of a row", *stated, &mut cells, 1);
+            }
+        }
+        for column in 0..frame.columns() {
+            let number = left + u32::from(column);
+            let stated = pages.iter().filter_map(|page| {
+                let index = usize::try_from(number.checked_sub(page.first_column)?).ok()?;
+                let own = page.column_forces.get(..page.columns.into())?;
+                own.get(index)
+            });
+            if let [stated] = stated.collect::<Vec<_>>()[..] {
+                let cells = values[usize::from(column)..].iter().step_by(columns);
+                check("the force of a column", *stated, &mut cells.copied(), 1);
+            }
+        }
+        let stated = pages
+            .iter()
+            .filter_map(|page| page.column_forces.get(usize::from(page.columns)));
+        if let [stated] = stated.collect::<Vec<_>>()[..] {
+            let sums = 1 + frame.rows().max(frame.columns());
+            let mut cells = values.iter().copied();
+            check("the force of all cells", *stated, &mut cells, sums);
+        }
+        notes
+    }
+}
+
+/// The frame that the pages of a picture print, none of which print a cell twice.
+///
+/// # Errors
+/// If they leave out cells, or are more than a frame.
+fn joined(first: &EmedWindow, pages: &[EmedWindow]) -> Result<Frame, RecordingError> {
+    let range = |axis: usize| {
+        let ranges = pages.iter().map(|page| page.ranges()[axis]);
+        let bounds = |(low, high): (u32, u32), own: (u32, u32)| (low.min(own.0), high.max(own.1));
+        ranges.fold(first.ranges()[axis], bounds)
+    };
+    let ((top, bottom), (left, right)) = (range(0), range(1));
+    let label = first.label;
+    let Some((rows, columns)) = shape(bottom - top, right - left) else {
+        let message = format!("picture {label} has more than {MAX_FRAME_SIDE} rows or columns");
+        return Err(RecordingError::damaged(message));
+    };
+    let mut frame = Frame::new(columns, rows);
+    let cells: usize = pages.iter().map(|page| page.values.len()).sum();
+    if cells != frame.values().len() {
+        let message = format!("the pages of picture {label} do not make up a rectangle");
+        return Err(RecordingError::damaged(message));
+    }
+    for page in pages {
+        // Within the bounds of all pages, which are those of a frame.
+        let (above, before) = (top..page.first_row, left..page.first_column);
+        let start = above.count() * usize::from(columns) + before.count();
+        let width = usize::from(page.columns);
+        let starts = (start..).step_by(columns.into());
+        for (start, row) in starts.zip(page.values.chunks(width)) {
+            frame.values_mut()[start..start + width].copy_from_slice(row);
+        }
+    }
+    frame.first = Some((top, left));
+    Ok(frame)
 }

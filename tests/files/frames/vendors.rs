@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use taxel::frame::Frame;
 
+use super::samples::sample;
 use super::{Recorded, recorded};
 
 fn error(found: &Recorded) -> Option<String> {
@@ -73,4 +74,121 @@ fn the_last_unit_of_tekscan_counts_and_metres_are_a_length() {
         (info.pitch_mm, info.shape),
         (Some([1.27, 1.27]), Some((1, 2)))
     );
+}
+
+/// The header of a page of emed.
+fn emed_header(label: i64) -> String {
+    format!(
+        "\t\t\t\tPage 1\n\n\tFile: made up \tMatrix: 20x30\n\tSensor area: 1.00 cm2\tTime/picture:20.0 ms\n\
+         \tSensor size: 1.000x1.000 cm\n\tPict-No.: {label}  Force[N]=sum*sensor_area in row/column\n\n"
+    )
+}
+
+/// Two pages of one picture of three columns, and two of the next one.
+fn emed_pages(left: &str, right: &str) -> String {
+    let pages = [(1, left), (1, right), (2, left), (2, right)];
+    let page = |(label, window): (i64, &str)| format!("{}{window}\u{c}\n", emed_header(label));
+    pages.map(page).concat()
+}
+
+const LEFT: &str = "\t7\t8\n4\t0.00\t20.00\n5\t30.00\t0.00\nForce\t3.00\t2.00\n";
+const RIGHT: &str = "\t9\tForce\n4\t10.00\t3.00\n5\t0.00\t3.00\nForce\t1.00\t6.00\n";
+
+#[test]
+fn the_pages_of_a_picture_of_emed_are_one_frame() {
+    let fixed = |text: &str| {
+        let field = |field: &str| {
+            if field == "0.00" {
+                String::new()
+            } else {
+                field.to_owned()
+            }
+        };
+        let line = |line: &str| -> String {
+            line.split('\t')
+                .map(|text| format!("{:>8}", field(text)))
+                .collect()
+        };
+        text.lines()
+            .map(|text| line(text) + "\n")
+            .collect::<String>()
+    };
+    for text in [
+        emed_pages(LEFT, RIGHT),
+        emed_pages(&fixed(LEFT), &fixed(RIGHT)),
+    ] {
+        let found = recorded(text.as_bytes(), None);
+        assert_eq!((error(&found), notes(&found).len()), (None, 0), "{text}");
+        assert_eq!(found.channels[0].shape, Some((2, 3)));
+        let [first, second] = &found.frames[..] else {
+            panic!("{} frames: {text}", found.frames.len());
+        };
+        assert_eq!(first.values(), [0.0, 20.0, 10.0, 30.0, 0.0, 0.0]);
+        assert_eq!((first.first, first.label), (Some((4, 7)), Some(1)));
+        assert_eq!((second.label, second.time), (Some(2), Some(0.02)));
+        // A picture whose second page is damaged is not whole.
+        let torn = text.rfind("Page").expect("a page") + 150;
+        let cut = recorded(&text.as_bytes()[..torn], None);
+        assert_eq!(cut.frames.len(), 1);
+        assert!(cut.error.is_some());
+        // Nor is one whose second page is missing.
+        let between = text.rfind("\t\t\t\tPage").expect("a page");
+        let cut = recorded(&text.as_bytes()[..between], None);
+        assert_eq!(cut.frames.len(), 1);
+        let message = error(&cut).expect("an error");
+        assert!(
+            message.ends_with("ends before the last page of a picture"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn every_force_of_emed_is_checked() {
+    let window =
+        "\t7\t8\tForce\n4\t0.00\t20.00\t2.00\n5\t30.00\t0.00\t3.00\nForce\t3.00\t2.00\t5.00\n";
+    let read = |window: &str| recorded((emed_header(1) + window).as_bytes(), None);
+    assert_eq!(notes(&read(window)), [""; 0]);
+    for (from, to, what) in [
+        (
+            "20.00\t2.00",
+            "20.00\t2.50",
+            "the force of a row should be 2.5, but the values give 2",
+        ),
+        (
+            "3.00\t2.00\t5",
+            "4.00\t2.00\t5",
+            "the force of a column should be 4, but the values give 3",
+        ),
+        (
+            "2.00\t5.00",
+            "2.00\t7.00",
+            "the force of all cells should be 7, but the values give 5",
+        ),
+    ] {
+        let found = read(&window.replace(from, to));
+        assert_eq!(error(&found), None);
+        assert_eq!(notes(&found), [format!("frame 0 (label 1): {what}")]);
+    }
+    // All values are there, but not all forces.
+    let found = read(window.trim_end().trim_end_matches("\t5.00"));
+    assert_eq!(found.frames.len(), 1);
+    let expected = "line 11: found 3 values, expected 4";
+    assert_eq!(error(&found).as_deref(), Some(expected));
+    // The next page lacks its number, or its values.
+    for end in [emed_header(2).find("File"), emed_header(2).find("Force")] {
+        let header = &emed_header(2)[..end.expect("it is there")];
+        let found = read(&format!("{window}\u{c}\n{header}"));
+        assert_eq!(found.frames.len(), 1);
+        let message = error(&found).expect("an error");
+        assert!(
+            message.ends_with("ends before the values of a picture"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn the_sample_frames_have_all_their_sums() {
+    assert_eq!(notes(&recorded(&sample("emed.lst"), None)), [""; 0]);
 }
