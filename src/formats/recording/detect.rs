@@ -56,7 +56,7 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
             }
         }
         _ if line_with(b"ASCII_DATA") || line_with(b"DATA_TYPE ") => RecordingFormat::Tekscan,
-        _ if line_with(b"FRAME,") && line_with(b"SENSOR,") => RecordingFormat::Xsensor,
+        _ if xsensor::is_export(text) => RecordingFormat::Xsensor,
         _ if has(b"SensCountX=") => RecordingFormat::Zebris,
         _ if has(b"Pict-No.:") && has(b"Matrix:") => RecordingFormat::Emed,
         _ if is_ros(trimmed, first) => RecordingFormat::Ros2,

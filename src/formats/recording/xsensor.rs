@@ -1,7 +1,7 @@
 //! XSENSOR's CSV export: frames of one or several sensors, each a block of its own; groups of cells are passed over.
 //!
-//! Lines are padded with commas, and every second one has nothing else. A sensor's name is its channel. `GROUP` blocks
-//! list the cells of a part of a sensor, which are in the sensor's matrix already.
+//! Lines may be padded with commas, and every second one may have nothing else. A sensor's name is its channel. `GROUP`
+//! blocks list the cells of a part of a sensor, which are in the sensor's matrix already.
 //! ```text
 //! Units:,mmHg,,,,
 //! ,,,,,
@@ -17,7 +17,9 @@
 //! SENSELS,,,,,
 //! 0,0,57.9,…
 //! ```
-//! Time is the difference of the clocks in seconds, also past midnight. `Threshold` is the value from which on
+//! Versions of the software differ in how they write a key (`FRAME`, `Frame:`), in quotes around fields, and in units
+//! (`Sensel Width (mm)`); a comma within a field may be the decimal sign. Time is the difference of the clocks in seconds,
+//! also past midnight, or of seconds. `Threshold` is the value from which on
 //! XSENSOR's own software counts a cell as touched, so it is that of the recording. Averages and areas are passed over:
 //! they follow from the values. Source: an export of XSENSOR's software of 2022.
 
@@ -25,23 +27,38 @@ use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink};
-use crate::formats::recording::lines::{TextLines, text, unpadded};
+use crate::formats::recording::lines::{TextLines, text};
 use crate::formats::recording::number;
-use crate::formats::recording::separator::Separator;
+use crate::formats::recording::separator::{Separator, decimal};
 use crate::formats::recording::side::stated;
-use crate::formats::recording::text_row;
+use crate::formats::recording::text_row::{self, Field};
 use crate::frame::Frame;
 use crate::parameter::number::{counted, to_decimals};
 
 /// No file has more sensors: each has a name of its own.
 const MOST_CHANNELS: usize = 64;
 
+/// No line with a key is longer.
+const LONGEST_KEY: usize = 1 << 12;
+
 /// A sensor's frames so far.
 struct XsensorChannel {
-    /// What `SENSOR` names.
-    name: String,
+    /// What `SENSOR` names; None where there is no such line.
+    name: Option<String>,
     /// How many there are; the number of the next one.
     frames: u64,
+}
+
+/// What is described by the lines that are being read.
+#[derive(Default)]
+enum XsensorBlock {
+    /// The file or a frame.
+    #[default]
+    Other,
+    /// A sensor of that name.
+    Sensor(Option<String>),
+    /// A part of a sensor.
+    Group,
 }
 
 /// What is known of the frame and of the sensor that are being read.
@@ -53,22 +70,26 @@ struct XsensorState {
     threshold: Option<f64>,
     /// `FRAME`: what the recording calls the frame.
     label: Option<i64>,
+    /// Sensors of the frame that have been read.
+    sensors: usize,
+    /// Sensors of the frame before it.
+    expected: usize,
     /// `Date` of the frame, such as `2022 Aug 16`.
     date: Option<String>,
-    /// `Time` of the frame, such as `08:21:17.982`.
+    /// `Time` of the frame, such as `08:21:17.982`, or `1.25` in seconds.
     clock: Option<String>,
     /// The first moment: day, and seconds of the day.
     start: Option<(i32, f64)>,
-    /// The sensor whose block this is; none outside of one.
-    sensor: Option<String>,
+    /// What the lines describe.
+    block: XsensorBlock,
     /// `Rows` of this sensor.
     rows: Option<u16>,
     /// `Columns` of this sensor.
     columns: Option<u16>,
     /// `Sensel Width`: the pitch along x.
-    width_cm: Option<f64>,
+    width_mm: Option<f64>,
     /// `Sensel Height`: the pitch along y.
-    height_cm: Option<f64>,
+    height_mm: Option<f64>,
     /// The sensors in the order in which they first came.
     channels: Vec<XsensorChannel>,
 }
@@ -81,9 +102,11 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
     while lines.advance_to_content()? {
         let (key, value) = pair(lines.line());
         match key.as_str() {
-            "SENSELS" if state.sensor.is_some() => {
+            "SENSELS" => {
+                let XsensorBlock::Sensor(name) = std::mem::take(&mut state.block) else {
+                    continue;
+                };
                 state.matrix(&mut lines, &mut frame)?;
-                let name = state.sensor.take().unwrap_or(key);
                 if state.give(name, &mut frame, sink, lines.number())? {
                     return Ok(());
                 }
@@ -92,23 +115,38 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
         }
     }
     // Only the cells end the block, so a sensor that is still open has lost them.
-    if state.sensor.is_some() {
-        let message = "ends inside a SENSOR block, expected SENSELS";
-        return Err(RecordingError::in_line(lines.number() + 1, message));
-    }
-    Ok(())
+    let message = match state.block {
+        XsensorBlock::Sensor(_) => "ends inside a SENSOR block, expected SENSELS",
+        _ if state.sensors < state.expected => "ends inside a FRAME, expected SENSOR",
+        _ => return Ok(()),
+    };
+    Err(RecordingError::in_line(lines.number() + 1, message))
 }
 
-/// The two first fields of a line; a field in quotes may have commas.
+/// The key of a line in capital letters, without the colon behind it, and its value.
 fn pair(line: &[u8]) -> (String, String) {
-    let line = text(unpadded(line));
-    let (key, value) = line.split_once(',').unwrap_or((&line, ""));
-    let value = value.trim();
-    let value = match value.strip_prefix('"') {
-        Some(quoted) => quoted.split('"').next().unwrap_or(quoted),
-        None => value.split(',').next().unwrap_or(value),
-    };
-    (key.trim().to_owned(), value.trim().to_owned())
+    let mut fields = Separator::Byte(b',').split(line);
+    let mut next = || fields.next().map_or_else(String::new, text);
+    let key = next();
+    let key = key.trim_end_matches(':').trim_end().to_uppercase();
+    (key, next())
+}
+
+/// Whether the first lines of a text are those of an export: they name a frame, and then the cells of a sensor.
+pub(super) fn is_export(start: &[u8]) -> bool {
+    let mut lines = start.split(|&byte| byte == b'\n');
+    let mut has = |key: &str| lines.any(|line| line.len() < LONGEST_KEY && pair(line).0 == key);
+    has("FRAME") && has("SENSELS")
+}
+
+/// The millimetres of a unit behind a key, as of `SENSEL WIDTH (CM)`; None of one that is not known.
+fn millimetres(key: &str) -> Option<f64> {
+    match key.split_once('(')?.1.trim_end_matches(')') {
+        "MM" => Some(1.0),
+        "CM" => Some(10.0),
+        "IN" | "INCH" | "INCHES" => Some(25.4),
+        _ => None,
+    }
 }
 
 impl XsensorState {
@@ -117,27 +155,45 @@ impl XsensorState {
     /// # Errors
     /// If rows or columns are none that a frame can have.
     fn line(&mut self, key: &str, value: &str, number: u64) -> Result<(), RecordingError> {
-        let positive = || number::read(value.as_bytes()).filter(|&value| value > 0.0);
+        let number_of = || match decimal(value.as_bytes()) {
+            Field::Value(value) => Some(value),
+            _ => None,
+        };
+        let length = || {
+            let length = number_of().filter(|&length| length > 0.0)?;
+            Some(to_decimals(length * millimetres(key)?, 9))
+        };
         let side = || stated(key, ' ', value, number);
         match key {
-            "Units:" | "Units" => self.unit = Some(value.to_owned()),
-            "Threshold:" | "Threshold" => self.threshold = number::read(value.as_bytes()),
+            "UNITS" => self.unit = Some(value.to_owned()),
+            "THRESHOLD" => self.threshold = number_of(),
             "FRAME" => {
                 self.label = value.parse().ok();
-                self.sensor = None;
+                (self.expected, self.sensors) = (self.sensors.max(1), 0);
+                self.block = XsensorBlock::Other;
             }
-            "Date" => self.date = Some(value.to_owned()),
-            "Time" => self.clock = Some(value.to_owned()),
+            "DATE" => self.date = Some(value.to_owned()),
+            "TIME" => self.clock = Some(value.to_owned()),
             "SENSOR" => {
-                self.sensor = Some(value.to_owned());
+                self.block = XsensorBlock::Sensor(Some(value.to_owned()));
                 (self.rows, self.columns) = (None, None);
-                (self.width_cm, self.height_cm) = (None, None);
+                (self.width_mm, self.height_mm) = (None, None);
             }
-            "GROUP" => self.sensor = None,
-            "Rows" if self.sensor.is_some() => self.rows = Some(side()?),
-            "Columns" if self.sensor.is_some() => self.columns = Some(side()?),
-            "Sensel Width (cm)" => self.width_cm = positive(),
-            "Sensel Height (cm)" => self.height_cm = positive(),
+            "GROUP" => self.block = XsensorBlock::Group,
+            "ROWS" | "COLUMNS" if matches!(self.block, XsensorBlock::Group) => {}
+            "ROWS" | "COLUMNS" => {
+                if matches!(self.block, XsensorBlock::Other) {
+                    self.block = XsensorBlock::Sensor(None);
+                }
+                let side = Some(side()?);
+                *(if key == "ROWS" {
+                    &mut self.rows
+                } else {
+                    &mut self.columns
+                }) = side;
+            }
+            _ if key.starts_with("SENSEL WIDTH") => self.width_mm = length(),
+            _ if key.starts_with("SENSEL HEIGHT") => self.height_mm = length(),
             _ => {}
         }
         Ok(())
@@ -162,9 +218,8 @@ impl XsensorState {
                 let message = format!("ends inside a frame, expected {}", counted(rows, "row"));
                 return Err(RecordingError::in_line(lines.number() + 1, message));
             }
-            let (line, number) = (lines.line(), lines.number());
-            let fields = Separator::Byte(b',').split(line);
-            text_row::fill(row, fields, number, text_row::value)?;
+            let fields = Separator::Byte(b',').split(lines.line());
+            text_row::fill(row, fields, lines.number(), decimal)?;
         }
         Ok(())
     }
@@ -175,7 +230,7 @@ impl XsensorState {
     /// If there are more sensors than any file has: names that change from frame to frame would fill the memory.
     fn give(
         &mut self,
-        name: String,
+        name: Option<String>,
         frame: &mut Frame,
         sink: &mut Sink<'_>,
         line: u64,
@@ -192,20 +247,13 @@ impl XsensorState {
             }
             None => {
                 let info = ChannelInfo {
-                    name: Some(name.clone()),
+                    name: name.clone(),
                     shape: self.rows.zip(self.columns),
                     values: None,
                     unit: self.unit.clone(),
-                    start: self
-                        .date
-                        .clone()
-                        .zip(self.clock.clone())
-                        .map(|(date, clock)| format!("{date} {clock}")),
+                    start: self.beginning(),
                     seconds_per_frame: None,
-                    pitch_mm: self
-                        .width_cm
-                        .zip(self.height_cm)
-                        .map(|(x, y)| [x * 10.0, y * 10.0]),
+                    pitch_mm: self.width_mm.zip(self.height_mm).map(|(x, y)| [x, y]),
                     threshold: self.threshold,
                     ..ChannelInfo::default()
                 };
@@ -223,24 +271,40 @@ impl XsensorState {
         frame.time = moment
             .zip(start)
             .map(|((day, seconds), (first_day, first_seconds))| {
-                // Both clocks tell thousandths.
-                to_decimals(
-                    f64::from(day - first_day) * 86_400.0 + seconds - first_seconds,
-                    3,
-                )
+                // A clock tells thousandths, and seconds of a day are exact to more.
+                let days = f64::from(day - first_day) * 86_400.0;
+                to_decimals(days + seconds - first_seconds, 6)
             });
+        self.sensors += 1;
         Ok(sink(RecordingEvent::Frame(frame)).is_break())
     }
 
+    /// When the frame was measured, as it is written; of a time in seconds, only the day.
+    fn beginning(&self) -> Option<String> {
+        let (date, clock) = self.date.as_ref().zip(self.clock.as_ref())?;
+        Some(if clock.contains(':') {
+            format!("{date} {clock}")
+        } else {
+            date.clone()
+        })
+    }
+
     /// The moment of the frame: day, and seconds of the day.
-    /// None if the clock is not three numbers; a date that cannot be read counts as the same day.
+    /// None if the clock is not three numbers, nor a single one, of seconds; a date that cannot be read counts as the same
+    /// day.
     fn moment(&self) -> Option<(i32, f64)> {
-        let mut parts = self.clock.as_ref()?.split(':');
-        let mut part = || number::read(parts.next()?.trim().as_bytes());
-        let (hours, minutes, seconds) = (part()?, part()?, part()?);
+        let parts = self.clock.as_ref()?.split(':');
+        let parts: Option<Vec<f64>> = parts
+            .map(|part| number::read(part.trim().as_bytes()))
+            .collect();
         let date = self.date.as_ref();
         let day = date.and_then(|date| days(date)).unwrap_or(1);
-        Some((day, hours * 3600.0 + minutes * 60.0 + seconds))
+        match parts?[..] {
+            [hours, minutes, seconds] => Some((day, hours * 3600.0 + minutes * 60.0 + seconds)),
+            // They count from the beginning, not from midnight.
+            [seconds] => Some((1, seconds)),
+            _ => None,
+        }
     }
 }
 

@@ -188,6 +188,111 @@ fn every_force_of_emed_is_checked() {
     }
 }
 
+/// An export of XSENSOR with two sensors, two frames and the clocks `times`.
+fn xsensor(times: [&str; 2]) -> String {
+    let mut text = "Units:,mmHg\nThreshold:,9.5\n".to_owned();
+    for (label, time) in (100..).zip(times) {
+        write!(text, "\nFRAME,{label}\nDate, 2022 Aug 16\nTime, {time}\n").expect("a text");
+        for name in ["left", "right"] {
+            write!(
+                text,
+                "\nSENSOR,{name}\nRows,1\nColumns,2\nSensel Width (cm),0.25\nSensel Height (cm),0.25\n\nSENSELS\n\
+                 1.5,{label}\n"
+            )
+            .expect("a text");
+        }
+    }
+    text
+}
+
+/// The same with quotes around all fields.
+fn quoted(text: &str) -> String {
+    let field = |field: &str| format!("\"{field}\"");
+    let line = |line: &str| line.split(',').map(field).collect::<Vec<_>>().join(",");
+    let lines = text.lines().map(|text| {
+        if text.is_empty() {
+            String::new()
+        } else {
+            line(text)
+        }
+    });
+    lines.map(|line| line + "\n").collect()
+}
+
+#[test]
+fn exports_of_xsensor_differ_in_quotes_colons_and_units() {
+    let plain = xsensor(["08:21:17.9", "08:21:18.4"]);
+    let whole = recorded(plain.as_bytes(), None);
+    assert_eq!((error(&whole), whole.channels.len()), (None, 2));
+    assert_eq!(
+        frames(&whole, 1),
+        [(Some(100), Some(0.0), 1.5), (Some(101), Some(0.5), 1.5)]
+    );
+    assert_eq!(whole.channels[0].pitch_mm, Some([2.5, 2.5]));
+    let comma = quoted(&plain).replace('.', ",");
+    let comma = comma.replace("17,9", "17.9").replace("18,4", "18.4");
+    let colons: String = plain
+        .replace("FRAME,", "Frame:,")
+        .replace("SENSOR,", "Sensor:,")
+        .replace("SENSELS", "Sensels:")
+        .replace("Rows,", "Rows:,")
+        .replace("Columns,", "Columns:,")
+        .replace("(cm),", "(cm):,");
+    let millimetres = plain.replace("(cm),0.25", "(mm),2.5");
+    let inches = plain.replace("(cm),0.25", "(in),0.098425197");
+    for (text, pitch) in [
+        (quoted(&plain), 2.5),
+        (comma, 2.5),
+        (colons.clone(), 2.5),
+        (quoted(&colons), 2.5),
+        (millimetres, 2.5),
+        (inches, 2.500_000_004),
+    ] {
+        let found = recorded(text.as_bytes(), None);
+        assert_eq!(
+            (found.format, error(&found)),
+            (Some("xsensor"), None),
+            "{text}"
+        );
+        assert_eq!(found.channels[0].threshold, Some(9.5), "{text}");
+        assert_eq!(found.channels[0].pitch_mm, Some([pitch, pitch]), "{text}");
+        assert_eq!(found.channels[0].start, whole.channels[0].start, "{text}");
+        for channel in [0, 1] {
+            assert_eq!(frames(&found, channel), frames(&whole, channel), "{text}");
+        }
+    }
+    // A time in seconds; a single sensor without a name.
+    let found = recorded(xsensor(["0.25", "0.3755"]).as_bytes(), None);
+    assert_eq!(found.frames[2].time, Some(0.1255));
+    assert_eq!(found.channels[0].start.as_deref(), Some("2022 Aug 16"));
+    let nameless = colons
+        .replace("Sensor:,left\n", "")
+        .replace("Sensor:,right\n", "");
+    let found = recorded(nameless.as_bytes(), None);
+    assert_eq!((error(&found), found.frames.len()), (None, 4));
+    assert_eq!(found.channels[0].name, None);
+}
+
+#[test]
+fn an_export_of_xsensor_that_ends_inside_a_frame_is_a_damage() {
+    let text = xsensor(["08:21:17.9", "08:21:18.4"]);
+    let last = text.rfind("FRAME").expect("a frame");
+    let right = text.rfind("SENSOR").expect("a sensor");
+    for (end, whole) in [
+        (last + "FRAME,101\n".len(), 2),
+        (last + "FRAME,101\nDate, 2022".len(), 2),
+        (right + "SEN".len(), 3),
+    ] {
+        let found = recorded(&text.as_bytes()[..end], None);
+        assert_eq!(found.frames.len(), whole);
+        let message = error(&found).expect("an error");
+        assert!(
+            message.ends_with("ends inside a FRAME, expected SENSOR"),
+            "{message}"
+        );
+    }
+}
+
 #[test]
 fn the_sample_frames_have_all_their_sums() {
     assert_eq!(notes(&recorded(&sample("emed.lst"), None)), [""; 0]);
