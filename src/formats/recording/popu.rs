@@ -3,9 +3,10 @@
 //! {"volunteer_id":"4",…,"tactilus_columns":27,"tactilus_rows":64,
 //!  "snapshots":{"0":{"id":"200410292003","tactilus_readings":[1,0,0,…]},"1":{…}}}
 //! ```
-//! Rows and columns, whose keys end in `_rows` and `_columns`, come before the snapshots. A key of a snapshot is its
-//! label, if it is a number. Cells stand row by row. Snapshots are reported while the text is read: a file may have
-//! thousands. Source: the data set itself (MDPI Data 2023, 8(7), 120).
+//! Rows and columns, whose keys end in `_rows` and `_columns`, come before the snapshots. What stands before that names the
+//! sheet, a file may have two (`tactilus`, `sensomatt`): each is a channel then. A key of a snapshot is its label, if it is
+//! a number. Cells stand row by row. Snapshots are reported while the text is read: a file may have thousands. Source: the
+//! data set itself (MDPI Data 2023, 8(7), 120).
 
 use std::borrow::Cow;
 use std::fmt;
@@ -35,11 +36,10 @@ pub(super) fn read(mut input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), R
     }
     let mut content = serde_json::Deserializer::from_reader(input);
     let mut state = PopuState {
-        rows: None,
-        columns: None,
+        sheets: Vec::new(),
         begun: false,
         enough: false,
-        frame: Frame::new(1, 1),
+        label: None,
         values: Vec::new(),
         sink,
     };
@@ -64,22 +64,105 @@ pub(super) fn read(mut input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), R
     }
 }
 
-/// What is known so far, and where frames go.
-struct PopuState<'a, 'b> {
+/// No file has more sheets.
+const MOST_SHEETS: usize = 16;
+
+/// A sheet of cells.
+struct PopuSheet {
+    /// What its keys begin with.
+    name: String,
     /// The key that ends in `_rows`.
     rows: Option<u16>,
     /// The key that ends in `_columns`.
     columns: Option<u16>,
-    /// Whether the channel was reported.
+    /// The frame that is being filled.
+    frame: Frame,
+}
+
+/// What is known so far, and where frames go.
+struct PopuState<'a, 'b> {
+    /// The sheets in the order in which they are named; each is a channel.
+    sheets: Vec<PopuSheet>,
+    /// Whether the channels were reported.
     begun: bool,
     /// Whether the sink wants no more, so that the error that stops the parser is none.
     enough: bool,
-    /// The frame that is being filled.
-    frame: Frame,
+    /// The key of a snapshot, if it is a number.
+    label: Option<i64>,
     /// The cells of a snapshot, in memory that is used again.
     values: Vec<f64>,
-    /// Takes channel and frames.
+    /// Takes channels and frames.
     sink: &'a mut Sink<'b>,
+}
+
+impl PopuState<'_, '_> {
+    /// The sheet of that name, which may be a new one.
+    fn sheet<E: Error>(&mut self, name: &str) -> Result<&mut PopuSheet, E> {
+        let known = self.sheets.iter().position(|own| own.name == name);
+        if known.is_none() {
+            if self.sheets.len() == MOST_SHEETS {
+                return Err(E::custom(format!("more than {MOST_SHEETS} sheets")));
+            }
+            self.sheets.push(PopuSheet {
+                name: name.to_owned(),
+                rows: None,
+                columns: None,
+                frame: Frame::new(1, 1),
+            });
+        }
+        let index = known.unwrap_or(self.sheets.len() - 1);
+        Ok(&mut self.sheets[index])
+    }
+
+    /// Reports an event; an error if no more is wanted.
+    fn report<E: Error>(&mut self, event: RecordingEvent<'_>) -> Result<(), E> {
+        if (self.sink)(event).is_break() {
+            self.enough = true;
+            return Err(E::custom(ENOUGH));
+        }
+        Ok(())
+    }
+
+    /// Reports the sheets as channels.
+    fn begin<E: Error>(&mut self) -> Result<(), E> {
+        self.begun = true;
+        let is_only = self.sheets.len() == 1;
+        let mut sheets = std::mem::take(&mut self.sheets);
+        for (channel, sheet) in sheets.iter_mut().enumerate() {
+            let Some((rows, columns)) = sheet.rows.zip(sheet.columns) else {
+                return Err(E::custom("snapshots before their rows and columns"));
+            };
+            sheet.frame = Frame::new(columns, rows);
+            sheet.frame.channel = channel;
+            let info = ChannelInfo {
+                name: (!is_only).then(|| sheet.name.clone()),
+                shape: Some((rows, columns)),
+                ..ChannelInfo::default()
+            };
+            self.report(RecordingEvent::Channel(&info))?;
+        }
+        if sheets.is_empty() {
+            return Err(E::custom("snapshots before their rows and columns"));
+        }
+        self.sheets = sheets;
+        Ok(())
+    }
+
+    /// Gives the values as a frame of the sheet with that index.
+    fn give<E: Error>(&mut self, sheet: usize) -> Result<(), E> {
+        let mut frame = std::mem::replace(&mut self.sheets[sheet].frame, Frame::new(1, 1));
+        let (found, expected) = (self.values.len(), frame.values().len());
+        if found != expected {
+            let found = counted(found as u64, "value");
+            return Err(E::custom(format!("found {found}, expected {expected}")));
+        }
+        frame.values_mut().copy_from_slice(&self.values);
+        frame.label = self.label;
+        self.report(RecordingEvent::Frame(&frame))?;
+        frame.number += 1;
+        self.sheets[sheet].frame = frame;
+        Ok(())
+    }
 }
 
 /// The whole object.
@@ -122,10 +205,10 @@ impl<'de> Visitor<'de> for PopuSeed<'_, '_, '_> {
             };
             if key == "snapshots" {
                 map.next_value_seed(SnapshotsSeed(&mut *self.0))?;
-            } else if key.ends_with("_rows") {
-                self.0.rows = Some(side(map.next_value()?)?);
-            } else if key.ends_with("_columns") {
-                self.0.columns = Some(side(map.next_value()?)?);
+            } else if let Some(name) = key.strip_suffix("_rows") {
+                self.0.sheet(name)?.rows = Some(side(map.next_value()?)?);
+            } else if let Some(name) = key.strip_suffix("_columns") {
+                self.0.sheet(name)?.columns = Some(side(map.next_value()?)?);
             } else {
                 map.next_value::<IgnoredAny>()?;
             }
@@ -142,37 +225,10 @@ impl<'de> Visitor<'de> for SnapshotsSeed<'_, '_, '_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
-        let Some((rows, columns)) = self.0.rows.zip(self.0.columns) else {
-            return Err(A::Error::custom("snapshots before their rows and columns"));
-        };
-        self.0.begun = true;
-        let info = ChannelInfo {
-            shape: Some((rows, columns)),
-            ..ChannelInfo::default()
-        };
-        if (self.0.sink)(RecordingEvent::Channel(&info)).is_break() {
-            self.0.enough = true;
-            return Err(A::Error::custom(ENOUGH));
-        }
-        self.0.frame = Frame::new(columns, rows);
+        self.0.begin()?;
         while let Some(key) = map.next_key::<Cow<'de, str>>()? {
-            self.0.frame.label = key.parse().ok();
-            self.0.values.clear();
+            self.0.label = key.parse().ok();
             map.next_value_seed(SnapshotSeed(&mut *self.0))?;
-            let (found, expected) = (self.0.values.len(), self.0.frame.values().len());
-            if found != expected {
-                let message = format!(
-                    "found {}, expected {expected}",
-                    counted(found as u64, "value")
-                );
-                return Err(A::Error::custom(message));
-            }
-            self.0.frame.values_mut().copy_from_slice(&self.0.values);
-            if (self.0.sink)(RecordingEvent::Frame(&self.0.frame)).is_break() {
-                self.0.enough = true;
-                return Err(A::Error::custom(ENOUGH));
-            }
-            self.0.frame.number += 1;
         }
         Ok(())
     }
@@ -186,13 +242,30 @@ impl<'de> Visitor<'de> for SnapshotSeed<'_, '_, '_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        let mut given = vec![false; self.0.sheets.len()];
         while let Some(key) = map.next_key::<Cow<'de, str>>()? {
-            if key.ends_with("_readings") && self.0.values.is_empty() {
-                map.next_value_seed(CellsSeed(&mut self.0.values, None))?;
-            } else {
-                map.next_value::<IgnoredAny>()?;
+            let name = key.strip_suffix("_readings");
+            let sheet = self
+                .0
+                .sheets
+                .iter()
+                .position(|sheet| name == Some(&sheet.name));
+            match sheet.filter(|&sheet| !given[sheet]) {
+                Some(sheet) => {
+                    self.0.values.clear();
+                    map.next_value_seed(CellsSeed(&mut self.0.values, None))?;
+                    self.0.give(sheet)?;
+                    given[sheet] = true;
+                }
+                None => drop(map.next_value::<IgnoredAny>()?),
             }
         }
-        Ok(())
+        if given.contains(&true) {
+            return Ok(());
+        }
+        let names = self.0.sheets.iter().map(|sheet| &sheet.name);
+        let keys: Vec<String> = names.map(|name| format!("{name}_readings")).collect();
+        let message = format!("a snapshot without {}", keys.join(" or "));
+        Err(A::Error::custom(message))
     }
 }

@@ -294,6 +294,49 @@ fn an_export_of_xsensor_that_ends_inside_a_frame_is_a_damage() {
 }
 
 #[test]
+fn both_sheets_of_popu_are_channels() {
+    let text = "{\"id\":\"4\",\"tactilus_columns\":2,\"tactilus_rows\":1,\"sensomatt_columns\":1,\"sensomatt_rows\":3,\
+                \"snapshots\":{\"0\":{\"tactilus_readings\":[1,2],\"sensomatt_readings\":[3,4,5]},\
+                \"7\":{\"sensomatt_readings\":[6,7,8],\"tactilus_readings\":[9,0]},\"8\":{\"tactilus_readings\":[8,8]}}}";
+    let found = recorded(text.as_bytes(), None);
+    assert_eq!(error(&found), None);
+    let channels = found.channels.iter();
+    let channels: Vec<_> = channels
+        .map(|info| (info.name.as_deref(), info.shape))
+        .collect();
+    assert_eq!(
+        channels,
+        [
+            (Some("tactilus"), Some((1, 2))),
+            (Some("sensomatt"), Some((3, 1)))
+        ]
+    );
+    assert_eq!(
+        frames(&found, 0),
+        [
+            (Some(0), None, 1.0),
+            (Some(7), None, 9.0),
+            (Some(8), None, 8.0)
+        ]
+    );
+    assert_eq!(
+        frames(&found, 1),
+        [(Some(0), None, 3.0), (Some(7), None, 6.0)]
+    );
+    let found = recorded(
+        text.replace("\"8\":{\"tactilus", "\"8\":{\"other")
+            .as_bytes(),
+        None,
+    );
+    assert_eq!(found.frames.len(), 4);
+    let message = error(&found).expect("an error");
+    assert!(
+        message.contains("a snapshot without tactilus_readings or sensomatt_readings"),
+        "{message}"
+    );
+}
+
+#[test]
 fn the_sample_frames_have_all_their_sums() {
     assert_eq!(notes(&recorded(&sample("emed.lst"), None)), [""; 0]);
 }
