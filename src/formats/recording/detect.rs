@@ -59,14 +59,15 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
         _ if xsensor::is_export(text) => RecordingFormat::Xsensor,
         _ if has(b"SensCountX=") => RecordingFormat::Zebris,
         _ if has(b"Pict-No.:") && has(b"Matrix:") => RecordingFormat::Emed,
-        _ if is_ros(trimmed, first) => RecordingFormat::Ros2,
+        _ if is_ros(ros_text::without_notices(trimmed)) => RecordingFormat::Ros2,
         _ if is_table(row) => RecordingFormat::Csv,
         _ => return None,
     })
 }
 
-/// Whether a text is what `ros2 topic echo` prints; `first` is its first line.
-fn is_ros(text: &[u8], first: &[u8]) -> bool {
+/// Whether a text is what `ros2 topic echo` prints.
+fn is_ros(text: &[u8]) -> bool {
+    let first = text.split(|&byte| byte == b'\n').next().unwrap_or(b"");
     text.starts_with(b"array(")
         || text.starts_with(b"layout:")
         || text.starts_with(b"data:")

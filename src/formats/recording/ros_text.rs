@@ -14,7 +14,8 @@
 //! - 12
 //! ---
 //! ```
-//! Rows and columns are the first two sizes of the layout, if all others are 1; otherwise they have to be known
+//! What `ros2 topic echo` prints beside messages, such as that one was lost, is passed over. Values before the offset of a
+//! layout (`data_offset`) are none of its cells. Rows and columns are the first two sizes of the layout, if all others are 1; otherwise they have to be known
 //! beforehand. Source: what the program prints.
 
 use std::io::BufRead;
@@ -32,7 +33,9 @@ pub(crate) struct RosMessage {
     /// The size of each dimension of the layout.
     pub(crate) sizes: Vec<u32>,
     /// The elements, at most [`MOST_VALUES`] of them.
-    pub(crate) values: Vec<f64>,
+    values: Vec<f64>,
+    /// How many of them come before the cells.
+    offset: usize,
     /// Inside of the list of a YAML text, or of an array that goes on in the next line.
     open: bool,
     /// Whether it has begun.
@@ -63,12 +66,26 @@ impl RosMessage {
     pub(crate) fn clear(&mut self) {
         self.sizes.clear();
         self.values.clear();
+        self.offset = 0;
         (self.open, self.any) = (false, false);
     }
 
     /// Whether a line of this message was read.
     pub(crate) fn begun(&self) -> bool {
         self.any
+    }
+
+    /// Its cells.
+    pub(crate) fn cells(&self) -> &[f64] {
+        &self.values[self.offset.min(self.values.len())..]
+    }
+
+    /// Takes the offset of the layout; what is no number says nothing.
+    fn offset_of(&mut self, field: &[u8]) {
+        let offset = str::from_utf8(field.trim_ascii()).ok();
+        if let Some(offset) = offset.and_then(|offset| offset.parse().ok()) {
+            self.offset = offset;
+        }
     }
 
     /// Whether it ends inside of an array.
@@ -95,7 +112,7 @@ impl RosMessage {
     /// Reads the next line of a text.
     pub(crate) fn line(&mut self, line: &[u8]) -> RosLine {
         let line = line.trim_ascii();
-        if line.is_empty() {
+        if line.is_empty() || is_notice(line) {
             return RosLine::More;
         }
         if line == b"---" {
@@ -110,6 +127,10 @@ impl RosMessage {
             if self.sizes.len() < MOST_SIZES {
                 self.sizes.extend(whole(size));
             }
+            return RosLine::More;
+        }
+        if let Some(offset) = line.strip_prefix(b"data_offset:") {
+            self.offset_of(offset);
             return RosLine::More;
         }
         if line == b"data:" {
@@ -129,7 +150,7 @@ impl RosMessage {
         match bracket {
             Some(start) => self.list(&line[start + 1..]),
             None if self.open && line[0] != b'-' => self.list(line),
-            None if is_csv(line) => self.csv(line),
+            None if is_csv(line) || is_csv_without_dimensions(line) => self.csv(line),
             None => RosLine::More,
         }
     }
@@ -173,8 +194,9 @@ impl RosMessage {
             };
             self.sizes.push(size);
         }
-        // The offset.
-        fields.next();
+        if let Some((_, offset)) = fields.next() {
+            self.offset_of(offset);
+        }
         self.fields(fields, RosLine::Whole)
     }
 
@@ -186,6 +208,25 @@ impl RosMessage {
         rest.iter()
             .all(|&size| size == 1)
             .then(|| shape(rows, columns))?
+    }
+}
+
+/// Whether a line is a notice of `ros2 topic echo` itself.
+pub(crate) fn is_notice(line: &[u8]) -> bool {
+    let notices = [&b"A message was lost"[..], b"total count", b"WARNING: "];
+    let line = line.trim_ascii_start();
+    notices.iter().any(|notice| line.starts_with(notice))
+}
+
+/// A text without the notices and empty lines that stand before its first message.
+pub(super) fn without_notices(mut text: &[u8]) -> &[u8] {
+    loop {
+        let end = text.iter().position(|&byte| byte == b'\n');
+        let (line, rest) = text.split_at(end.map_or(text.len(), |end| end + 1));
+        if line.is_empty() || !line.trim_ascii().is_empty() && !is_notice(line) {
+            return text;
+        }
+        text = rest;
     }
 }
 
@@ -240,15 +281,22 @@ pub(crate) fn is_csv(line: &[u8]) -> bool {
     is_layout(line) || is_cut_csv(line)
 }
 
-/// Whether a line is an offset and values, the last of which are left out. Its layout has no dimensions, as most publishers
-/// leave it.
+/// Whether a line is an offset and values. Its layout has no dimensions, as most publishers leave it. Only where the text is
+/// known to be an echo, such a line is more than numbers.
+pub(crate) fn is_csv_without_dimensions(line: &[u8]) -> bool {
+    line.contains(&b',') && line.split(|&byte| byte == b',').all(is_number)
+}
+
+/// The same of a line, the last values of which are left out.
 fn is_cut_csv(line: &[u8]) -> bool {
-    let is_number = |field: &[u8]| {
-        let field = field.trim_ascii();
-        matches!(text_row::value(field), Field::Value(_)) || field.eq_ignore_ascii_case(b"nan")
-    };
     let mut fields = line.rsplit(|&byte| byte == b',');
     fields.next().is_some_and(is_cut) && fields.clone().count() > 1 && fields.all(is_number)
+}
+
+/// Whether a field is a value.
+fn is_number(field: &[u8]) -> bool {
+    let field = field.trim_ascii();
+    matches!(text_row::value(field), Field::Value(_)) || field.eq_ignore_ascii_case(b"nan")
 }
 
 /// Reads a recording.
@@ -285,7 +333,7 @@ pub(super) fn read(
                 return Err(RecordingError::in_field(number, column, text));
             }
         }
-        let values = message.values.len();
+        let values = message.cells().len();
         let shape = message.shape().or(options.shape);
         let (rows, columns) = shape.ok_or(RecordingError::Shape {
             values: values as u64,
@@ -304,7 +352,7 @@ pub(super) fn read(
             }
         }
         frame.reset(columns, rows);
-        frame.values_mut().copy_from_slice(&message.values);
+        frame.values_mut().copy_from_slice(message.cells());
         message.clear();
         if sink(RecordingEvent::Frame(&frame)).is_break() || ended {
             return Ok(());

@@ -115,7 +115,9 @@ impl RosDecoder {
     ) {
         // A boundary, or a line that has a whole array.
         let trimmed = line.trim_ascii();
-        let begins = trimmed.starts_with(b"array(") || ros_text::is_csv(trimmed);
+        let begins = trimmed.starts_with(b"array(")
+            || ros_text::is_csv(trimmed)
+            || ros_text::is_csv_without_dimensions(trimmed) && !self.message.is_open();
         self.begun |= begins;
         match self.message.line(line) {
             RosLine::More => {}
@@ -135,7 +137,7 @@ impl RosDecoder {
     /// The end of a message.
     fn end(&mut self, line: &[u8], counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let shape = self.message.shape().or(self.shape);
-        let values = self.message.values.len();
+        let values = self.message.cells().len();
         let begun = std::mem::replace(&mut self.begun, true);
         if std::mem::take(&mut self.cut) {
             counts.cut |= begun && !self.broken;
@@ -152,7 +154,7 @@ impl RosDecoder {
                 self.frame.reset(columns, rows);
                 self.frame
                     .values_mut()
-                    .copy_from_slice(&self.message.values);
+                    .copy_from_slice(self.message.cells());
                 self.frame.number = counts.frames;
                 counts.frames += 1;
                 sink(StreamEvent::Frame(&self.frame));

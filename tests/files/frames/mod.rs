@@ -2,6 +2,8 @@
 
 mod checksums;
 
+mod echoes;
+
 mod reference;
 
 mod samples;

@@ -1,0 +1,39 @@
+//! What `ros2 topic echo` prints beside messages, and layouts with an offset.
+
+use super::recorded;
+
+const NOTICE: &str = "A message was lost!!!\n\ttotal count change:1\n\ttotal count: 1---\n";
+
+#[test]
+fn notices_between_messages_are_passed_over() {
+    let messages = [
+        "array('H', [1, 2, 3, 4])\n---\n",
+        "array('H', [5, 6, 7, 8])\n---\n",
+    ];
+    for text in [
+        format!("{NOTICE}{}", messages.concat()),
+        format!("{}{NOTICE}{}", messages[0], messages[1]),
+        format!(
+            "\nWARNING: topic [/pad] does not appear to be published yet\n{}",
+            messages.concat()
+        ),
+    ] {
+        let found = recorded(text.as_bytes(), Some((2, 2)));
+        assert_eq!(found.format, Some("ros2"), "{text}: {:?}", found.error);
+        let firsts: Vec<f64> = found.frames.iter().map(|frame| frame.values()[0]).collect();
+        assert_eq!(firsts, [1.0, 5.0], "{text}");
+    }
+}
+
+#[test]
+fn values_before_the_offset_of_a_layout_are_no_cells() {
+    for text in [
+        "rows,2,4,columns,2,2,1,99,1,2,3,4\n",
+        "layout:\n  dim:\n  - label: rows\n    size: 2\n    stride: 4\n  - label: columns\n    size: 2\n    \
+         stride: 2\n  data_offset: 1\ndata:\n- 99\n- 1\n- 2\n- 3\n- 4\n---\n",
+    ] {
+        let found = recorded(text.as_bytes(), None);
+        assert!(found.error.is_none(), "{text}: {:?}", found.error);
+        assert_eq!(found.frames[0].values(), [1.0, 2.0, 3.0, 4.0], "{text}");
+    }
+}
