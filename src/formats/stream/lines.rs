@@ -7,6 +7,9 @@
 //! 0 12            or a row a line; an empty line ends the frame, and tells its rows and columns
 //! 7 3
 //! ```
+//! Of a stream from its beginning, such as a file, the first block may be a frame, or the end of one: its rows and columns
+//! are those of all frames unless the next two blocks agree on more rows. It is provisional until then.
+//!
 //! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are never
 //! joined. Where frames are known to be a line each, each line that is none is a frame that is lost.
 
@@ -46,8 +49,26 @@ pub(super) struct LinesDecoder {
     parted: bool,
     /// What the lines are, as far as is known.
     kind: LineKind,
+    /// The first blocks of a stream that is read from its beginning, until it is known whether the first one is a frame.
+    held: Option<Vec<HeldBlock>>,
     /// The frame that is given.
     frame: Frame,
+}
+
+/// A block of rows that an empty line has ended.
+#[derive(Debug)]
+struct HeldBlock {
+    /// Rows and columns.
+    size: (u16, u16),
+    /// Its values, row by row.
+    values: Vec<f64>,
+    /// What it looks like.
+    sample: Vec<u8>,
+}
+
+/// Whether the first of two blocks may be the end of one like the second: the last rows, or the end of the last one.
+fn may_be_end((rows, columns): (u16, u16), next: (u16, u16)) -> bool {
+    rows < next.0 && (columns == next.1 || rows == 1 && columns < next.1)
 }
 
 impl LinesDecoder {
@@ -65,6 +86,7 @@ impl LinesDecoder {
                 Some((1, _)) => LineKind::Frame,
                 _ => LineKind::Row,
             },
+            held: (from_start && shape.is_none()).then(Vec::new),
             frame: Frame::new(1, 1),
         }
     }
@@ -173,30 +195,82 @@ impl LinesDecoder {
         let columns = width(self.values.len() / usize::from(self.rows.max(1)));
         let own = (self.rows, columns);
         let fits = !self.broken && (1..=MAX_FRAME_SIDE).contains(&columns);
-        if fits && self.size.admits(own) {
-            if self.rows > 1 {
-                self.kind = LineKind::Row;
-            }
-            self.give(counts, sink);
+        if fits && self.held.is_some() {
+            self.hold(own, counts, sink);
+        } else if fits {
+            self.block(own, counts, sink);
         } else {
-            if !fits {
-                self.size.pass_torn();
-            }
+            self.size.pass_torn();
             counts.drop_frames(1, &self.broken_row);
         }
         self.clear();
     }
 
-    /// Gives a frame of the shape.
-    fn give(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
-        let Some((rows, columns)) = self.size.present() else {
+    /// Takes a block of rows that is whole.
+    fn block(&mut self, own: (u16, u16), counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+        if self.size.admits(own) {
+            if self.rows > 1 {
+                self.kind = LineKind::Row;
+            }
+            self.give(counts, sink);
+        } else {
+            counts.drop_frames(1, &self.broken_row);
+        }
+    }
+
+    /// Holds a block until it is known whether the first one is a frame: if the second is not larger, or the third is not
+    /// like the second, which may have lost the empty line between two frames.
+    fn hold(&mut self, own: (u16, u16), counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+        let held = self.held.get_or_insert_default();
+        held.push(HeldBlock {
+            size: own,
+            values: self.values.clone(),
+            sample: self.broken_row.clone(),
+        });
+        let sizes: Vec<(u16, u16)> = held.iter().map(|block| block.size).collect();
+        match sizes[..] {
+            [first] => {
+                self.fill(first, counts);
+                sink(StreamEvent::Provisional(&self.frame));
+            }
+            [first, second] if may_be_end(first, second) => {}
+            [_, second, third] if second == third => self.release(second, counts, sink),
+            _ => self.release(sizes[0], counts, sink),
+        }
+    }
+
+    /// Takes the blocks that were held, of which those of that size are frames.
+    fn release(&mut self, size: (u16, u16), counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+        let Some(held) = self.held.take() else {
             return;
         };
+        self.size.begin(size);
+        if held.first().is_some_and(|first| first.size != size) {
+            sink(StreamEvent::Withdrawn);
+        }
+        for block in held {
+            self.rows = block.size.0;
+            self.values = block.values;
+            self.broken_row = block.sample;
+            self.block(block.size, counts, sink);
+        }
+    }
+
+    /// Gives a frame of the shape.
+    fn give(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+        let Some(size) = self.size.present() else {
+            return;
+        };
+        self.fill(size, counts);
+        counts.frames += 1;
+        sink(StreamEvent::Frame(&self.frame));
+    }
+
+    /// Makes a frame of that size of the values.
+    fn fill(&mut self, (rows, columns): (u16, u16), counts: &StreamCounts) {
         self.frame.reset(columns, rows);
         self.frame.number = counts.frames;
         self.frame.values_mut().copy_from_slice(&self.values);
-        counts.frames += 1;
-        sink(StreamEvent::Frame(&self.frame));
     }
 
     /// Forgets the frame so far.
@@ -225,6 +299,10 @@ impl LinesDecoder {
             return;
         }
         self.boundary(counts, sink);
+        let first = self.held.as_ref().and_then(|held| held.first());
+        if let Some(size) = first.map(|first| first.size) {
+            self.release(size, counts, sink);
+        }
     }
 }
 
@@ -258,17 +336,52 @@ mod tests {
     fn a_number_before_the_frames_does_not_fix_their_shape() {
         let frames: String = (1..=5).map(|n| format!("{n} 2\n3 4\n\n")).collect();
         let stream = format!("1.2\n\n{frames}");
-        let found = vec![(1, 1, 1.2), (2, 2, 3.0), (2, 2, 4.0), (2, 2, 5.0)];
-        assert_eq!(decoded(&stream, None), (found, 2));
+        let whole: Vec<_> = (1..=5).map(|n| (2, 2, f64::from(n))).collect();
+        assert_eq!(decoded(&stream, None), (whole.clone(), 1));
         // A shape that was named stays.
         assert_eq!(decoded(&stream, Some((1, 1))).0, [(1, 1, 1.2)]);
         // As many numbers as the frames have columns.
-        let found = vec![(1, 2, 0.0), (2, 2, 3.0), (2, 2, 4.0), (2, 2, 5.0)];
-        assert_eq!(decoded(&format!("0 1\n\n{frames}"), None), (found, 2));
+        assert_eq!(decoded(&format!("0 1\n\n{frames}"), None), (whole, 1));
+        // More numbers than the frames have columns: three of them in a row are needed.
+        let found = vec![(1, 3, 0.0), (2, 2, 3.0), (2, 2, 4.0), (2, 2, 5.0)];
+        assert_eq!(decoded(&format!("0 1 2\n\n{frames}"), None), (found, 2));
         // Frames of one row are each ended by an empty line, or named.
         let rows = vec![(1, 2, 1.0), (1, 2, 3.0)];
         assert_eq!(decoded("1 2\n\n3 4\n\n", None), (rows.clone(), 0));
         assert_eq!(decoded("1 2\n3 4\n", Some((1, 2))), (rows, 0));
+    }
+
+    #[test]
+    fn the_end_of_a_frame_is_not_the_first_one() {
+        let whole = "1 2 3\n4 5 6\n7 8 9\n\n";
+        for torn in ["9\n\n", "8 9\n\n", "7 8 9\n\n", "4 5 6\n7 8 9\n\n"] {
+            let stream = format!("{torn}{}", whole.repeat(3));
+            let found = (vec![(3, 3, 1.0); 3], 1);
+            assert_eq!(decoded(&stream, None), found, "{torn}");
+        }
+        // The input ends, or an empty line between two frames was lost.
+        assert_eq!(decoded(whole, None), (vec![(3, 3, 1.0)], 0));
+        let joined = whole.trim_end().to_owned() + "\n" + whole;
+        let stream = [whole, &joined, whole, whole].concat();
+        assert_eq!(decoded(&stream, None), (vec![(3, 3, 1.0); 3], 1));
+        let stream = [whole, &joined].concat();
+        assert_eq!(decoded(&stream, None), (vec![(3, 3, 1.0)], 1));
+    }
+
+    #[test]
+    fn the_first_block_is_shown_at_once_and_withdrawn_if_it_is_no_frame() {
+        let mut decoder = LinesDecoder::new(None, true);
+        let (mut events, mut counts) = (String::new(), StreamCounts::default());
+        for line in ["3 4", "", "1 2", "3 4", "", "1 2", "3 4", ""] {
+            decoder.line(line.as_bytes(), &mut counts, &mut |event| {
+                events += match event {
+                    StreamEvent::Frame(_) => "frame ",
+                    StreamEvent::Provisional(_) => "provisional ",
+                    StreamEvent::Withdrawn => "withdrawn ",
+                };
+            });
+        }
+        assert_eq!(events, "provisional withdrawn frame frame ");
     }
 
     #[test]

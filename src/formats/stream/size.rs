@@ -28,6 +28,11 @@ impl FrameSize {
         }
     }
 
+    /// Begins with these rows and columns, where none are known yet.
+    pub(super) fn begin(&mut self, own: (u16, u16)) {
+        self.present.get_or_insert(own);
+    }
+
     /// Rows and columns; None before the first frame where none were named.
     pub(super) fn present(&self) -> Option<(u16, u16)> {
         self.present
