@@ -3,6 +3,7 @@
 //! | names | are |
 //! |---|---|
 //! | `r0c0,r0c1,r1c0,r1c1`, `S3_12`, `pad2[0][1]` | rows and columns: the last two numbers of a name, the rest being the same in all |
+//! | `c0r0`, `col0_row0`, `x0y0` | the same, but columns and rows |
 //! | `0,1,2,3`, `v1,v2,v3` | cells one after the other, of which rows and columns are not known |
 //! | `frame`, `index`, `id`, … | what the recording calls the frame |
 //! | `time`, `t_ns`, `Time (ms)`, … | its time, with its unit |
@@ -66,10 +67,23 @@ fn split<const N: usize>(name: &str) -> Option<(String, [u32; N])> {
     Some((format!("{rest}{skeleton}"), numbers))
 }
 
-/// The index of a field, and the last two numbers of its name.
+/// Whether a pattern such as `pad_col#_row#` names the column before the row. Without words for both, the row comes first.
+fn is_column_first(skeleton: &str) -> bool {
+    let mut before = skeleton.rsplit('#').skip(1).map(|text| {
+        let text = text.trim_end_matches(|character: char| !character.is_alphanumeric());
+        let word = text.rsplit(|character: char| !character.is_alphabetic());
+        word.take(1).collect::<String>().to_lowercase()
+    });
+    let (second, first) = (before.next(), before.next());
+    let is_column = |word: String| ["c", "col", "column", "x"].contains(&word.as_str());
+    let is_row = |word: String| ["r", "row", "y"].contains(&word.as_str());
+    first.is_some_and(is_column) && second.is_some_and(is_row)
+}
+
+/// The index of a field, and its row and column: the last two numbers of its name.
 type NumberedField = (usize, [u32; 2]);
 
-/// The fields whose names have two numbers, with these, in the pattern that most of them have.
+/// The fields whose names have two numbers, with their rows and columns, in the pattern that most of them have.
 fn largest_grid(names: &[&str]) -> Vec<NumberedField> {
     let split = names.iter().map(|name| split::<2>(name)).enumerate();
     let mut patterns: Vec<(String, Vec<NumberedField>)> = Vec::new();
@@ -85,9 +99,15 @@ fn largest_grid(names: &[&str]) -> Vec<NumberedField> {
             None => patterns.push((skeleton, vec![(field, numbers)])),
         }
     }
-    let fields = patterns.into_iter().map(|(_, fields)| fields);
     // Of equals the last, as cells come after what is said of the frame.
-    fields.max_by_key(Vec::len).unwrap_or_default()
+    let most = patterns.into_iter().max_by_key(|(_, fields)| fields.len());
+    let (skeleton, mut fields) = most.unwrap_or_default();
+    if is_column_first(&skeleton) {
+        for (_, numbers) in &mut fields {
+            numbers.swap(0, 1);
+        }
+    }
+    fields
 }
 
 /// Cells named by row and column; there must be exactly one for each. None of names that are cells by chance at most:
@@ -207,6 +227,22 @@ mod tests {
             grid(2, 2, &[0, 2, 1, 3])
         );
         assert_eq!(cells(&["pad2[0][0]", "pad2[1][0]"]), grid(2, 1, &[0, 1]));
+        // The letters say which of the two is the column.
+        for [column, between, behind] in [
+            ["c", "r", ""],
+            ["col", "_row", ""],
+            ["C", "_R", ""],
+            ["x", "y", ""],
+            ["pad_Column ", ", Row ", ""],
+            ["pad[x", "][y", "]"],
+        ] {
+            let name = |(x, y): (u8, u8)| format!("{column}{x}{between}{y}{behind}");
+            let names = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)].map(name);
+            let names = names.each_ref().map(String::as_str);
+            assert_eq!(cells(&names), grid(2, 3, &[0, 1, 2, 3, 4, 5]), "{names:?}");
+        }
+        let row_first = ["y0x0", "y0x1", "y0x2", "y1x0", "y1x1", "y1x2"];
+        assert_eq!(cells(&row_first), grid(2, 3, &[0, 1, 2, 3, 4, 5]));
         assert_eq!(
             cells(&["frame", "time", "0", "1", "2", "3"]),
             Some(NamedCells::Counted(2, 4))

@@ -20,6 +20,14 @@ fn values(text: &str, shape: Option<(u16, u16)>) -> Vec<Vec<f64>> {
 }
 
 #[test]
+fn the_letters_of_names_say_which_number_is_the_column() {
+    let text = "c0r0,c1r0,c2r0,c0r1,c1r1,c2r1\n1,2,3,4,5,6\n";
+    let found = recorded(text.as_bytes(), None);
+    assert_eq!(found.channels[0].shape, Some((2, 3)));
+    assert_eq!(found.frames[0].values(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+}
+
+#[test]
 fn a_separator_in_quotes_is_part_of_a_field() {
     let text = "time,\"(0,0)\",\"(0,1)\",\"(1,0)\",\"(1,1)\"\n1,1,2,3,4\n";
     assert_eq!(values(text, None), [[1.0, 2.0, 3.0, 4.0]]);
