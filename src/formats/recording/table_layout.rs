@@ -262,8 +262,7 @@ fn named_cells(
 }
 
 /// The arrangement of lines without names: the cells alone; a number or a time before them, or both; or a number and
-/// milliseconds behind them. What grows from line to line says which it is; of a single line they are taken to stand behind.
-/// The first of them is line `number` of the file.
+/// milliseconds behind them. What grows from line to line says which it is. The first of them is line `number` of the file.
 ///
 /// # Errors
 /// If the line has fewer fields than a frame has cells, or others that are none of these or may be either.
@@ -327,7 +326,7 @@ fn number_and_time(
         };
         let before = [(0, 1), (1, 0)].into_iter().find(fits);
         let behind = Some((cells, cells + 1)).filter(fits);
-        if count == 1 || before.is_none() || behind.is_none() {
+        if before.is_none() || behind.is_none() {
             return Ok(behind.or(before));
         }
     }

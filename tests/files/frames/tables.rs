@@ -2,7 +2,7 @@
 
 use taxel::frame::Frame;
 
-use super::recorded;
+use super::{Recorded, recorded};
 
 /// Label, time and values of each frame of a table.
 fn frames(text: &str, shape: Option<(u16, u16)>) -> Vec<(Option<i64>, Option<f64>, Vec<f64>)> {
@@ -17,6 +17,23 @@ fn values(text: &str, shape: Option<(u16, u16)>) -> Vec<Vec<f64>> {
         .into_iter()
         .map(|frame| frame.2)
         .collect()
+}
+
+fn error(found: &Recorded) -> String {
+    found.error.as_ref().expect("an error").to_string()
+}
+
+#[test]
+fn of_one_line_with_two_numbers_more_nothing_says_where_they_are() {
+    let unclear =
+        "line 1: 2 numbers more than the 4 cells, before or behind them: name the columns";
+    for text in ["17,0.25,1,2,3,4\n", "1,2,3,4,17,40\n"] {
+        let found = recorded(text.as_bytes(), Some((2, 2)));
+        assert!(error(&found).starts_with(unclear), "{text}");
+    }
+    // A number that counts frames has no fraction.
+    let text = "1.5,2.5,3,4,17,40\n";
+    assert_eq!(values(text, Some((2, 2))), [[1.5, 2.5, 3.0, 4.0]]);
 }
 
 #[test]
