@@ -5,7 +5,7 @@
 //! | `r0c0,r0c1,r1c0,r1c1`, `S3_12`, `pad2[0][1]` | rows and columns: the last two numbers of a name, the rest being the same in all |
 //! | `c0r0`, `col0_row0`, `x0y0` | the same, but columns and rows |
 //! | `0,1,2,3`, `v1,v2,v3` | cells one after the other, of which rows and columns are not known |
-//! | `frame`, `index`, `id`, … | what the recording calls the frame |
+//! | `frame`, `index`, `id`, … or an empty first name | what the recording calls the frame |
 //! | `time`, `t_ns`, `Time (ms)`, … | its time, with its unit |
 //!
 //! Numbers of rows and columns may begin anywhere, but none may be missing: otherwise the names describe no cells.
@@ -169,6 +169,17 @@ fn counted(names: &[&str]) -> Option<NamedCells> {
     }
     best.filter(|(_, length)| *length > 2)
         .map(|(start, length)| NamedCells::Counted(start, length))
+}
+
+/// What the names of a header's fields say of the frame. A first field without a name is an index, as pandas writes it.
+pub(crate) fn roles(names: &[&str]) -> Vec<Option<FieldRole>> {
+    let mut roles: Vec<_> = names.iter().map(|name| role(name)).collect();
+    if let ([first, _, ..], [own, ..]) = (names, &mut roles[..])
+        && first.is_empty()
+    {
+        *own = Some(FieldRole::Label);
+    }
+    roles
 }
 
 /// What a field's name says of the frame, if it is a usual one.

@@ -2,11 +2,11 @@
 //!
 //! A header names the cells, see [`cell_names`](super::cell_names). Without one, rows and columns have to be known
 //! beforehand, unless the table is in blocks of a row a line; numbers before or behind the cells are then recognised by how
-//! they grow from line to line ([`without_header`]).
+//! they grow from line to line ([`without_header`]), and texts such as dates and labels are passed over.
 
 use std::io::BufRead;
 
-use crate::formats::recording::cell_names::{FieldRole, NamedCells, cells, role};
+use crate::formats::recording::cell_names::{FieldRole, NamedCells, cells, role, roles};
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingNote};
 use crate::formats::recording::lines::{TextLines, is_blank, text};
@@ -80,23 +80,63 @@ pub(super) fn layout(
     let separator = Separator::of(&first);
     let names: Vec<String> = separator.fields(&first).map(text).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let has_words = separator
-        .fields(&first)
-        .any(|field| !separator.is_numeric(field));
-    let counts = || {
-        names[0] == "0"
-            && matches!(cells(&names), Some(NamedCells::Counted(0, length)) if length == names.len())
-    };
-    if !has_words && !counts() {
-        return of_numbers(lines, separator, &first, options);
+    let number = lines.number();
+    let has_words = names
+        .iter()
+        .any(|name| !separator.is_numeric(name.as_bytes()));
+    // Of an echo of ROS, a line of small values begins so, too, behind its offset.
+    let cells = options
+        .shape
+        .map(|(rows, columns)| usize::from(rows) * usize::from(columns));
+    let counted =
+        count_from_0(&names).filter(|counted| cells.is_none_or(|cells| cells == *counted));
+    if !has_words && counted.is_none() {
+        return of_numbers(lines, separator, (number, &[&first]), options);
     }
-    let layout = with_header(&names, separator, lines.number(), options);
+    while lines.advance_to_content()? && is_comment(lines.line()) {}
     // Words above words are not a table.
-    if lines.advance_to_content()? && is_mostly_numeric(separator, lines.line()) {
-        layout
-    } else {
-        Err(RecordingError::Unknown)
+    if !is_mostly_numeric(separator, lines.line()) {
+        return Err(RecordingError::Unknown);
     }
+    if has_words && is_like_next(&names, separator, lines.line()) {
+        let next = lines.line().to_owned();
+        return of_numbers(lines, separator, (number, &[&first, &next]), options);
+    }
+    with_header(&names, separator, number, options)
+}
+
+/// How many cells are named, if names are those of cells and nothing else, counted from 0; pandas writes an empty one before
+/// them, above its index.
+fn count_from_0(names: &[&str]) -> Option<usize> {
+    let names = names.strip_prefix(&[""]).unwrap_or(names);
+    let all = matches!(cells(names), Some(NamedCells::Counted(0, length)) if length == names.len());
+    (names.first() == Some(&"0") && all).then_some(names.len())
+}
+
+/// Whether a line with words is a frame like the next line, with a date or a label beside its cells: words and numbers stand
+/// in the same fields. Otherwise it has the names of the fields, such as `label,0,1,2,3` above `cup,7,5,9,3`: its numbers
+/// count, from 0 or beside a word that is a usual name.
+fn is_like_next(names: &[&str], separator: Separator, next: &[u8]) -> bool {
+    let next: Vec<&[u8]> = separator.fields_of(next, names.len()).collect();
+    let is_word = |field: &[u8]| !separator.is_numeric(field);
+    let mut pairs = names.iter().zip(&next);
+    let same = pairs.all(|(own, next)| is_word(own.as_bytes()) == is_word(next));
+    if next.len() != names.len() || !same {
+        return false;
+    }
+    let words = || {
+        let pairs = names.iter().zip(&next);
+        pairs.filter(|(_, next)| is_word(next))
+    };
+    let repeats = words().all(|(own, next)| own.as_bytes() == *next);
+    let is_name = |name: &str| name.starts_with(char::is_alphabetic) && role(name).is_some();
+    let is_named = words().any(|(own, _)| is_name(own));
+    let numbers = names.len() - words().count();
+    let counts = matches!(
+        cells(names),
+        Some(NamedCells::Counted(start, length)) if length == numbers && (names[start] == "0" || is_named)
+    );
+    repeats || !counts
 }
 
 /// Whether a line has numbers in half of its fields or more.
@@ -109,28 +149,36 @@ fn is_mostly_numeric(separator: Separator, line: &[u8]) -> bool {
     numeric > 0 && 2 * numeric >= all
 }
 
-/// The arrangement of a table without names, whose first line is `first`.
+/// The arrangement of a table without names, whose first lines are `read`, the first of them in line `number` of the file.
 ///
 /// A line is a row if it has as many fields as a frame has columns, or if nothing is known beforehand and an empty line
-/// ends the first block. Otherwise it is a frame.
+/// ends the first block. Otherwise, and if there are texts in it, it is a frame.
 fn of_numbers(
     lines: &mut TextLines<impl BufRead>,
     separator: Separator,
-    first: &[u8],
+    (number, read): (u64, &[&[u8]]),
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
-    let numbers = separator.numbers(first);
-    let (values, number) = (numbers.len(), lines.number());
+    let fields: Vec<&[u8]> = separator.fields(read[0]).collect();
+    let numeric = (0..fields.len()).filter(|&field| separator.is_numeric(fields[field]));
+    let numeric: Vec<usize> = numeric.collect();
+    let numbers = |line: &[u8]| -> Vec<f64> {
+        let all = separator.numbers(line);
+        let of_field = |&field: &usize| all.get(field).copied().unwrap_or(f64::NAN);
+        numeric.iter().map(of_field).collect()
+    };
+    let values = numeric.len();
+    let width = side(values).filter(|_| values == fields.len());
     let cells = |(rows, columns)| usize::from(rows) * usize::from(columns);
     // A file that grows is read no further than the answer needs.
-    let enough = match (options.shape, side(values)) {
+    let enough = match (options.shape, width) {
         (Some((rows, columns)), Some(width)) if width == columns && rows > 1 => rows + 1,
         (Some(shape), _) if values == cells(shape) + 2 => COMPARED,
         (Some(_), _) => 2,
         (None, _) => MAX_FRAME_SIDE + 1,
     };
-    let (mut block, mut parted) = (1_u16, false);
-    let mut compared = vec![numbers];
+    let mut compared: Vec<Vec<f64>> = read.iter().map(|line| numbers(line)).collect();
+    let (mut block, mut parted) = (if read.len() > 1 { 2_u16 } else { 1 }, false);
     while block < enough && lines.advance()? {
         if is_blank(lines.line()) {
             parted = true;
@@ -140,17 +188,20 @@ fn of_numbers(
             continue;
         }
         if block < COMPARED {
-            compared.push(separator.numbers(lines.line()));
+            compared.push(numbers(lines.line()));
         }
         block += 1;
     }
-    let (shape, lines) = match (options.shape, side(values)) {
+    let (shape, lines) = match (options.shape, width) {
         (Some(shape), Some(width)) if width == shape.1 && shape.0 > 1 => {
             (shape, LineLayout::Row { parted })
         }
         (Some(shape), _) => {
-            let fields = without_header(shape, number, &compared)?;
-            (shape, LineLayout::Frame(fields))
+            let found = without_header(shape, number, &compared)?;
+            (
+                shape,
+                LineLayout::Frame(found.among(&numeric, &fields, number)?),
+            )
         }
         (None, Some(width)) if parted && block > 1 => ((block, width), LineLayout::Row { parted }),
         (None, _) => {
@@ -166,6 +217,33 @@ fn of_numbers(
     })
 }
 
+impl FrameFields {
+    /// These fields of numbers alone, as fields of lines that have texts, too: the numbers of line `number` are in those of
+    /// its `fields` that `numeric` names.
+    ///
+    /// # Errors
+    /// If there is a text among the cells: it is none of them, and none of what stands beside them.
+    fn among(
+        self,
+        numeric: &[usize],
+        fields: &[&[u8]],
+        number: u64,
+    ) -> Result<Self, RecordingError> {
+        let cells: Vec<usize> = self.cells.iter().map(|&cell| numeric[cell]).collect();
+        if let Some(pair) = cells.windows(2).find(|pair| pair[1] - pair[0] > 1) {
+            let text = pair[0] + 1;
+            return Err(text_row::wrong(number, text + 1, fields[text]));
+        }
+        Ok(Self {
+            count: fields.len(),
+            header: self.header,
+            cells,
+            label: self.label.map(|label| numeric[label]),
+            time: self.time.map(|(time, factor)| (numeric[time], factor)),
+        })
+    }
+}
+
 /// The arrangement that the names in line `number` describe.
 ///
 /// # Errors
@@ -176,7 +254,7 @@ fn with_header(
     number: u64,
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
-    let roles: Vec<Option<FieldRole>> = names.iter().map(|name| role(name)).collect();
+    let roles = roles(names);
     let (shape, cells, note) = named_cells(names, &roles, number, options)?;
     let expected = usize::from(shape.0) * usize::from(shape.1);
     if cells.len() != expected {

@@ -24,6 +24,67 @@ fn error(found: &Recorded) -> String {
 }
 
 #[test]
+fn a_first_line_with_a_text_is_a_frame_if_the_next_line_has_one_there_too() {
+    let both = [vec![1.0, 2.0, 3.0, 4.0], vec![5.0, 6.0, 7.0, 8.0]];
+    for [first, second] in [
+        [
+            "2021-01-02T10:11:12.345,1,2,3,4",
+            "2021-01-02T10:11:12.445,5,6,7,8",
+        ],
+        [
+            "01/02/21 10:11:12:345;1;2;3;4",
+            "01/02/21 10:11:12:445;5;6;7;8",
+        ],
+        ["10:11:12.3 1 2 3 4", "10:11:12.4 5 6 7 8"],
+        [
+            "\"2021-01-02, 10:11\",1,2,3,4",
+            "\"2021-01-02, 10:12\",5,6,7,8",
+        ],
+        ["1,2,3,4,cup", "5,6,7,8,cup"],
+        ["cup,1,2,3,4,s1", "ring,5,6,7,8,s2"],
+        // A number beside it is told by how it grows.
+        ["cup,7,1,2,3,4", "cup,8,5,6,7,8"],
+        ["0,cup,1,2,3,4", "1,cup,5,6,7,8"],
+    ] {
+        let text = format!("{first}\n{second}\n");
+        assert_eq!(values(&text, Some((2, 2))), both, "{text}");
+    }
+    // These are names.
+    for text in [
+        "label,0,1,2,3\ncup,5,6,7,8\n",
+        "label,1,2,3,4\ncup,5,6,7,8\n",
+    ] {
+        assert_eq!(values(text, Some((2, 2))), both[1..], "{text}");
+    }
+    // A text between the cells is none of them.
+    let found = recorded(b"1,2,x,3,4\n5,6,x,7,8\n", Some((2, 2)));
+    assert_eq!(
+        error(&found),
+        "line 1, column 3: found \"x\", expected a number"
+    );
+}
+
+#[test]
+fn an_index_of_pandas_is_no_cell() {
+    let text = ",0,1,2,3\n0,1,2,3,4\n1,5,6,7,8\n";
+    let expected = [
+        (Some(0), None, vec![1.0, 2.0, 3.0, 4.0]),
+        (Some(1), None, vec![5.0, 6.0, 7.0, 8.0]),
+    ];
+    assert_eq!(frames(text, None), expected);
+    assert_eq!(frames(text, Some((2, 2))), expected);
+    let text = ",time,0,1,2,3\n7,0.5,1,2,3,4\n8,0.75,5,6,7,8\n";
+    let found = frames(text, Some((1, 4)));
+    assert_eq!(
+        (found[1].0, found[1].1, &found[1].2),
+        (Some(8), Some(0.25), &expected[1].2)
+    );
+    // Behind an offset of ROS, the values of the first line only look as if they counted.
+    let text = "0,1,2,3,4\n0,5,6,7,8\n";
+    assert_eq!(values(text, Some((2, 2))).len(), 2);
+}
+
+#[test]
 fn of_one_line_with_two_numbers_more_nothing_says_where_they_are() {
     let unclear =
         "line 1: 2 numbers more than the 4 cells, before or behind them: name the columns";
