@@ -189,7 +189,12 @@ pub(crate) fn role(name: &str) -> Option<FieldRole> {
         .split(|character: char| !character.is_alphabetic())
         .filter(|word| !word.is_empty())
         .collect();
+    // A letter with a number is one of several like it: `S00` is not a second.
     let first = *words.first()?;
+    let has_number = name.contains(|character: char| character.is_ascii_digit());
+    if first.chars().count() == 1 && has_number {
+        return None;
+    }
     let has = |units: &[&str]| words.iter().any(|word| units.contains(word));
     let factor = if has(&["ns", "nsec", "nanoseconds", "nanos"]) {
         1e-9
@@ -297,6 +302,7 @@ mod tests {
             ("timestamp", time(1.0)),
             ("Frame", Some(FieldRole::Label)),
             ("force", None),
+            ("S00", None),
             ("", None),
         ] {
             assert_eq!(role(name), expected, "{name}");

@@ -138,8 +138,17 @@ impl FrameLine {
             .deserialize(&mut content)
             .and_then(|()| content.end());
         read.map_err(|error| {
-            let message = json::message(&error);
-            FrameLineError::Json(error.column().max(1), message)
+            let column = error.column().max(1);
+            // JSON has no such number, but some programs write it.
+            let is_nan = line
+                .get(column - 1..)
+                .is_some_and(|rest| rest.starts_with(b"NaN"));
+            let message = if is_nan {
+                "found NaN, expected null where there is no cell".to_owned()
+            } else {
+                json::message(&error)
+            };
+            FrameLineError::Json(column, message)
         })?;
         let values = self.values.len();
         let wrong = |message: String| Err(FrameLineError::Json(1, message));

@@ -113,3 +113,16 @@ fn a_separator_in_quotes_is_part_of_a_field() {
     let text = "time,width 5\",r0c0,r0c1\n1,0.5,1,2\n";
     assert_eq!(values(text, None), [[1.0, 2.0]]);
 }
+
+#[test]
+fn values_are_counted_where_names_do_not_say_rows_and_columns() {
+    let found = recorded(b"t,S00,S01,S10,S11\n0.5,1,2,3,4\n", None);
+    assert!(
+        error(&found).starts_with("4 values a frame"),
+        "{}",
+        error(&found)
+    );
+    let found = recorded(b"{\"frame\":[[1,NaN]]}\n", None);
+    let expected = "line 1, column 14: found NaN, expected null where there is no cell";
+    assert_eq!(error(&found), expected);
+}
