@@ -65,7 +65,7 @@ fn a_stored_model_is_completed_answers_and_is_remembered() {
         &mut session,
         ":figure rectangle --length 4 --width 4 --x0 5 --y0 5<Enter>",
     );
-    shows(&session, &["tied: one, other", "50.0 %"]);
+    shows(&session, &["tied: one, other", "50.0 %", "one centre"]);
     // Two taxels that no shape of the set leaves.
     press(&mut session, "n<Space><Right><Right><Space>");
     shows(
@@ -81,6 +81,23 @@ fn a_stored_model_is_completed_answers_and_is_remembered() {
     let all = "no model or file \"nonsense\"; there are figures, figures-30, shapes, my parts";
     shows(&begin(":recognise nonsense<Enter>"), &[all]);
     shows(&begin("r"), &["Recognise: the shipped shapes"]);
+}
+
+#[test]
+fn the_pose_is_that_of_the_shape_that_the_touches_name() {
+    // Two touches: the octagon is the likeliest of the second one alone, the ellipse of both.
+    let begin = ":seed 4<Enter>:recognise figures-30<Enter>t<Space><Esc>";
+    let mut session = started(world(), begin);
+    shows(&session, &["likely: ellipse", "any angle"]);
+    hides(&session, &["repeats every"]);
+    press(&mut session, "x");
+    shows(&session, &["likely: octagon", "repeats every 45°"]);
+    // Touches that contradict each other: nothing is named, so the pose says whose it is.
+    let contradicts = ":recognise figures<Enter>\
+        :figure rectangle --length 4 --width 6 --x0 5 --y0 5<Enter>a\
+        :figure triangle --side 6 --x0 5 --y0 5<Enter>";
+    press(&mut session, contradicts);
+    shows(&session, &["unknown: no shape of the set leaves all", "triangle centre"]);
 }
 
 #[test]

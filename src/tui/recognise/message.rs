@@ -49,10 +49,12 @@ pub struct Look {
     pub trained: Arc<TrainedModel>,
     /// The imprint.
     pub imprint: Imprint,
+    /// The number of the shape that the answer names; None if it names none.
+    pub named: Option<usize>,
     /// The nearest imprint that a shape of the set leaves.
     pub nearest: Option<Nearest>,
-    /// The number of the shape that the answer names, or of that of the nearest imprint, and in which poses it leaves that
-    /// imprint.
+    /// The number of the named shape, or of that of the nearest imprint if none is named, and in which poses it leaves
+    /// the nearest imprint.
     pub pose: Option<(usize, PoseEstimate)>,
     /// Some of these poses, the likeliest first.
     pub poses: Vec<PlacedSource>,

@@ -292,11 +292,18 @@ impl Recognition {
         self.answer.as_ref()
     }
 
-    /// What was searched of the imprint on the matrix, once that is known.
+    /// The shape that the answer names.
+    fn named(&self) -> Option<usize> {
+        self.answer().and_then(|answer| answer.shape)
+    }
+
+    /// What was searched of the imprint on the matrix, once that is known. Touches that are kept or forgotten may change the
+    /// name; then its pose is searched for anew.
     pub fn look(&self) -> Option<&Look> {
         let look = self.look.as_deref()?;
         let trained = self.trained()?;
-        (look.imprint == self.present && Arc::ptr_eq(&look.trained, trained)).then_some(look)
+        let same = look.imprint == self.present && look.named == self.named();
+        (same && Arc::ptr_eq(&look.trained, trained)).then_some(look)
     }
 
     /// Takes what is on the matrix now.
@@ -361,8 +368,7 @@ impl Recognition {
             return None;
         }
         self.looking = true;
-        let shape = self.answer().and_then(|answer| answer.shape);
-        Some((trained, self.present, shape))
+        Some((trained, self.present, self.named()))
     }
 
     /// Notes that a search failed, so that this imprint is not searched for again.
@@ -371,6 +377,7 @@ impl Recognition {
             self.take_look(Look {
                 trained,
                 imprint: self.present,
+                named: self.named(),
                 nearest: None,
                 pose: None,
                 poses: Vec::new(),

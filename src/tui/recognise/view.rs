@@ -219,7 +219,7 @@ impl Panel<'_> {
         }
         if let Some(look) = page.look() {
             self.gap();
-            self.look(look, trained);
+            self.look(look, answer, trained);
         }
     }
 
@@ -243,7 +243,7 @@ impl Panel<'_> {
     }
 
     /// The nearest imprint, and the pose.
-    fn look(&mut self, look: &Look, trained: &TrainedModel) {
+    fn look(&mut self, look: &Look, answer: &Answer, trained: &TrainedModel) {
         match &look.nearest {
             None => self.text("no imprint of the set fits the matrix", Role::Text),
             Some(nearest) if nearest.distance > 0 => {
@@ -258,8 +258,10 @@ impl Panel<'_> {
             Some(_) => {}
         }
         if let Some((shape, pose)) = &look.pose {
-            let own = look.nearest.as_ref().map(|nearest| nearest.distance);
-            for line in pose_lines(trained, *shape, pose, own == Some(0)) {
+            // Of shapes that are tied, the pose is that of the first.
+            let is_named = answer.state != AnswerState::Tied && answer.shape == Some(*shape);
+            let whose = if is_named { "" } else { trained.name(*shape) };
+            for line in pose_lines(trained, whose, pose) {
                 self.text(&line, Role::Text);
             }
         }
@@ -328,13 +330,9 @@ fn legend(look: &Look, nearest: &Nearest) -> String {
 /// The marks of surplus and of missing taxels.
 const MARKS: [char; 2] = ['+', '-'];
 
-/// Where the shape lies: the mean and the spread over the poses that leave the imprint, in lines.
-fn pose_lines(trained: &TrainedModel, shape: usize, pose: &PoseEstimate, own: bool) -> [String; 3] {
-    let name = if own {
-        String::new()
-    } else {
-        format!("{} ", trained.name(shape))
-    };
+/// Where a shape lies: the mean and the spread over the poses that leave the imprint, in lines. `whose` is its name where
+/// the answer does not say it, otherwise empty.
+fn pose_lines(trained: &TrainedModel, whose: &str, pose: &PoseEstimate) -> [String; 3] {
     let what = match trained.model.anchor() {
         Anchor::Centre => "centre",
         Anchor::Corner => "corner",
@@ -342,7 +340,8 @@ fn pose_lines(trained: &TrainedModel, shape: usize, pose: &PoseEstimate, own: bo
     let [x, y] = pose.position;
     let [dx, dy] = pose.standard_deviation;
     let (dx, dy) = (spread_of(dx, 2), spread_of(dy, 2));
-    let position = format!("{name}{what} {x:.2} ± {dx}, {y:.2} ± {dy}");
+    let position = format!("{whose} {what} {x:.2} ± {dx}, {y:.2} ± {dy}");
+    let position = position.trim_start().to_owned();
     let poses = counted(pose.poses, "pose");
     let any = || ("any angle".to_owned(), poses.clone());
     let (angle, poses) = pose.angle.as_ref().map_or_else(any, |angle| {

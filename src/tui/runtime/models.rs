@@ -260,13 +260,13 @@ const POSES: usize = 13;
 pub(super) fn look(
     trained: Arc<TrainedModel>,
     imprint: Box<Imprint>,
-    shape: Option<usize>,
+    named: Option<usize>,
     post: Option<WorkerEventSink>,
 ) -> Option<WorkerEvent> {
     let search = move || {
         let nearest = trained.model.nearest(&imprint);
         let found = nearest.as_ref().and_then(|nearest| {
-            let shape = shape.or(Some(nearest.shape))?;
+            let shape = named.unwrap_or(nearest.shape);
             let all = &|_| true;
             let (pose, poses) = (trained.model).poses_of(shape, &nearest.imprint, POSES, all)?;
             Some(((shape, pose), poses))
@@ -275,6 +275,7 @@ pub(super) fn look(
         WorkerEvent::Recognition(RecognitionEvent::Looked(Box::new(Look {
             trained,
             imprint: *imprint,
+            named,
             nearest,
             pose,
             poses: poses.into_iter().flatten().collect(),
