@@ -60,7 +60,7 @@ pub use half_step::HalfStep;
 pub use key::{ImprintKey, KeyTable};
 pub use model::{Model, ModelError, ModelMerge, ModelParts, NamedShape, ShapeCount};
 pub use nearest::Nearest;
-pub use noise::{Distances, Method, Noise, NoiseError};
+pub use noise::{Distances, Method, Noise, NoiseError, UnexplainedDifference};
 pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
 pub use sets::{GridSteps, GridStepsError, default_figures, equal_figures};

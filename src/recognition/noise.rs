@@ -14,6 +14,8 @@
 //!
 //! [`scan`](super::scan) finds the near keys.
 
+use std::fmt;
+
 use crate::imprint::Imprint;
 use crate::index::wide;
 use crate::recognition::model::{Model, float};
@@ -37,6 +39,37 @@ pub struct NoiseError {
     /// What was given.
     pub found: f64,
 }
+
+/// More taxels of a touch differ from every imprint of a model than a noise explains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct UnexplainedDifference {
+    /// Number of taxels that differ from the nearest imprint.
+    pub found: u32,
+    /// Number of taxels that are expected to flip.
+    pub expected: f64,
+}
+
+impl fmt::Display for UnexplainedDifference {
+    /// What it means, in a sentence.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let expected = match libm::round(self.expected) {
+            few if few < 1.0 => "less than 1 is".to_owned(),
+            1.0 => "about 1 is".to_owned(),
+            many => format!("about {many} are"),
+        };
+        let found = self.found;
+        write!(
+            f,
+            "{found} taxels differ, {expected} expected at this noise: perhaps none of these shapes"
+        )
+    }
+}
+
+/// A difference is not explained by a noise that makes it, or a larger one, less probable than this. A posterior compares the
+/// shapes of a set only with each other, so it names one of them however far the touch is from all. If a shape of the set
+/// left the touch, its own imprint is no nearer than the nearest one, so this happens to fewer than one touch in a million.
+const EXPLAINED: f64 = 1e-6;
 
 impl Noise {
     /// Every taxel flips with this probability.
@@ -66,6 +99,45 @@ impl Noise {
     /// Returns the taxels that are left out; None if all count.
     pub fn dead(&self) -> Option<&Imprint> {
         self.dead.as_ref()
+    }
+
+    /// Returns that a touch differs from its nearest imprint, in `found` taxels, by more than this noise explains; None if
+    /// it explains that.
+    ///
+    /// ```
+    /// use taxel::recognition::Noise;
+    ///
+    /// let touch = "#...\n....\n....\n....".parse()?;
+    /// let noise = Noise::new(0.01)?;
+    /// assert_eq!(noise.unexplained(&touch, 2), None);
+    /// assert!(noise.unexplained(&touch, 8).is_some());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn unexplained(&self, touch: &Imprint, found: u32) -> Option<UnexplainedDifference> {
+        let (columns, rows) = (touch.columns(), touch.rows());
+        let dead = self
+            .dead
+            .map_or(0, |dead| dead.resized(columns, rows).count());
+        let cells = u32::from(columns) * u32::from(rows) - dead;
+        (self.at_least(found, cells) < EXPLAINED).then(|| UnexplainedDifference {
+            found,
+            expected: self.flip * f64::from(cells),
+        })
+    }
+
+    /// The probability that at least `least` of some taxels flip.
+    fn at_least(&self, least: u32, cells: u32) -> f64 {
+        // As logarithms: the first terms may be too small for an `f64`.
+        let mut term = f64::from(cells) * libm::log1p(-self.flip);
+        let mut sum = 0.0;
+        for flips in 0..=cells {
+            if flips >= least {
+                sum += libm::exp(term);
+            }
+            let ways = f64::from(cells - flips) / f64::from(flips + 1);
+            term += libm::log(ways) + libm::log(self.ratio());
+        }
+        sum
     }
 
     /// The factor by which each differing taxel makes a touch less probable.
@@ -391,6 +463,29 @@ mod tests {
             .with(Axis::Angle, range("0:350:10"));
         let training = Training::new(shapes, sensor, Anchor::Corner, ranges).expect("a set");
         training.run().expect("nothing is cut off")
+    }
+
+    #[test]
+    fn a_noise_explains_as_many_flips_as_it_makes_in_a_million_touches() {
+        let touch = Imprint::empty(16, 16);
+        let noise = Noise::new(0.01).expect("in range");
+        assert!(noise.at_least(0, 256) > 1.0 - 1e-12);
+        // The distribution of Poisson with the same mean has 2.4e-6 and 4.7e-7 here.
+        assert_eq!(noise.unexplained(&touch, 13), None);
+        let found = noise.unexplained(&touch, 14).expect("not explained");
+        assert_eq!(
+            found.to_string(),
+            "14 taxels differ, about 3 are expected at this noise: perhaps none of these shapes"
+        );
+        // Of a row that is dead nothing is expected.
+        let dead = "################".parse().expect("a row");
+        let found = noise.without(dead).unexplained(&touch, 14);
+        assert_eq!(found.map(|own| own.expected), Some(2.4));
+        // The largest matrix, where the probability of no flip is no `f64`.
+        let most = Noise::new(0.49).expect("in range");
+        let largest = Imprint::empty(64, 64);
+        assert_eq!(most.unexplained(&largest, 2100), None);
+        assert!(most.unexplained(&largest, 2300).is_some());
     }
 
     #[test]

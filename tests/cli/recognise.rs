@@ -102,6 +102,28 @@ fn people_read_names_bars_and_differences() {
 }
 
 #[test]
+fn a_touch_that_noise_does_not_explain_is_doubted() {
+    let place = place();
+    // A square with two corners missing, and a cross, of which no rectangle is near.
+    let near = "......\n..###.\n.####.\n.####.\n.###..\n......\n";
+    let cross = "...........\n.....#.....\n.....#.....\n.....#.....\n.....#.....\n.#########.\n\
+                 .....#.....\n.....#.....\n.....#.....\n.....#.....\n...........\n";
+    let doubt = "about 1 is expected at this noise: perhaps none of these shapes\n";
+    for (touch, is_doubted) in [(near, false), (cross, true)] {
+        let run = place.run("recognise - --model r --noise 0.01", touch);
+        let text = run.stdout;
+        assert!(text.contains("taxels differ\n"), "{text}");
+        assert_eq!(text.contains(doubt), is_doubted, "{text}");
+    }
+    // Without noise, and with none, nothing is named.
+    for flags in ["", "--noise 0"] {
+        let run = place.run(&format!("recognise - --model r {flags}"), cross);
+        assert!(run.stdout.starts_with("unknown: "), "{}", run.stdout);
+        assert!(!run.stdout.contains("perhaps"), "{}", run.stdout);
+    }
+}
+
+#[test]
 fn the_exit_status_says_whether_the_answer_was_expected() {
     let place = place();
     place.done(&format!(

@@ -123,6 +123,9 @@ pub(crate) struct AnswerText<'a> {
 impl AnswerText<'_> {
     /// The whole text.
     pub(crate) fn text(&self, charset: Charset) -> String {
+        let touches = [*self.touch];
+        let evidence = Evidence::of(&touches).under(self.noise.as_ref());
+        let nearest = self.model.nearest_of(evidence);
         let mut text = self.verdict();
         if let Some(noise) = self.noise {
             // Cannot fail: the text is kept in memory.
@@ -132,12 +135,17 @@ impl AnswerText<'_> {
                 short(noise.flip()),
                 compared(self.answer.method)
             );
+            let distance = nearest.as_ref().map_or(0, |nearest| nearest.distance);
+            let unexplained = noise.unexplained(self.touch, distance);
+            if let Some(warning) = unexplained.filter(|_| !self.answer.ranking.is_empty()) {
+                let _ = writeln!(text, "{warning}");
+            }
         }
         if self.answer.at_rim {
             text += "the imprint reaches the rim of the matrix: it may be cut off\n";
         }
         text += &self.ranking(charset);
-        text += &self.nearest();
+        text += &self.nearest(nearest);
         charset.lines(&text)
     }
 
@@ -186,10 +194,7 @@ impl AnswerText<'_> {
     }
 
     /// The nearest imprint of the model and where it differs from the touch; nothing if it is the touch.
-    fn nearest(&self) -> String {
-        let touches = [*self.touch];
-        let evidence = Evidence::of(&touches).under(self.noise.as_ref());
-        let nearest = self.model.nearest_of(evidence);
+    fn nearest(&self, nearest: Option<Nearest>) -> String {
         let Some(nearest) = nearest.filter(|nearest| nearest.distance > 0) else {
             return String::new();
         };

@@ -3,7 +3,7 @@
 //! A worker answers one imprint at a time, always the newest; neither its training nor its search delays drawing.
 
 use crate::imprint::Imprint;
-use crate::recognition::{AnswerState, Evidence, Model, Noise};
+use crate::recognition::{AnswerState, Evidence, Model, Noise, UnexplainedDifference};
 use crate::tui::recognise::sets::ModelChoice;
 
 /// What a model says of an imprint.
@@ -19,11 +19,16 @@ pub struct NamedImprint {
     pub probability: Option<f64>,
     /// The shape whose imprint is nearest, and in how many taxels that differs.
     pub nearest: Option<(String, u32)>,
+    /// That more taxels differ from it than the noise explains.
+    pub unexplained: Option<UnexplainedDifference>,
 }
 
 impl NamedImprint {
-    /// The answer of a model to an imprint, of which the evidence is.
-    pub fn new(model: &Model, imprint: &Imprint, evidence: Evidence<'_>) -> Self {
+    /// The answer of a model to an imprint, under a noise if one is given. One touch is all the evidence: frames of a source
+    /// may be of different shapes.
+    pub fn new(model: &Model, imprint: &Imprint, noise: Option<&Noise>) -> Self {
+        let touches = [*imprint];
+        let evidence = Evidence::of(&touches).under(noise);
         let answer = model.recognise(evidence);
         let name = |shape: usize| model.shapes()[shape].name.clone();
         let shapes = match answer.state {
@@ -31,12 +36,15 @@ impl NamedImprint {
             _ => answer.shape.into_iter().collect(),
         };
         let nearest = model.nearest_of(evidence);
+        let distance = nearest.as_ref().map_or(0, |nearest| nearest.distance);
+        let unexplained = noise.and_then(|noise| noise.unexplained(imprint, distance));
         Self {
             imprint: *imprint,
             state: answer.state,
             names: shapes.into_iter().map(name).collect(),
             probability: answer.ranking.first().map(|&(_, probability)| probability),
             nearest: nearest.map(|nearest| (name(nearest.shape), nearest.distance)),
+            unexplained: unexplained.filter(|_| !answer.ranking.is_empty()),
         }
     }
 }
@@ -121,6 +129,7 @@ mod tests {
             names: Vec::new(),
             probability: None,
             nearest: None,
+            unexplained: None,
         });
         assert!(!naming.ask(&one));
         assert!(naming.ask(&other));

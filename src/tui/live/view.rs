@@ -314,10 +314,13 @@ fn named(naming: &Naming, shown: Option<&Imprint>) -> [(&'static str, Option<Str
             state => {
                 let name = answer.names.join(" or ");
                 let percent = answer.probability.map(|own| fitting(100.0 * own, 4));
+                let how_sure = match answer.unexplained {
+                    Some(_) => "perhaps none",
+                    None => state.name(),
+                };
                 format!(
-                    "{name} {} %, {}",
-                    percent.unwrap_or_else(String::new),
-                    state.name()
+                    "{name} {} %, {how_sure}",
+                    percent.unwrap_or_else(String::new)
                 )
             }
         })),

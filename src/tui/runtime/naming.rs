@@ -14,7 +14,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
 use crate::imprint::Imprint;
-use crate::recognition::{Evidence, Model, Noise};
+use crate::recognition::Model;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::live::naming::{NamedImprint, NamingRequest};
@@ -116,7 +116,7 @@ impl ShapeNamer {
         };
         let event = match own.model.get_or_init(train) {
             Ok(model) => {
-                let named = named(model, noise.as_ref(), imprint);
+                let named = NamedImprint::new(model, imprint, noise.as_ref());
                 LiveEvent::Named(*number, Box::new(named))
             }
             Err(reason) => LiveEvent::NotNamed(*number, reason.clone()),
@@ -154,18 +154,10 @@ fn answer(
     let progress = |_: u64| !stop.load(Ordering::Relaxed);
     let model = store.model(&naming.choice, &|_| true, &progress)?;
     while let Ok(imprint) = imprints.recv() {
-        let named = named(&model, naming.noise.as_ref(), &imprint);
+        let named = NamedImprint::new(&model, &imprint, naming.noise.as_ref());
         say(LiveEvent::Named(naming.number, Box::new(named)));
     }
     Ok(())
-}
-
-/// Names an imprint, with the noise of the sensor where that is known. One touch is all the evidence: frames of a
-/// source may be of different shapes.
-fn named(model: &Model, noise: Option<&Noise>, imprint: &Imprint) -> NamedImprint {
-    let touches = [*imprint];
-    let evidence = Evidence::of(&touches).under(noise);
-    NamedImprint::new(model, imprint, evidence)
 }
 
 #[cfg(test)]
