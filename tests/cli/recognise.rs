@@ -124,6 +124,25 @@ fn a_touch_that_noise_does_not_explain_is_doubted() {
 }
 
 #[test]
+fn an_imprint_that_is_smaller_than_all_of_the_model_is_unknown_whatever_the_noise() {
+    let place = place();
+    let text = "unknown: no imprint of the model fits on 3 × 3 taxels\n";
+    for flags in ["", "--noise 0", "--noise 0.01"] {
+        let run = place.run(&format!("recognise - --model r {flags}"), SPECK);
+        assert_eq!(run.stdout, text, "{flags}");
+    }
+    let json = answer(&place.run("recognise - --model r --noise 0.01 --json", SPECK));
+    assert_eq!(
+        (&json["state"], &json["method"]),
+        (&"unknown".into(), &"exact".into())
+    );
+    assert_eq!(
+        (&json["noise"], &json["nearest"]),
+        (&0.01.into(), &Value::Null)
+    );
+}
+
+#[test]
 fn the_exit_status_says_whether_the_answer_was_expected() {
     let place = place();
     place.done(&format!(

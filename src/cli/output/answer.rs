@@ -126,8 +126,9 @@ impl AnswerText<'_> {
         let touches = [*self.touch];
         let evidence = Evidence::of(&touches).under(self.noise.as_ref());
         let nearest = self.model.nearest_of(evidence);
-        let mut text = self.verdict();
-        if let Some(noise) = self.noise {
+        let mut text = self.verdict(nearest.is_some());
+        // Where nothing fits, nothing was compared.
+        if let (Some(noise), Some(nearest)) = (self.noise, &nearest) {
             // Cannot fail: the text is kept in memory.
             let _ = writeln!(
                 text,
@@ -135,8 +136,7 @@ impl AnswerText<'_> {
                 short(noise.flip()),
                 compared(self.answer.method)
             );
-            let distance = nearest.as_ref().map_or(0, |nearest| nearest.distance);
-            let unexplained = noise.unexplained(self.touch, distance);
+            let unexplained = noise.unexplained(self.touch, nearest.distance);
             if let Some(warning) = unexplained.filter(|_| !self.answer.ranking.is_empty()) {
                 let _ = writeln!(text, "{warning}");
             }
@@ -154,8 +154,9 @@ impl AnswerText<'_> {
         &self.model.shapes()[shape].name
     }
 
-    /// The first line: which shape it is and how certain that is, or why there is none.
-    fn verdict(&self) -> String {
+    /// The first line: which shape it is and how certain that is, or why there is none; `any_fits`: whether an imprint of the
+    /// model fits on the matrix.
+    fn verdict(&self, any_fits: bool) -> String {
         match (self.answer.state, self.answer.shape) {
             (AnswerState::Tied, _) => {
                 let tied = self.answer.tied.iter().map(|&shape| self.name(shape));
@@ -166,7 +167,14 @@ impl AnswerText<'_> {
                 "rejected: no shape reaches the probability of --reject\n".to_owned()
             }
             (state, Some(shape)) => format!("{}: {}\n", self.name(shape), state.name()),
-            (_, None) => "unknown: no shape of the model leaves this imprint\n".to_owned(),
+            (_, None) if any_fits => {
+                "unknown: no shape of the model leaves this imprint\n".to_owned()
+            }
+            (_, None) => format!(
+                "unknown: no imprint of the model fits on {} × {} taxels\n",
+                self.touch.columns(),
+                self.touch.rows()
+            ),
         }
     }
 
