@@ -77,6 +77,20 @@ fn a_stored_model_is_completed_answers_and_is_remembered() {
     begin("rO");
     shows(&begin("r"), &["Recognise: the shipped shapes"]);
     shows(&begin(":recognise <Tab>"), &["figures-30", "my parts"]);
+    // A file is named by its path, and not remembered: the next run may begin in another folder.
+    let models = ModelFolder::beside(library.folder());
+    let file = folder.path().join("parts of today.npz");
+    fs::copy(models.file(&Name::new("my parts").expect("a name")), &file).expect("copied");
+    let by_path = format!(":recognise {}<Enter>", file.display());
+    shows(&begin(&by_path), &["Recognise: model parts of today.npz"]);
+    shows(&begin("r"), &["Recognise: the shipped shapes"]);
+    let missing = ":recognise ./nowhere.npz<Enter>";
+    shows(&begin(missing), &["no model or file \"./nowhere.npz\"; there are"]);
+    let in_folder = format!(":recognise {}<Enter>", folder.path().display());
+    shows(&begin(&in_folder), &["not a regular file"]);
+    shows(&begin(":recognise ./Cargo.t<Tab>"), &[":recognise ./Cargo.toml"]);
+    // So is one in the working folder by its name; this one holds no model.
+    shows(&begin(":recognise Cargo.toml<Enter>"), &["Cargo.toml: "]);
     // One that does not exist is refused by what there is, and not remembered.
     let all = "no model or file \"nonsense\"; there are figures, figures-30, shapes, my parts";
     shows(&begin(":recognise nonsense<Enter>"), &[all]);

@@ -94,7 +94,7 @@ fn with_arguments(
         (Arguments::Sensor, words) => sensor(words, app),
         (Arguments::Ranges, words) => explore(words, app),
         (Arguments::Model, _) => {
-            let choice = ModelChoice::from_name(name_of(rest)?);
+            let choice = ModelChoice::from_text(rest);
             Ok(Message::Recognise(RecogniseMessage::Choose(choice)))
         }
         (Arguments::Sizes, words) => {

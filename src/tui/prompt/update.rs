@@ -72,12 +72,18 @@ fn complete(app: &mut App, mut dialog: CommandDialog) -> Option<Effect> {
     let rest = line.split_once(' ').map_or("", |(_, rest)| rest);
     let last_word = rest.trim_start().to_owned();
     app.dialogs.push(Dialog::Command(dialog));
-    wanted.map(|names| match names {
+    wanted.map(|names| names_for(names, last_word))
+}
+
+/// The request for the names that complete the last word of a command. A model may also be a path.
+fn names_for(wanted: Arguments, last_word: String) -> Effect {
+    match wanted {
         Arguments::File(_) | Arguments::FrameSource => Effect::File(FileRequest::Paths(last_word)),
+        Arguments::Model if last_word.contains('/') => Effect::File(FileRequest::Paths(last_word)),
         Arguments::Model => Effect::Library(LibraryRequest::Models),
         Arguments::Deleted => Effect::Library(LibraryRequest::Trash),
         _ => Effect::Library(LibraryRequest::List),
-    })
+    }
 }
 
 /// Does what a prompt asks for.

@@ -48,6 +48,11 @@ impl ModelChoice {
         own.unwrap_or(Self::Stored(name))
     }
 
+    /// What stands after `:recognise`: the name of a set or model, otherwise the path of a file.
+    pub fn from_text(text: &str) -> Self {
+        Name::new(text).map_or_else(|_| Self::File(text.into()), Self::from_name)
+    }
+
     /// Its name after `:recognise`.
     pub fn name(&self) -> &str {
         match self {
@@ -104,8 +109,7 @@ impl fmt::Display for ModelChoice {
             Self::Figures => f.write_str("the seven figures"),
             Self::EqualFigures => f.write_str("the seven figures of 30 cells"),
             Self::Shipped => f.write_str("the shipped shapes"),
-            Self::Stored(name) => write!(f, "model {name}"),
-            Self::File(path) => write!(f, "model {}", path.display()),
+            Self::Stored(_) | Self::File(_) => write!(f, "model {}", self.name()),
         }
     }
 }

@@ -242,6 +242,8 @@ impl Recognition {
         self.stored = prepared.stored;
         let reason = match prepared.trained {
             Ok(trained) => {
+                // What was taken for the name of a stored model may be that of a file.
+                self.choice = trained.choice.clone();
                 self.state = ModelState::Ready(trained);
                 self.ask();
                 return None;

@@ -7,8 +7,9 @@
 //! What reads from a disk that hangs cannot be stopped. It is left to itself, and `GivenUp` says so.
 //!
 //! A built-in set is trained once; the cache keeps its model, if the world has one. A stored model is read from the folder
-//! beside the library. Training goes on while a sweep begins, and stops only on request.
+//! beside the library, any other from its file. Training goes on while a sweep begins, and stops only on request.
 
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
@@ -17,8 +18,9 @@ use std::time::Instant;
 use crate::formats::Name;
 use crate::imprint::Imprint;
 use crate::memory::MemoryGuard;
+use crate::quote::shortened;
 use crate::recognition::{Model, TrainingError};
-use crate::storage::{Library, ModelCache, ModelFolder, load_whole_model};
+use crate::storage::{Library, ModelCache, ModelFolder, load_whole_model, location};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::recognise::message::{Look, Prepared, RecognitionEvent};
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel, unknown_set};
@@ -68,9 +70,7 @@ impl ModelStore {
         let training = match (choice.training(), choice) {
             (Some(training), _) => training.map_err(|error| error.to_string())?,
             (None, ModelChoice::Stored(name)) => return self.stored(name),
-            (None, ModelChoice::File(path)) => {
-                return load_whole_model(path).map_err(|error| error.to_string());
-            }
+            (None, ModelChoice::File(path)) => return self.file(path),
             (None, _) => return Err(format!("{choice} cannot be trained")),
         };
         let cached = self
@@ -106,13 +106,45 @@ impl ModelStore {
     fn stored(&self, name: &Name) -> Result<Model, String> {
         let folder = self.folder.as_ref();
         let folder = folder.ok_or_else(|| format!("there is no model {name}"))?;
-        load_whole_model(&folder.file(name)).map_err(|error| {
+        self.load(name.as_str(), &folder.file(name))
+    }
+
+    /// Reads a model from a file anywhere, whose path may begin with `~`.
+    fn file(&self, path: &Path) -> Result<Model, String> {
+        let text = path.to_string_lossy();
+        let below_home = path.to_str().and_then(location::below_home);
+        let path = below_home.unwrap_or_else(|| path.to_owned());
+        // To open a pipe waits, and to open a serial line may reset its device.
+        if path.metadata().is_ok_and(|kind| !kind.is_file()) {
+            return Err(format!("{}: not a regular file", shortened(&text)));
+        }
+        self.load(&text, &path)
+    }
+
+    /// Reads a model, which the user called `name`.
+    fn load(&self, name: &str, path: &Path) -> Result<Model, String> {
+        load_whole_model(path).map_err(|error| {
             if error.is_missing() {
-                unknown_set(name.as_str(), &self.names())
+                unknown_set(name, &self.names())
             } else {
                 error.to_string()
             }
         })
+    }
+
+    /// The file that a choice means: as on the command line, a name that no model has may be that of a file in the working
+    /// folder.
+    fn located(&self, choice: ModelChoice) -> ModelChoice {
+        let ModelChoice::Stored(name) = &choice else {
+            return choice;
+        };
+        let folder = self.folder.as_ref();
+        let is_stored = folder.is_some_and(|folder| folder.file(name).exists());
+        let path = Path::new(name.as_str());
+        if is_stored || !path.exists() {
+            return choice;
+        }
+        ModelChoice::File(path.to_owned())
     }
 }
 
@@ -242,6 +274,7 @@ fn prepare(
     reading: &ModelReading,
     (begins, progress): Calls<'_>,
 ) -> RecognitionEvent {
+    let choice = store.located(choice);
     let model = store.model(&choice, begins, progress);
     reading.begin("Listing the models");
     let stored = store.names();

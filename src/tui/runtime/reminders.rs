@@ -55,7 +55,8 @@ impl Reminders {
         app.forms = self.values.clone();
     }
 
-    /// Remembers what is new. A set counts once its model is there, so that none is remembered that does not exist.
+    /// Remembers what is new. A set counts once its model is there, so that none is remembered that does not exist; a file
+    /// does not, since the next run may begin in another folder.
     pub(super) fn note(&mut self, app: &App, queue: &mut DiskQueue) {
         let mut write = |file: &RememberedFile, lines| {
             // The answer says nothing.
@@ -65,7 +66,10 @@ impl Reminders {
             write(&self.commands, app.commands.clone());
             self.remembered = app.commands.len();
         }
-        let now = trained_set(app).filter(|now| self.chosen.as_ref() != Some(*now));
+        let is_new = |now: &&ModelChoice| {
+            !matches!(now, ModelChoice::File(_)) && self.chosen.as_ref() != Some(*now)
+        };
+        let now = trained_set(app).filter(is_new);
         if let Some(now) = now {
             write(&self.set, vec![now.name().to_owned()]);
             self.chosen = Some(now.clone());
