@@ -1,11 +1,12 @@
 //! Two imprints side by side: where they differ, their descriptors, and the differences of these.
 //!
 //! ```text
-//! on the matrix / washer   differ in 5 taxels        what is compared | how many taxels differ
-//!    0   2   4   6            A        B        B-A
-//!  0 · · a █ b ·      NA      52       40       -12     █ in both, a b in one only | descriptors of the main regions
+//! 5 taxels differ   A: washer   B: the matrix        how many taxels differ | what is compared, the earlier one first
+//!    0   2   4   6       A   B   B-A
+//!  0 · · a █ b ·    NA   40  52  +12                 █ in both, a b in one only | descriptors of the main regions
 //! ```
-//! On a wide screen A and B stand beside the view of their differences; elsewhere Tab shows one after the other.
+//! On a wide screen A and B stand beside the view of their differences; elsewhere Tab shows one after the other. Where there
+//! is no room for the descriptors beside a view, they are a view of their own.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -19,20 +20,16 @@ use crate::tui::app::page::{Page, Slot};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::number::{around, narrow};
-use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::theme::{Role, Theme, spelling};
 use crate::tui::widget::write;
 
-/// Columns of the symbol of a descriptor.
-const SYMBOL: usize = 6;
-/// Columns of a value.
-const VALUE: usize = 14;
 /// Columns of the row ruler.
 const RULER: u16 = 3;
 
-/// Columns of the descriptors of both and their differences. The difference of two points is cut where there are no more.
-const TABLE: u16 = 7 + 2 * 15 + 7;
+/// Columns between two columns of the table.
+const GAP: u16 = 2;
 
-/// What the grid shows.
+/// What is shown in one place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ComparedView {
     /// Which taxels are active in both, in one, in none.
@@ -41,12 +38,20 @@ enum ComparedView {
     First,
     /// The second one.
     Second,
+    /// The descriptors, where they have no room beside the others.
+    Descriptors,
 }
 
-use ComparedView::{Difference, First, Second};
+use ComparedView::{Descriptors, Difference, First, Second};
 
 /// The views in the order of Tab.
-const VIEWS: [ComparedView; 3] = [Difference, First, Second];
+const VIEWS: [ComparedView; 4] = [Difference, First, Second, Descriptors];
+
+/// The views beside which the descriptors stand.
+const GRIDS: &[ComparedView] = VIEWS.split_at(3).0;
+
+/// A row of the table: the symbol of a descriptor, its values, their difference.
+type TableRow = [String; 4];
 
 /// Two imprints of one size, and what they are.
 #[derive(Clone, Debug)]
@@ -55,10 +60,12 @@ pub struct Comparison {
     imprints: Box<[Imprint; 2]>,
     /// What each is, for the headings.
     names: [String; 2],
-    /// The main region of each; None where nothing is active.
-    described: Box<[Option<Description>; 2]>,
+    /// The descriptors, below a heading.
+    table: Vec<TableRow>,
     /// The index of the view that is shown.
     view: usize,
+    /// The number of rows of the table that are hidden above.
+    top: usize,
 }
 
 impl Comparison {
@@ -68,22 +75,56 @@ impl Comparison {
         let columns = first.1.columns().max(second.1.columns());
         let rows = first.1.rows().max(second.1.rows());
         let imprints = [first.1, second.1].map(|imprint| imprint.resized(columns, rows));
-        let described = imprints.each_ref().map(|imprint| {
-            let regions = regions(imprint);
-            let main = main_region(&regions).and_then(|main| regions.get(main));
-            main.map(Description::of)
-        });
+        let table = table(&imprints);
         Self {
             imprints: Box::new(imprints),
             names: [first.0, second.0],
-            described: Box::new(described),
+            table,
             view: 0,
+            top: 0,
         }
     }
 
-    /// Shows the view that comes `by` further on, the first after the last.
-    pub fn next_view(&mut self, by: i8) {
-        self.view = around(self.view, by, VIEWS.len());
+    /// Shows the view that comes `by` further on, the first after the last, in a room of this many columns and rows.
+    pub fn next_view(&mut self, by: i8, room: (u16, u16)) {
+        let views = self.views(room.0);
+        self.view = around(self.view.min(views.len() - 1), by, views.len());
+    }
+
+    /// Scrolls the descriptors down by some rows, in a room of this many columns and rows.
+    pub fn scroll(&mut self, lines: i16, room: (u16, u16)) {
+        let top = self.first_row(room.1.saturating_sub(HEADING));
+        self.top = top.saturating_add_signed(isize::from(lines));
+        self.top = self.first_row(room.1.saturating_sub(HEADING));
+    }
+
+    /// The first visible row of the table below its heading, in this many lines.
+    fn first_row(&self, lines: u16) -> usize {
+        self.top.min(self.table.len().saturating_sub(lines.into()))
+    }
+
+    /// Columns of a view with one character a taxel, or with two.
+    fn grid(&self, characters: u16) -> u16 {
+        RULER + characters * u16::from(self.imprints[0].columns()) + 1
+    }
+
+    /// Columns of each column of the table.
+    fn widths(&self) -> [u16; 4] {
+        std::array::from_fn(|column| {
+            let widths = self.table.iter().map(|row| ascii_width(&row[column]));
+            narrow(widths.fold(0, usize::max))
+        })
+    }
+
+    /// The views that Tab shows in this many columns.
+    fn views(&self, columns: u16) -> &'static [ComparedView] {
+        let [symbol, first, second, _] = self.widths();
+        let least = symbol + first + second + 2 * GAP;
+        if self.grid(1) + least <= columns {
+            GRIDS
+        } else {
+            &VIEWS
+        }
     }
 
     /// The taxels in which they differ.
@@ -102,10 +143,12 @@ impl Comparison {
             (room / cell).min(columns.into()),
             area.height.saturating_sub(2).min(rows.into()),
         );
+        let meanings = ["a: only A, b: only B", "a: A, b: B"];
         let title = match view {
-            Difference => "a: only A, b: only B",
+            Difference => write::first_fitting(&meanings, area.width.saturating_sub(1).into()),
             First => "A",
             Second => "B",
+            Descriptors => return,
         };
         let cut = wide < columns.into() || high < rows.into();
         let title = format!("{title}{}", if cut { " (cut)" } else { "" });
@@ -141,44 +184,81 @@ impl Comparison {
         }
     }
 
-    /// Draws the descriptors of both and their differences.
+    /// Draws the descriptors of both and their differences; without these where they do not fit, since they follow from the
+    /// values. Arrows say where there are more rows.
     fn draw_table(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) {
-        let head = format!("{:SYMBOL$} {:VALUE$} {:VALUE$} B-A", "", "A", "B");
-        write::line(buffer, area, theme, [(head.as_str(), Role::Title)]);
-        for (index, descriptor) in DESCRIPTORS.iter().enumerate() {
-            let values = self.described.each_ref().map(|described| {
-                described
-                    .as_ref()
-                    .map_or(Value::None, |description| (descriptor.measure)(description))
-            });
-            let [first, second] = values.map(|value| text(theme, descriptor, value));
-            let by = difference(values[0], values[1]);
-            let sign = if matches!(by, Some(Value::Number(by)) if by > 0.0) {
-                "+"
-            } else {
-                ""
+        let widths = self.widths();
+        let whole = widths.iter().sum::<u16>() + 3 * GAP <= area.width;
+        let columns = if whole { 4 } else { 3 };
+        let top = self.first_row(area.height);
+        let visible = usize::from(area.height).saturating_sub(1);
+        let [above, below, ..] = theme.more();
+        let more = [
+            (top > 0, above),
+            (top + visible + 1 < self.table.len(), below),
+        ];
+        let more: String = more
+            .iter()
+            .filter(|(any, _)| *any)
+            .map(|(_, sign)| sign)
+            .collect();
+        let rows = self
+            .table
+            .iter()
+            .take(1)
+            .chain(self.table.iter().skip(top + 1));
+        for (index, row) in rows.take(visible + 1).enumerate() {
+            let is_same = row[1] == row[2];
+            let roles = match (index, is_same) {
+                (0, _) => [Role::Title; 2],
+                (_, true) => [Role::Key, Role::Quiet],
+                (_, false) => [Role::Key, Role::Text],
             };
-            let by = by.map_or(theme.none().to_owned(), |by| {
-                format!("{sign}{}", text(theme, descriptor, by))
-            });
-            let symbol = format!("{:SYMBOL$} ", descriptor.symbol);
-            // A long first value moves the second one, but not the difference.
-            let both = format!("{first:VALUE$} {second}");
-            let both = format!("{both:0$} ", 2 * VALUE + 1);
-            let role = if first == second {
-                Role::Quiet
-            } else {
-                Role::Text
-            };
-            let by = if first == second { "=" } else { by.as_str() };
-            let pieces = [
-                (symbol.as_str(), Role::Key),
-                (both.as_str(), role),
-                (by, role),
-            ];
-            write::line(buffer, write::row(area, index + 1), theme, pieces);
+            let mut place = write::row(area, index);
+            for (column, width) in widths.into_iter().enumerate().take(columns) {
+                let text = match (index, column) {
+                    (0, 0) => more.as_str().into(),
+                    _ => theme.text(&row[column]),
+                };
+                let role = roles[usize::from(column > 0)];
+                write::line(buffer, place, theme, [(&*text, role)]);
+                place = write::right_of(place, place.x.saturating_add(width + GAP));
+            }
         }
     }
+}
+
+/// The descriptors of the main regions of two imprints, below a heading. Where nothing is active, counts and sums are 0.
+fn table(imprints: &[Imprint; 2]) -> Vec<TableRow> {
+    let described = imprints.each_ref().map(|imprint| {
+        let regions = regions(imprint);
+        let main = main_region(&regions).and_then(|main| regions.get(main));
+        main.map(Description::of)
+    });
+    let heading = ["", "A", "B", "B-A"].map(str::to_owned);
+    let rows = DESCRIPTORS.iter().map(|descriptor| {
+        let values = described.each_ref().map(|described| {
+            let described = described.as_ref();
+            described.map_or(descriptor.of_nothing, descriptor.measure)
+        });
+        let [first, second] = values.map(|value| text(descriptor, value));
+        let by = difference(values[0], values[1]);
+        let by = match by {
+            _ if first == second => "=".to_owned(),
+            Some(Value::Number(more)) if more > 0.0 => {
+                format!("+{}", text(descriptor, Value::Number(more)))
+            }
+            by => text(descriptor, by.unwrap_or(Value::None)),
+        };
+        [descriptor.symbol.to_owned(), first, second, by]
+    });
+    std::iter::once(heading).chain(rows).collect()
+}
+
+/// Columns of a text in ASCII, where it is at least as wide: what there is room for does not depend on the terminal.
+fn ascii_width(text: &str) -> usize {
+    let widths = text.chars().map(|sign| spelling(sign).map_or(1, str::len));
+    widths.sum()
 }
 
 /// The characters of a taxel in a view, and their role. A letter beside the shade says which of the two is active.
@@ -187,16 +267,16 @@ fn signs(theme: &Theme, view: ComparedView, active: (bool, bool)) -> ([char; 2],
     match (view, active) {
         (Difference, (true, false)) => (['a', 'a'], Role::Key),
         (Difference, (false, true)) => (['b', 'b'], Role::Key),
-        (First | Difference, (on, _)) | (Second, (_, on)) => (theme.taxel(role(on)), role(on)),
+        (First | Difference | Descriptors, (on, _)) | (Second, (_, on)) => {
+            (theme.taxel(role(on)), role(on))
+        }
     }
 }
 
-/// A value in the characters that the terminal has.
-fn text(theme: &Theme, descriptor: &Descriptor, measured: Value) -> String {
+/// A value, or a dash.
+fn text(descriptor: &Descriptor, measured: Value) -> String {
     let text = value::text(measured, descriptor.dimension);
-    text.map_or(theme.none().to_owned(), |text| {
-        theme.text(&text).into_owned()
-    })
+    text.unwrap_or_else(|| "–".to_owned())
 }
 
 /// The second value less the first, None for values that have no difference.
@@ -229,38 +309,42 @@ impl Page for Comparison {
     ) -> Option<Position> {
         write::clear(buffer, area);
         let [first, second] = &self.names;
+        // On a narrow screen the names are cut, not the number.
         let differ = match self.differing() {
-            0 => "   they are alike".to_owned(),
-            count => format!("   they differ in {}", counted(count, "taxel")),
+            0 => "alike".to_owned(),
+            1 => "1 taxel differs".to_owned(),
+            count => format!("{} differ", counted(count, "taxel")),
         };
         let pieces = [
-            ("A: ", Role::Key),
+            (differ.as_str(), Role::Title),
+            ("   A: ", Role::Key),
             (first.as_str(), Role::Text),
             ("   B: ", Role::Key),
             (second.as_str(), Role::Text),
-            (differ.as_str(), Role::Title),
         ];
         write::line(buffer, area, theme, pieces);
-        let body = write::below(area, 1);
-        let columns = u16::from(self.imprints[0].columns());
-        let grid = RULER + 2 * columns + 1;
-        let all = 3 * grid + TABLE <= body.width;
-        let views: &[ComparedView] = if all {
-            &VIEWS
-        } else {
-            VIEWS.get(self.view..=self.view)?
-        };
-        // The descriptors keep their room where taxels of one character leave it.
-        let table = TABLE.min(body.width.saturating_sub(RULER + columns + 1));
-        let table = if table >= TABLE / 2 { table } else { 0 };
-        let room = body.width - table;
+        let body = write::below(area, HEADING);
+        let table = self.widths().iter().sum::<u16>() + 3 * GAP;
+        let views = self.views(body.width);
+        let view = views[self.view.min(views.len() - 1)];
+        if view == Descriptors {
+            self.draw_table(theme, buffer, body);
+            return None;
+        }
+        let all = 3 * self.grid(2) + table <= body.width;
+        let shown = if all { GRIDS } else { &[view] };
+        // Taxels of two characters leave the room that the descriptors need, or those of one do.
+        let beside = if views == GRIDS { table } else { 0 };
+        let room = body.width.saturating_sub(beside).max(self.grid(1));
         let mut x = body.x;
-        for &view in views {
-            let width = grid.min((body.x + room).saturating_sub(x));
+        for &view in shown {
+            let width = self.grid(2).min((body.x + room).saturating_sub(x));
             self.draw_view(view, theme, buffer, Rect { x, width, ..body });
             x += width;
         }
-        self.draw_table(theme, buffer, write::right_of(body, x));
+        if beside > 0 {
+            self.draw_table(theme, buffer, write::right_of(body, x));
+        }
         None
     }
 
@@ -268,7 +352,14 @@ impl Page for Comparison {
     fn click(&self, _area: Rect, _at: Position) -> Option<Message> {
         Some(Message::Field(1))
     }
+
+    fn scrolls(&self) -> bool {
+        true
+    }
 }
+
+/// Lines above the views.
+const HEADING: u16 = 1;
 
 /// What is compared with the matrix, cut to what a heading can hold.
 pub fn heading(what: &str) -> String {
@@ -279,5 +370,5 @@ pub fn heading(what: &str) -> String {
     name
 }
 
-/// Most characters of a name in the heading.
+/// The most characters of a name in the heading.
 const LONGEST: usize = 24;

@@ -22,10 +22,11 @@ pub(in crate::tui) fn inform(app: &mut App, text: impl Into<String>) {
     app.notice = Some(Notice::Info(text.into()));
 }
 
-/// Compares the imprint on the matrix with another one, which is named.
+/// Compares another imprint, which is named, with the one on the matrix. That one comes second: it is the later one, or what
+/// is being made of the other.
 pub(in crate::tui) fn compare_with(app: &mut App, name: &str, other: &Imprint) {
     let own = ("the matrix".to_owned(), &app.reading().imprint);
-    let comparison = Comparison::new(own, (heading(name), other));
+    let comparison = Comparison::new((heading(name), other), own);
     app.dialogs.push(Dialog::Compare(comparison));
 }
 

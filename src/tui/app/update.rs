@@ -188,8 +188,10 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Help(help) => in_help(app, help, &message),
         Dialog::Search(dialog) => in_search(app, dialog, &message),
         Dialog::Compare(mut page) => {
-            if let Message::Field(by) = message {
-                page.next_view(by);
+            match message {
+                Message::Field(by) => page.next_view(by, room(app)),
+                Message::Scroll(lines) => page.scroll(lines, room(app)),
+                _ => {}
             }
             app.dialogs.push(Dialog::Compare(page));
             None
