@@ -1,4 +1,4 @@
-//! Which shapes can a robot recognise by one touch?
+//! Which shapes can a robot recognise by touching them once?
 //!
 //! A tactile matrix sensor touches a flat shape, and a taxel is active when the shape covers at least half of its cell.
 //! This crate computes that binary imprint exactly, for any position, rotation and size; describes it by the geometric

@@ -590,11 +590,11 @@ fn a_random_touch_is_named_by_row_letter_or_number_and_scored() {
     }
     shows(
         &format!("{touch}<Esc>"),
-        &["it was: ellipse; u takes its touch back", "0 of 1 right"],
+        &["it was the ellipse; u brings back what was there before", "0 of 1 right"],
     );
     shows(
         &format!("{touch}<Space><Esc>"),
-        &["it was: ellipse; u takes its last touch back"],
+        &["it was the ellipse; u brings back what was there before"],
     );
     let drawn = "<Space>:seed 7<Enter>:recognise figures-30<Enter>t";
     shows(

@@ -10,9 +10,9 @@
 
 /// What the program is for: the first lines of `taxel --help`.
 pub(crate) const ABOUT: &str = "\
-Which shapes can a robot recognise by one touch?
+Which shapes can a robot recognise by touching them once?
 
-Touches figures with a matrix of tactile sensors, computes the exact imprint and
+Presses figures onto a matrix of tactile sensors, computes the exact imprint and
 describes it. Without a command, opens the screen, where all of this is live.";
 
 /// Below the flags of `taxel --help`: units, exit status and an example of most commands.

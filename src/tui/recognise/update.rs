@@ -274,13 +274,8 @@ fn guess(app: &mut App, quiz: Quiz, named: bool) {
             quiz.name(selected)
         ),
         (false, _) => {
-            let touch = if quiz.touched() > 1 {
-                "last touch"
-            } else {
-                "touch"
-            };
             let undo = app.key_of(&action::UNDO);
-            format!("it was: {name}; {undo} takes its {touch} back")
+            format!("it was the {name}; {undo} brings back what was there before")
         }
     };
     if let Some(page) = state(app) {

@@ -187,10 +187,10 @@ impl Panel<'_> {
         self.text(&limit, Role::Quiet);
         if let Some(unknown) = trained.unknown_between {
             let text = format!(
-                "off the grid, {} of poses are unknown",
+                "between grid points, {} of poses are not in the model",
                 percent(unknown).trim_start()
             );
-            self.text(&text, Role::Quiet);
+            self.wrapped(&text, Role::Quiet);
         }
     }
 
@@ -279,7 +279,7 @@ impl Panel<'_> {
         if score.asked > 0 {
             self.gap();
             let text = format!(
-                "quiz: {} of {} right, best possible {}",
+                "quiz: {} of {} right; the best answer: {}",
                 score.right, score.asked, score.best
             );
             self.text(&text, Role::Text);
@@ -305,7 +305,7 @@ fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
         format!(": {}", names.join(", "))
     };
     let rim = if answer.at_rim {
-        "; at the rim, it may be cut off"
+        " (at the rim, perhaps cut off)"
     } else {
         ""
     };

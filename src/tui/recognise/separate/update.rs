@@ -1,5 +1,6 @@
 //! What messages do on the page of sizes.
 
+use crate::formats::separation::said;
 use crate::storage::Existing;
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::Dialog;
@@ -92,15 +93,23 @@ fn put_example(app: &mut App, page: &Separate) -> bool {
         refuse(app, "the sizes are still being looked at");
         return false;
     }
-    let example = page.selected().and_then(|size| size.worst.as_ref());
-    let example = example.and_then(|worst| worst.example.as_ref());
-    let Some(imprint) = example.and_then(|example| example.imprint) else {
+    let found = page.selected().and_then(|size| {
+        let example = size.worst.as_ref()?.example.as_ref()?;
+        Some((size.point.value, example.imprint?))
+    });
+    let Some((size, imprint)) = found else {
         refuse(app, "nothing is confused in this size");
         return false;
     };
     let own = *page.request().trained.model.sensor();
     let (sensor, imprint) = onto(&imprint, app.history.present().sensor, own);
-    put(app, sensor, &imprint, "imprint of a size");
+    let size = said(page.request().axis, size);
+    put(
+        app,
+        sensor,
+        &imprint,
+        &format!("confused imprint at {size}"),
+    );
     true
 }
 
