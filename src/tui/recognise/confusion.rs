@@ -191,12 +191,7 @@ impl Page for Confusion {
         ];
         let meaning = write::first_fitting(&meanings, area.width.into());
         write::line(buffer, write::row(area, 1), theme, [(meaning, Role::Quiet)]);
-        let last = panes.first.1 + panes.columns;
-        for (index, column) in (panes.first.1..last.min(self.count())).enumerate() {
-            let number = format!("{:>5} ", column + 1);
-            let place = panes.cell(panes.head, index);
-            write::line(buffer, place, theme, [(number.as_str(), Role::Title)]);
-        }
+        self.draw_head(theme, &panes, buffer);
         let rows = (panes.first.0..self.count()).take(panes.rows.height.into());
         let mut cursor = None;
         for (index, row) in rows.enumerate() {
@@ -228,6 +223,40 @@ impl Page for Confusion {
 }
 
 impl Confusion {
+    /// The numbers of the columns; on their left, how many rows and columns are hidden on each side.
+    fn draw_head(&self, theme: &Theme, panes: &ConfusionPanes, buffer: &mut Buffer) {
+        let (row, column) = panes.first;
+        let after = |end: usize| self.count().saturating_sub(end);
+        let rows = usize::from(panes.rows.height);
+        let hidden = [
+            row,
+            after(row + rows),
+            column,
+            after(column + panes.columns),
+        ];
+        let hidden = theme.more().into_iter().zip(hidden);
+        let hidden = hidden.filter(|&(_, count)| count > 0);
+        let hidden: Vec<String> = hidden
+            .map(|(sign, count)| format!("{sign}{count}"))
+            .collect();
+        let corner = Rect {
+            width: panes.label.saturating_sub(1).min(panes.head.width),
+            ..panes.head
+        };
+        write::line(
+            buffer,
+            corner,
+            theme,
+            [(hidden.join(" ").as_str(), Role::Quiet)],
+        );
+        let last = column + panes.columns;
+        for (index, column) in (column..last.min(self.count())).enumerate() {
+            let number = format!("{:>5} ", column + 1);
+            let place = panes.cell(panes.head, index);
+            write::line(buffer, place, theme, [(number.as_str(), Role::Title)]);
+        }
+    }
+
     /// A row: its number and name, and its cells. Returns where the cursor is, if it is here.
     fn draw_row(
         &self,
