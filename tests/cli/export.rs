@@ -55,10 +55,7 @@ fn said(text: &str) -> Run {
 #[test]
 fn every_form_of_an_imprint_is_described_like_the_first() {
     let folder = Folder::new();
-    assert_eq!(
-        folder.run("export washer a.txt"),
-        said("written to a.txt\n")
-    );
+    assert_eq!(folder.run("export washer a.txt"), said("written: a.txt\n"));
     let expected = folder.run("describe a.txt --json");
     assert_eq!(expected.status, Some(0));
     assert!(expected.stdout.contains("\"nae\":"));
@@ -97,7 +94,7 @@ fn a_figure_leaves_its_drawing_beside_its_table() {
     let line = "wall 2.00\n";
     assert_eq!(
         run,
-        said(&table.replace(line, &format!("{line}written to ring.svg\n")))
+        said(&table.replace(line, &format!("{line}written: ring.svg\n")))
     );
     let drawing = String::from_utf8(folder.read("ring.svg")).expect("text");
     assert!(drawing.starts_with("<svg ") && drawing.contains(">x / cells<"));
@@ -155,7 +152,7 @@ fn nothing_is_overwritten_unless_asked_for() {
     assert_eq!(folder.read("old.svg"), b"mine");
     assert_eq!(
         folder.run("export washer old.svg --force"),
-        said("written to old.svg\n")
+        said("written: old.svg\n")
     );
     assert!(folder.read("old.svg").starts_with(b"<svg"));
     // Only a file is replaced, and no half of one is left.

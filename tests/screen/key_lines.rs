@@ -75,7 +75,7 @@ fn the_menu_names_the_keys_of_the_page() {
             "f<CR>:explore --angle 0<CR>",
             "Tab page  d D descriptor  x export  e ranges  Esc close",
         ),
-        ("r", "t quiz  a x keep, forget  o O other set  Esc close"),
+        ("r", "t quiz  a x keep, forget  o O other model  Esc close"),
     ] {
         let (first, _) = lines(&sized((60, 20), false, keys));
         assert_eq!(first, menu, "{keys}");

@@ -470,7 +470,7 @@ fn wide_characters_in_a_number_are_seen() {
 
 #[test]
 fn recognise_names_the_shape_and_follows_the_matrix() {
-    shows("r", &["Recognise: the seven figures", "Nothing is touched"]);
+    shows("r", &["Recognise: model figures", "Nothing is touched"]);
     shows("f<Enter>r", &["certain: ellipse", "100.0 %", "any angle"]);
     shows("rf<Enter>", &["certain: ellipse"]);
     shows(
@@ -500,30 +500,24 @@ fn recognise_names_the_shape_and_follows_the_matrix() {
 
 #[test]
 fn recognise_goes_through_sets_and_takes_one_by_name() {
-    shows("ro", &["the seven figures of 30 cells"]);
+    shows("ro", &["model figures-30"]);
     shows("roO", &["certain 100.0 %"]);
-    shows(
-        ":recognise figures-30<Enter>",
-        &["the seven figures of 30 cells"],
-    );
-    shows(
-        ":reco<Tab>figures-<Tab><Enter>",
-        &["the seven figures of 30 cells"],
-    );
+    shows(":recognise figures-30<Enter>", &["model figures-30"]);
+    shows(":reco<Tab>figures-<Tab><Enter>", &["model figures-30"]);
     // The set in use stays, with the touches that were kept and their answer.
     let hexagon = ":figure hexagon --side 3.4 --x0 4.31 --y0 4.52 --angle 17<Enter>";
     shows(
         &format!(":recognise figures-30<Enter>{hexagon}a:recognise nothing<Enter>"),
         &[
             "no model or file \"nothing\"; there are figures, figures-30, shapes",
-            "Recognise: the seven figures of 30 cells",
+            "Recognise: model figures-30",
             "likely: hexagon",
             "1 touch kept",
         ],
     );
     shows(":seed x<Enter>", &["seed takes a whole number"]);
-    shows(":quiz<Enter>", &["Recognise: the seven figures"]);
-    shows("r<Enter>", &["the set is ready: nothing was stopped"]);
+    shows(":quiz<Enter>", &["Recognise: model figures"]);
+    shows("r<Enter>", &["the model is ready: nothing was stopped"]);
 }
 
 #[test]
@@ -590,7 +584,10 @@ fn a_random_touch_is_named_by_row_letter_or_number_and_scored() {
     }
     shows(
         &format!("{touch}<Esc>"),
-        &["it was the ellipse; u brings back what was there before", "0 of 1 right"],
+        &[
+            "it was the ellipse; u brings back what was there before",
+            "0 of 1 right",
+        ],
     );
     shows(
         &format!("{touch}<Space><Esc>"),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use taxel::formats::recording::{RuleOrigin, SetRule};
 use taxel::frame::Rule;
 use taxel::matrix::Matrix;
+use taxel::recognition::Noise;
 use taxel::tui::app::message::Message;
 use taxel::tui::app::worker_event::WorkerEvent;
 use taxel::tui::live::message::{FrameBatch, LiveEvent, LiveMessage, SourceState};
@@ -406,13 +407,13 @@ fn a_script_records_each_frame_once() {
 #[test]
 fn the_shape_is_named_by_sets_of_shapes_in_turn() {
     let mut page = watched(6, "nnn");
-    shows(&page, &["shapes are named by the shipped shapes"]);
+    shows(&page, &["shapes are named by model shapes"]);
     then(&mut page, "n", &["shapes are not named"]);
     hides(&page, &["nearest"]);
     then(
         &mut page,
         "n",
-        &["shapes are named by the seven figures", "shape      –"],
+        &["shapes are named by model figures", "shape      –"],
     );
     // The ring of the recording is none of the figures: only the nearest of their imprints can be said.
     then(
@@ -428,6 +429,21 @@ fn the_shape_is_named_by_sets_of_shapes_in_turn() {
     page.frames(2);
     shows(&page, &["frame 7", "nearest    "]);
     hides(&page, &["…", "training or"]);
+}
+
+#[test]
+fn a_name_that_noise_does_not_explain_is_doubted() {
+    // The ring is none of the figures: as many taxels differ as flip at one in five.
+    for (flip, how_sure) in [(0.001, " %, perhaps none"), (0.2, " %, likely")] {
+        let mut page = set(|request| {
+            request.noise = Some(Noise::new(flip).expect("in range"));
+            ruled(request, Rule::at_least(60.0).expect("in range"));
+        });
+        page.frames(5);
+        then(&mut page, "n", &[]);
+        page.frames(1);
+        shows(&page, &[how_sure, &format!("noise {flip}")]);
+    }
 }
 
 #[test]

@@ -66,16 +66,16 @@ fn a_stored_model_is_completed_answers_and_is_remembered() {
         ":figure rectangle --length 4 --width 4 --x0 5 --y0 5<Enter>",
     );
     shows(&session, &["tied: one, other", "50.0 %", "one centre"]);
-    // Two taxels that no shape of the set leaves.
+    // Two taxels that no shape of the model leaves.
     press(&mut session, "n<Space><Right><Right><Space>");
     shows(
         &session,
-        &["unknown: no shape of the set leaves this", "nearest: "],
+        &["unknown: no shape of the model leaves this", "nearest: "],
     );
     shows(&begin("r"), &["Recognise: model my parts"]);
     // With another one chosen, that is remembered.
     begin("rO");
-    shows(&begin("r"), &["Recognise: the shipped shapes"]);
+    shows(&begin("r"), &["Recognise: model shapes"]);
     shows(&begin(":recognise <Tab>"), &["figures-30", "my parts"]);
     // A file is named by its path, and not remembered: the next run may begin in another folder.
     let models = ModelFolder::beside(library.folder());
@@ -83,18 +83,24 @@ fn a_stored_model_is_completed_answers_and_is_remembered() {
     fs::copy(models.file(&Name::new("my parts").expect("a name")), &file).expect("copied");
     let by_path = format!(":recognise {}<Enter>", file.display());
     shows(&begin(&by_path), &["Recognise: model parts of today.npz"]);
-    shows(&begin("r"), &["Recognise: the shipped shapes"]);
+    shows(&begin("r"), &["Recognise: model shapes"]);
     let missing = ":recognise ./nowhere.npz<Enter>";
-    shows(&begin(missing), &["no model or file \"./nowhere.npz\"; there are"]);
+    shows(
+        &begin(missing),
+        &["no model or file \"./nowhere.npz\"; there are"],
+    );
     let in_folder = format!(":recognise {}<Enter>", folder.path().display());
     shows(&begin(&in_folder), &["not a regular file"]);
-    shows(&begin(":recognise ./Cargo.t<Tab>"), &[":recognise ./Cargo.toml"]);
+    shows(
+        &begin(":recognise ./Cargo.t<Tab>"),
+        &[":recognise ./Cargo.toml"],
+    );
     // So is one in the working folder by its name; this one holds no model.
     shows(&begin(":recognise Cargo.toml<Enter>"), &["Cargo.toml: "]);
     // One that does not exist is refused by what there is, and not remembered.
     let all = "no model or file \"nonsense\"; there are figures, figures-30, shapes, my parts";
     shows(&begin(":recognise nonsense<Enter>"), &[all]);
-    shows(&begin("r"), &["Recognise: the shipped shapes"]);
+    shows(&begin("r"), &["Recognise: model shapes"]);
 }
 
 #[test]
@@ -111,7 +117,13 @@ fn the_pose_is_that_of_the_shape_that_the_touches_name() {
         :figure rectangle --length 4 --width 6 --x0 5 --y0 5<Enter>a\
         :figure triangle --side 6 --x0 5 --y0 5<Enter>";
     press(&mut session, contradicts);
-    shows(&session, &["unknown: no shape of the set leaves all", "triangle centre"]);
+    shows(
+        &session,
+        &[
+            "unknown: no shape of the model leaves all",
+            "triangle centre",
+        ],
+    );
 }
 
 #[test]
@@ -128,11 +140,11 @@ fn a_set_that_does_not_exist_changes_nothing() {
     );
     shows_no(&session, "Recognise: model");
     press(&mut session, "<Esc>r");
-    shows(&session, &["Recognise: the seven figures", "t quiz"]);
+    shows(&session, &["Recognise: model figures", "t quiz"]);
     shows_no(&session, "not read");
     // With the page open it stays open, with the set that it has.
     press(&mut session, ":recognise nope<Enter>");
-    shows(&session, &[refused, "Recognise: the seven figures"]);
+    shows(&session, &[refused, "Recognise: model figures"]);
     press(&mut session, "<Esc><Esc>:recognise nope<Enter><Esc>");
     shows(&session, &["The matrix is empty"]);
 }
@@ -144,10 +156,7 @@ fn a_damaged_or_older_model_of_the_cache_is_made_again() {
     let open = || {
         let world = world().with_model_cache(Some(ModelCache::in_folder(&cache)));
         let session = started(world, "r");
-        shows(
-            &session,
-            &["Recognise: the seven figures", "certain 100.0 %"],
-        );
+        shows(&session, &["Recognise: model figures", "certain 100.0 %"]);
     };
     open();
     let path = fs::read_dir(&cache)
@@ -244,5 +253,5 @@ fn escape_stops_the_sizes_and_what_was_found_stays() {
     press(&mut program.session, "<Esc>");
     program.until("stopped; V goes on");
     press(&mut program.session, "<Esc>");
-    shows(&program.session, &["Recognise: the seven figures"]);
+    shows(&program.session, &["Recognise: model figures"]);
 }

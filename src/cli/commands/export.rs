@@ -190,7 +190,7 @@ impl Begun {
         match self {
             Self::Content(content) => Ok(Exported::Content(content)),
             Self::File(file) => {
-                let said = format!("written to {}", file.path().display());
+                let said = format!("written: {}", file.path().display());
                 file.persist()?;
                 Ok(Exported::Said(said))
             }

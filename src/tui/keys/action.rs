@@ -120,7 +120,7 @@ impl Arguments {
             Self::Degrees => "DEGREES",
             Self::Taxel => "COLUMN ROW",
             Self::Distance => "DX DY",
-            Self::Model => "SET",
+            Self::Model => "MODEL",
             Self::Sizes => "--scale 0.5:3:0.1 ...",
             Self::Seed => "NUMBER",
             Self::FrameSource => "SOURCE",
@@ -301,8 +301,8 @@ actions! {
         QUIZ "quiz" [] Recognise(RecogniseMessage::Touch);
         KEEP "keep" [] Recognise(RecogniseMessage::Keep), "keep this touch as one of several";
         FORGET "forget" [] Recognise(RecogniseMessage::Forget), "forget the touches that were kept";
-        NEXT_SET "next-set" [] Recognise(RecogniseMessage::NextSet(1)), "the next set of shapes";
-        PREVIOUS_SET "previous-set" [] Recognise(RecogniseMessage::NextSet(-1)), "the previous set of shapes";
+        NEXT_SET "next-set" [] Recognise(RecogniseMessage::NextSet(1)), "the next model";
+        PREVIOUS_SET "previous-set" [] Recognise(RecogniseMessage::NextSet(-1)), "the previous model";
         CONFUSION "confusion" [] Recognise(RecogniseMessage::Confusion);
         POSES "poses" [] Recognise(RecogniseMessage::Poses);
         SEPARATE "separate" [] Recognise(RecogniseMessage::Separate(SeparationFlags::NONE));
@@ -337,7 +337,7 @@ actions! {
         "move" Arguments::Distance, "move the shape right and down, in cells";
         "open" Arguments::File(FilePurpose::Open), "open a shape or an imprint from a file";
         "picture" Arguments::Shape(Purpose::Picture), "Picture: place a stored shape, or move the one here";
-        "recognise" Arguments::Model, "Recognise: which shape of this set left the imprint";
+        "recognise" Arguments::Model, "Recognise: which shape of this model left the imprint";
         "restore" Arguments::Deleted, "bring back a deleted shape; alone, the one deleted last";
         "save" Arguments::Name, "Save: store what is on the matrix";
         "seed" Arguments::Seed, "set the seed of the quiz's random touches";

@@ -117,7 +117,7 @@ contexts! {
     /// On the confusion matrix.
     Confusion "confusion" "At the confusion matrix" Ignored, EVERYWHERE;
     /// On the page of sizes.
-    Separate "separate" "At the sizes of a set" Ignored, EVERYWHERE;
+    Separate "separate" "At the sizes of shapes" Ignored, EVERYWHERE;
     /// At the frames of a sensor.
     Live "live" "Watching a sensor" Ignored, EVERYWHERE;
     /// At a yes-or-no question.

@@ -312,12 +312,12 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('a') => KEEP, Char('x') => FORGET]
             "keep, forget" "keep this touch as one of several; forget them";
         [Char('o') => NEXT_SET, Char('O') => PREVIOUS_SET]
-            "other set" "next, previous set of shapes";
+            "other model" "next, previous model";
         [Char('v') => CONFUSION] "confusion" "which shapes are taken for which";
         [Char('V') => SEPARATE] "" "the error against the size of the shapes";
         [Char('i') => PANEL] "answer" "on a narrow screen: the answer or the matrix";
         [Char('P') => POSES] "" "outlines of the likeliest pose and of others";
-        [Enter => ACCEPT] "" "train the set after a stop";
+        [Enter => ACCEPT] "" "train the model after a stop";
         [Esc => CANCEL, Char('r') => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
             "close" "stop training; back to the descriptors";
     }
@@ -377,7 +377,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('g') => OWN_RANGE] "" "shades over this frame's values, or a fixed range";
         [Char('r') => RECORD] "record" "record all frames in a file, or stop recording";
         [Char('m') => MARK_FRAME] "" "mark this frame, or remove its mark";
-        [Char('n') => NEXT_MODEL] "name" "name the shape by the next set, or by none";
+        [Char('n') => NEXT_MODEL] "name" "name the shape by the next model, or by none";
         [Enter => ACCEPT] "to matrix" "take the imprint to the matrix";
         [Char('?') => HELP] "help" "these keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]

@@ -103,14 +103,9 @@ impl ModelChoice {
 }
 
 impl fmt::Display for ModelChoice {
-    /// What it is, in a few words.
+    /// What it is, with its name after `:recognise`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Figures => f.write_str("the seven figures"),
-            Self::EqualFigures => f.write_str("the seven figures of 30 cells"),
-            Self::Shipped => f.write_str("the shipped shapes"),
-            Self::Stored(_) | Self::File(_) => write!(f, "model {}", self.name()),
-        }
+        write!(f, "model {}", self.name())
     }
 }
 

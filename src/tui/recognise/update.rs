@@ -109,7 +109,7 @@ fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
 
 /// Says that what was asked for needs a model: the confusion matrix, the sizes, or a quiz.
 fn not_trained(app: &mut App) {
-    refuse(app, "the set is not trained yet");
+    refuse(app, "the model is not trained yet");
 }
 
 /// Shows the outlines of poses if they are not seen, otherwise hides them.
@@ -124,7 +124,7 @@ fn show_poses(app: &mut App) {
         app,
         match (seen, none) {
             (true, _) => "without poses",
-            (false, true) => "no pose: no shape of the set leaves this imprint",
+            (false, true) => "no pose: no shape of the model leaves this imprint",
             (false, false) => "the likeliest pose; others of the 95 % faintly",
         },
     );
@@ -218,8 +218,8 @@ pub(in crate::tui) fn in_recognition(
 fn prepare_again(app: &mut App) -> Option<Effect> {
     let text = match state(app)?.state() {
         ModelState::Missing => return open(app, None),
-        ModelState::Preparing(_) => "the set is not ready yet",
-        ModelState::Ready(_) => "the set is ready: nothing was stopped",
+        ModelState::Preparing(_) => "the model is not ready yet",
+        ModelState::Ready(_) => "the model is ready: nothing was stopped",
     };
     inform(app, text);
     None

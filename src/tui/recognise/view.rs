@@ -1,8 +1,8 @@
 //! The panel beside the matrix: the set, the shapes with bars, the nearest imprint, the pose, touches and score.
 //!
 //! ```text
-//! the set                     +--------------------------------------------+
-//! its grid, its limit         | Recognise: the seven figures of 30 cells   |
+//! the model                   +--------------------------------------------+
+//! its grid, its limit         | Recognise: model figures-30                |
 //!                             | grid: 0.01 cells, 1°; 25,200,000 touches   |
 //!                             | best possible error 33.0 %, certain 38.3 % |
 //!                             |                                            |
@@ -245,7 +245,7 @@ impl Panel<'_> {
     /// The nearest imprint, and the pose.
     fn look(&mut self, look: &Look, answer: &Answer, trained: &TrainedModel) {
         match &look.nearest {
-            None => self.text("no imprint of the set fits the matrix", Role::Text),
+            None => self.text("no imprint of the model fits the matrix", Role::Text),
             Some(nearest) if nearest.distance > 0 => {
                 let text = format!(
                     "nearest: {}, {}",
@@ -300,7 +300,7 @@ fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
     };
     let what = if names.is_empty() {
         let these = if touches > 1 { "all of these" } else { "this" };
-        format!(": no shape of the set leaves {these}")
+        format!(": no shape of the model leaves {these}")
     } else {
         format!(": {}", names.join(", "))
     };

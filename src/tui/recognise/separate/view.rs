@@ -1,7 +1,7 @@
 //! The page of sizes.
 //!
 //! ```text
-//! Separate: the seven figures of 30 cells    the set
+//! Separate: model figures-30                 the model
 //! 10 × 10 positions of a cell, angle 0:358:2 its steps; while it works, a gauge
 //!  70 % |⠉⠢⢄                                  the error against the size; dots at the wanted one
 //!   0 % |....⠈⠉⠒⠤
