@@ -169,14 +169,7 @@ fn of_numbers(
     };
     let values = numeric.len();
     let width = side(values).filter(|_| values == fields.len());
-    let cells = |(rows, columns)| usize::from(rows) * usize::from(columns);
-    // A file that grows is read no further than the answer needs.
-    let enough = match (options.shape, width) {
-        (Some((rows, columns)), Some(width)) if width == columns && rows > 1 => rows + 1,
-        (Some(shape), _) if values == cells(shape) + 2 => COMPARED,
-        (Some(_), _) => 2,
-        (None, _) => MAX_FRAME_SIDE + 1,
-    };
+    let enough = lines_needed(options.shape, width, values);
     let mut compared: Vec<Vec<f64>> = read.iter().map(|line| numbers(line)).collect();
     let (mut block, mut parted) = (if read.len() > 1 { 2_u16 } else { 1 }, false);
     while block < enough && lines.advance()? {
@@ -198,10 +191,8 @@ fn of_numbers(
         }
         (Some(shape), _) => {
             let found = without_header(shape, number, &compared)?;
-            (
-                shape,
-                LineLayout::Frame(found.among(&numeric, &fields, number)?),
-            )
+            let found = found.among(&numeric, &fields, number)?;
+            (shape, LineLayout::Frame(found))
         }
         (None, Some(width)) if parted && block > 1 => ((block, width), LineLayout::Row { parted }),
         (None, _) => {
@@ -215,6 +206,18 @@ fn of_numbers(
         lines,
         note: None,
     })
+}
+
+/// How many lines say how a table without names is arranged, the first of which has so many numbers and is as wide as a row
+/// of them, or not. A file that grows is read no further than the answer needs.
+fn lines_needed(shape: Option<(u16, u16)>, width: Option<u16>, values: usize) -> u16 {
+    let cells = |(rows, columns)| usize::from(rows) * usize::from(columns);
+    match (shape, width) {
+        (Some((rows, columns)), Some(width)) if width == columns && rows > 1 => rows + 1,
+        (Some(shape), _) if values == cells(shape) + 2 => COMPARED,
+        (Some(_), _) => 2,
+        (None, _) => MAX_FRAME_SIDE + 1,
+    }
 }
 
 impl FrameFields {
