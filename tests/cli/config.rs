@@ -210,7 +210,7 @@ fn menu_hints_help_and_notices_name_the_keys_of_the_file() {
         ],
     );
     shows("f<Enter>x>", &["by hand was dropped; ? restores it"]);
-    shows(":mouse<Enter>", &[":mouse lets it set taxels"]);
+    shows(":mouse<Enter>", &[":mouse lets it draw"]);
     shows("f", &["Ctrl-N field"]);
     shows(
         ":nonsense<Enter>",

@@ -77,7 +77,7 @@ impl Watched {
         self.program.shows("frame 0");
     }
 
-    /// Records from here on; the file.
+    /// Records from here on; the file. The first frame is in it, too: that it is one was not certain until the second came.
     fn records(&mut self) -> PathBuf {
         self.program.types(b"r");
         self.program.shows("recording in touch-1.npy");
@@ -268,8 +268,8 @@ fn leaving_the_page_says_what_was_recorded() {
     watched.sends(1..6);
     watched.program.shows("frame 5");
     watched.program.types(b"\x1b");
-    watched.program.shows("touch-1.npy: 5 frames recorded");
-    assert_eq!(records(&file), Some(5));
+    watched.program.shows("touch-1.npy: 6 frames recorded");
+    assert_eq!(records(&file), Some(6));
     watched.program.types(b"q");
     watched.program.ends_well(0);
 }
@@ -328,8 +328,8 @@ fn keys_go_on_while_a_hanging_disk_takes_a_recording() {
             watched.program.shows("frame 30");
         }
         hanging.end();
-        watched.program.shows("touch-1.npy: 20 frames recorded");
-        assert_eq!(records(&file), Some(20), "none of those after the key");
+        watched.program.shows("touch-1.npy: 21 frames recorded");
+        assert_eq!(records(&file), Some(21), "none of those after the key");
         assert!(is_ended(&file));
         // What was drawn is given up; the page of the source comes before the end.
         let keys: [&[u8]; 2] = if leaves { [b"q", b"y"] } else { [b"q", b"q"] };
@@ -365,7 +365,7 @@ fn the_end_does_not_wait_for_a_recording_on_a_hanging_disk() {
         hanging.end();
         let (ended, _) = watched.program.ends();
         assert_eq!(ended.code(), Some(status));
-        assert_eq!(records(&file), Some(20), "written, though not synced");
+        assert_eq!(records(&file), Some(21), "written, though not synced");
     }
 }
 
@@ -407,8 +407,8 @@ fn frames_are_recorded_where_the_system_gives_no_more_threads() {
     watched.sends(1..6);
     watched.program.shows("frame 5");
     watched.program.types(b"r");
-    watched.program.shows("touch-1.npy: 5 frames recorded");
-    assert_eq!(records(&file), Some(5));
+    watched.program.shows("touch-1.npy: 6 frames recorded");
+    assert_eq!(records(&file), Some(6));
     assert!(is_ended(&file));
     // Nor one that names imprints.
     watched.program.types(b"n");
@@ -452,7 +452,7 @@ fn a_terminal_that_is_not_read_holds_up_no_recording() {
         watched.sends(piece * 20 + 1..piece * 20 + 21);
     }
     let start = Instant::now();
-    while records(&file) != Some(4000) {
+    while records(&file) != Some(4001) {
         assert!(
             start.elapsed() < Duration::from_secs(100),
             "{:?} records",
@@ -463,7 +463,7 @@ fn a_terminal_that_is_not_read_holds_up_no_recording() {
     // Now the newest picture comes.
     watched.program.shows("frame 4000");
     watched.program.types(b"r");
-    watched.program.shows("4,000 frames recorded");
+    watched.program.shows("4,001 frames recorded");
     watched.ends();
 }
 
