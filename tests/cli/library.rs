@@ -176,7 +176,7 @@ fn names_that_are_not_clear_are_reported() {
     std::fs::rename(file("ring.json"), file("Ma\u{df}.json")).expect("renamed");
     std::fs::copy(file("Ma\u{df}.json"), file("MASS.json")).expect("copied");
     let all = taxel::storage::shipped::names().count() + 2;
-    let says = "the file says \"ring\", but its own name counts";
+    let says = "the name inside the file is \"ring\"; the name of the file counts";
     assert_eq!(
         shelf.does("library|check", ""),
         format!(
@@ -187,7 +187,9 @@ fn names_that_are_not_clear_are_reported() {
         )
     );
     let json = shelf.does("library|check|--json", "");
-    assert!(json.starts_with("[{\"finding\":\"name\",\"name\":\"MASS\",\"reason\":\"the file"));
+    assert!(
+        json.starts_with("[{\"finding\":\"name\",\"name\":\"MASS\",\"reason\":\"the name inside")
+    );
 }
 
 #[test]

@@ -386,10 +386,10 @@ Examples:
   ls \"$(taxel library path)\"";
 
 /// `taxel library check`.
-pub(crate) const CHECK_EXAMPLES: &str = r#"Reads every shape, and lists other files in the folder, shapes whose file says
-another name, and names that differ in case only. The exit status is 1 if a
-shape is broken. --json prints an array on one line, with an object for each
-finding; without findings it is empty:
+pub(crate) const CHECK_EXAMPLES: &str = r#"Reads every shape, and lists other files in the folder, shapes with another
+name inside their file, and names that differ in case only. The exit status is
+1 if a shape is broken. --json prints an array on one line, with an object for
+each finding; without findings it is empty:
   {"finding":"broken","name":"ring","reason":"..."}
   {"finding":"name","name":"Ring","reason":"..."}
   {"finding":"left over","path":"shapes/notes.txt","reason":"..."}

@@ -246,7 +246,7 @@ impl fmt::Display for Finding {
     }
 }
 
-/// The user's shapes whose file says another name, and those whose names are one where case does not matter.
+/// The user's shapes that have another name inside their file, and those whose names are one where case does not matter.
 fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let own = lines.iter().filter(|line| line.origin == ShapeOrigin::Own);
@@ -261,7 +261,7 @@ fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
         {
             let written = &summary.written_name;
             find(format!(
-                "the file says {:?}, but its own name counts",
+                "the name inside the file is {:?}; the name of the file counts",
                 written.as_str()
             ));
         }
