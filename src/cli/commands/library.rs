@@ -40,7 +40,7 @@ struct ListLine {
     found: Result<ShapeSummary, String>,
 }
 
-/// What the list and the check tell of a shape that can be read.
+/// What the list and the check report about a shape that can be read.
 struct ShapeSummary {
     /// The name that its file says.
     written_name: Name,
