@@ -208,8 +208,8 @@ fn of_numbers(
     })
 }
 
-/// How many lines say how a table without names is arranged, the first of which has so many numbers and is as wide as a row
-/// of them, or not. A file that grows is read no further than the answer needs.
+/// How many lines are needed to decide how a table without names is arranged, given its rows and columns, the width of a row
+/// and the numbers in its first line. A growing file is read no further than that.
 fn lines_needed(shape: Option<(u16, u16)>, width: Option<u16>, values: usize) -> u16 {
     let cells = |(rows, columns)| usize::from(rows) * usize::from(columns);
     match (shape, width) {

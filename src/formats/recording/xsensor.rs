@@ -271,7 +271,7 @@ impl XsensorState {
         frame.time = moment
             .zip(start)
             .map(|((day, seconds), (first_day, first_seconds))| {
-                // A clock tells thousandths, and seconds of a day are exact to more.
+                // Clocks show thousandths; the seconds of a day are exact to more than that.
                 let days = f64::from(day - first_day) * 86_400.0;
                 to_decimals(days + seconds - first_seconds, 6)
             });

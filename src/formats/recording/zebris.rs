@@ -15,8 +15,8 @@
 //! -1    -1    1.0    3.0    …
 //! ```
 //! Of a step, pictures are numbered (`[Data12]`, `[Data13]`, …), `TimeDiff` in `UnitTime` apart; `[Data]` is then their
-//! maximum, which is no frame and is left out. A file with `[Data]` alone is one picture. Other sections are not told
-//! apart: their keys differ. A value below 0 other than -1 is a value. Source: pedcad import files of zebris.
+//! maximum, which is no frame and is left out. A file with `[Data]` alone is one picture. The names of
+//! other sections do not matter, since all keys differ. A value below 0 other than -1 is a value. Source: pedcad import files of zebris.
 
 use std::io::BufRead;
 

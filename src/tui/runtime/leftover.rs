@@ -21,7 +21,7 @@ pub(super) fn described(orphan: &Orphan) -> String {
     pieces.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// A time that has passed, as people say it. Of what has just happened the seconds say nothing.
+/// How long ago something happened, in words. Seconds would say nothing about what has just happened.
 fn ago(time: Duration) -> String {
     if time < Duration::from_secs(60) {
         "less than a minute ago".to_owned()

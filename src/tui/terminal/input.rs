@@ -97,7 +97,7 @@ pub struct InputReader {
     doubled: bool,
     /// What was read and is not taken yet.
     found: Vec<Input>,
-    /// Whether the terminal has told its status.
+    /// Whether the terminal has reported its status.
     has_status: bool,
 }
 
@@ -122,7 +122,7 @@ impl InputReader {
         std::mem::take(&mut self.found)
     }
 
-    /// Whether the terminal has told its status since this was asked last.
+    /// Returns whether the terminal has reported its status since the last call.
     pub fn take_status(&mut self) -> bool {
         std::mem::take(&mut self.has_status)
     }

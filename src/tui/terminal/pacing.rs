@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 /// Asks for the status.
 const QUESTION: &[u8] = b"\x1b[5n";
 
-/// So many questions without any answer show that the terminal gives none.
+/// After this many questions without any answer, the terminal is taken to give none.
 const TRIES: u32 = 3;
 
 /// The next picture waits this long at most for a first answer, and after each question without one twice as long: a slow

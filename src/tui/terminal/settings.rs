@@ -39,7 +39,7 @@ impl TerminalKind {
         self >= Self::Console
     }
 
-    /// Whether it may tell its status when it is asked for it (DSR), as all do that have cursor addresses by ECMA-48.
+    /// Whether it may answer a request for its status (DSR), as terminals with the cursor addresses of ECMA-48 do.
     pub fn tells_status(self) -> bool {
         self > Self::Dumb
     }
