@@ -535,3 +535,63 @@ fn a_broken_description_beside_a_recording_is_told() {
         &["frame 0", "a.json: found the number 3, expected a text"],
     );
 }
+
+#[test]
+fn a_sensor_larger_than_the_screen_is_seen_in_parts() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("tall.npy");
+    // The contact is in the middle, and each row has its own value.
+    let value = |row: usize| if row == 30 { 900 } else { row };
+    let values: Vec<f64> = (0..60 * 21).map(|cell| value(cell / 21) as f64).collect();
+    std::fs::write(&path, array("(1, 60, 21)", false, &values)).expect("written");
+    let mut page = sized(
+        (80, 24),
+        false,
+        &format!(":watch {}<Enter>", path.display()),
+    );
+    page.frames(1);
+    let rows = |page: &Session| {
+        let screen = page.screen();
+        let title = screen.lines().nth(1).expect("a title").to_owned();
+        title.split("rows ").nth(1).map(str::to_owned)
+    };
+    let all = ["20-59", "0-39"].map(|rows| Some(rows.to_owned()));
+    then(
+        &mut page,
+        "<S-Down><S-Down>",
+        &["no more taxels in this direction"],
+    );
+    assert_eq!(rows(&page), all[0]);
+    let held = "these taxels stay in sight; c shows the contact again";
+    then(&mut page, "c<S-Up>", &[held]);
+    assert_eq!(rows(&page), all[1]);
+    then(
+        &mut page,
+        "<S-Right>",
+        &["no more taxels in this direction"],
+    );
+    then(&mut page, "#", &["\n 5 ", "\n23 "]);
+    then(&mut page, "<S-Down>", &["\n14 ", "\n32 "]);
+    then(&mut page, "c", &["the taxels of the contact", "\n30 "]);
+}
+
+#[test]
+fn the_marks_on_taxels_are_explained() {
+    shows(&watched(6, "+"), &["marks      • edge of touch"]);
+    shows(&watched(6, "+#"), &["marks      • active taxel"]);
+    hides(&watched(6, "+v"), &["marks"]);
+    hides(&watched(6, ""), &["marks"]);
+    let mut low = watched(6, "+");
+    low.resize(80, 16);
+    shows(&low, &["marks      • around touch"]);
+}
+
+#[test]
+fn the_numbers_can_have_the_whole_page() {
+    let mut page = watched(6, "+");
+    page.resize(40, 20);
+    hides(&page, &["not drawn"]);
+    then(&mut page, "i", &["threshold  5", "not drawn  0"]);
+    then(&mut page, "i", &["threshold"]);
+    hides(&page, &["not drawn"]);
+}

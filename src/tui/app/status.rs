@@ -176,13 +176,17 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
     write::first_fitting(&lines.each_ref().map(String::as_str), width).to_owned()
 }
 
-/// A question, else the notice, else what a change of files waits for, else the text of the top page.
+/// The notice, else what a change of files waits for, else the text of the top page; a question stands after the notice.
 fn notice(app: &App, panes: &Panes) -> Option<(String, Role)> {
     let top = app.dialogs.last().map(Dialog::page);
     let remark = top.and_then(|page| page.remark(app.keymap(), panes.body));
     let is_question = top.is_some_and(|page| page.slot() == Slot::Question);
-    if is_question && remark.is_some() {
-        return remark;
+    if is_question && let Some((question, role)) = remark {
+        let text = match &app.notice {
+            Some(Notice::Info(said) | Notice::Refusal(said)) => format!("{said}. {question}"),
+            None => question,
+        };
+        return Some((text, role));
     }
     let notice = app.notice.as_ref().map(|notice| match notice {
         Notice::Info(text) => (text.clone(), Role::Key),

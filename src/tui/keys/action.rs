@@ -319,6 +319,11 @@ actions! {
         NEXT_LAYER "next-layer" [] Message::Live(LiveMessage::NextLayer);
         NUMBERS "numbers" [] Message::Live(LiveMessage::Numbers);
         OWN_RANGE "own-range" [] Message::Live(LiveMessage::OwnRange);
+        WINDOW_LEFT "window-left" [] Message::Live(LiveMessage::Window(Arrow::Left));
+        WINDOW_RIGHT "window-right" [] Message::Live(LiveMessage::Window(Arrow::Right));
+        WINDOW_UP "window-up" [] Message::Live(LiveMessage::Window(Arrow::Up));
+        WINDOW_DOWN "window-down" [] Message::Live(LiveMessage::Window(Arrow::Down));
+        FOLLOW_CONTACT "follow-contact" [] Message::Live(LiveMessage::FollowContact);
         RECORD "record" [] Message::Live(LiveMessage::Record);
         MARK_FRAME "mark-frame" [] Message::Live(LiveMessage::Mark);
         NEXT_MODEL "next-model" [] Message::Live(LiveMessage::NextModel);

@@ -375,6 +375,11 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('v') => NEXT_LAYER] "view" "raw values, tared values, the imprint";
         [Char('#') => NUMBERS] "" "values as numbers, or in shades";
         [Char('g') => OWN_RANGE] "" "shades over this frame's values, or a fixed range";
+        [ShiftArrow(Left) => WINDOW_LEFT, ShiftArrow(Right) => WINDOW_RIGHT,
+            ShiftArrow(Up) => WINDOW_UP, ShiftArrow(Down) => WINDOW_DOWN]
+            "" "where not all taxels fit on the screen: see others";
+        [Char('c') => FOLLOW_CONTACT] "" "see those of the contact again";
+        [Char('i') => PANEL] "" "only the numbers, or the taxels, too";
         [Char('r') => RECORD] "record" "record all frames in a file, or stop recording";
         [Char('m') => MARK_FRAME] "" "mark this frame, or remove its mark";
         [Char('n') => NEXT_MODEL] "name" "name the shape by the next model, or by none";

@@ -16,6 +16,7 @@ use ratatui::style::Style;
 use crate::formats::value::measured;
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
+use crate::tui::keys::key::Arrow;
 use crate::tui::live::layout::{CellForm, HeatGrid, NUMBER};
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;
@@ -44,8 +45,26 @@ impl<'a> HeatMap<'a> {
             reading,
             layer: live.layer(),
             range: live.range(),
-            grid: HeatGrid::of(area, size, live.numbers(), near(reading)),
+            grid: HeatGrid::of(area, size, live.numbers(), looked_at(live, reading)),
         }
+    }
+
+    /// The taxel to look at to see others in a direction; None where there are none.
+    pub(super) fn beyond(&self, towards: Arrow, live: &Live) -> Option<(u8, u8)> {
+        self.grid.beyond(towards, looked_at(live, self.reading))
+    }
+
+    /// What the mark on taxels says; None where none can have one.
+    pub(super) fn legend(&self) -> Option<String> {
+        let marked = match (self.layer, self.grid.form) {
+            (_, CellForm::Number) => "active taxel",
+            (HeatLayer::Imprint, _) => return None,
+            (_, CellForm::Wide(_)) => "edge of touch",
+            (_, CellForm::Half) => "around touch",
+        };
+        let imprint = self.reading.imprint.as_ref()?;
+        let any = !imprint.is_empty();
+        any.then(|| format!("{} {marked}", heat::edge(self.theme)))
     }
 
     /// Which columns and rows are visible, counted from 0; None where all are.
@@ -264,6 +283,11 @@ impl<'a> HeatMap<'a> {
             put(buffer, area, (x, at.1), sign, style);
         }
     }
+}
+
+/// The taxel that is to be visible.
+fn looked_at(live: &Live, reading: &LiveReading) -> (u8, u8) {
+    live.looked_at().unwrap_or_else(|| near(reading))
 }
 
 /// A taxel near which there is contact: the middle of the main region, or the largest value.

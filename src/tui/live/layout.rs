@@ -5,11 +5,13 @@
 //! taxels               numbers                beside each other, or on a narrow screen one above the other, unless that
 //!                                             hides taxels
 //! ```
-//! A taxel has two columns where all fit so, or a multiple of these; else half a character, so that two stand above each other; else a window of
-//! these follows the contact. Numbers have rulers, as their window rarely shows all.
+//! A taxel has two columns where all fit so, or a multiple of these; else half a character, so that two stand above each
+//! other. Where not all fit even so, a window follows the contact until keys move it. Numbers have rulers, as their window
+//! rarely shows all.
 
 use ratatui::layout::Rect;
 
+use crate::tui::keys::key::Arrow;
 use crate::tui::matrix::layout::{AxisWindow, RULER};
 use crate::tui::widget::write::{below, right_of};
 
@@ -93,6 +95,22 @@ impl HeatGrid {
             columns,
             rows,
             rulers,
+        }
+    }
+
+    /// The hidden taxel that is next in a direction from one that is looked at; None where there is none.
+    pub(super) fn beyond(&self, towards: Arrow, (column, row): (u8, u8)) -> Option<(u8, u8)> {
+        let next = |axis: AxisWindow| {
+            let (before, after) = axis.hidden();
+            let last = axis.first + axis.count;
+            (before.then(|| axis.first - 1), after.then_some(last))
+        };
+        let (columns, rows) = (next(self.columns), next(self.rows));
+        match towards {
+            Arrow::Left => Some((columns.0?, row)),
+            Arrow::Right => Some((columns.1?, row)),
+            Arrow::Up => Some((column, rows.0?)),
+            Arrow::Down => Some((column, rows.1?)),
         }
     }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::formats::recording::ChannelInfo;
 use crate::formats::value::decimal;
 use crate::frame::Frame;
+use crate::tui::keys::key::Arrow;
 use crate::tui::live::naming::NamedImprint;
 use crate::tui::live::request::WatchRequest;
 
@@ -35,6 +36,10 @@ pub enum LiveMessage {
     Numbers,
     /// Shades over the range of the frame that is shown, or over a fixed range.
     OwnRange,
+    /// To see taxels further in a direction, where not all are visible.
+    Window(Arrow),
+    /// To see those of the contact again.
+    FollowContact,
     /// To begin a recording, or to end it.
     Record,
     /// To mark the frame that is shown, or to take its mark off.

@@ -48,6 +48,10 @@ pub struct Live {
     layer: HeatLayer,
     /// Whether values are numbers and not shades.
     numbers: bool,
+    /// A taxel that stays in sight where not all are; None for one of the contact.
+    looked_at: Option<(u8, u8)>,
+    /// Whether the numbers beside the taxels have the whole page.
+    only_panel: bool,
     /// Between which values shades are spread.
     range: ShadeRange,
     /// The largest value that each cell has had, while that is shown.
@@ -87,6 +91,8 @@ impl Live {
             stopped: false,
             layer: HeatLayer::Tared,
             numbers: false,
+            looked_at: None,
+            only_panel: false,
             range: ShadeRange::default(),
             held: None,
             tare: LiveTare::new(&request),
@@ -176,6 +182,26 @@ impl Live {
     /// Whether values are shown as numbers.
     pub fn numbers(&self) -> bool {
         self.numbers
+    }
+
+    /// The taxel that stays in sight where not all are; None for one of the contact.
+    pub fn looked_at(&self) -> Option<(u8, u8)> {
+        self.looked_at
+    }
+
+    /// Has a taxel stay in sight, or one of the contact.
+    pub fn look_at(&mut self, taxel: Option<(u8, u8)>) {
+        self.looked_at = taxel;
+    }
+
+    /// Whether the numbers beside the taxels have the whole page.
+    pub fn only_panel(&self) -> bool {
+        self.only_panel
+    }
+
+    /// Gives the whole page to these numbers, or shows the taxels again.
+    pub fn switch_panel(&mut self) {
+        self.only_panel = !self.only_panel;
     }
 
     /// Whether the largest value of each cell is shown.

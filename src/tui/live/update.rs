@@ -13,13 +13,16 @@ use crate::tui::app::change::{begin_unsaved, inform, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Document;
 use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
+use crate::tui::keys::key::Arrow;
 use crate::tui::live::message::{LiveEvent, LiveMessage};
 use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::live::state::Live;
+use crate::tui::live::view;
 use crate::tui::runtime::effect::{Effect, FileRequest, Work};
 
 /// Handles what is asked for over the matrix.
@@ -117,6 +120,7 @@ pub(in crate::tui) fn in_live(
         Message::Scroll(by) => page.scrub(by.into()),
         Message::ScrollTo(Endpoint::First) => page.to_oldest(),
         Message::ScrollTo(Endpoint::Last) => page.to_newest(),
+        Message::SwitchPage => page.switch_panel(),
         Message::Live(asked) => effect = adjust(app, &mut page, &asked),
         _ => {}
     }
@@ -199,6 +203,11 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         LiveMessage::OwnRange => {
             page.switch_range();
         }
+        LiveMessage::Window(towards) => look_further(app, page, *towards),
+        LiveMessage::FollowContact => {
+            page.look_at(None);
+            inform(app, "the taxels of the contact");
+        }
         LiveMessage::Record => return Some(record(page)),
         LiveMessage::Mark => mark(app, page),
         LiveMessage::NextModel => {
@@ -216,6 +225,23 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         LiveMessage::Open | LiveMessage::Watch(_) => {}
     }
     None
+}
+
+/// Shows taxels further in a direction, where not all are visible. The first time says how to see the contact again.
+fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
+    let area = app.panes().map(|panes| panes.area(page.slot()));
+    let next = area.and_then(|area| view::beyond(page, app.theme(), area, towards));
+    if next.is_none() {
+        return inform(app, "no more taxels in this direction");
+    }
+    if page.looked_at().is_none() {
+        let key = app.keymap().label(Context::Live, &action::FOLLOW_CONTACT);
+        inform(
+            app,
+            format!("these taxels stay in sight; {key} shows the contact again"),
+        );
+    }
+    page.look_at(next);
 }
 
 /// Marks the frame that is shown, or takes its mark off.

@@ -19,6 +19,7 @@ use crate::recognition::AnswerState;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
+use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::live::heat::{HeatMap, cells, scale};
 use crate::tui::live::layout::LivePanes;
@@ -60,17 +61,19 @@ impl Page for Live {
         area: Rect,
     ) -> Option<Position> {
         let reading = self.reading();
-        let size = reading.map(|reading| (reading.values.columns(), reading.values.rows()));
-        let panes = LivePanes::of(area, size, self.numbers());
-        let map = reading.map(|reading| HeatMap::of(self, reading, theme, panes.map));
+        let panes = panes(self, area);
+        let shown = reading.filter(|_| !self.only_panel());
+        let map = shown.map(|reading| HeatMap::of(self, reading, theme, panes.map));
         let title = title(self, map.as_ref().and_then(HeatMap::window));
         let title = fitting_title(title, panes.title.width.into(), theme);
         let pieces = title.iter().map(|piece| (piece.text.as_str(), piece.role));
         write::line(buffer, panes.title, theme, pieces);
+        let mut marks = None;
         if let Some(map) = map {
             map.draw(buffer, panes.map);
+            marks = map.legend();
         }
-        let lines = lines(self, theme, keymap);
+        let lines = lines(self, theme, keymap, marks);
         draw_lines(&lines, theme, buffer, panes.panel);
         None
     }
@@ -88,6 +91,20 @@ impl Page for Live {
     fn alarm(&self) -> Option<String> {
         self.trouble()
     }
+}
+
+/// The panes of the page.
+fn panes(live: &Live, area: Rect) -> LivePanes {
+    let reading = live.reading().filter(|_| !live.only_panel());
+    let size = reading.map(|reading| (reading.values.columns(), reading.values.rows()));
+    LivePanes::of(area, size, live.numbers())
+}
+
+/// The taxel to look at to see others in a direction, on a page of this area; None where there are none.
+pub(super) fn beyond(live: &Live, theme: &Theme, area: Rect, towards: Arrow) -> Option<(u8, u8)> {
+    let reading = live.reading().filter(|_| !live.only_panel())?;
+    let map = HeatMap::of(live, reading, theme, panes(live, area).map);
+    map.beyond(towards, live)
 }
 
 /// What is shown, and how; `window`: which part of the taxels.
@@ -192,11 +209,11 @@ struct PanelLine {
 }
 
 /// All numbers, the most important ones first.
-/// A low screen cuts them off at the foot: what the touch is like comes before what the source is like.
-fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
+/// A low screen cuts them off at the foot: what the touch is like comes before what the source is like. `marks`: what a mark
+/// on taxels says.
+fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> Vec<PanelLine> {
     let mut lines = Vec::new();
     let mut say = |label, text: String| lines.push(PanelLine { label, text });
-    let unit = live.unit();
     if let Some(reading) = live.reading() {
         for key in SHOWN {
             if let Some(descriptor) = Descriptor::from_key(key) {
@@ -221,23 +238,13 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
     say("threshold", threshold(live, keymap));
     say("tare", tare(live));
     if let Some(reading) = live.reading() {
-        say("range", scale(theme, live.range(), &unit));
-        // What rounding leaves of large values is no measured one.
-        let is_small = live.range().1 < 0.1;
-        let value = if is_small { measured } else { fitting };
-        say("sum", format!("{}{unit}", value(reading.sum, 9)));
-        let peak = reading.max.map(|(largest, (column, row))| {
-            format!("{}{unit} at {column}, {row}", value(largest, 9))
-        });
-        say("peak", peak.unwrap_or_else(|| theme.none().to_owned()));
-        let cells = counted(cells(&reading.values) as u64, "cell");
-        let (columns, rows) = (reading.values.columns(), reading.values.rows());
-        say("size", format!("{columns} × {rows}, {cells}"));
+        lines.extend(of_values(live, reading, theme, marks));
     }
+    let mut say = |label, text: String| lines.push(PanelLine { label, text });
     let rate = live.rate().map(|rate| format!("{}/s", fitting(rate, 5)));
     say("rate", rate.unwrap_or_else(|| theme.none().to_owned()));
     say("lost", lost(live));
-    say("skipped", grouped(live.not_drawn()));
+    say("not drawn", grouped(live.not_drawn()));
     if let Some(text) = gaps(live) {
         say("gaps", text);
     }
@@ -250,6 +257,34 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap) -> Vec<PanelLine> {
     if let Some(text) = recording(live) {
         say("recording", text);
     }
+    lines
+}
+
+/// What can be said of the values of a frame.
+fn of_values(
+    live: &Live,
+    reading: &LiveReading,
+    theme: &Theme,
+    marks: Option<String>,
+) -> Vec<PanelLine> {
+    let unit = live.unit();
+    let mut lines = Vec::new();
+    let mut say = |label, text: String| lines.push(PanelLine { label, text });
+    say("range", scale(theme, live.range(), &unit));
+    if let Some(marks) = marks {
+        say("marks", marks);
+    }
+    // What rounding leaves of large values is no measured one.
+    let is_small = live.range().1 < 0.1;
+    let value = if is_small { measured } else { fitting };
+    say("sum", format!("{}{unit}", value(reading.sum, 9)));
+    let peak = reading
+        .max
+        .map(|(largest, (column, row))| format!("{}{unit} at {column}, {row}", value(largest, 9)));
+    say("peak", peak.unwrap_or_else(|| theme.none().to_owned()));
+    let cells = counted(cells(&reading.values) as u64, "cell");
+    let (columns, rows) = (reading.values.columns(), reading.values.rows());
+    say("size", format!("{columns} × {rows}, {cells}"));
     lines
 }
 

@@ -187,7 +187,8 @@ fn on_stored(app: &mut App, name: String, stamp: u64) {
 }
 
 /// Asks whether to restore the unsaved work of a program that crashed.
-/// Work of several crashes is offered one after the other; no answer keeps it for the next start.
+/// Work of several crashes is offered one after the other; no answer keeps it for the next start. While a sensor is watched
+/// the question waits below that page.
 fn offer(app: &mut App, before: &str, left: &Leftover) {
     let key = |answer| app.keymap().label(Context::Question, answer);
     let (yes, no) = (key(&action::ACCEPT), key(&action::DECLINE));
@@ -197,14 +198,26 @@ fn offer(app: &mut App, before: &str, left: &Leftover) {
         all => format!(" (1 of {all})"),
     };
     let text = format!(
-        "{before}There is unsaved work from last time{of}: {}. Restore it? ({yes}: yes, {no}: to the trash, {later}: ask again next time)",
+        "{before}There is unsaved work from last time{of}: {}.",
         left.what
     );
+    let answers = format!("({yes}: yes, {no}: to the trash, {later}: ask again next time)");
     let question = Question {
         no: Some(Message::GiveUp),
-        ..Question::new(text, Message::Recover)
+        ..Question::new(format!("{text} Restore it? {answers}"), Message::Recover)
     };
-    app.dialogs.push(Dialog::Question(question));
+    let live = |dialog: &Dialog| matches!(dialog, Dialog::Live(_));
+    match app.dialogs.iter().position(live) {
+        // Who watches a sensor wants the keys of that page now, not those of a question.
+        Some(below) => {
+            app.dialogs.insert(below, Dialog::Question(question));
+            inform(
+                app,
+                format!("{text} It is offered when this page is closed."),
+            );
+        }
+        None => app.dialogs.push(Dialog::Question(question)),
+    }
 }
 
 /// Reads the shapes of the list that have come into sight.

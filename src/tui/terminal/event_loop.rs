@@ -200,7 +200,7 @@ impl<'a> EventLoop<'a> {
     fn run(&mut self) -> io::Result<Outcome> {
         session::enter(&self.device, &self.settings, self.mouse)?;
         self.tell_size();
-        // Below the question about unsaved work: a source is watched and recorded while that is thought over.
+        // Before the question about unsaved work, which then waits until the source is left.
         if let Some(first) = self.first.take() {
             self.update(first)?;
         }

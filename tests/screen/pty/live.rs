@@ -624,7 +624,7 @@ fn a_page_that_is_opened_again_leaves_its_recording_alone() {
     }
 }
 
-/// After a connection that was lost, say: the source is watched and recorded, whatever the answer is.
+/// After a connection that was lost, say: the keys are those of the page, and the question comes when it is left.
 #[test]
 fn unsaved_work_that_was_left_keeps_no_source_from_being_recorded() {
     for answer in [b"y", b"n"] {
@@ -646,10 +646,18 @@ fn unsaved_work_that_was_left_keeps_no_source_from_being_recorded() {
             ..Start::default()
         });
         program.shows("There is unsaved work from last time: lost, 3 taxels");
-        program.types(answer);
         program.shows("ended");
+        program.types(b" ");
+        program.shows("frozen");
         program.types(b"\x1b");
+        program.shows("Restore it? (y: yes");
         program.shows("a.npy: 3 frames recorded");
+        program.types(answer);
+        program.shows(if answer == b"y" {
+            "brought back"
+        } else {
+            "in the trash"
+        });
         assert_eq!(records(&file), Some(3));
         program.types(b"q");
         if answer == b"y" {
