@@ -24,7 +24,7 @@ const STEP: f64 = 0.1;
 /// A wait is cut into pieces of this length, so that it can be broken off.
 const MOMENT: Duration = Duration::from_millis(100);
 
-/// No recording is waited for longer than a day.
+/// No frame is waited for longer than a day.
 const LONGEST: f64 = 86_400.0;
 
 /// Why a file that was followed is not read on: a recording of another kind has taken its place.
@@ -121,7 +121,8 @@ impl Pace<'_> {
         stop: &AtomicBool,
         consumer: &mut Consumer<'_>,
     ) -> ControlFlow<()> {
-        let seconds = (seconds / self.speed).clamp(0.0, LONGEST);
+        let longest = self.begun.elapsed().as_secs_f64() + LONGEST;
+        let seconds = (seconds / self.speed).clamp(0.0, longest);
         let due = self.begun + Duration::from_secs_f64(seconds);
         loop {
             let left = due.saturating_duration_since(Instant::now());
@@ -367,6 +368,21 @@ mod tests {
             let wait = pace.wait(&frame, &AtomicBool::new(false), consumer);
             assert_eq!(wait.is_break(), is_waited_for, "{time}");
         }
+    }
+
+    #[test]
+    fn a_recording_that_plays_for_days_keeps_its_pace() {
+        let mut pace = Pace::new(&AcquireOptions::default());
+        let begun = Instant::now().checked_sub(Duration::from_hours(48));
+        pace.begun = begun.expect("later");
+        let waits = |seconds: f64| {
+            let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
+            let wait = pace.until(seconds, &AtomicBool::new(false), consumer);
+            wait.is_break()
+        };
+        assert!(!waits(47.0 * 3600.0), "it was due an hour ago");
+        assert!(waits(49.0 * 3600.0), "it is due in an hour");
+        assert!(waits(f64::INFINITY));
     }
 
     #[test]

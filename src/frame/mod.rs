@@ -32,6 +32,8 @@ mod tare;
 
 mod rule;
 
+mod set_rule;
+
 mod processing;
 
 mod peak;
@@ -44,5 +46,6 @@ pub use peak::Peak;
 pub use processing::{Processed, Processing};
 pub use recorded::{Frame, LARGEST_VALUE, MAX_FRAME_SIDE};
 pub use rule::Rule;
+pub use set_rule::{RuleOrigin, SetRule};
 pub use tare::{Tare, TareFrames};
 pub use view::{Crop, View};

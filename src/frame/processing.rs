@@ -60,13 +60,13 @@ pub struct Processed<'a> {
 }
 
 impl Processing {
-    /// Processes a frame.
+    /// The values of a frame after crop, flip, turn and mask, in the sensor's unit, and the same after tare and gain; NaN
+    /// where there is no cell.
     ///
     /// # Errors
-    /// If the view, the tare, the gain or the rule does not fit the frame.
-    pub fn run(&mut self, frame: &Frame) -> Result<Processed<'_>, FrameError> {
+    /// If the view, the tare or the gain does not fit the frame.
+    pub fn values(&mut self, frame: &Frame) -> Result<[&Matrix<f64>; 2], FrameError> {
         self.view.of(frame, &mut self.raw)?;
-        let (sum, max, cells) = summary(self.raw.values());
         self.tared.reset(self.raw.columns(), self.raw.rows(), 0.0);
         self.tared.values_mut().copy_from_slice(self.raw.values());
         if let Some(tare) = &self.tare {
@@ -75,6 +75,16 @@ impl Processing {
         if let Some(gain) = &self.gain {
             multiply(&mut self.tared, gain)?;
         }
+        Ok([&self.raw, &self.tared])
+    }
+
+    /// Processes a frame.
+    ///
+    /// # Errors
+    /// If the view, the tare, the gain or the rule does not fit the frame.
+    pub fn run(&mut self, frame: &Frame) -> Result<Processed<'_>, FrameError> {
+        self.values(frame)?;
+        let (sum, max, cells) = summary(self.raw.values());
         let tared_sum = if self.tare.is_none() && self.gain.is_none() {
             sum
         } else {

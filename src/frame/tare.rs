@@ -40,6 +40,19 @@ impl TareFrames {
         self.wanted - self.frames
     }
 
+    /// Whether as many frames as it needs can be kept if each has this many values.
+    ///
+    /// # Errors
+    /// If that takes too much memory.
+    pub fn check_memory(&self, values: usize) -> Result<(), FrameError> {
+        let values = values as u64;
+        if self.wanted.saturating_mul(values) > MAX_VALUES {
+            let most = MAX_VALUES / values.max(1);
+            return Err(FrameError::TareSize { most });
+        }
+        Ok(())
+    }
+
     /// Adds a frame; does nothing once there are enough.
     ///
     /// # Errors
@@ -48,11 +61,7 @@ impl TareFrames {
         if self.missing() == 0 {
             return Ok(());
         }
-        let cells = frame.values().len() as u64;
-        if self.wanted.saturating_mul(cells) > MAX_VALUES {
-            let most = MAX_VALUES / cells.max(1);
-            return Err(FrameError::TareSize { most });
-        }
+        self.check_memory(frame.values().len())?;
         let size = (frame.columns(), frame.rows());
         let expected = *self.size.get_or_insert(size);
         if size != expected {

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use taxel::formats::recording::{RuleOrigin, SetRule};
-use taxel::frame::Rule;
+use taxel::frame::{Rule, RuleOrigin, SetRule};
+use taxel::imprint::Imprint;
 use taxel::matrix::Matrix;
 use taxel::recognition::Noise;
 use taxel::tui::app::message::Message;
@@ -146,8 +146,9 @@ fn a_tare_that_is_being_made_says_how_far_it_is() {
     then(&mut page, "<Esc>w", &["tare: 0 of 4 frames"]);
     // A key makes it of what is there, or gives it up.
     page.frames(2);
-    then(&mut page, "T", &["tare       none"]);
+    then(&mut page, "T", &["tare       none", "no tare"]);
     hides(&page, &["tare:"]);
+    then(&mut page, "T", &["there is no tare"]);
 }
 
 #[test]
@@ -594,4 +595,41 @@ fn the_numbers_can_have_the_whole_page() {
     then(&mut page, "i", &["threshold  5", "not drawn  0"]);
     then(&mut page, "i", &["threshold"]);
     hides(&page, &["not drawn"]);
+}
+
+#[test]
+fn the_range_and_the_first_threshold_go_by_the_values_that_are_shown() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("offset.npy");
+    // A cell that is stuck, and one that rests at 1000 and is touched in the last frames.
+    let frames = [1000.0, 1000.0, 1000.0, 1040.0, 1040.0, 1040.0];
+    let values: Vec<f64> = frames.iter().flat_map(|&value| [4095.0, value]).collect();
+    std::fs::write(&path, array("(6, 1, 2)", false, &values)).expect("written");
+    let opened = |change: &dyn Fn(&mut WatchRequest)| {
+        let mut request = WatchRequest::new(path.to_str().expect("UTF-8"));
+        change(&mut request);
+        let mut page = session("");
+        page.send(Message::Live(LiveMessage::Watch(Arc::new(request))));
+        page.frames(3);
+        page
+    };
+    let mut page = opened(&|_| {});
+    shows(&page, &["range      0 ░▒▓█ 5000"]);
+    then(&mut page, "t", &["range      0 ░▒▓█ 1"]);
+    page.frames(3);
+    shows(&page, &["range      0 ░▒▓█ 50"]);
+    then(&mut page, "+", &["threshold  5\n", "NA         1"]);
+    then(&mut page, "vv", &["range      0 ░▒▓█ 5000"]);
+    then(&mut page, "vT", &["range      0 ░▒▓█ 5000"]);
+    // A cell without a value does not count, whatever it sends.
+    let mask: Imprint = "#.".parse().expect("an imprint");
+    let mut page = opened(&|request| request.processing.view.mask = Some(mask));
+    shows(&page, &["range      0 ░▒▓█ 1000"]);
+    page.frames(3);
+    shows(&page, &["range      0 ░▒▓█ 2000"]);
+    let mut page = opened(&|request| {
+        request.processing.gain = Some(Matrix::filled(2, 1, 0.01));
+    });
+    shows(&page, &["range      0 ░▒▓█ 50\n"]);
+    then(&mut page, "+", &["threshold  5\n"]);
 }

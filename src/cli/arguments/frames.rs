@@ -19,8 +19,7 @@ use crate::cli::arguments::recognise::parse_noise;
 use crate::cli::commands::naming::NamingArguments;
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::SensorSettings;
-use crate::formats::recording::{RuleOrigin, SetRule};
-use crate::frame::{Crop, FrameError, Rule};
+use crate::frame::{Crop, FrameError, Rule, RuleOrigin, SetRule};
 use crate::parameter::number;
 use crate::recognition::Noise;
 
@@ -66,7 +65,7 @@ pub(crate) struct ProcessingArguments {
     pub(crate) rule: Option<Rule>,
     /// Where that is from: `flag` or `settings`.
     pub(crate) rule_from: RuleOrigin,
-    /// The smallest 8-connected piece that is kept, in taxels; 0 keeps all.
+    /// The smallest 8-connected piece that is kept, in taxels; 0 for what the recording's own rule says, else all.
     pub(crate) least: u32,
 }
 

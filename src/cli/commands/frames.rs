@@ -39,11 +39,11 @@ use crate::cli::output::recording_list::{self, ListedChannel};
 use crate::cli::output::report;
 use crate::cli::settings::pitch::Pitch;
 use crate::formats::recording::{
-    ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent, SetRule,
+    ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent,
 };
 use crate::formats::value::counted;
 use crate::formats::{StoredShape, json};
-use crate::frame::{FlipReport, Frame, Processed, Processing, Rule, Tare};
+use crate::frame::{FlipReport, Frame, Processed, Processing, Rule, SetRule, Tare};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::parameter::Parameter;

@@ -34,11 +34,11 @@ use crate::cli::signals::Signals;
 use crate::formats::json;
 use crate::formats::recording::{
     ChannelChoice, ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent,
-    RecordingMetadata, SetRule,
+    RecordingMetadata,
 };
 use crate::formats::stream::StreamCounts;
 use crate::formats::value::counted;
-use crate::frame::{Frame, FrameError, Processing, Tare, TareFrames};
+use crate::frame::{Frame, FrameError, Processing, SetRule, Tare, TareFrames};
 use crate::matrix::Matrix;
 use crate::tui::live::request::WatchRequest;
 
@@ -431,7 +431,9 @@ impl Watcher<'_> {
             return answered;
         };
         let mut seen = Matrix::filled(1, 1, f64::NAN);
-        let added = self.processing.view.of(&own, &mut seen);
+        // The whole frames wait, not only what is seen of them.
+        let added = tare.check_memory(own.values().len());
+        let added = added.and_then(|()| self.processing.view.of(&own, &mut seen));
         let added = added.and_then(|()| tare.add(&seen));
         waiting.push(own);
         added.map_err(|error| self.refused(&error.to_string()))?;

@@ -6,10 +6,8 @@ use crate::cli::arguments::frames::ProcessingArguments;
 use crate::cli::error::CliError;
 use crate::cli::input::recording::{RecordingFile, dead_cells};
 use crate::cli::output::recording_list::ListedChannel;
-use crate::formats::recording::{
-    ChannelInfo, ReadOptions, RecordingError, RecordingEvent, SetRule,
-};
-use crate::frame::{Peak, Processing, TareFrames, View};
+use crate::formats::recording::{ChannelInfo, ReadOptions, RecordingError, RecordingEvent};
+use crate::frame::{Peak, Processing, SetRule, TareFrames, View};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 

@@ -3,9 +3,8 @@
 //! Flags of `taxel watch` and `taxel frames` override them. On the screen they are what `:watch SOURCE` begins with.
 
 use crate::acquire::AcquireOptions;
-use crate::formats::recording::{RuleOrigin, SetRule};
 use crate::formats::stream::StreamFormat;
-use crate::frame::Rule;
+use crate::frame::{Rule, RuleOrigin, SetRule};
 use crate::tui::live::history::HISTORY_BYTES;
 use crate::tui::live::request::WatchRequest;
 

@@ -10,55 +10,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::description::{Description, regions};
 use crate::formats::described::{RegionRecord, Rows};
-use crate::frame::{Frame, Processed, Processing, Rule};
-
-/// A rule and who has set it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SetRule {
-    /// The rule.
-    pub rule: Rule,
-    /// Pieces of fewer taxels are dropped; 0 or 1 drops none.
-    pub least: u32,
-    /// Where it is from.
-    pub from: RuleOrigin,
-}
-
-/// Where a rule is from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum RuleOrigin {
-    /// An argument of the command.
-    #[default]
-    Flag,
-    /// The recording, or the description beside it.
-    File,
-    /// The user's settings.
-    Settings,
-    /// A key of the live page.
-    Key,
-}
-
-impl RuleOrigin {
-    /// Its name in answers and descriptions.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Flag => "flag",
-            Self::File => "file",
-            Self::Settings => "settings",
-            Self::Key => "key",
-        }
-    }
-}
-
-impl SetRule {
-    /// Has frames processed by a rule, or without one. Without one, how many taxels a piece has at least stays: it holds for
-    /// the rule that is set later.
-    pub fn apply(rule: Option<Self>, processing: &mut Processing) {
-        processing.rule = rule.map(|set| set.rule);
-        if let Some(set) = rule {
-            processing.least = set.least;
-        }
-    }
-}
+use crate::frame::{Frame, Processed, Rule, SetRule};
 
 /// Serialises as `{"frame":65,"label":66,"time":6.5,"channel":null,"sum":…,"max":…,"rule":{…},"imprint":[…],"na":…,
 /// "regions":[…]}`; rule, imprint and NA are null without a rule. With a tare, the answer says what it was made of.
@@ -140,6 +92,7 @@ impl Serialize for Shortest {
 mod tests {
     use super::*;
     use crate::formats::json;
+    use crate::frame::{Processing, RuleOrigin};
 
     #[test]
     fn without_a_rule_there_is_no_imprint() {
@@ -157,23 +110,6 @@ mod tests {
             json::text(&answer),
             r#"{"frame":0,"label":null,"time":null,"channel":null,"sum":3.5,"max":2.5,"rule":null,"imprint":null,"na":null,"regions":[]}"#
         );
-    }
-
-    #[test]
-    fn a_rule_is_applied_with_its_least_and_taken_away_without() {
-        let mut processing = Processing::default();
-        let rule = SetRule {
-            rule: Rule::AtLeast(2.0),
-            least: 3,
-            from: RuleOrigin::Flag,
-        };
-        SetRule::apply(Some(rule), &mut processing);
-        assert_eq!(
-            (processing.rule, processing.least),
-            (Some(Rule::AtLeast(2.0)), 3)
-        );
-        SetRule::apply(None, &mut processing);
-        assert_eq!((processing.rule, processing.least), (None, 3));
     }
 
     #[test]

@@ -17,8 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::formats::framed::{FrameRows, RuleRecord, matrix};
 use crate::formats::json;
-use crate::formats::recording::answer::{RuleOrigin, SetRule};
-use crate::frame::{LARGEST_VALUE, Rule, Tare};
+use crate::frame::{LARGEST_VALUE, Rule, RuleOrigin, SetRule, Tare};
 use crate::matrix::Matrix;
 use crate::quote::shortened_message;
 

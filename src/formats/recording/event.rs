@@ -3,9 +3,8 @@
 use std::fmt;
 use std::ops::ControlFlow;
 
-use crate::formats::recording::answer::{RuleOrigin, SetRule};
 use crate::formats::recording::description::{FrameMark, RecordingMetadata};
-use crate::frame::{Frame, Rule, Tare, View};
+use crate::frame::{Frame, Rule, RuleOrigin, SetRule, Tare, View};
 use crate::parameter::number::counted;
 #[cfg(feature = "tui")]
 use crate::parameter::number::short;
@@ -161,12 +160,19 @@ impl ChannelInfo {
         })
     }
 
-    /// The rule of the recording itself: that of its description, else its threshold.
+    /// The rule of the recording itself: that of its description, else its threshold. Pieces of fewer taxels than `least` are
+    /// dropped; 0 leaves that to the description.
     pub fn own_rule(&self, least: u32) -> Option<SetRule> {
-        let threshold = self.threshold.and_then(|own| Rule::at_least(own).ok());
-        let from = RuleOrigin::File;
-        self.rule
-            .or_else(|| threshold.map(|rule| SetRule { rule, least, from }))
+        let threshold = || {
+            let rule = self.threshold.and_then(|own| Rule::at_least(own).ok());
+            let from = RuleOrigin::File;
+            rule.map(|rule| SetRule { rule, least, from })
+        };
+        let mut own = self.rule.or_else(threshold)?;
+        if least > 0 {
+            own.least = least;
+        }
+        Some(own)
     }
 }
 
@@ -285,6 +291,32 @@ mod tests {
         let completed = own.completed(Some(&description));
         assert_eq!(completed.unit, own.unit);
         assert_eq!(completed.pitch_mm, description.pitch_mm);
+    }
+
+    #[test]
+    fn a_least_size_that_is_asked_for_goes_before_that_of_the_description() {
+        let described = ChannelInfo {
+            rule: Some(SetRule {
+                rule: Rule::Percent(30.0),
+                least: 3,
+                from: RuleOrigin::File,
+            }),
+            ..ChannelInfo::default()
+        };
+        let threshold = ChannelInfo {
+            threshold: Some(2.0),
+            ..ChannelInfo::default()
+        };
+        let least = |info: &ChannelInfo, asked| info.own_rule(asked).map(|set| set.least);
+        assert_eq!(
+            [0, 1, 5].map(|asked| least(&described, asked)),
+            [3, 1, 5].map(Some)
+        );
+        assert_eq!(
+            [0, 5].map(|asked| least(&threshold, asked)),
+            [0, 5].map(Some)
+        );
+        assert_eq!(least(&ChannelInfo::default(), 5), None);
     }
 
     #[test]

@@ -79,7 +79,7 @@ mod answer;
 
 mod description;
 
-pub use answer::{FrameAnswer, RuleOrigin, SetRule};
+pub use answer::FrameAnswer;
 pub use channel_choice::ChannelChoice;
 #[cfg(feature = "cli")]
 pub(crate) use delimited::read_rows;

@@ -1,53 +1,81 @@
 //! The range of values that the shades cover.
 
-use crate::frame::Frame;
-use crate::tui::live::reading::{LiveReading, round_up};
+use crate::matrix::Matrix;
+use crate::tui::live::reading::{HeatLayer, LiveReading, round_up};
 
 /// The values so far, which the fixed range covers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ShadeRange {
-    /// The largest value so far in round numbers, which only grows; None as long as nothing is above 0. No sensor has
-    /// values of a known size: one may measure thousands of pascals, another one parts of a newton.
-    top: Option<f64>,
-    /// The least value that was shown, at most 0.
-    bottom: f64,
+    raw: Span,
+    /// After tare and gain.
+    tared: Span,
     /// Whether shades are spread over the values of the frame that is shown only.
     pub(super) is_own: bool,
 }
 
-impl ShadeRange {
-    /// Takes the values of a new frame.
-    pub(super) fn add(&mut self, frame: &Frame) {
-        let largest = frame.values().iter().copied().fold(0.0, f64::max);
+/// What some values span; it only grows.
+#[derive(Clone, Copy, Debug, Default)]
+struct Span {
+    /// The largest value in round numbers; None as long as nothing is above 0. No sensor has values of a known size: one may
+    /// measure thousands of pascals, another one parts of a newton.
+    top: Option<f64>,
+    /// The least value, at most 0.
+    bottom: f64,
+}
+
+impl Span {
+    fn add(&mut self, values: &Matrix<f64>) {
+        let values = values.values().iter().copied();
+        let (least, largest) = values.fold((0.0, 0.0), |(least, largest): (f64, f64), value| {
+            (least.min(value), largest.max(value))
+        });
+        self.bottom = self.bottom.min(least);
         if largest > 0.0 {
             let top = round_up(largest);
             self.top = Some(self.top.map_or(top, |before| before.max(top)));
         }
     }
 
-    /// Takes what a frame is shown as.
-    pub(super) fn add_shown(&mut self, reading: &LiveReading) {
-        self.bottom = self.bottom.min(reading.least);
-    }
-
     /// The upper end of the fixed range.
-    pub(super) fn top(&self) -> f64 {
+    fn top(&self) -> f64 {
         self.top.unwrap_or(1.0)
     }
+}
 
-    /// The ends of the range.
-    pub(super) fn ends(&self, reading: Option<&LiveReading>) -> (f64, f64) {
+impl ShadeRange {
+    /// Takes the values of a new frame, raw ones and those after tare and gain.
+    pub(super) fn add(&mut self, [raw, tared]: [&Matrix<f64>; 2]) {
+        self.raw.add(raw);
+        self.tared.add(tared);
+    }
+
+    /// Forgets the values so far, since another tare is subtracted now.
+    pub(super) fn begin_anew(&mut self) {
+        (self.raw, self.tared) = (Span::default(), Span::default());
+    }
+
+    /// The largest value so far after tare and gain, in round numbers: thresholds go by these values.
+    pub(super) fn tared_top(&self) -> f64 {
+        self.tared.top()
+    }
+
+    /// The ends of the range for what is shown.
+    pub(super) fn ends(&self, layer: HeatLayer, reading: Option<&LiveReading>) -> (f64, f64) {
         let largest = reading
             .and_then(|reading| reading.max)
             .map(|(largest, _)| largest);
         let least = reading.map_or(0.0, |reading| reading.least);
+        let span = match layer {
+            HeatLayer::Raw => self.raw,
+            HeatLayer::Tared | HeatLayer::Imprint => self.tared,
+        };
         match largest {
             Some(largest) if self.is_own && (largest > 0.0 || least < 0.0) => {
                 (least.min(0.0), largest.max(0.0))
             }
             // What little a tare leaves below 0 is noise.
-            _ if self.bottom < -self.top() / 20.0 => (-round_up(-self.bottom), self.top()),
-            _ => (0.0, self.top()),
+            _ if span.bottom < -span.top() / 20.0 => (-round_up(-span.bottom), span.top()),
+            _ => (0.0, span.top()),
         }
     }
 }
@@ -60,13 +88,16 @@ mod tests {
     fn the_top_is_that_of_the_values_however_small_they_are() {
         let mut range = ShadeRange::default();
         let mut top = |value: f64| {
-            let mut frame = Frame::new(2, 1);
-            frame.values_mut()[0] = value;
-            range.add(&frame);
-            range.top()
+            let [raw, tared] = [10.0 * value, value].map(|value| Matrix::filled(2, 1, value));
+            range.add([&raw, &tared]);
+            range.tared_top()
         };
         assert_eq!([top(0.0), top(-3.0), top(f64::NAN)], [1.0, 1.0, 1.0]);
         assert_eq!([top(0.004), top(0.001)], [0.005, 0.005]);
         assert_eq!([top(30.0), top(2.0)], [50.0, 50.0]);
+        let ends = [HeatLayer::Raw, HeatLayer::Tared].map(|layer| range.ends(layer, None));
+        assert_eq!(ends, [(-50.0, 500.0), (-5.0, 50.0)]);
+        range.begin_anew();
+        assert_eq!(range.ends(HeatLayer::Raw, None), (0.0, 1.0));
     }
 }

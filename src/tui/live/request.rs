@@ -4,8 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use crate::acquire::AcquireOptions;
-use crate::formats::recording::SetRule;
-use crate::frame::Processing;
+use crate::frame::{Processing, SetRule};
 use crate::recognition::Noise;
 use crate::storage::Existing;
 use crate::tui::live::history::HISTORY_BYTES;

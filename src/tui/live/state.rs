@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use crate::formats::recording::{ChannelInfo, FrameMark, RuleOrigin, SetRule};
-use crate::frame::{Frame, FrameError, Processing, Rule, Tare};
+use crate::formats::recording::{ChannelInfo, FrameMark};
+use crate::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule, Tare};
 use crate::imprint::Imprint;
 use crate::tui::live::history::{FrameHistory, is_same};
 use crate::tui::live::marks::FrameMarks;
@@ -22,6 +22,9 @@ use crate::tui::recognise::sets::ModelChoice;
 
 /// Frames that a tare by key is made of, at most.
 const TARED: usize = 30;
+
+/// Frames whose values make the range anew after a tare, at most: a key waits for it.
+const RANGED: usize = 1000;
 
 /// The state of the page.
 #[derive(Clone, Debug)]
@@ -372,7 +375,7 @@ impl Live {
 
     /// The values between which shades are spread.
     pub fn range(&self) -> (f64, f64) {
-        self.range.ends(self.reading.as_ref())
+        self.range.ends(self.layer, self.reading.as_ref())
     }
 
     /// Frames a second, by the times of the last ones; what the recording says where they have none. None while the source
@@ -447,17 +450,36 @@ impl Live {
             self.set_rule(channel.own_rule(self.processing.least));
         }
         self.marks.set_recorded(&channel.marks);
-        self.tare.take_own(channel, &mut self.processing);
+        self.retare(|tare, processing| tare.take_own(channel, processing));
     }
 
     /// Takes a new frame into the history, the held peak, the range and a tare being made.
     fn add(&mut self, frame: &Arc<Frame>) {
-        self.range.add(frame);
+        if let Ok(values) = self.processing.values(frame) {
+            self.range.add(values);
+        }
         if let Some(held) = &mut self.held {
             hold(Arc::make_mut(held), frame);
         }
         self.history.push(Arc::clone(frame));
-        self.tare.add(frame, &mut self.processing);
+        self.retare(|tare, processing| tare.add(frame, processing));
+    }
+
+    /// Does something about the tare. If another one is subtracted then, the range is that of the last frames after it.
+    fn retare<T>(&mut self, act: impl FnOnce(&mut LiveTare, &mut Processing) -> T) -> T {
+        let before = self.tare.mark();
+        let done = act(&mut self.tare, &mut self.processing);
+        if self.tare.mark() != before {
+            self.range.begin_anew();
+            let newest = self.history.newest();
+            let frames = newest.map(|newest| self.history.back_from(newest, RANGED));
+            for frame in frames.into_iter().flatten() {
+                if let Ok(values) = self.processing.values(frame) {
+                    self.range.add(values);
+                }
+            }
+        }
+        done
     }
 
     /// Subtracts the median of the frames up to the one that is shown. Returns of how many.
@@ -471,14 +493,14 @@ impl Live {
         if frames.is_empty() {
             return Err(LiveRefusal::LeftHistory);
         }
-        self.tare.of_last(&frames, &mut self.processing)?;
+        self.retare(|tare, processing| tare.of_last(&frames, processing))?;
         self.read();
         Ok(frames.len() as u64)
     }
 
     /// Takes nothing off any more; `false` if there was no tare.
     pub fn drop_tare(&mut self) -> bool {
-        let any = self.tare.give_up(&mut self.processing);
+        let any = self.retare(LiveTare::give_up);
         self.read();
         any
     }
@@ -501,7 +523,7 @@ impl Live {
     /// The threshold up or down by a step, which goes by the largest value so far; without one, one is set.
     pub fn step_threshold(&mut self, direction: i8) {
         let rule = self.rule.map(|set| set.rule);
-        self.choose(&threshold::step(rule, direction, self.range.top()));
+        self.choose(&threshold::step(rule, direction, self.range.tared_top()));
     }
 
     /// A threshold in percent in place of one in the sensor's unit, or the other way round: one that gives about the same
@@ -510,7 +532,7 @@ impl Live {
         // Rules go by the tared values, whichever are shown.
         let largest = self.reading.as_ref().and_then(|reading| reading.tared_max);
         let largest = largest.filter(|&largest| largest > 0.0);
-        let largest = largest.unwrap_or(self.range.top());
+        let largest = largest.unwrap_or(self.range.tared_top());
         let rule = self.rule.map(|set| set.rule);
         self.choose(&threshold::other_unit(rule, largest));
     }
@@ -658,9 +680,6 @@ impl Live {
             self.error = Some(error);
             None
         });
-        if let Some(reading) = &self.reading {
-            self.range.add_shown(reading);
-        }
     }
 
     /// What can be said of a frame: all but the imprint where a threshold by noise has no tare to go by. That is an error

@@ -142,11 +142,12 @@ impl LiveTare {
         Ok(())
     }
 
-    /// Takes nothing off any more; `false` if there was no tare.
+    /// Takes nothing off any more; `false` if there was no tare, and none was being made.
     pub(super) fn give_up(&mut self, processing: &mut Processing) -> bool {
-        (self.first, self.error, self.wanted) = (None, None, 0);
+        let was = self.mark.is_some() || self.first.is_some();
+        (self.mark, self.first, self.error, self.wanted) = (None, None, None, 0);
         processing.tare = None;
-        self.mark.take().is_some()
+        was
     }
 
     /// Notes that the source is watched again, which counts its frames from 0: a tare stays without its age, and one that

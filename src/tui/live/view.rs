@@ -11,9 +11,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::description::Descriptor;
-use crate::formats::recording::RuleOrigin;
 use crate::formats::value::{self, counted, fitting, grouped, measured};
-use crate::frame::Rule;
+use crate::frame::{Rule, RuleOrigin};
 use crate::imprint::Imprint;
 use crate::recognition::AnswerState;
 use crate::tui::app::page::{Page, Slot};
