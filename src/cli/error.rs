@@ -79,10 +79,12 @@ pub(crate) enum CliError {
     #[error("{}", shortened_message(&.0.to_string()))]
     Library(#[from] LibraryError),
     /// The argument is neither the name of a shape nor a file.
-    #[error("no stored shape and no file is called {name:?}")]
+    #[error("no stored shape and no file is called {name:?}{}", did_you_mean(near.as_deref()))]
     Nowhere {
         /// The argument.
         name: String,
+        /// The name of a stored shape that is nearly the same.
+        near: Option<String>,
     },
     /// A shape of a set that cannot be read.
     #[error("{place}: {error}")]
@@ -364,4 +366,9 @@ impl CliError {
             _ => Some(format!("error: {}\n", charset.line(&self.to_string()))),
         }
     }
+}
+
+/// The end of a message about a name that is nearly another one.
+fn did_you_mean(near: Option<&str>) -> String {
+    near.map_or(String::new(), |near| format!("; did you mean {near:?}?"))
 }

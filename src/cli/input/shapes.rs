@@ -17,7 +17,10 @@ use crate::formats::Content;
 use crate::formats::StoredShape;
 use crate::formats::name::folded;
 use crate::imprint::Imprint;
-use crate::storage::{Expected, Library, LibraryError};
+use crate::storage::{Expected, Library, LibraryEntry, LibraryError};
+
+/// Names that are more alike than this, from 0 to 1, are taken for slips of the keys.
+const NEAR: f64 = 0.8;
 
 /// The library, opened when it is first used: most commands never need it.
 #[derive(Clone, Debug)]
@@ -102,21 +105,38 @@ impl Shelf {
             .map(|name| self.library().and_then(|library| library.load(name)));
         let nowhere = match named {
             Some(Ok(loaded)) => return Ok(Located::Shape(loaded.shape)),
-            Some(Err(LibraryError::Unknown { name })) => Some(CliError::Nowhere { name }),
+            Some(Err(LibraryError::Unknown { name })) => {
+                Some(CliError::Nowhere { name, near: None })
+            }
             // What cannot be a name may be a path, and paths do not need a library.
             Some(Err(LibraryError::Name(_) | LibraryError::NoPlace)) | None => None,
             // An error of the library is reported only if there is no such file.
             Some(Err(error)) => Some(error.into()),
         };
         let path = PathBuf::from(what);
+        let is_missing = |error: &std::io::Error| error.kind() == ErrorKind::NotFound;
         match (File::open(&path), nowhere) {
             (Ok(file), _) => Ok(Located::File(path, file)),
-            (Err(error), Some(nowhere)) if error.kind() == ErrorKind::NotFound => Err(nowhere),
+            (Err(error), Some(CliError::Nowhere { name, .. })) if is_missing(&error) => {
+                let near = self.near(&name);
+                Err(CliError::Nowhere { name, near })
+            }
+            (Err(error), Some(nowhere)) if is_missing(&error) => Err(nowhere),
             (Err(error), _) => Err(CliError::Input {
                 name: InputSource::File(path).name(),
                 error: error.into(),
             }),
         }
+    }
+
+    /// The stored shape whose name is most like this one; None if none is much like it.
+    fn near(&self, name: &str) -> Option<String> {
+        let shapes = self.library().and_then(|library| library.list()).ok()?;
+        let own = folded(name);
+        let alike = |shape: &LibraryEntry| strsim::jaro(&own, &folded(&shape.name));
+        let alike = shapes.into_iter().map(|shape| (alike(&shape), shape.name));
+        let nearest = alike.max_by(|(one, _), (other, _)| one.total_cmp(other));
+        nearest.and_then(|(alike, name)| (alike > NEAR).then_some(name))
     }
 
     /// The imprint of a stored shape, for the lines of a batch. Each shape is read once.
