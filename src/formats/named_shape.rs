@@ -17,7 +17,7 @@ use crate::figure::FigureKind;
 use crate::formats::json::message;
 use crate::formats::record::{ImprintOrName, Record, RecordError, Text, once, value_of};
 use crate::imprint::Imprint;
-use crate::parameter::{PARAMETERS, number};
+use crate::parameter::{PARAMETERS, Parameter, number};
 use crate::picture::Picture;
 use crate::pose::Axis;
 use crate::quote::shortened;
@@ -57,11 +57,15 @@ pub enum NamedShapeError {
     },
     /// A key that no figure has; a weight can be given in JSON only.
     #[error(
-        "{found:?}: expected a parameter of a figure, such as radius_x; weights are given in JSON"
+        "{found:?}: not a parameter of the figure {}, which has {}; weights are given in JSON",
+        figure.name(),
+        keys(*figure)
     )]
     Key {
         /// What was given.
         found: String,
+        /// The figure.
+        figure: FigureKind,
     },
     /// A parameter that is given twice.
     #[error("{key}: given twice")]
@@ -69,6 +73,13 @@ pub enum NamedShapeError {
         /// Its key.
         key: &'static str,
     },
+}
+
+/// The keys of the parameters of a figure that matter in a set, where its position and angle do not.
+fn keys(figure: FigureKind) -> String {
+    let sizes = figure.sizes().iter().chain([&Parameter::Thickness]);
+    let keys = sizes.map(|parameter| parameter.row().key);
+    keys.collect::<Vec<_>>().join(", ")
 }
 
 /// Finds the imprint of a stored shape.
@@ -129,6 +140,8 @@ pub fn named_shape_of_words(
         record.picture = Some(ImprintOrName::Name(Cow::Borrowed(values.trim())));
     } else {
         record.figure = Some(Cow::Borrowed(kind));
+    }
+    if let Some(figure) = FigureKind::from_name(kind) {
         for word in values.split_whitespace() {
             let error = || NamedShapeError::Word {
                 found: shortened(word),
@@ -138,6 +151,7 @@ pub fn named_shape_of_words(
             let row = PARAMETERS.iter().find(|row| row.key == key);
             let row = row.ok_or_else(|| NamedShapeError::Key {
                 found: shortened(key),
+                figure,
             })?;
             if record.values.get(row.parameter).is_some() {
                 return Err(NamedShapeError::Twice { key: row.key });

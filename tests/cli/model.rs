@@ -713,7 +713,7 @@ fn the_pose_of_a_line_does_not_change_a_model() {
         ("a=hexagon side=3 side=4", "--shape: side: given twice"),
         (
             "a=hexagon weight=2",
-            "--shape: \"weight\": expected a parameter of a figure, such as radius_x; weights are given in JSON",
+            "--shape: \"weight\": not a parameter of the figure hexagon, which has side, thickness; weights are given in JSON",
         ),
     ];
     for (shape, message) in words {
