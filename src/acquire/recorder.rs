@@ -21,7 +21,7 @@ use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::formats::recording::{FrameMark, RecordingMetadata};
+use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::formats::seconds::usual_step;
 use crate::frame::Frame;
 use crate::index::index;
@@ -239,19 +239,10 @@ impl FrameRecorder {
         self.noted(written)
     }
 
-    /// Replaces the marks in the description.
-    ///
-    /// # Errors
-    /// What the system reports.
-    pub fn mark(&mut self, marks: Vec<FrameMark>) -> Result<(), RecorderError> {
-        self.set_marks(marks);
-        let written = self.write_description();
-        self.noted(written)
-    }
-
-    /// The same for a caller who writes the description itself: see [`DescriptionDraft`].
-    pub(crate) fn set_marks(&mut self, marks: Vec<FrameMark>) -> DescriptionDraft {
-        self.metadata.marks = marks;
+    /// Replaces threshold, tare and marks in the description, for a caller who writes it: see [`DescriptionDraft`].
+    pub(crate) fn set_view(&mut self, view: RecordedView) -> DescriptionDraft {
+        let RecordedView { rule, tare, marks } = view;
+        (self.metadata.rule, self.metadata.tare, self.metadata.marks) = (rule, tare, marks);
         self.draft()
     }
 
@@ -494,7 +485,7 @@ impl FrameRecorder {
 /// What the description beside an array is to say. To write it takes as long as the disk does, and needs no recorder, to
 /// which frames can be added meanwhile:
 /// ```text
-/// set_marks -> DescriptionDraft -> prepare -> take_description -> name_description
+/// set_view -> DescriptionDraft -> prepare -> take_description -> name_description
 /// ```
 #[derive(Debug)]
 pub(crate) struct DescriptionDraft {

@@ -143,7 +143,10 @@ pub(super) fn run(
         clock.bytes = decoder.counts().bytes;
     }
     let _ = step(&mut decoder, StreamDecoder::finish, &mut clock, consumer);
-    let _ = consumer(AcquireEvent::Ended(decoder.counts()));
+    // A source that is left has not come to its end.
+    if !stop.load(Ordering::Relaxed) {
+        let _ = consumer(AcquireEvent::Ended(decoder.counts()));
+    }
     Ok(())
 }
 

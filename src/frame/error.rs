@@ -55,6 +55,17 @@ pub enum FrameError {
     NoTare,
 }
 
+impl FrameError {
+    /// Whether a frame of another size would be processed.
+    #[cfg(feature = "cli")]
+    pub(crate) fn is_of_size(&self) -> bool {
+        matches!(
+            self,
+            Self::Large { .. } | Self::Crop { .. } | Self::Size { .. }
+        )
+    }
+}
+
 impl fmt::Display for FrameError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

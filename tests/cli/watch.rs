@@ -232,6 +232,48 @@ fn a_fifo_is_read_until_its_writer_closes_it() {
     );
 }
 
+#[test]
+fn a_signal_before_the_first_frame_is_no_error() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let fifo = folder.path().join("frames");
+    if !wait::fifo(&fifo) {
+        return;
+    }
+    for sent in ["", "1 2\n3"] {
+        let child = started(&["watch", fifo.to_str().expect("UTF-8")]);
+        let mut writer = wait::writer_of(&fifo);
+        writer.write_all(sent.as_bytes()).expect("it is read");
+        // It listens for signals before it opens its source.
+        let id = rustix::process::Pid::from_child(&child);
+        rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("it runs still");
+        let run = super::finish(child, b"");
+        let said = (run.status, run.stderr.as_str());
+        assert_eq!(said, (Some(128 + 15), ""), "{sent:?}");
+    }
+}
+
+#[test]
+fn frames_of_another_size_do_not_end_it() {
+    let wide = "1 2 3\n\n".repeat(5);
+    let input = stream(0..3) + &wide + &stream(3..7);
+    let run = taxel("watch - --crop 0,0,2x2 --at-least 1", &input);
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+    let frames: Vec<u64> = lines(&run.stdout)
+        .iter()
+        .map(|line| line["frame"].as_u64().expect("a number"))
+        .collect();
+    // Two frames of each new size are dropped before it counts as one.
+    assert_eq!(frames, [0, 1, 2, 6, 7]);
+    for said in [
+        "standard input: 1 x 3 cells from frame 3 on",
+        "standard input: frame 3 is not answered: the crop reaches beyond the frame",
+        "standard input: 2 x 2 cells from frame 6 on",
+        "standard input: 3 frames of another size not answered",
+    ] {
+        assert!(run.stderr.contains(said), "{said}: {}", run.stderr);
+    }
+}
+
 /// Whether a program has locked a file, which is how it claims a serial line.
 fn has_locked(program: &Child, file: &Path) -> bool {
     let id = program.id().to_string();

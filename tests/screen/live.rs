@@ -406,6 +406,51 @@ fn a_script_records_each_frame_once() {
 }
 
 #[test]
+fn a_recording_has_the_threshold_and_the_tare_of_its_end() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let world = world().confined_to(folder.path().to_owned());
+    let mut page = started(world, ":watch tests/scripts/touch.csv<Enter>");
+    page.frames(2);
+    then(&mut page, "r", &["recording in touch-1.npy"]);
+    page.frames(3);
+    let beside = || {
+        let text = std::fs::read_to_string(folder.path().join("touch-1.json"));
+        let beside: serde_json::Value =
+            serde_json::from_str(&text.expect("written")).expect("JSON");
+        (beside["rule"].clone(), beside["tare_frames"].clone())
+    };
+    assert!(beside().0.is_null() && beside().1.is_null());
+    then(&mut page, "+", &["threshold  5"]);
+    assert_eq!(beside().0["at_least"], 5);
+    then(&mut page, "+t", &["threshold  6", "tare       5 frames"]);
+    assert_eq!(
+        (&beside().0["at_least"], &beside().1),
+        (&6.into(), &5.into())
+    );
+    then(&mut page, "Tr", &["touch-1.npy: 3 frames recorded"]);
+    assert!(beside().1.is_null());
+}
+
+#[test]
+fn an_error_is_shown_at_once_in_place_of_an_older_notice() {
+    let mut page = watched(6, "t");
+    shows(&page, &["tare of the last 6 frames"]);
+    let frame = Arc::new(taxel::frame::Frame::new(3, 3));
+    let frames = vec![frame];
+    let batch = FrameBatch {
+        frames,
+        ..FrameBatch::default()
+    };
+    let event = LiveEvent::Arrived(Arc::new(batch));
+    page.send(Message::Worker(WorkerEvent::Live(1, event)));
+    shows(
+        &page,
+        &["! the tare has 16 columns and 16 rows, expected 3 and 3"],
+    );
+    hides(&page, &["tare of the last"]);
+}
+
+#[test]
 fn the_shape_is_named_by_sets_of_shapes_in_turn() {
     let mut page = watched(6, "nnn");
     shows(&page, &["shapes are named by model shapes"]);

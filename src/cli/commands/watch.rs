@@ -72,6 +72,10 @@ struct Watcher<'a> {
     lines: LineWriter,
     /// A frame's memory, used again for the next one.
     frame: Frame,
+    /// Rows and columns of the last frame; None before the first.
+    size: Option<(u16, u16)>,
+    /// How many frames were answered, and how many were not since crop, tare, mask or gain do not fit their size.
+    answered: (u64, u64),
     /// Whether a frame may be left unanswered.
     live: bool,
     /// How many dropped frames have been reported.
@@ -124,6 +128,8 @@ pub(crate) fn watch(
         begun: false,
         lines,
         frame: Frame::new(1, 1),
+        size: None,
+        answered: (0, 0),
         live: !asked.options.once && !matches!(source, FrameSource::File(_)),
         dropped: 0,
         reported: None,
@@ -421,6 +427,14 @@ impl Watcher<'_> {
 
     /// Takes a frame of the channel: it is recorded, and answered or kept for the tare.
     fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
+        let (rows, columns) = (frame.rows(), frame.columns());
+        let before = self.size.replace((rows, columns));
+        let is_new_size = before.is_some_and(|before| before != (rows, columns));
+        // Each frame of a recording may have its own.
+        if is_new_size && self.channels.is_empty() {
+            let number = frame.number;
+            self.say(&format!("{rows} x {columns} cells from frame {number} on"));
+        }
         self.record(frame, time)?;
         let mut own = std::mem::replace(&mut self.frame, Frame::new(1, 1));
         own.copy_from(frame);
@@ -454,21 +468,26 @@ impl Watcher<'_> {
         waiting.iter().try_for_each(|frame| self.answer(frame))
     }
 
-    /// Processes a frame and sends its line.
+    /// Processes a frame and sends its line. One of another size that does not fit crop, tare, mask or gain is left out if
+    /// others did fit: the sensor goes on.
     ///
     /// # Errors
-    /// If it does not fit gain, mask or crop; [`CliError::Write`] once standard output is closed.
+    /// If the first one does not fit; [`CliError::Write`] once standard output is closed.
     fn answer(&mut self, frame: &Frame) -> Result<(), CliError> {
         let tare = self.processing.tare.as_ref().map_or(0, Tare::frames);
         let processed = match self.processing.run(frame) {
             Ok(processed) => processed,
-            Err(error) => {
-                return Err(CliError::Frames {
-                    name: self.name.clone(),
-                    message: error.to_string(),
-                });
+            Err(error) if self.answered.0 > 0 && error.is_of_size() => {
+                self.answered.1 += 1;
+                if self.answered.1 == 1 {
+                    let number = frame.number;
+                    self.say(&format!("frame {number} is not answered: {error}"));
+                }
+                return Ok(());
             }
+            Err(error) => return Err(self.refused(&error.to_string())),
         };
+        self.answered.0 += 1;
         let channel = self.channels.get(frame.channel);
         let answer = FrameAnswer {
             frame,
@@ -587,6 +606,11 @@ impl Watcher<'_> {
         if left_out > 0 {
             let frames = counted(left_out, "frame");
             self.say(&format!("{frames} of another size not recorded"));
+        }
+        let unfit = self.answered.1;
+        if unfit > 0 {
+            let frames = counted(unfit, "frame");
+            self.say(&format!("{frames} of another size not answered"));
         }
         let recorded = self.recorder.take().map(FrameRecorder::finish);
         // A file that could not be begun is not for want of frames.

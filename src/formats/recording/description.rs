@@ -33,6 +33,17 @@ pub struct FrameMark {
     pub time: Option<f64>,
 }
 
+/// How the frames of a recording are looked at while it is written, which may change meanwhile.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordedView {
+    /// The rule of the imprints that are shown.
+    pub rule: Option<SetRule>,
+    /// What is subtracted from each cell.
+    pub tare: Option<Tare>,
+    /// Frames that are marked.
+    pub marks: Vec<FrameMark>,
+}
+
 /// What `touch.json` says.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordingMetadata {
@@ -44,9 +55,9 @@ pub struct RecordingMetadata {
     pub pitch_mm: Option<[f64; 2]>,
     /// Seconds from a frame to the next.
     pub seconds_per_frame: Option<f64>,
-    /// The rule of the imprints that were shown meanwhile.
+    /// The rule of the imprints that were shown last.
     pub rule: Option<SetRule>,
-    /// What was subtracted from each cell meanwhile. The recorded values are those before that.
+    /// What was subtracted from each cell then. The recorded values are those before that.
     pub tare: Option<Tare>,
     /// Frames that were marked.
     pub marks: Vec<FrameMark>,

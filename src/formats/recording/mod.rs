@@ -83,7 +83,7 @@ pub use answer::FrameAnswer;
 pub use channel_choice::ChannelChoice;
 #[cfg(feature = "cli")]
 pub(crate) use delimited::read_rows;
-pub use description::{FrameMark, RecordingMetadata};
+pub use description::{FrameMark, RecordedView, RecordingMetadata};
 #[cfg(all(feature = "acquire", unix))]
 pub(crate) use detect::{RecordingInput, read_as};
 pub use detect::{read, recognised, recognised_input};

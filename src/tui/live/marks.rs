@@ -13,7 +13,7 @@ pub(super) struct FrameMarks {
     own: Vec<(u64, FrameMark)>,
     /// Those that the recording itself has, by the labels of frames.
     recorded: Vec<FrameMark>,
-    /// Whether a key's marks have changed since they were taken last.
+    /// Whether a key's marks have changed since that was asked last.
     is_changed: bool,
 }
 
@@ -23,15 +23,9 @@ impl FrameMarks {
         self.own.iter().map(|(_, mark)| *mark).collect()
     }
 
-    /// The same, which are to be written into a recording; afterwards they count as written.
-    pub(super) fn take(&mut self) -> Vec<FrameMark> {
-        self.is_changed = false;
-        self.own()
-    }
-
-    /// Whether they have changed since they were taken last.
-    pub(super) fn is_changed(&self) -> bool {
-        self.is_changed
+    /// Whether they have changed since this was asked last.
+    pub(super) fn take_change(&mut self) -> bool {
+        std::mem::take(&mut self.is_changed)
     }
 
     /// Takes those of the recording.

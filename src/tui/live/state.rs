@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::formats::recording::{ChannelInfo, FrameMark};
+use crate::formats::recording::{ChannelInfo, FrameMark, RecordedView};
 use crate::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule, Tare};
 use crate::imprint::Imprint;
 use crate::tui::live::history::{FrameHistory, is_same};
@@ -37,6 +37,8 @@ pub struct Live {
     processing: Processing,
     /// The threshold, and whether the file, an option or a key set it.
     rule: Option<SetRule>,
+    /// Whether threshold or tare have changed since a recording was last told.
+    is_viewed_anew: bool,
     history: FrameHistory,
     /// The number in the history of the first frame since the source was watched again; 0 where it was not.
     watched_from: u64,
@@ -85,6 +87,7 @@ impl Live {
         let mut live = Self {
             processing: request.processing.clone(),
             rule: None,
+            is_viewed_anew: false,
             history: FrameHistory::new(request.history_bytes),
             watched_from: 0,
             frozen: None,
@@ -280,14 +283,16 @@ impl Live {
         self.marks.own()
     }
 
-    /// The marks, which are to be written into a recording; afterwards they count as written.
-    pub fn take_marks(&mut self) -> Vec<FrameMark> {
-        self.marks.take()
-    }
-
-    /// Whether there are marks, or one was taken off, that the recording does not know of.
-    pub fn has_unwritten_marks(&self) -> bool {
-        self.recording.is_some() && self.marks.is_changed()
+    /// Threshold, tare and marks if they have changed and are to be written into a recording; afterwards they count as
+    /// written.
+    pub fn take_changed_view(&mut self) -> Option<RecordedView> {
+        self.recording.as_ref()?;
+        let is_changed = std::mem::take(&mut self.is_viewed_anew) | self.marks.take_change();
+        is_changed.then(|| RecordedView {
+            rule: self.rule,
+            tare: self.processing.tare.clone(),
+            marks: self.marks.own(),
+        })
     }
 
     /// Whether the frame that is shown is marked.
@@ -470,6 +475,7 @@ impl Live {
         let before = self.tare.mark();
         let done = act(&mut self.tare, &mut self.processing);
         if self.tare.mark() != before {
+            self.is_viewed_anew = true;
             self.range.begin_anew();
             let newest = self.history.newest();
             let frames = newest.map(|newest| self.history.back_from(newest, RANGED));
@@ -507,6 +513,7 @@ impl Live {
 
     /// Notes a rule with where it is from, and has frames read by it from now on.
     fn set_rule(&mut self, rule: Option<SetRule>) {
+        self.is_viewed_anew |= self.rule != rule;
         self.rule = rule;
         SetRule::apply(rule, &mut self.processing);
     }

@@ -256,20 +256,20 @@ fn mark(app: &mut App, page: &mut Live) {
     inform(app, format!("frame {number}: {text}"));
 }
 
-/// Has marks that have changed written into the description of the recording, whether by a key, because their frame was
-/// withdrawn, or while the recording was being begun; otherwise asks for the name of the imprint that is shown.
+/// Has what has changed of threshold, tare and marks written into the description of the recording, whether by a key, because
+/// the frame of a mark was withdrawn, or while the recording was being begun; otherwise asks for the name of the imprint that is shown.
 pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
     let page = page(app).filter(|page| !page.stopped())?;
-    if page.has_unwritten_marks() {
-        return Some(Effect::Work(Work::Mark(page.take_marks())));
+    if let Some(view) = page.take_changed_view() {
+        return Some(Effect::Work(Work::Describe(Box::new(view))));
     }
     let imprint = page.ask_name()?;
     Some(Effect::Work(Work::Name(Box::new(imprint))))
 }
 
 /// Begins a recording, or ends it.
-/// The description of the recording says how its frames were looked at when it began. The frames are written as they
-/// come, without view, tare or threshold.
+/// The description of the recording says how its frames were looked at last. The frames are written as they come, without
+/// view, tare or threshold.
 fn record(page: &mut Live) -> Effect {
     if page.recording().is_some() {
         page.set_recording(None);
@@ -334,6 +334,7 @@ pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
         return;
     };
     let (trouble, failure) = (page.trouble(), page.not_recorded().map(str::to_owned));
+    let error = page.error().cloned();
     match event {
         LiveEvent::Waiting | LiveEvent::Recorded(..) | LiveEvent::NotFinished(_) => {}
         LiveEvent::Arrived(batch) => page.take(batch),
@@ -346,7 +347,8 @@ pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
         LiveEvent::NotRecorded(reason) => page.fail_recording(reason.clone()),
     }
     let now = (page.trouble(), page.not_recorded().map(str::to_owned));
-    if is_open && now.0.is_some() && now.0 != trouble {
+    let is_wrong = page.error().is_some() && page.error() != error.as_ref();
+    if is_open && (is_wrong || now.0.is_some() && now.0 != trouble) {
         // The page says it; an old notice, such as that of the beginning of a recording, is no longer true.
         app.notice = None;
     } else if !is_open

@@ -14,7 +14,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::{Duration, Instant};
 
-use crate::formats::recording::{FrameMark, RecordingMetadata};
+use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::formats::{Name, StoredShape};
 use crate::storage::{
     Expected, Library, LibraryError, LoadedShape, Orphan, RememberedFile, UNNAMED,
@@ -63,8 +63,8 @@ pub(super) enum DiskRequest {
     Remember(RememberedFile, Vec<String>),
     /// Create a file and record the frames of the source of that number in it.
     BeginRecording(u64, Box<RecordingMetadata>),
-    /// Write these marks into the description of a recording of the source of that number.
-    MarkRecording(u64, Arc<Recording>, Vec<FrameMark>),
+    /// Write threshold, tare and marks into the description of a recording of the source of that number.
+    DescribeRecording(u64, Arc<Recording>, Box<RecordedView>),
     /// Write out all that waits of a recording of the source of that number.
     FlushRecording(u64, Arc<Recording>),
     /// Finish a recording of the source of that number.
@@ -125,12 +125,22 @@ impl DiskRequest {
             Self::Named(_, name) => format!("Reading {name}"),
             Self::Remember(..) => "Remembering it".to_owned(),
             Self::BeginRecording(..) => "Starting a recording".to_owned(),
-            Self::MarkRecording(_, recording, _) => {
-                format!("Marking frames of {}", recording.path().display())
+            Self::DescribeRecording(_, recording, _) => {
+                format!("Describing {}", recording.path().display())
             }
             Self::FlushRecording(_, recording) | Self::EndRecording(_, recording) => {
                 format!("Saving {}", recording.path().display())
             }
+        }
+    }
+
+    /// Whether it makes an earlier request needless: of two descriptions of a recording only the later one stays.
+    fn replaces(&self, earlier: &Self) -> bool {
+        match (self, earlier) {
+            (Self::DescribeRecording(_, own, _), Self::DescribeRecording(_, other, _)) => {
+                Arc::ptr_eq(own, other)
+            }
+            _ => false,
         }
     }
 
@@ -194,7 +204,9 @@ impl DiskRequest {
             Self::BeginRecording(number, metadata) => {
                 DiskAnswer::Recording(number, Recording::in_free_file(access, &metadata))
             }
-            Self::MarkRecording(number, recording, marks) => written(number, recording.mark(marks)),
+            Self::DescribeRecording(number, recording, view) => {
+                written(number, recording.describe(*view))
+            }
             Self::FlushRecording(number, recording) => written(number, recording.flush().map(drop)),
             Self::EndRecording(number, recording) => {
                 let ended = recording.finish();
@@ -381,6 +393,13 @@ impl DiskQueue {
         let Some(thread) = &self.thread else {
             return Some(request.perform(&self.library, &self.access));
         };
+        // Keys that repeat change a threshold more often than a disk can write.
+        if let Some(last) = locked(&thread.desk.waiting).requests.back_mut()
+            && request.replaces(last)
+        {
+            *last = request;
+            return None;
+        }
         self.pending.push_back(PendingRequest {
             work: SlowWork::new(request.words()),
             locks: request.locks(),

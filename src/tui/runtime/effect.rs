@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::formats::StoredShape;
-use crate::formats::recording::{FrameMark, RecordingMetadata};
+use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::imprint::Imprint;
 use crate::pose::{PoseGrid, PoseIndex};
 use crate::recognition::SeparationPoint;
@@ -94,8 +94,8 @@ pub enum Work {
     Record(Box<RecordingMetadata>),
     /// Stop that.
     StopRecording,
-    /// Write the marks into the description of the recording.
-    Mark(Vec<FrameMark>),
+    /// Write threshold, tare and marks into the description of the recording.
+    Describe(Box<RecordedView>),
     /// Name the imprints of the source of that number; None names them no more.
     NameBy(u64, Option<Box<NamingRequest>>),
     /// Name an imprint.

@@ -383,13 +383,14 @@ mod tests {
         for event in [AcquireEvent::Provisional(&second), whole] {
             after(&mut page, &feed, AcquireEvent::Provisional(&first));
             assert_eq!(page.mark(), Ok((0, true)));
-            assert_eq!(page.take_marks().len(), 1);
+            let view = page.take_changed_view().expect("it was marked");
+            assert_eq!(view.marks.len(), 1);
             // Both before the page takes anything.
             feed.take_in(AcquireEvent::Withdrawn, &request);
             assert_eq!(after(&mut page, &feed, event), Some(0));
             assert!(!page.is_marked() && page.marks().is_empty());
             // The description of the recording has the mark until then.
-            assert!(page.has_unwritten_marks());
+            assert!(page.take_changed_view().is_some());
         }
     }
 

@@ -356,9 +356,9 @@ impl World {
                     Err(refused) => Some(Message::Worker(WorkerEvent::Refused(refused.to_owned()))),
                 };
             }
-            Work::Mark(marks) => {
+            Work::Describe(view) => {
                 let (number, recording) = self.workers.frames.recording()?;
-                return self.change(DiskRequest::MarkRecording(number, recording, marks));
+                return self.change(DiskRequest::DescribeRecording(number, recording, view));
             }
             Work::StopRecording => {
                 let (number, recording) = self.workers.frames.end_recording()?;

@@ -5,7 +5,7 @@
 //! add      each frame                  the source's thread
 //! tick     what has waited             the source's thread
 //! flush    all that waits, synced      the source's thread at its end; the one of the disk before the program is stopped
-//! mark     the marks so far            the one of the disk
+//! describe threshold, tare, marks      the one of the disk
 //! finish   the rest, synced            the one of the disk
 //! ```
 //! A disk may hang in each of them, so none is called on the screen's thread.
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use crate::acquire::{FrameRecorder, RecorderError, name_description};
-use crate::formats::recording::{FrameMark, RecordingMetadata};
+use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::frame::Frame;
 use crate::storage::Existing;
 use crate::tui::live::message::{LiveEvent, RecordedFrames};
@@ -126,13 +126,13 @@ impl Recording {
         self.write(FrameRecorder::flush)
     }
 
-    /// Writes these marks into the description, in place of those before. Frames are added meanwhile.
+    /// Writes threshold, tare and marks into the description, in place of those before. Frames are added meanwhile.
     ///
     /// # Errors
     /// A sentence. The recording ends then.
-    pub(super) fn mark(&self, marks: Vec<FrameMark>) -> Result<(), String> {
+    pub(super) fn describe(&self, view: RecordedView) -> Result<(), String> {
         let one_at_a_time = locked(&self.description);
-        let Some(draft) = self.open(|recorder| recorder.set_marks(marks)) else {
+        let Some(draft) = self.open(|recorder| recorder.set_view(view)) else {
             return Ok(());
         };
         let written = draft.prepare().and_then(|file| {
