@@ -142,12 +142,21 @@ pub(super) fn run(
         clock.last_frame = Instant::now();
         clock.bytes = decoder.counts().bytes;
     }
-    let _ = step(&mut decoder, StreamDecoder::finish, &mut clock, consumer);
-    // A source that is left has not come to its end.
+    finish(&mut decoder, &mut clock, consumer, stop);
+    Ok(())
+}
+
+/// Reports the frames that are still in the decoder, and the end; a source that is left has not come to its end.
+fn finish(
+    decoder: &mut StreamDecoder,
+    clock: &mut StreamClock,
+    consumer: &mut Consumer<'_>,
+    stop: &AtomicBool,
+) {
+    let _ = step(decoder, StreamDecoder::finish, clock, consumer);
     if !stop.load(Ordering::Relaxed) {
         let _ = consumer(AcquireEvent::Ended(decoder.counts()));
     }
-    Ok(())
 }
 
 /// Opens the source, unless what it calls meanwhile breaks.

@@ -3,8 +3,8 @@
 //! Forms, flags, JSON checks and error messages are made from [`PARAMETERS`]; no other place knows a range. Lengths are
 //! relative to the side of a sensory cell. The ranges of figures are the paper's (0.00–9.99 with two decimals, 10.0–16.0
 //! with one, whole degrees 0–359) for a sensor whose larger side is 16, and scale with that side (convention of this
-//! project); so a [`Sensor`](crate::sensor::Sensor) says which values are allowed on it. The decimals bind forms only:
-//! files and flags accept any.
+//! project); so a [`Sensor`](crate::sensor::Sensor) says which values are allowed on it. Forms show and step by
+//! these decimals; any others are accepted everywhere.
 
 pub mod number;
 

@@ -619,6 +619,14 @@ fn a_sensor_larger_than_the_screen_is_seen_in_parts() {
     then(&mut page, "#", &["\n 5 ", "\n23 "]);
     then(&mut page, "<S-Down>", &["\n14 ", "\n32 "]);
     then(&mut page, "c", &["the taxels of the contact", "\n30 "]);
+    then(
+        &mut page,
+        "i<S-Up>",
+        &["the taxels are hidden; i shows them"],
+    );
+    then(&mut page, "i#", &[]);
+    page.resize(40, 12);
+    shows(&page, &["tall.npy  frame 0  at 0-19, 20-35"]);
 }
 
 #[test]

@@ -57,9 +57,9 @@ pub(crate) fn screen(
         .transpose()?;
     // Inputs and shapes come from two places.
     let record = Rc::new(RefCell::new(record));
-    let mut watch = |input: &terminal::input::Input| {
+    let mut watch = |event: terminal::SessionEvent<'_>| {
         if let Some(record) = &mut *record.borrow_mut() {
-            let lines = record.recorder.lines(input);
+            let lines = record.recorder.lines(event);
             record.writer.write(lines);
         }
     };

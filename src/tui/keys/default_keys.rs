@@ -103,7 +103,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [LEFT => LEFT, RIGHT => RIGHT, UP => UP, DOWN => DOWN]
             "" "choose the kind (or by its letter); move, change field";
         [PageUp => INCREASE, PageDown => DECREASE]
-            "step" "change the number by its last decimal";
+            "step" "to the next 0.01 (from 10 on 0.1), the next degree";
         [Ctrl('d') => DEFAULTS] "defaults" "the defaults, not what was accepted last";
         [Enter => ACCEPT] "accept" "accept; refused while a field is invalid";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "close it and change nothing";

@@ -67,8 +67,8 @@ impl<'a> HeatMap<'a> {
         any.then(|| format!("{} {marked}", heat::edge(self.theme)))
     }
 
-    /// Which columns and rows are visible, counted from 0; None where all are.
-    pub(super) fn window(&self) -> Option<String> {
+    /// Which columns and rows are visible, counted from 0, at length and in short; None where all are.
+    pub(super) fn window(&self) -> Option<[String; 2]> {
         let span = |axis: AxisWindow| {
             let last = axis.first + axis.count.saturating_sub(1);
             format!("{}-{last}", axis.first)
@@ -76,7 +76,11 @@ impl<'a> HeatMap<'a> {
         let (columns, rows) = (self.grid.columns, self.grid.rows);
         let (all_columns, all_rows) = (self.reading.values.columns(), self.reading.values.rows());
         let is_whole = columns.count == all_columns && rows.count == all_rows;
-        let text = || format!("columns {}, rows {}", span(columns), span(rows));
+        let text = || {
+            let (columns, rows) = (span(columns), span(rows));
+            let long = format!("columns {columns}, rows {rows}");
+            [long, format!("at {columns}, {rows}")]
+        };
         (!is_whole && columns.count > 0 && rows.count > 0).then(text)
     }
 

@@ -133,6 +133,11 @@ impl Live {
         &self.status
     }
 
+    /// How many frames have come since the source is watched.
+    pub fn arrived(&self) -> u64 {
+        self.history.next_number() - self.watched_from
+    }
+
     /// Whether no more frames are taken from the source.
     pub fn stopped(&self) -> bool {
         self.stopped

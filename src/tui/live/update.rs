@@ -229,6 +229,10 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
 
 /// Shows taxels further in a direction, where not all are visible. The first time says how to see the contact again.
 fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
+    if page.only_panel() {
+        let key = app.keymap().label(Context::Live, &action::PANEL);
+        return inform(app, format!("the taxels are hidden; {key} shows them"));
+    }
     let area = app.panes().map(|panes| panes.area(page.slot()));
     let next = area.and_then(|area| view::beyond(page, app.theme(), area, towards));
     if next.is_none() {

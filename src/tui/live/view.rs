@@ -106,18 +106,29 @@ pub(super) fn beyond(live: &Live, theme: &Theme, area: Rect, towards: Arrow) -> 
     map.beyond(towards, live)
 }
 
-/// What is shown, and how; `window`: which part of the taxels.
+/// What is shown, and how; `window`: which part of the taxels, at length and in short.
 /// What is the usual state, such as following the source, is not said; a channel is named only where there are several.
-fn title(live: &Live, window: Option<String>) -> Vec<TitlePiece> {
+fn title(live: &Live, window: Option<[String; 2]>) -> Vec<TitlePiece> {
     let mut pieces = vec![TitlePiece {
         text: live.request().name(),
+        short: None,
         role: Role::Title,
         rank: 0,
     }];
-    let mut say = |rank, text: String, role| {
-        let text = format!("  {text}");
-        pieces.push(TitlePiece { text, role, rank });
-    };
+    pieces.extend(of_frame(live));
+    pieces.extend(of_state(live));
+    let window = window.map(|[text, short]| TitlePiece {
+        short: Some(format!("  {short}")),
+        ..TitlePiece::new(3, text, Role::Text)
+    });
+    pieces.extend(window);
+    pieces
+}
+
+/// Which frame is shown, and of which channel.
+fn of_frame(live: &Live) -> Vec<TitlePiece> {
+    let mut pieces = Vec::new();
+    let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, text, role));
     let status = live.status();
     let channel = status.channel.as_deref();
     if let Some(name) = channel.and_then(|own| own.name.as_deref())
@@ -136,6 +147,13 @@ fn title(live: &Live, window: Option<String>) -> Vec<TitlePiece> {
         }
         None => say(2, "no frame yet".to_owned(), Role::Quiet),
     }
+    pieces
+}
+
+/// Whether it stays or follows the source, what is shown of it, and what is not as usual.
+fn of_state(live: &Live) -> Vec<TitlePiece> {
+    let mut pieces = Vec::new();
+    let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, text, role));
     match live.frozen() {
         Some(0) => say(1, "frozen".to_owned(), Role::Focus),
         Some(back) => {
@@ -144,7 +162,7 @@ fn title(live: &Live, window: Option<String>) -> Vec<TitlePiece> {
         }
         None => {}
     }
-    match (&status.state, live.stopped()) {
+    match (&live.status().state, live.stopped()) {
         (_, true) => say(3, "stopped".to_owned(), Role::Quiet),
         (SourceState::Ended, _) => say(3, "ended".to_owned(), Role::Quiet),
         _ => {}
@@ -156,9 +174,6 @@ fn title(live: &Live, window: Option<String>) -> Vec<TitlePiece> {
     say(8, layer.name().to_owned(), Role::Quiet);
     if live.tare_progress().is_some() {
         say(4, format!("tare: {}", tare(live)), Role::Focus);
-    }
-    if let Some(window) = window {
-        say(7, window, Role::Text);
     }
     if live.holds_peak() {
         say(4, "peak held".to_owned(), Role::Focus);
@@ -173,9 +188,23 @@ fn title(live: &Live, window: Option<String>) -> Vec<TitlePiece> {
 struct TitlePiece {
     /// What it says, after two blanks but for the name of the source.
     text: String,
+    /// The same in fewer columns; None where there is no such way.
+    short: Option<String>,
     role: Role,
     /// Where there is no room for all, those of the highest rank are left out first; the name never is.
     rank: u8,
+}
+
+impl TitlePiece {
+    /// A part after the name of the source.
+    fn new(rank: u8, text: String, role: Role) -> Self {
+        Self {
+            text: format!("  {text}"),
+            short: None,
+            role,
+            rank,
+        }
+    }
 }
 
 /// The title in a number of columns. The state of the source, such as that it is frozen, stays longest; then the name is
@@ -189,7 +218,10 @@ fn fitting_title(mut pieces: Vec<TitlePiece>, room: usize, theme: &Theme) -> Vec
         && let Some(last) = (1..pieces.len()).max_by_key(|&index| pieces[index].rank)
         && pieces[last].rank > 1
     {
-        pieces.remove(last);
+        match pieces[last].short.take() {
+            Some(short) => pieces[last].text = short,
+            None => drop(pieces.remove(last)),
+        }
     }
     let others = width(&pieces[1..]);
     if let Some(name) = pieces.first_mut() {

@@ -204,9 +204,7 @@ impl DiskRequest {
             Self::BeginRecording(number, metadata) => {
                 DiskAnswer::Recording(number, Recording::in_free_file(access, &metadata))
             }
-            Self::DescribeRecording(number, recording, view) => {
-                written(number, recording.describe(*view))
-            }
+            Self::DescribeRecording(number, of, view) => written(number, of.describe(*view)),
             Self::FlushRecording(number, recording) => written(number, recording.flush().map(drop)),
             Self::EndRecording(number, recording) => {
                 let ended = recording.finish();

@@ -1,15 +1,18 @@
 //! Records what a user does as a script that does it again, so that a bug report becomes a test.
 //!
 //! Keys are collected into lines of notation, a press and a release at the same place become a click, a press with
-//! drags becomes a drag.
+//! drags becomes a drag. Frames of a recording that come between them are counted; those of a stream are only noted.
 
+use std::ffi::OsStr;
 use std::fmt::Write;
 
+use crate::acquire::FrameSource;
 use crate::formats::StoredShape;
+use crate::formats::value::counted;
 use crate::tui::app::message::{Mouse, MouseKind};
 use crate::tui::script::setting::ScriptSetting;
-use crate::tui::terminal::Outcome;
 use crate::tui::terminal::input::Input;
+use crate::tui::terminal::{Outcome, SessionEvent};
 
 /// Turns inputs into lines, one after another.
 #[derive(Clone, Debug)]
@@ -33,9 +36,13 @@ impl Recorder {
         }
     }
 
-    /// The lines of an input; empty where it is part of a line to come.
-    pub fn lines(&mut self, input: &Input) -> String {
+    /// The lines of what happens; empty where it is part of a line to come.
+    pub fn lines(&mut self, event: SessionEvent<'_>) -> String {
         let mut lines = std::mem::take(&mut self.head);
+        let input = match event {
+            SessionEvent::Input(input) => input,
+            SessionEvent::Frames { source, count } => return lines + &frames(source, count),
+        };
         if !matches!(input, Input::Mouse(_)) {
             // What comes between press and release ends a drag.
             lines += &self.let_go();
@@ -107,6 +114,18 @@ impl Recorder {
     }
 }
 
+/// The line of frames that have come. Those of a stream cannot come again.
+fn frames(source: &OsStr, count: u64) -> String {
+    match FrameSource::new(source) {
+        FrameSource::File(_) => format!("Frames {count}\n"),
+        stream => {
+            let (frames, name) = (counted(count, "frame"), stream.name());
+            let name = name.escape_debug();
+            format!("# {frames} of {name}: a script reads frames only from files\n")
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -137,12 +156,21 @@ mod tests {
             Input::Size(60, 20),
         ];
         let mut recorder = Recorder::new(&[ScriptSetting::Ascii(true)]);
-        let script: String = inputs.iter().map(|input| recorder.lines(input)).collect();
+        let script: String = inputs
+            .iter()
+            .map(|input| recorder.lines(SessionEvent::Input(input)))
+            .collect();
+        let frames = |source: &str| {
+            let (source, count) = (OsStr::new(source), 3);
+            Recorder::new(&[]).lines(SessionEvent::Frames { source, count })
+        };
+        let script = script + &frames("touch.csv") + &frames("tcp://robot:7000");
         let script = script + &recorder.end(Outcome::Signal(15));
         let expected = "Set ascii on\nSize 80x24\nKeys <Space>\nKeys <lt>\nKeys #\nKeys <U+3000>\nKeys <S-Left>\n\
                         Paste \"a \\\"b\\\"\\n\"\nClick 3,4\nDrag 3,4 9,9\nScroll 1,1 -1\nClick 5,5\nKeys <F1>\n\
-                        Resize 60x20\nSignal TERM\n";
+                        Resize 60x20\nFrames 3\n\
+                        # 3 frames of tcp://robot:7000: a script reads frames only from files\nSignal TERM\n";
         assert_eq!(script, expected);
-        assert_eq!(read(&script).map(|commands| commands.len()), Ok(15));
+        assert_eq!(read(&script).map(|commands| commands.len()), Ok(16));
     }
 }

@@ -12,6 +12,7 @@
 //! It sleeps without a time limit while nothing is pending, so an idle program uses no processor time. A terminal that
 //! takes no output does not block signals: writing stops for them, and the next frame repairs the screen.
 
+use std::ffi::OsStr;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::{Duration, Instant};
@@ -50,7 +51,7 @@ pub(in crate::tui) fn run(
     mut world: World,
     settings: &TerminalSettings,
     mailbox: Mailbox,
-    watch: &mut dyn FnMut(&Input),
+    watch: &mut dyn FnMut(SessionEvent<'_>),
 ) -> io::Result<Outcome> {
     // Before signals are taken: where the disk hangs here, they still end the program.
     world.remind(&mut app);
@@ -106,10 +107,26 @@ fn leave_on_panic() {
     }));
 }
 
+/// What a record of a session is made of.
+#[derive(Clone, Copy, Debug)]
+pub enum SessionEvent<'a> {
+    /// What the user does.
+    Input(&'a Input),
+    /// Frames have come.
+    Frames {
+        /// The name of their source.
+        source: &'a OsStr,
+        /// How many since the event before.
+        count: u64,
+    },
+}
+
 /// The loop between the terminal and the program.
 struct EventLoop<'a> {
-    /// Called with each input, to record it.
-    watch: &'a mut dyn FnMut(&Input),
+    /// Called with what happens, to record it.
+    watch: &'a mut dyn FnMut(SessionEvent<'_>),
+    /// The number of the source that is watched, and how many of its frames have been recorded.
+    recorded: (u64, u64),
     /// The state of the program.
     app: App,
     /// Library, journal and workers.
@@ -164,7 +181,7 @@ struct Ready {
 impl<'a> EventLoop<'a> {
     /// Starts the program on a device that is set up.
     fn new(
-        watch: &'a mut dyn FnMut(&Input),
+        watch: &'a mut dyn FnMut(SessionEvent<'_>),
         app: App,
         world: World,
         settings: TerminalSettings,
@@ -178,6 +195,7 @@ impl<'a> EventLoop<'a> {
         let Ok(screen) = Terminal::new(screen);
         Self {
             watch,
+            recorded: (0, 0),
             app,
             world,
             settings,
@@ -325,6 +343,21 @@ impl<'a> EventLoop<'a> {
         messages.try_for_each(|message| self.update(message))
     }
 
+    /// Records how many frames have come since the last input: what it does may depend on the one that is shown.
+    fn record_frames(&mut self) {
+        let Some(page) = last_page(&self.app) else {
+            return;
+        };
+        let number = page.number();
+        let (watched, before) = self.recorded;
+        let count = page.arrived() - if watched == number { before } else { 0 };
+        self.recorded = (number, page.arrived());
+        if count > 0 {
+            let source = &page.request().source;
+            (self.watch)(SessionEvent::Frames { source, count });
+        }
+    }
+
     /// Reads what is there, or takes note that nothing more came in time.
     fn read(&mut self, ready: &Ready) -> io::Result<()> {
         let inputs = if ready.input {
@@ -344,7 +377,8 @@ impl<'a> EventLoop<'a> {
             self.pacing.on_answer();
         }
         for input in inputs {
-            (self.watch)(&input);
+            self.record_frames();
+            (self.watch)(SessionEvent::Input(&input));
             let message = match input {
                 // Each key where the one before has led.
                 Input::Key(key) => Some(self.app.meaning(key)),
@@ -443,7 +477,8 @@ impl<'a> EventLoop<'a> {
     /// The state knows the size too: it finds what the mouse points at.
     fn tell_size(&mut self) {
         let Ok(size) = ratatui::backend::Backend::size(self.screen.backend());
-        (self.watch)(&Input::Size(size.width, size.height));
+        let input = Input::Size(size.width, size.height);
+        (self.watch)(SessionEvent::Input(&input));
         let _ = self
             .world
             .handle(&mut self.app, Message::Resized(size.width, size.height));

@@ -44,13 +44,13 @@ use crate::tui::runtime::mailbox;
 use std::io;
 use std::sync::Arc;
 
+pub use event_loop::SessionEvent;
 pub use outcome::Outcome;
 pub use settings::TerminalSettings;
 
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::runtime::World;
-use input::Input;
 
 /// Runs the program until it ends. The terminal is left as it was, after an error, a signal and a panic too, and
 /// unsaved work is in the journal wherever the program may not come back. `first` is sent to it at its start; `watch` is called with each input.
@@ -62,7 +62,7 @@ pub fn run(
     first: Option<Message>,
     world: World,
     settings: &TerminalSettings,
-    watch: &mut dyn FnMut(&Input),
+    watch: &mut dyn FnMut(SessionEvent<'_>),
 ) -> io::Result<Outcome> {
     let (sender, mailbox) = mailbox::new()?;
     let world = world.with_workers(Arc::new(move |event| sender.send(Message::Worker(event))));

@@ -6,9 +6,9 @@ use rustix::process::Signal;
 use taxel::storage::{Library, Orphan};
 use taxel::tui::app::state::{App, Options};
 use taxel::tui::runtime::World;
-use taxel::tui::terminal;
 use taxel::tui::terminal::input::Input;
 use taxel::tui::terminal::settings::{Flags, TerminalSettings};
+use taxel::tui::terminal::{self, SessionEvent};
 
 use super::program::{Program, Start, TAXEL};
 
@@ -174,8 +174,11 @@ fn panics() {
     let settings = TerminalSettings::from_environment(std::env::var_os, &Flags::default());
     let app = App::new(&Options::plain(true));
     let world = World::scratch().expect("a folder");
-    let outcome = terminal::run(app, None, world, &settings, &mut |input| {
-        assert!(!matches!(input, Input::Key(_)), "on purpose");
+    let outcome = terminal::run(app, None, world, &settings, &mut |event| {
+        assert!(
+            !matches!(event, SessionEvent::Input(Input::Key(_))),
+            "on purpose"
+        );
     });
     println!("{outcome:?}");
 }

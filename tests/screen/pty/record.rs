@@ -135,6 +135,40 @@ fn a_record_shows_the_same_screens() {
     );
 }
 
+#[test]
+fn a_record_says_how_many_frames_came_between_keys() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [record, source] = ["record.taxel", "touch.csv"].map(|name| folder.path().join(name));
+    let rows = "time,r0c0,r0c1\n0.0,1,2\n0.1,3,4\n0.2,5,60\n";
+    fs::write(&source, rows).expect("written");
+    let name = record.to_str().expect("a name");
+    let mut program = Program::started(&Start {
+        command: &[TAXEL, "--record", name],
+        ..Start::default()
+    });
+    program.types(format!(":watch {}\r", source.display()).as_bytes());
+    program.shows("ended");
+    program.types(b"+");
+    program.shows("threshold  5");
+    program.types(b"\r");
+    program.shows("the imprint of frame 2");
+    let screen = program.rows();
+    let text = fs::read_to_string(&record).expect("a record");
+    let frames: usize = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("Frames ")?.parse::<usize>().ok())
+        .sum();
+    assert_eq!(frames, 3, "{text}");
+    let output = replayed(&format!("{text}Screen\n"), folder.path());
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        printed.trim_end().ends_with(screen.trim_end()),
+        "{printed}\n{screen}"
+    );
+    program.types(b"qy");
+    program.ends_well(0);
+}
+
 /// A disk that hangs holds up neither a key nor the end, and the end says so.
 #[test]
 fn keys_go_on_while_a_hanging_disk_takes_the_record() {
