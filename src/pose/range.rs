@@ -135,11 +135,13 @@ impl DecimalRange {
             return None;
         }
         let way = i64::try_from(indices.start).ok()?.checked_mul(self.step)?;
-        Some(Self {
-            start: self.start + way,
-            count: indices.end - indices.start,
-            ..*self
-        })
+        let count = indices.end - indices.start;
+        Some(Self::shortest(
+            self.start + way,
+            self.step,
+            self.places,
+            count,
+        ))
     }
 
     /// Returns the values half a step beyond each of these; a single value stays as it is. None if they need more

@@ -89,6 +89,20 @@ fn parts_beyond_the_end_are_none() {
 }
 
 #[test]
+fn a_part_equals_the_range_that_is_written_like_it() {
+    let read = |text: &str| text.parse::<DecimalRange>().expect("a range");
+    for (text, indices, expected) in [
+        ("5:5.99:0.01", 10..11, "5.1"),
+        ("5:5.99:0.01", 10..12, "5.1:5.11:0.01"),
+        ("0.05:2:0.5", 1..2, "0.55"),
+        ("0.5:2:0.25", 2..3, "1"),
+        ("0:350:10", 35..36, "350"),
+    ] {
+        assert_eq!(read(text).part(indices), Some(read(expected)), "{text}");
+    }
+}
+
+#[test]
 fn grids_are_in_range_or_refused() {
     let grid = |source, ranges| {
         PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges).map(|grid| grid.poses())
