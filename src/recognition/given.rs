@@ -14,7 +14,7 @@ use crate::quote::shortened;
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, ShapeCount, share};
 use crate::recognition::noise::Noise;
-use crate::recognition::simulation::RecognitionRate;
+use crate::recognition::simulation::{Judgement, RecognitionRate};
 use crate::sensor::Sensor;
 
 /// A descriptor that says something about the shape, because it does not change when the imprint is moved.
@@ -202,10 +202,13 @@ impl GivenDescriptors {
             .into_iter()
             .filter_map(|(values, own)| Some((values, most_of(&own)?)))
             .collect();
-        let judge = |rate: &mut RecognitionRate, shape: usize, touch: &Imprint| {
+        let judge = |touch: &Imprint| {
             let description = ImprintSummary::of(touch).description;
             let named = names.get(&self.values(description.as_ref())).copied();
-            rate.count(model, shape, named.is_some(), named);
+            Judgement {
+                is_held: named.is_some(),
+                named,
+            }
         };
         model.simulated(sensor, noise, per_shape, seed, progress, &judge)
     }

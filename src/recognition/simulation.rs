@@ -27,46 +27,97 @@ pub struct RecognitionRate {
     pub right: u64,
     /// Touches that left an imprint that some shape leaves without noise, too.
     pub held: u64,
-    sums: WeightedSums,
-}
-
-/// Sums over touches of the weights of their shapes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct WeightedSums {
-    touches: u128,
-    right: u128,
-    held: u128,
-    /// Squares of the weights.
-    touches_squared: u128,
-    right_squared: u128,
-    /// Probabilities that the names were given, times the weights.
+    accuracy: f64,
+    standard_error: f64,
     claimed: f64,
+    held_share: f64,
 }
 
 impl RecognitionRate {
     /// Returns the share of touches that were named right.
     pub fn accuracy(&self) -> f64 {
-        share(self.sums.right, self.sums.touches.max(1))
+        self.accuracy
     }
 
-    /// Returns the standard error of [`Self::accuracy`].
+    /// Returns the standard error of [`Self::accuracy`]. How many touches each shape has is fixed, so only what varies
+    /// among the touches of one shape counts, not how the shapes differ from each other.
     pub fn standard_error(&self) -> f64 {
-        let accuracy = self.accuracy();
-        let all = self.sums.touches_squared;
-        let right = share(self.sums.right_squared, all.max(1));
-        let spread = right * (1.0 - accuracy).powi(2) + (1.0 - right) * accuracy.powi(2);
-        let weight = self.sums.touches.max(1);
-        (spread * share(all, weight) * share(1, weight)).sqrt()
+        self.standard_error
     }
 
     /// Returns the mean probability of the answers. It estimates the accuracy if the assumed noise is the real one.
     pub fn claimed(&self) -> f64 {
-        self.sums.claimed * share(1, self.sums.touches.max(1))
+        self.claimed
     }
 
     /// Returns the share of touches whose imprint the model holds.
     pub fn held_share(&self) -> f64 {
-        share(self.sums.held, self.sums.touches.max(1))
+        self.held_share
+    }
+
+    /// The rate of all shapes, each with its weight.
+    fn of(shapes: impl Iterator<Item = (u32, ShapeRate)> + Clone) -> Self {
+        let sum = |of: fn(&ShapeRate) -> u64| shapes.clone().map(|(_, own)| of(&own)).sum();
+        let weighted = |of: fn(&ShapeRate) -> u64| -> u128 {
+            let all = shapes.clone();
+            all.map(|(weight, own)| u128::from(weight) * u128::from(of(&own)))
+                .sum()
+        };
+        let all = weighted(|own| own.touches);
+        let squared = |weight: u32| f64::from(weight) * f64::from(weight);
+        let variances = (shapes.clone()).map(|(weight, own)| squared(weight) * own.variance());
+        let claimed = (shapes.clone()).map(|(weight, own)| f64::from(weight) * own.claimed);
+        let part = share(1, all);
+        Self {
+            touches: sum(|own| own.touches),
+            right: sum(|own| own.right),
+            held: sum(|own| own.held),
+            accuracy: share(weighted(|own| own.right), all),
+            standard_error: variances.sum::<f64>().sqrt() * part,
+            claimed: claimed.sum::<f64>() * part,
+            held_share: share(weighted(|own| own.held), all),
+        }
+    }
+}
+
+/// What became of a touch: whether the model holds its imprint, and the name that it was given with its probability, or None.
+pub(super) struct Judgement {
+    pub(super) is_held: bool,
+    pub(super) named: Option<(usize, f64)>,
+}
+
+/// How often the touches of one shape are named right.
+#[derive(Clone, Copy, Default)]
+struct ShapeRate {
+    touches: u64,
+    right: u64,
+    held: u64,
+    /// The sum of the probabilities of the names that were given.
+    claimed: f64,
+}
+
+impl ShapeRate {
+    /// Counts a touch of a shape.
+    fn count(&mut self, shape: usize, judged: &Judgement) {
+        let is_right = judged.named.is_some_and(|(named, _)| named == shape);
+        self.touches += 1;
+        self.right += u64::from(is_right);
+        self.held += u64::from(judged.is_held);
+        self.claimed += judged.named.map_or(0.0, |(_, probability)| probability);
+    }
+
+    /// Counts touches of the same shape.
+    fn add(&mut self, more: Self) {
+        self.touches += more.touches;
+        self.right += more.right;
+        self.held += more.held;
+        self.claimed += more.claimed;
+    }
+
+    /// The variance of the number of touches that are named right, which is binomial.
+    fn variance(&self) -> f64 {
+        let wrong = self.touches - self.right;
+        float(self.right) * float(wrong) / float(self.touches.max(1))
     }
 }
 
@@ -164,13 +215,17 @@ impl Model {
         seed: u64,
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Option<RecognitionRate> {
-        let judge = |rate: &mut RecognitionRate, shape: usize, touch: &Imprint| {
-            rate.add(self, assumed, shape, touch);
+        let judge = |touch: &Imprint| {
+            let posterior = self.posterior_under(touch, assumed);
+            Judgement {
+                is_held: self.keys().find(&ImprintKey::of(touch)).is_some(),
+                named: posterior.and_then(|posterior| first_of_most(&posterior)),
+            }
         };
         self.simulated(sensor, noise, per_shape, seed, progress, &judge)
     }
 
-    /// Draws touches as [`Self::recognition_rate`] does; `judge` names the shape of each and counts.
+    /// Draws touches as [`Self::recognition_rate`] does; `judge` names the shape of each.
     pub(super) fn simulated(
         &self,
         sensor: &Sensor,
@@ -178,7 +233,7 @@ impl Model {
         per_shape: u64,
         seed: u64,
         progress: &(dyn Fn(u64) -> bool + Sync),
-        judge: &(dyn Fn(&mut RecognitionRate, usize, &Imprint) + Sync),
+        judge: &(dyn Fn(&Imprint) -> Judgement + Sync),
     ) -> Option<RecognitionRate> {
         /// Touches that one thread draws and counts at a time.
         const CHUNK: u64 = 50;
@@ -199,7 +254,7 @@ impl Model {
         let rate = |(shape, chunk): (usize, u64)| {
             let number = crate::index::index(chunk) * draws.len() + shape;
             let mut random = generator(seed, number as u64);
-            let mut rate = RecognitionRate::default();
+            let mut rate = ShapeRate::default();
             for _ in 0..CHUNK.min(per_shape - chunk * CHUNK) {
                 if stopped.load(Ordering::Relaxed) {
                     break;
@@ -208,24 +263,27 @@ impl Model {
                     break;
                 };
                 let touch = self.touch_of(key, (columns, rows), noise, &mut random);
-                judge(&mut rate, shape, &touch);
+                rate.count(shape, &judge(&touch));
                 if !progress(1) {
                     stopped.store(true, Ordering::Relaxed);
                 }
             }
             rate
         };
-        let mut sum: Option<RecognitionRate> = None;
+        let mut rates = vec![ShapeRate::default(); draws.len()];
         while !stopped.load(Ordering::Relaxed) {
             let held: Vec<(usize, u64)> = tasks.by_ref().take(HELD).collect();
             if held.is_empty() {
                 break;
             }
-            let rates: Vec<RecognitionRate> = held.into_par_iter().map(rate).collect();
-            // In their order, so that the sum has the same digits for any number of threads.
-            sum = sum.into_iter().chain(rates).reduce(RecognitionRate::and);
+            let counted: Vec<ShapeRate> = held.par_iter().map(|&task| rate(task)).collect();
+            // In their order, so that the sums have the same digits for any number of threads.
+            for ((shape, _), counted) in held.into_iter().zip(counted) {
+                rates[shape].add(counted);
+            }
         }
-        sum.filter(|_| !stopped.into_inner())
+        let weights = self.shapes().iter().map(|shape| shape.weight);
+        (!stopped.into_inner()).then(|| RecognitionRate::of(weights.zip(rates.iter().copied())))
     }
 
     /// A key in a random place, with random flips.
@@ -328,57 +386,6 @@ impl Model {
     }
 }
 
-impl RecognitionRate {
-    /// Counts a touch of a shape: whether the model holds it, and the name that it was given with its probability, or
-    /// None.
-    pub(super) fn count(
-        &mut self,
-        model: &Model,
-        shape: usize,
-        is_held: bool,
-        named: Option<(usize, f64)>,
-    ) {
-        let weight = u128::from(model.shapes()[shape].weight);
-        let is_right = named.is_some_and(|(named, _)| named == shape);
-        self.touches += 1;
-        self.right += u64::from(is_right);
-        self.held += u64::from(is_held);
-        self.sums.touches += weight;
-        self.sums.touches_squared += weight * weight;
-        self.sums.right += weight * u128::from(is_right);
-        self.sums.right_squared += weight * weight * u128::from(is_right);
-        self.sums.held += weight * u128::from(is_held);
-        let probability = named.map_or(0.0, |(_, probability)| probability);
-        self.sums.claimed += f64::from(model.shapes()[shape].weight) * probability;
-    }
-
-    /// Names one touch.
-    fn add(&mut self, model: &Model, assumed: &Noise, shape: usize, touch: &Imprint) {
-        let is_held = model.keys().find(&ImprintKey::of(touch)).is_some();
-        let posterior = model.posterior_under(touch, assumed);
-        let named = posterior.and_then(|posterior| first_of_most(&posterior));
-        self.count(model, shape, is_held, named);
-    }
-
-    /// The touches of both.
-    fn and(self, other: Self) -> Self {
-        let (own, others) = (self.sums, other.sums);
-        Self {
-            touches: self.touches + other.touches,
-            right: self.right + other.right,
-            held: self.held + other.held,
-            sums: WeightedSums {
-                touches: own.touches + others.touches,
-                right: own.right + others.right,
-                held: own.held + others.held,
-                touches_squared: own.touches_squared + others.touches_squared,
-                right_squared: own.right_squared + others.right_squared,
-                claimed: own.claimed + others.claimed,
-            },
-        }
-    }
-}
-
 /// The largest of some values and its index; of equals the first one, as everywhere.
 fn first_of_most(values: &[f64]) -> Option<(usize, f64)> {
     let values = values.iter().copied().enumerate().rev();
@@ -467,5 +474,8 @@ mod tests {
         let noise = Noise::new(0.0).expect("in range");
         let rate = model.recognition_rate(&sensor, &noise, &noise, 10, 0, &|_| true);
         assert_eq!(rate.map(|rate| (rate.touches, rate.right)), Some((20, 10)));
+        // One is always named right, the other never: the accuracy is ½ for every seed.
+        let error = rate.map(|rate| (rate.accuracy(), rate.standard_error()));
+        assert_eq!(error, Some((0.5, 0.0)));
     }
 }
