@@ -1,6 +1,6 @@
 //! How well any method can name the shapes of a model from one touch: exact counts over all its touches.
 
-use crate::recognition::model::{Model, NamedShape, ShapeCount, share};
+use crate::recognition::model::{Model, NamedShape, ShapeCount, first_of_most, share};
 
 /// How well the best classifier of one touch does, over every touch of a model.
 ///
@@ -83,31 +83,23 @@ impl Evaluation {
     /// Adds all touches of one key, or of one value; at least one.
     pub(super) fn add(&mut self, model: &Model, counts: &[ShapeCount]) {
         self.keys += 1;
-        let (mut named, mut most, mut second, mut ties) = (0, 0, 0, 0);
-        let mut sum = 0;
-        for &count in counts {
-            let touches = model.weighted(count);
-            sum += touches;
-            if touches > most {
-                (named, second, most) = (usize::from(count.shape), most, touches);
-                ties = 1;
-            } else {
-                ties += u32::from(touches == most);
-                second = second.max(touches);
-            }
-        }
+        let shapes = model.weighted_shapes(counts);
+        let sum: u128 = shapes.clone().map(|(_, touches)| touches).sum();
+        let Some((named, most)) = first_of_most(shapes.clone()) else {
+            return;
+        };
+        let others = shapes.clone().filter(|&(shape, _)| shape != named);
+        let second = others.map(|(_, touches)| touches).max().unwrap_or(0);
         self.right += most;
         self.right_in_top_two += most + second;
-        if ties > 1 {
+        if second == most {
             self.tied += sum;
         }
         if counts.len() == 1 {
             self.certain += sum;
             self.keys_of_one_shape += 1;
         }
-        for &count in counts {
-            let touches = model.weighted(count);
-            let shape = usize::from(count.shape);
+        for (shape, touches) in shapes {
             self.confusion[shape][named] += touches;
             // Of all touches, those of this shape with this key; per touch of the key and of the shape.
             let prior = u128::from(model.shapes()[shape].weight);

@@ -12,7 +12,7 @@ use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, ExactV
 use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::recognition::evaluation::Evaluation;
-use crate::recognition::model::{Model, ShapeCount, share};
+use crate::recognition::model::{Model, ShapeCount, first_of_most, share};
 use crate::recognition::noise::Noise;
 use crate::recognition::simulation::{Judgement, RecognitionRate};
 use crate::sensor::Sensor;
@@ -200,7 +200,11 @@ impl GivenDescriptors {
         }
         let names: HashMap<_, _> = counts
             .into_iter()
-            .filter_map(|(values, own)| Some((values, most_of(&own)?)))
+            .filter_map(|(values, own)| {
+                let all = own.iter().sum();
+                let (shape, most) = first_of_most(own.into_iter().enumerate())?;
+                Some((values, (shape, share(most, all))))
+            })
             .collect();
         let judge = |touch: &Imprint| {
             let description = ImprintSummary::of(touch).description;
@@ -233,13 +237,6 @@ fn known(
         Some(rounding) => rounding.rounded((descriptor.0.measure)(description)),
         None => (descriptor.0.exact)(description),
     }
-}
-
-/// The most frequent shape (the first among equals), and its share.
-fn most_of(counts: &[u128]) -> Option<(usize, f64)> {
-    let all = counts.iter().enumerate().rev();
-    let (shape, &most) = all.max_by_key(|(_, count)| **count)?;
-    Some((shape, share(most, counts.iter().sum())))
 }
 
 impl std::str::FromStr for GivenDescriptors {

@@ -446,6 +446,15 @@ impl Model {
         u128::from(count.poses) * u128::from(self.shapes[usize::from(count.shape)].weight)
     }
 
+    /// The shapes of some counts, each with its count times its weight.
+    pub(super) fn weighted_shapes<'a>(
+        &'a self,
+        counts: &'a [ShapeCount],
+    ) -> impl Iterator<Item = (usize, u128)> + Clone + 'a {
+        let counts = counts.iter();
+        counts.map(|&count| (usize::from(count.shape), self.weighted(count)))
+    }
+
     /// The sum of all weights.
     pub(super) fn weights(&self) -> u128 {
         let weights = self.shapes.iter().map(|shape| u128::from(shape.weight));
@@ -470,6 +479,14 @@ fn poses(ranges: &Ranges, shard: Shard) -> Option<u64> {
 )]
 pub(super) fn float(count: u64) -> f64 {
     count as f64
+}
+
+/// The largest of some values, with the number of its shape; of equals the first one. The values are in the order of the set.
+pub(super) fn first_of_most<T: PartialOrd>(
+    values: impl IntoIterator<Item = (usize, T)>,
+) -> Option<(usize, T)> {
+    let larger = |best: (usize, T), next: (usize, T)| if next.1 > best.1 { next } else { best };
+    values.into_iter().reduce(larger)
 }
 
 /// A part of a whole; 0 of nothing, as in a shard that has no pose.

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 
 use crate::imprint::Imprint;
 use crate::recognition::key::ImprintKey;
-use crate::recognition::model::Model;
+use crate::recognition::model::{Model, first_of_most};
 use crate::recognition::scan::Observed;
 
 /// An imprint that a shape of a model leaves, placed where it is most similar to an observed one.
@@ -64,13 +64,8 @@ impl Model {
     }
 
     /// The shape that leaves a key most often (the first among equals), and how often.
-    pub(super) fn most_frequent(&self, key: usize) -> (usize, u128) {
-        let mut most = (0, 0);
-        for &count in self.counts(key) {
-            if self.weighted(count) > most.1 {
-                most = (usize::from(count.shape), self.weighted(count));
-            }
-        }
-        most
+    pub(crate) fn most_frequent(&self, key: usize) -> (usize, u128) {
+        let most = first_of_most(self.weighted_shapes(self.counts(key)));
+        most.expect("every key is left by some shape")
     }
 }

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::imprint::Imprint;
 use crate::recognition::key::ImprintKey;
-use crate::recognition::model::{Model, float, share};
+use crate::recognition::model::{Model, first_of_most, float, share};
 use crate::recognition::noise::Noise;
 use crate::recognition::scan::shift_count;
 use crate::sensor::Sensor;
@@ -219,7 +219,7 @@ impl Model {
             let posterior = self.posterior_under(touch, assumed);
             Judgement {
                 is_held: self.keys().find(&ImprintKey::of(touch)).is_some(),
-                named: posterior.and_then(|posterior| first_of_most(&posterior)),
+                named: posterior.and_then(|own| first_of_most(own.into_iter().enumerate())),
             }
         };
         self.simulated(sensor, noise, per_shape, seed, progress, &judge)
@@ -376,7 +376,7 @@ impl Model {
                     None => *logarithm = f64::NEG_INFINITY,
                 }
             }
-            let (best, most) = first_of_most(&logarithms)?;
+            let (best, most) = first_of_most(logarithms.iter().copied().enumerate())?;
             let sum: f64 = logarithms.iter().map(|own| libm::exp(own - most)).sum();
             if 1.0 / sum >= until {
                 return Some((touches, best == shape));
@@ -384,12 +384,6 @@ impl Model {
         }
         None
     }
-}
-
-/// The largest of some values and its index; of equals the first one, as everywhere.
-fn first_of_most(values: &[f64]) -> Option<(usize, f64)> {
-    let values = values.iter().copied().enumerate().rev();
-    values.max_by(|(_, one), (_, other)| one.total_cmp(other))
 }
 
 /// Mean and standard error of runs.

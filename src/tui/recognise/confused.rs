@@ -22,7 +22,7 @@ impl Example {
             let own = counts
                 .iter()
                 .find(|count| usize::from(count.shape) == touched)?;
-            (name_of(model, counts) == Some(named)).then_some(own.poses)
+            (model.most_frequent(key).0 == named).then_some(own.poses)
         };
         let found = (0..model.keys().len()).filter_map(|key| Some((poses_of(key)?, key)));
         let (_, key) = found.rev().max_by_key(|(poses, _)| *poses)?;
@@ -41,16 +41,6 @@ impl Example {
         let leaves: Vec<String> = leaves.collect();
         format!("one imprint of it: {}", leaves.join(", "))
     }
-}
-
-/// The shape that the best classifier names: the most frequent one, of equals the first.
-fn name_of(model: &Model, counts: &[ShapeCount]) -> Option<usize> {
-    let weighted = |count: &&ShapeCount| {
-        let weight = model.shapes().get(usize::from(count.shape));
-        u128::from(count.poses) * u128::from(weight.map_or(0, |shape| shape.weight))
-    };
-    let most = counts.iter().rev().max_by_key(weighted);
-    most.map(|count| usize::from(count.shape))
 }
 
 /// The cell beside the diagonal with the most touches, of equals the first: the shape that touches, the shape that is
