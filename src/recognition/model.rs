@@ -491,7 +491,7 @@ pub(super) fn first_of_most<T: PartialOrd>(
 
 /// A part of a whole; 0 of nothing, as in a shard that has no pose.
 #[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
-pub(super) fn share(part: u128, whole: u128) -> f64 {
+pub(crate) fn share(part: u128, whole: u128) -> f64 {
     if whole == 0 {
         return 0.0;
     }

@@ -17,7 +17,7 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
 use crate::formats::{ConfusionMap, json};
-use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model, greedy};
+use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model, greedy, share};
 use crate::storage::UnfinishedFile;
 
 /// Evaluates a model. Returns what is printed.
@@ -194,7 +194,7 @@ fn file(path: &Path, own: &Evaluation, knows_certain: bool) -> Result<Vec<u8>, C
     };
     let mut title = format!("error {}", evaluation::percent(own.error()));
     if knows_certain {
-        let certain = evaluation::ratio(own.certain, own.touches);
+        let certain = share(own.certain, own.touches);
         title += &format!(", certain {}", evaluation::percent(certain));
     }
     Ok(match ending(path).as_str() {

@@ -22,7 +22,7 @@ use serde_json::json;
 
 use crate::cli::output::charset::Charset;
 use crate::formats::value::{counted, decimal, grouped};
-use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, ShapeDescriptor};
+use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, ShapeDescriptor, share};
 
 /// An evaluation as an object of JSON, its keys in the order of the documentation.
 pub(crate) struct EvaluationJson<'a> {
@@ -127,7 +127,7 @@ impl NamedBy {
 /// What an evaluation says, in lines: touches, error, certain, top two, information.
 pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
     let number = |count: u128| grouped(count);
-    let share = |part: u128| percent(ratio(part, evaluation.touches));
+    let of_touches = |part: u128| percent(share(part, evaluation.touches));
     let Evaluation {
         touches,
         right,
@@ -148,7 +148,7 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
             text,
             "{name:<12} {:>16}  {:>7}{note}",
             number(value),
-            share(value)
+            of_touches(value)
         );
     };
     line("right", *right, "");
@@ -165,16 +165,6 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
         evaluation.information_bits, evaluation.prior_bits
     );
     text
-}
-
-/// A part of a whole; 0 of nothing.
-#[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
-pub(crate) fn ratio(part: u128, whole: u128) -> f64 {
-    if whole == 0 {
-        0.0
-    } else {
-        part as f64 / whole as f64
-    }
 }
 
 /// The matrix: a row per true shape, a column per name; the diagonal in brackets, zero as a dot. Columns are numbered
@@ -245,7 +235,7 @@ pub(crate) fn worst_pairs(evaluation: &Evaluation, charset: Charset) -> String {
             "{} and {} ({})",
             evaluation.labels[one],
             evaluation.labels[other],
-            percent(ratio(touches, evaluation.touches))
+            percent(share(touches, evaluation.touches))
         )
     });
     match said.collect::<Vec<_>>().join(", ") {
@@ -328,7 +318,7 @@ pub(crate) fn classifiers(
             text,
             "{name:<18} {:>9}  {:>7}  {:>6.3} bits",
             percent(evaluation.error()),
-            percent(ratio(evaluation.right_in_top_two, evaluation.touches)),
+            percent(share(evaluation.right_in_top_two, evaluation.touches)),
             evaluation.information_bits
         );
     };
@@ -347,7 +337,7 @@ pub(crate) fn classifiers_csv(reached: &[ClassifierEvaluation], limit: &Evaluati
         .iter()
         .map(|own| (own.classifier.name(), &own.evaluation));
     for (name, own) in classifiers.chain([("limit", limit)]) {
-        let top_two = ratio(own.right_in_top_two, own.touches);
+        let top_two = share(own.right_in_top_two, own.touches);
         // Cannot fail: the text is kept in memory.
         let _ = writeln!(
             text,

@@ -2,7 +2,7 @@
 
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
-use crate::recognition::{Evaluation, Model, ShapeCount};
+use crate::recognition::{Evaluation, Model, ShapeCount, share};
 
 /// An imprint of a cell of the confusion matrix, the most frequent one.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,13 +73,11 @@ impl ConfusedPair {
     pub fn worst(model: &Model, evaluation: &Evaluation) -> Option<Self> {
         let (touched, named) = worst_cell(evaluation)?;
         let row = &evaluation.confusion[touched];
-        let (wrong, all) = (row[named], row.iter().sum::<u128>());
-        #[expect(clippy::cast_precision_loss, reason = "for reading")]
-        let share = wrong as f64 / all.max(1) as f64;
+        let wrong = row[named];
         (wrong > 0).then(|| Self {
             touched,
             named,
-            share,
+            share: share(wrong, row.iter().sum()),
             example: Example::of(model, (touched, named)),
         })
     }

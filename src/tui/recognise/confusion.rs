@@ -8,6 +8,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::{counted, grouped};
 use crate::imprint::Imprint;
+use crate::recognition::share;
 use crate::sensor::Sensor;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::{Page, Slot};
@@ -328,9 +329,7 @@ impl Confusion {
 
 /// A cell: percent of its row; the diagonal in brackets, nothing as a dot.
 fn cell_text(theme: &Theme, count: u128, touches: u128, diagonal: bool) -> String {
-    #[expect(clippy::cast_precision_loss, reason = "for reading")]
-    let share = count as f64 / touches.max(1) as f64;
-    let percent = percent(share);
+    let percent = percent(share(count, touches));
     let number = match count {
         0 => theme.text("·").into_owned(),
         _ => percent.trim_end_matches(" %").trim_start().to_owned(),

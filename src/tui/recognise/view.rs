@@ -22,7 +22,7 @@ use ratatui::layout::{Position, Rect};
 use crate::formats::value::{counted, decimal, deviation};
 use crate::imprint::Imprint;
 use crate::pose::{Anchor, Axis};
-use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
+use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate, share};
 use crate::tui::app::page::{Page, PoseLayer, Slot};
 use crate::tui::explore::running::gauge;
 use crate::tui::keys::action;
@@ -384,9 +384,7 @@ fn differ(count: u32) -> String {
 
 /// A share of a whole in percent.
 fn percent_of(part: u128, whole: u128) -> String {
-    #[expect(clippy::cast_precision_loss, reason = "for reading")]
-    let share = part as f64 / whole.max(1) as f64;
-    percent(share).trim_start().to_owned()
+    percent(share(part, whole)).trim_start().to_owned()
 }
 
 /// A probability in percent. What is not quite 0 or 1 does not look so.
