@@ -145,6 +145,33 @@ impl Imprint {
         differing
     }
 
+    /// The taxels that are active in this imprint, in the other, or in both, on the matrix of this one.
+    ///
+    /// ```
+    /// use taxel::imprint::Imprint;
+    /// let [one, other] = ["##.\n...", ".###\n#..."].map(|text| text.parse::<Imprint>().expect("an imprint"));
+    /// assert_eq!(one.union(&other).to_string(), "###\n#..");
+    /// assert_eq!(one.without(&other).to_string(), "#..\n...");
+    /// ```
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        let (mut all, mask) = (*self, self.mask());
+        for (word, more) in all.words_mut().iter_mut().zip(other.words()) {
+            *word |= more & mask;
+        }
+        all
+    }
+
+    /// The taxels that are active in this imprint but not in the other, on the matrix of this one.
+    #[must_use]
+    pub fn without(&self, other: &Self) -> Self {
+        let mut rest = *self;
+        for (word, taken) in rest.words_mut().iter_mut().zip(other.words()) {
+            *word &= !taken;
+        }
+        rest
+    }
+
     /// The same active taxels on a matrix of another size; taxels beyond it are dropped.
     #[must_use]
     pub fn resized(&self, columns: u8, rows: u8) -> Self {

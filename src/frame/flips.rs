@@ -9,7 +9,6 @@
 //! when three quarters of its neighbours are, in ten frames or more each. A hole of one taxel that never moves looks
 //! the same.
 
-use crate::frame::rule::unite;
 use crate::imprint::Imprint;
 
 /// How many frames it takes to call a taxel stuck.
@@ -62,9 +61,7 @@ pub struct FlipReport {
 impl FlipReport {
     /// The taxels that carry no information: stuck on or off.
     pub fn mask(&self) -> Imprint {
-        let mut mask = self.stuck_on;
-        unite(&mut mask, &self.stuck_off);
-        mask
+        self.stuck_on.union(&self.stuck_off)
     }
 }
 

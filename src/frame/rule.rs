@@ -112,7 +112,7 @@ impl Rule {
                         .zip(strong.words())
                         .any(|(piece, strong)| piece & strong != 0);
                     if region.kind() == RegionKind::Exterior && has_strong {
-                        unite(&mut imprint, piece);
+                        imprint = imprint.union(piece);
                     }
                 });
                 imprint
@@ -152,20 +152,13 @@ fn active(values: &Matrix<f64>, is_active: impl Fn(usize, f64) -> bool) -> Impri
     imprint
 }
 
-/// Adds the active taxels of an imprint of the same size.
-pub(super) fn unite(imprint: &mut Imprint, piece: &Imprint) {
-    for (word, piece) in imprint.words_mut().iter_mut().zip(piece.words()) {
-        *word |= piece;
-    }
-}
-
 /// The same imprint without its 8-connected pieces of fewer than `least` taxels.
 pub(crate) fn without_small(imprint: &Imprint, least: u32) -> Imprint {
     let mut rest = Imprint::empty(imprint.columns(), imprint.rows());
     each_region(imprint, |region| {
         let piece = region.taxels();
         if region.kind() == RegionKind::Exterior && piece.count() >= least {
-            unite(&mut rest, piece);
+            rest = rest.union(piece);
         }
     });
     rest

@@ -116,7 +116,8 @@ impl Model {
     /// ```
     pub fn recognise(&self, evidence: Evidence<'_>) -> Answer {
         let dead = evidence.noise.and_then(Noise::dead);
-        let reaches_rim = |touch: &Imprint| without(touch, dead).touches_rim();
+        let living = |touch: &Imprint| dead.map_or(*touch, |dead| touch.without(dead));
+        let reaches_rim = |touch: &Imprint| living(touch).touches_rim();
         let at_rim = evidence.touches.iter().any(reaches_rim);
         let Some(noise) = evidence.noise else {
             let posterior = self.possible(evidence.touches);
@@ -218,15 +219,6 @@ impl Model {
         }
         last
     }
-}
-
-/// An imprint without taxels that are known to be dead.
-fn without(imprint: &Imprint, dead: Option<&Imprint>) -> Imprint {
-    let mut rest = *imprint;
-    for (column, row) in dead.into_iter().flat_map(Imprint::active) {
-        rest.set(column, row, false);
-    }
-    rest
 }
 
 /// How probable the shapes are.

@@ -128,22 +128,15 @@ struct BoxPosition {
 
 impl Observed {
     pub(super) fn new(imprint: &Imprint, dead: Option<&Imprint>) -> Self {
-        let mut seen = *imprint;
-        let empty = Imprint::empty(imprint.columns(), imprint.rows());
+        let (columns, rows) = (imprint.columns(), imprint.rows());
         // On the matrix of the imprint; what lies beyond it is dropped.
-        let dead = dead.map(|dead| {
-            let mut own = empty;
-            for (row, &word) in dead.words().iter().enumerate() {
-                own.set_word(row, word);
-            }
-            own
-        });
+        let dead = dead.map(|dead| dead.resized(columns, rows));
         let dead = dead.filter(|dead| !dead.is_empty());
+        let seen = dead.map_or(*imprint, |dead| imprint.without(&dead));
         let living = dead.map(|dead| {
-            let mut living = empty;
+            let mut living = Imprint::empty(columns, rows);
             for (row, &word) in dead.words().iter().enumerate() {
                 living.set_word(row, !word);
-                seen.set_word(row, seen.words()[row] & !word);
             }
             living
         });

@@ -310,12 +310,7 @@ impl Model {
                 }
             }
         }
-        if let Some(dead) = noise.dead() {
-            for (column, row) in dead.active() {
-                touch.set(column, row, false);
-            }
-        }
-        touch
+        noise.dead().map_or(touch, |dead| touch.without(dead))
     }
 
     /// Draws touches of each shape until some shape is as probable as `until`, `runs` times, and gives the number of touches
