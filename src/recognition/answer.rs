@@ -1,7 +1,7 @@
 //! The answer to one touch, or to several of one shape.
 
 use crate::imprint::Imprint;
-use crate::recognition::model::Model;
+use crate::recognition::model::{Model, add_log_counts};
 use crate::recognition::nearest::Nearest;
 use crate::recognition::noise::{Method, NEGLIGIBLE, Noise};
 
@@ -144,9 +144,8 @@ impl Model {
             let (least, all) = (sum(0), sum(1));
             // The sums are equal where nothing lies further away, or where nothing is possible.
             if all - least <= NEGLIGIBLE * least || !most.is_finite() {
-                let finite = |[odds, _]: [f64; 2]| Some(odds).filter(|own| own.is_finite());
-                let odds = odds.into_iter().map(finite);
-                return (Posterior::of_logarithms(odds), method);
+                let odds: Vec<f64> = odds.into_iter().map(|[odds, _]| odds).collect();
+                return (Posterior::of_logarithms(&odds), method);
             }
             further = 2 * further + 4;
         }
@@ -160,10 +159,8 @@ impl Model {
         touches: &[Imprint],
         further: u32,
     ) -> (Vec<[f64; 2]>, Method) {
-        let weights = self.shapes().iter();
-        let mut odds: Vec<[f64; 2]> = weights
-            .map(|shape| [libm::log(f64::from(shape.weight)); 2])
-            .collect();
+        let weights = self.log_weights().into_iter();
+        let mut odds: Vec<[f64; 2]> = weights.map(|weight| [weight; 2]).collect();
         let mut method = Method::Exact;
         for touch in touches {
             let Some(distances) = self.distances_further(touch, noise, further) else {
@@ -184,26 +181,14 @@ impl Model {
     fn possible(&self, touches: &[Imprint]) -> Posterior {
         if let [touch] = touches {
             let shares = self.posterior(touch).unwrap_or_default();
-            return Posterior::of_shares(shares.into_iter().map(Some));
+            return Posterior::of_shares(shares.into_iter());
         }
         // ln(w Π n), of the shapes that leave every one of the keys.
-        let mut logarithms: Vec<Option<f64>> = self
-            .shapes()
-            .iter()
-            .map(|shape| Some(libm::log(f64::from(shape.weight))))
-            .collect();
+        let mut logarithms = self.log_weights();
         for touch in touches {
-            let counts = self.counts_of(touch);
-            for (shape, logarithm) in logarithms.iter_mut().enumerate() {
-                let count = counts
-                    .iter()
-                    .find(|count| usize::from(count.shape) == shape);
-                #[expect(clippy::cast_precision_loss, reason = "a logarithm has no more digits")]
-                let more = count.map(|count| libm::log(count.poses as f64));
-                *logarithm = logarithm.zip(more).map(|(sum, more)| sum + more);
-            }
+            add_log_counts(&mut logarithms, self.counts_of(touch));
         }
-        Posterior::of_logarithms(logarithms.into_iter())
+        Posterior::of_logarithms(&logarithms)
     }
 
     /// Returns the imprint of the model nearest to the first touch that no shape leaves, else to the last touch. Dead taxels
@@ -230,13 +215,10 @@ struct Posterior {
 }
 
 impl Posterior {
-    /// Of shares; None or 0 for shapes that are impossible.
-    fn of_shares(shares: impl Iterator<Item = Option<f64>>) -> Self {
-        let shares = shares.map(|share| share.filter(|&share| share > 0.0));
-        let mut ranking: Vec<(usize, f64)> = shares
-            .enumerate()
-            .filter_map(|(shape, share)| Some((shape, share?)))
-            .collect();
+    /// Of shares; 0 for shapes that are impossible.
+    fn of_shares(shares: impl Iterator<Item = f64>) -> Self {
+        let positive = shares.enumerate().filter(|&(_, share)| share > 0.0);
+        let mut ranking: Vec<(usize, f64)> = positive.collect();
         ranking.sort_by(|(_, one), (_, other)| other.total_cmp(one));
         Self {
             possible: ranking.len(),
@@ -244,16 +226,21 @@ impl Posterior {
         }
     }
 
-    /// Of the logarithms of odds; None for odds of 0.
-    fn of_logarithms(logarithms: impl Iterator<Item = Option<f64>> + Clone) -> Self {
-        let finite = logarithms.clone().flatten();
-        let possible = finite.clone().count();
-        let most = finite.fold(f64::NEG_INFINITY, f64::max);
-        let odds = logarithms.map(|own| own.map(|own| libm::exp(own - most)));
-        let sum: f64 = odds.clone().flatten().sum();
+    /// Of the logarithms of odds; −∞ for odds of 0.
+    fn of_logarithms(logarithms: &[f64]) -> Self {
+        let possible = logarithms.iter().filter(|own| own.is_finite()).count();
+        if possible == 0 {
+            return Self {
+                ranking: Vec::new(),
+                possible,
+            };
+        }
+        let most = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let odds = logarithms.iter().map(|own| libm::exp(own - most));
+        let sum: f64 = odds.clone().sum();
         Self {
             possible,
-            ..Self::of_shares(odds.map(|odds| odds.map(|odds| odds / sum)))
+            ..Self::of_shares(odds.map(|odds| odds / sum))
         }
     }
 }

@@ -455,6 +455,12 @@ impl Model {
         counts.map(|&count| (usize::from(count.shape), self.weighted(count)))
     }
 
+    /// ln w of each shape, in the order of the set.
+    pub(super) fn log_weights(&self) -> Vec<f64> {
+        let weights = self.shapes.iter().map(|shape| f64::from(shape.weight));
+        weights.map(libm::log).collect()
+    }
+
     /// The sum of all weights.
     pub(super) fn weights(&self) -> u128 {
         let weights = self.shapes.iter().map(|shape| u128::from(shape.weight));
@@ -470,6 +476,15 @@ fn poses(ranges: &Ranges, shard: Shard) -> Option<u64> {
     let own = rows.map(|rows| shard.rows(rows));
     let poses = own.and_then(|rows| (rows.end - rows.start).checked_mul(count(Axis::X0)));
     poses.filter(|&poses| poses <= MAX_POSES)
+}
+
+/// Adds ln n of a key to the logarithm of each shape of a set; −∞ of a shape that does not leave the key.
+pub(super) fn add_log_counts(logarithms: &mut [f64], counts: &[ShapeCount]) {
+    let mut counts = counts.iter().peekable();
+    for (shape, logarithm) in logarithms.iter_mut().enumerate() {
+        let own = counts.next_if(|count| usize::from(count.shape) == shape);
+        *logarithm += own.map_or(f64::NEG_INFINITY, |own| libm::log(float(own.poses)));
+    }
 }
 
 /// A count as a number to compute with.

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::imprint::Imprint;
 use crate::recognition::key::ImprintKey;
-use crate::recognition::model::{Model, first_of_most, float, share};
+use crate::recognition::model::{Model, add_log_counts, first_of_most, float, share};
 use crate::recognition::noise::Noise;
 use crate::recognition::scan::shift_count;
 use crate::sensor::Sensor;
@@ -357,20 +357,9 @@ impl Model {
         random: &mut Pcg64,
     ) -> Option<(u32, bool)> {
         // ln(w Π n), −∞ of shapes that do not leave one of the keys.
-        let weights = self
-            .shapes()
-            .iter()
-            .map(|shape| libm::log(f64::from(shape.weight)));
-        let mut logarithms: Vec<f64> = weights.collect();
+        let mut logarithms = self.log_weights();
         for touches in 1..=MOST_TOUCHES {
-            let counts = self.counts(draw.key(random)?);
-            let mut own = counts.iter().peekable();
-            for (index, logarithm) in logarithms.iter_mut().enumerate() {
-                match own.next_if(|count| usize::from(count.shape) == index) {
-                    Some(found) => *logarithm += libm::log(float(found.poses)),
-                    None => *logarithm = f64::NEG_INFINITY,
-                }
-            }
+            add_log_counts(&mut logarithms, self.counts(draw.key(random)?));
             let (best, most) = first_of_most(logarithms.iter().copied().enumerate())?;
             let sum: f64 = logarithms.iter().map(|own| libm::exp(own - most)).sum();
             if 1.0 / sum >= until {
