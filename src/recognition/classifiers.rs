@@ -507,8 +507,7 @@ impl Sample {
         let shapes = model.shapes().len();
         let mut random = Pcg64::seed_from_u64(settings.seed);
         let mut sample = Vec::new();
-        for shape in 0..shapes {
-            let draw = Draw::new(model, shape, |_| 1);
+        for (shape, draw) in Draw::all(model, |_| 1).iter().enumerate() {
             let keys = (0..settings.sample).filter_map(|_| draw.key(&mut random));
             sample.extend(keys.map(|key| (key, shape)));
         }

@@ -172,23 +172,24 @@ pub fn random_taxels(sensor: &Sensor, count: u32, seed: u64) -> Imprint {
 }
 
 /// Draws touches of one shape.
+#[derive(Clone, Default)]
 pub(super) struct Draw {
     /// Up to and with each key: how many touches, and the number of the key.
     sums: Vec<(u64, usize)>,
 }
 
 impl Draw {
-    /// Touches of a shape, each key as often as `times` says.
-    pub(super) fn new(model: &Model, shape: usize, times: impl Fn(usize) -> u64) -> Self {
-        let (mut sums, mut sum) = (Vec::new(), 0);
+    /// Touches of each shape of a model, each key as often as `times` says.
+    pub(super) fn all(model: &Model, times: impl Fn(usize) -> u64) -> Vec<Self> {
+        let mut draws = vec![Self::default(); model.shapes().len()];
         for key in 0..model.keys().len() {
-            let own = model.counts(key).iter();
-            for count in own.filter(|count| usize::from(count.shape) == shape) {
-                sum += count.poses * times(key);
-                sums.push((sum, key));
+            for count in model.counts(key) {
+                let sums = &mut draws[usize::from(count.shape)].sums;
+                let before = sums.last().map_or(0, |&(sum, _)| sum);
+                sums.push((before + count.poses * times(key), key));
             }
         }
-        Self { sums }
+        draws
     }
 
     /// Draws the number of a key; None if there is no touch.
@@ -244,9 +245,7 @@ impl Model {
             let key = self.keys().get(key);
             shift_count((key.width, key.height), (columns, rows))
         };
-        let draws: Vec<Draw> = (0..self.shapes().len())
-            .map(|shape| Draw::new(self, shape, shifts))
-            .collect();
+        let draws = Draw::all(self, shifts);
         let chunks = per_shape.div_ceil(CHUNK);
         let mut tasks =
             (0..draws.len()).flat_map(|shape| (0..chunks).map(move |chunk| (shape, chunk)));
@@ -323,10 +322,9 @@ impl Model {
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Option<Vec<TouchesUntil>> {
         let stopped = AtomicBool::new(false);
-        let shapes = 0..self.shapes().len();
-        let results: Vec<TouchesUntil> = shapes
-            .map(|shape| {
-                let draw = Draw::new(self, shape, |_| 1);
+        let draws = Draw::all(self, |_| 1);
+        let results: Vec<TouchesUntil> = (draws.iter().enumerate())
+            .map(|(shape, draw)| {
                 let lengths: Vec<Option<(u32, bool)>> = (0..runs)
                     .into_par_iter()
                     .map(|run| {
@@ -335,7 +333,7 @@ impl Model {
                         }
                         let mut random =
                             generator(seed, run * self.shapes().len() as u64 + shape as u64);
-                        let length = self.run_until(until, &draw, shape, &mut random);
+                        let length = self.run_until(until, draw, shape, &mut random);
                         if !progress(1) {
                             stopped.store(true, Ordering::Relaxed);
                         }
