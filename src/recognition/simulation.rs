@@ -140,6 +140,10 @@ pub struct TouchesUntil {
 /// A run that takes more touches is abandoned: shapes that leave the same imprints can never be told apart.
 pub const MOST_TOUCHES: u32 = 10_000;
 
+/// The task that draws dead taxels. Touches are drawn by the tasks 0, 1, 2 and so on, so that they are independent of the
+/// dead taxels of the same seed.
+const DEAD_TAXELS: u64 = u64::MAX;
+
 /// A generator for one of many tasks, so that no task waits for another.
 fn generator(seed: u64, task: u64) -> Pcg64 {
     Pcg64::seed_from_u64(seed ^ task.wrapping_mul(0x9e37_79b9_7f4a_7c15))
@@ -160,7 +164,7 @@ fn unit(random: &mut Pcg64) -> f64 {
 pub fn random_taxels(sensor: &Sensor, count: u32, seed: u64) -> Imprint {
     let (columns, rows) = (sensor.columns(), sensor.rows());
     let mut taxels = Imprint::empty(columns, rows);
-    let mut random = generator(seed, 0);
+    let mut random = generator(seed, DEAD_TAXELS);
     let cells = u32::from(columns) * u32::from(rows);
     while taxels.count() < count.min(cells) {
         let [column, row] = [columns, rows].map(|side| below(&mut random, side.into()));
@@ -426,6 +430,22 @@ mod tests {
         assert_eq!((rate.touches, rate.right), (4000, 2000));
         assert_eq!((rate.accuracy(), rate.standard_error()), (0.9, 0.0));
         assert!((rate.claimed() - 0.9).abs() < 0.002, "{rate:?}");
+    }
+
+    /// Otherwise the first touches of a simulation would depend on which taxels are dead.
+    #[test]
+    fn dead_taxels_are_not_drawn_with_the_numbers_of_touches() {
+        for seed in 0..4 {
+            let mut random = generator(seed, 0);
+            let side = || below(&mut random, 64);
+            let numbers: Vec<u64> = std::iter::repeat_with(side).take(100).collect();
+            let dead = random_taxels(&Sensor::LARGEST, 50, seed);
+            let is_dead = |place: &&[u64]| {
+                let place = [place[0], place[1]].map(|side| u8::try_from(side).expect("below 64"));
+                dead.get(place[0], place[1])
+            };
+            assert!(numbers.chunks(2).filter(is_dead).count() < 10);
+        }
     }
 
     /// Two names of one shape are as probable after every touch.
