@@ -42,15 +42,20 @@ pub enum RecogniseMessage {
     SelectCell(usize, usize),
 }
 
-/// What of a touch takes a search over the whole model.
+/// A search over a whole model.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Look {
-    /// The model that was searched.
+pub struct PoseSearch {
+    /// The model.
     pub trained: Arc<TrainedModel>,
     /// The imprint.
     pub imprint: Imprint,
     /// The number of the shape that the answer names; None if it names none.
     pub named: Option<usize>,
+}
+
+/// What it found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Look {
     /// The nearest imprint that a shape of the set leaves.
     pub nearest: Option<Nearest>,
     /// The number of the named shape, or of that of the nearest imprint if none is named, and in which poses it leaves
@@ -58,6 +63,8 @@ pub struct Look {
     pub pose: Option<(usize, PoseEstimate)>,
     /// Some of these poses, the likeliest first.
     pub poses: Vec<PlacedSource>,
+    /// Why the poses were not found, if they need more memory than there is.
+    pub refused: Option<String>,
 }
 
 /// A model, or why there is none.
@@ -80,8 +87,8 @@ pub enum RecognitionEvent {
     GivenUp(u64, String),
     /// A model is ready, or there is none.
     Prepared(Box<Prepared>),
-    /// A search is over.
-    Looked(Box<Look>),
+    /// The search of that number is over: what it found, or why it failed.
+    Looked(u64, Result<Box<Look>, String>),
     /// Sizes were looked at.
     Sizes(Box<SizesFound>),
 }

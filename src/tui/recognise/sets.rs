@@ -161,6 +161,32 @@ impl TrainedModel {
     }
 }
 
+#[cfg(test)]
+impl TrainedModel {
+    /// A small model under the name of a set: a bar of 6 × 2 at every tenth of a cell and ten degrees.
+    pub(in crate::tui) fn of_a_bar(choice: ModelChoice) -> Self {
+        use crate::figure::Figure;
+        use crate::pose::Anchor;
+        use crate::sensor::Sensor;
+
+        let sensor = Sensor::default();
+        let bar = Figure::rectangle(6.0, 2.0).on(&sensor).expect("in range");
+        let cell = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges::default()
+            .with(Axis::X0, cell("5:5.9:0.1"))
+            .with(Axis::Y0, cell("5:5.9:0.1"))
+            .with(Axis::Angle, cell("0:170:10"));
+        let training = Training::new(
+            [NamedShape::new("bar", bar)],
+            sensor,
+            Anchor::Centre,
+            ranges,
+        );
+        let model = training.expect("a set").run().expect("not stopped");
+        Self::new(choice, model)
+    }
+}
+
 /// The poses of a shape on the sensor of its model, in these ranges: those of the model, or finer ones to try poses
 /// between.
 fn grid_of(model: &Model, shape: usize, ranges: Ranges) -> Option<PoseGrid> {

@@ -9,7 +9,7 @@ use crate::formats::Name;
 use crate::imprint::Imprint;
 use crate::recognition::{Answer, Evidence};
 use crate::tui::explore::message::SweepProgress;
-use crate::tui::recognise::message::{Look, Prepared};
+use crate::tui::recognise::message::{Look, PoseSearch, Prepared};
 use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
 use crate::tui::widget::number::around;
@@ -75,6 +75,27 @@ pub struct Score {
     pub best: u32,
 }
 
+/// A search in progress.
+#[derive(Clone, Debug)]
+struct Looking {
+    /// The number of the piece of work.
+    number: u64,
+    /// What is searched.
+    search: PoseSearch,
+    /// Whether a stop was requested; then nothing is taken from it.
+    stopping: bool,
+}
+
+/// What to do about the search that the page needs.
+#[derive(Clone, Debug)]
+pub enum LookStep {
+    /// To begin it.
+    Begin(Box<PoseSearch>),
+    /// To stop the one in progress, which is for something else. The next begins when that one is over, so that there
+    /// are never two.
+    Stop,
+}
+
 /// The state of the page.
 #[derive(Clone, Debug)]
 pub struct Recognition {
@@ -92,10 +113,10 @@ pub struct Recognition {
     present_kept: bool,
     /// The answer to all touches; None without a model or a touch.
     answer: Option<Answer>,
-    /// What was searched last.
-    look: Option<Box<Look>>,
-    /// Whether a search is under way.
-    looking: bool,
+    /// What was searched last, and what was found; None if that failed.
+    searched: Option<(PoseSearch, Option<Box<Look>>)>,
+    /// The search in progress.
+    looking: Option<Looking>,
     /// Whether outlines of poses are shown; None for where taxels are large.
     outlines: Option<bool>,
     /// The page of sizes, while it is closed.
@@ -117,8 +138,8 @@ impl Recognition {
             present: Imprint::empty(1, 1),
             present_kept: false,
             answer: None,
-            look: None,
-            looking: false,
+            searched: None,
+            looking: None,
             outlines: None,
             separate: None,
             score: Score::default(),
@@ -164,7 +185,7 @@ impl Recognition {
 
     /// Chooses a set, whose model is prepared by the piece of work of that number. Touches and score begin anew with
     /// another set. A stored model may be missing or damaged; then the set before it comes back. `opened`: the page was
-    /// opened for it.
+    /// opened for it. A search that is still in progress is forgotten: its model is left.
     pub fn prepare(&mut self, choice: ModelChoice, number: u64, opened: bool) {
         let state = std::mem::replace(&mut self.state, ModelState::Missing);
         let (mut before, trained) = match state {
@@ -191,8 +212,8 @@ impl Recognition {
             opened,
             before,
         });
-        self.look = None;
-        self.looking = false;
+        self.searched = None;
+        self.looking = None;
         self.ask();
     }
 
@@ -302,10 +323,19 @@ impl Recognition {
     /// What was searched of the imprint on the matrix, once that is known. Touches that are kept or forgotten may change the
     /// name; then its pose is searched for anew.
     pub fn look(&self) -> Option<&Look> {
-        let look = self.look.as_deref()?;
-        let trained = self.trained()?;
-        let same = look.imprint == self.present && look.named == self.named();
-        (same && Arc::ptr_eq(&look.trained, trained)).then_some(look)
+        let (search, look) = self.searched.as_ref()?;
+        let is_present = self.search().as_ref() == Some(search);
+        look.as_deref().filter(|_| is_present)
+    }
+
+    /// The search that the page needs; None without a model or a touch.
+    fn search(&self) -> Option<PoseSearch> {
+        let trained = Arc::clone(self.trained()?);
+        (!self.present.is_empty()).then(|| PoseSearch {
+            trained,
+            imprint: self.present,
+            named: self.named(),
+        })
     }
 
     /// Takes what is on the matrix now.
@@ -362,29 +392,31 @@ impl Recognition {
         };
     }
 
-    /// The imprint to search for next, with the shape whose pose is wanted; None while a search is under way, or where
-    /// there is nothing to search for. Notes that it is under way.
-    pub fn begin_look(&mut self) -> Option<(Arc<TrainedModel>, Imprint, Option<usize>)> {
-        let trained = Arc::clone(self.trained()?);
-        if self.looking || self.present.is_empty() || self.look().is_some() {
+    /// What to do about the search that the page needs; None if nothing. Notes that it is done. A search that begins gets
+    /// this number.
+    pub fn step_look(&mut self, number: u64) -> Option<LookStep> {
+        let search = self.search();
+        if let Some(looking) = &self.looking {
+            let is_needed = search.as_ref() == Some(&looking.search);
+            return (!is_needed && self.stop_look()).then_some(LookStep::Stop);
+        }
+        let search = search?;
+        // One that failed is not begun again.
+        if (self.searched.as_ref()).is_some_and(|(searched, _)| *searched == search) {
             return None;
         }
-        self.looking = true;
-        Some((trained, self.present, self.named()))
+        self.looking = Some(Looking {
+            number,
+            search: search.clone(),
+            stopping: false,
+        });
+        Some(LookStep::Begin(Box::new(search)))
     }
 
-    /// Notes that a search failed, so that this imprint is not searched for again.
-    pub fn fail_look(&mut self) {
-        if let Some(trained) = self.trained().cloned() {
-            self.take_look(Look {
-                trained,
-                imprint: self.present,
-                named: self.named(),
-                nearest: None,
-                pose: None,
-                poses: Vec::new(),
-            });
-        }
+    /// Notes that the search in progress should stop; `false` if there is none, or a stop was requested already.
+    pub fn stop_look(&mut self) -> bool {
+        let looking = self.looking.as_mut();
+        looking.is_some_and(|looking| !std::mem::replace(&mut looking.stopping, true))
     }
 
     /// Whether outlines of poses are shown; None for where taxels are large.
@@ -397,9 +429,93 @@ impl Recognition {
         self.outlines = Some(shown);
     }
 
-    /// Takes what was searched.
-    pub fn take_look(&mut self, look: Look) {
-        self.looking = false;
-        self.look = Some(Box::new(look));
+    /// Takes what the search of a number found. Returns why that is nothing, or not all. A search that was stopped or
+    /// forgotten is only over.
+    pub fn take_look(&mut self, number: u64, found: Result<Box<Look>, String>) -> Option<String> {
+        let looking = self.looking.take_if(|looking| looking.number == number);
+        let looking = looking.filter(|looking| !looking.stopping)?;
+        let refused = match &found {
+            Ok(look) => look.refused.clone(),
+            Err(reason) => Some(reason.clone()),
+        };
+        self.searched = Some((looking.search, found.ok()));
+        refused
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Has the work of that number prepare a model.
+    fn with_model(page: &mut Recognition, choice: ModelChoice, number: u64) {
+        page.prepare(choice.clone(), number, false);
+        let prepared = Prepared {
+            number,
+            stored: Vec::new(),
+            trained: Ok(Arc::new(TrainedModel::of_a_bar(choice))),
+        };
+        assert_eq!(page.take_model(prepared), None);
+    }
+
+    fn touch() -> Imprint {
+        "........\n.######.\n.######.\n........"
+            .parse()
+            .expect("an imprint")
+    }
+
+    fn found() -> Result<Box<Look>, String> {
+        Ok(Box::new(Look {
+            nearest: None,
+            pose: None,
+            poses: Vec::new(),
+            refused: None,
+        }))
+    }
+
+    #[test]
+    fn what_comes_late_of_a_search_in_another_model_changes_nothing() {
+        let mut page = Recognition::new(0);
+        page.show(touch());
+        with_model(&mut page, ModelChoice::Figures, 1);
+        assert!(matches!(page.step_look(2), Some(LookStep::Begin(_))));
+        assert!(page.step_look(3).is_none(), "it is in progress");
+        with_model(&mut page, ModelChoice::Shipped, 4);
+        assert!(matches!(page.step_look(5), Some(LookStep::Begin(_))));
+        assert_eq!(page.take_look(2, found()), None);
+        assert!(page.look().is_none(), "that was another model");
+        assert!(page.step_look(6).is_none(), "the new one is in progress");
+        assert_eq!(page.take_look(5, found()), None);
+        assert!(page.look().is_some());
+    }
+
+    #[test]
+    fn a_search_for_another_imprint_is_stopped_before_the_next_begins() {
+        let mut page = Recognition::new(0);
+        page.show(touch());
+        with_model(&mut page, ModelChoice::Figures, 1);
+        assert!(matches!(page.step_look(2), Some(LookStep::Begin(_))));
+        let mut other = touch();
+        other.set(0, 0, true);
+        page.show(other);
+        assert!(matches!(page.step_look(3), Some(LookStep::Stop)));
+        assert!(page.step_look(3).is_none(), "it was stopped");
+        // What a stopped search found is a part, also where the imprint is back.
+        page.show(touch());
+        assert_eq!(page.take_look(2, found()), None);
+        assert!(page.look().is_none());
+        assert!(matches!(page.step_look(3), Some(LookStep::Begin(_))));
+    }
+
+    #[test]
+    fn a_search_that_fails_says_why_and_is_not_begun_again() {
+        let mut page = Recognition::new(0);
+        page.show(touch());
+        with_model(&mut page, ModelChoice::Figures, 1);
+        assert!(matches!(page.step_look(2), Some(LookStep::Begin(_))));
+        let failed = page.take_look(2, Err("no thread".to_owned()));
+        assert_eq!(failed.as_deref(), Some("no thread"));
+        assert!(page.look().is_none(), "nothing is known of the imprint");
+        assert!(page.step_look(3).is_none());
     }
 }

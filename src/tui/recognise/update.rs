@@ -21,7 +21,7 @@ use crate::tui::recognise::reach::{put, state};
 use crate::tui::recognise::separate;
 use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::sets::ModelChoice;
-use crate::tui::recognise::state::{ModelState, NoModel, Recognition};
+use crate::tui::recognise::state::{LookStep, ModelState, NoModel, Recognition};
 use crate::tui::runtime::effect::{Effect, Work};
 
 /// Handles what is asked for over the matrix, with the page open or not.
@@ -201,8 +201,7 @@ pub(in crate::tui) fn in_recognition(
                 inform(app, "stopping");
                 return Some(Effect::Work(Work::StopPreparing));
             }
-            close(app, page);
-            None
+            close(app, page)
         }
         message => {
             app.dialogs.push(Dialog::Recognition(page));
@@ -225,11 +224,13 @@ fn prepare_again(app: &mut App) -> Option<Effect> {
     None
 }
 
-/// Keeps the page, which was taken off the stack, until it is opened again.
-fn close(app: &mut App, page: Box<Recognition>) {
+/// Keeps the page, which was taken off the stack, until it is opened again. A search in progress is stopped.
+fn close(app: &mut App, mut page: Box<Recognition>) -> Option<Effect> {
+    let stops = page.stop_look();
     app.recognition = Some(page);
     app.page = NarrowPage::Matrix;
     let_go(app);
+    stops.then_some(Effect::Work(Work::StopLooking))
 }
 
 /// Handles a message in the quiz.
@@ -328,7 +329,11 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
             let failed = page.take_model(*prepared);
             without_model(app, failed);
         }
-        RecognitionEvent::Looked(look) => page.take_look(*look),
+        RecognitionEvent::Looked(number, found) => {
+            if let Some(reason) = page.take_look(number, found) {
+                refuse(app, reason);
+            }
+        }
         RecognitionEvent::Sizes(found) => separate::update::on_found(app, *found),
     }
 }
@@ -337,14 +342,6 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
 /// The number is of a training or of the work on sizes; the page that waits for another number takes no notice.
 pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) {
     separate::update::on_failure(app, number, reason);
-    // A search has no number.
-    if number == 0 {
-        if let Some(page) = state(app) {
-            page.fail_look();
-            refuse(app, reason);
-        }
-        return;
-    }
     let prepared = Prepared {
         number,
         stored: Vec::new(),
@@ -364,7 +361,8 @@ fn without_model(app: &mut App, failed: Option<NoModel>) {
         && let Some(at) = app.dialogs.iter().position(open)
         && let Dialog::Recognition(page) = app.dialogs.remove(at)
     {
-        close(app, page);
+        // While a model was prepared, nothing was searched.
+        let _ = close(app, page);
     }
     refuse(app, reason);
 }
@@ -392,6 +390,12 @@ fn look(app: &mut App) -> Option<Effect> {
         _ => None,
     })?;
     page.show(imprint);
-    let (trained, imprint, shape) = page.begin_look()?;
-    Some(Effect::Work(Work::Look(trained, Box::new(imprint), shape)))
+    let number = app.works + 1;
+    Some(Effect::Work(match page.step_look(number)? {
+        LookStep::Begin(search) => {
+            app.works = number;
+            Work::Look(number, search)
+        }
+        LookStep::Stop => Work::StopLooking,
+    }))
 }

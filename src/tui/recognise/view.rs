@@ -219,7 +219,7 @@ impl Panel<'_> {
         }
         if let Some(look) = page.look() {
             self.gap();
-            self.look(look, answer, trained);
+            self.look(page.present(), look, answer, trained);
         }
     }
 
@@ -243,7 +243,7 @@ impl Panel<'_> {
     }
 
     /// The nearest imprint, and the pose.
-    fn look(&mut self, look: &Look, answer: &Answer, trained: &TrainedModel) {
+    fn look(&mut self, present: &Imprint, look: &Look, answer: &Answer, trained: &TrainedModel) {
         match &look.nearest {
             None => self.text("no imprint of the model fits the matrix", Role::Text),
             Some(nearest) if nearest.distance > 0 => {
@@ -253,7 +253,7 @@ impl Panel<'_> {
                     differ(nearest.distance)
                 );
                 self.text(&text, Role::Text);
-                self.text(&legend(look, nearest), Role::Quiet);
+                self.text(&legend(present, nearest), Role::Quiet);
             }
             Some(_) => {}
         }
@@ -313,10 +313,10 @@ fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
 }
 
 /// Which taxels differ from the nearest imprint, with the marks that they have on the matrix.
-fn legend(look: &Look, nearest: &Nearest) -> String {
-    let differing = look.imprint.differing(&nearest.imprint);
+fn legend(present: &Imprint, nearest: &Nearest) -> String {
+    let differing = present.differing(&nearest.imprint);
     let surplus = differing.active();
-    let surplus = surplus.filter(|&(column, row)| look.imprint.get(column, row));
+    let surplus = surplus.filter(|&(column, row)| present.get(column, row));
     let surplus = surplus.count();
     let missing = differing.count() as usize - surplus;
     let [add, remove] = MARKS;

@@ -13,8 +13,9 @@ use crate::tui::app::message::Purpose;
 use crate::tui::explore::message::Findings;
 use crate::tui::live::naming::NamingRequest;
 use crate::tui::live::request::WatchRequest;
+use crate::tui::recognise::message::PoseSearch;
 use crate::tui::recognise::separate::request::SeparationRequest;
-use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
+use crate::tui::recognise::sets::ModelChoice;
 
 /// An effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,8 +101,10 @@ pub enum Work {
     NameBy(u64, Option<Box<NamingRequest>>),
     /// Name an imprint.
     Name(Box<Imprint>),
-    /// Search a model for the nearest imprint, and for the poses of a shape, None for that of the nearest imprint.
-    Look(Arc<TrainedModel>, Box<Imprint>, Option<usize>),
+    /// Search a model for the nearest imprint, and for the poses of the named shape, or of that of the nearest imprint.
+    Look(u64, Box<PoseSearch>),
+    /// Stop that.
+    StopLooking,
 }
 
 /// Requests to the library.

@@ -8,7 +8,8 @@
 //! workers          sweeps and exports, each on a thread of its own
 //! progress         how workers report
 //! threads          the threads that share long work
-//! models           models for recognition: trained, read, searched
+//! models           models for recognition: trained, read
+//! look             searches them for what an imprint may be
 //! sizes            the limit of a set in several sizes
 //! frames           a source of frames: watched, recorded
 //! frame_feed       what it has brought and the screen has not taken
@@ -34,6 +35,8 @@ pub mod files;
 pub mod workers;
 
 mod models;
+
+mod look;
 
 mod sizes;
 

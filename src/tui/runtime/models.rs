@@ -1,8 +1,7 @@
-//! Models for recognition: trained or read, and searched.
+//! Models for recognition: trained or read.
 //!
 //! ```text
 //! Prepare(number, set)  -> Begun, Progress …, then Prepared: the model, or why there is none
-//! Look(model, imprint)  -> Looked: the nearest imprint and the pose
 //! ```
 //! What reads from a disk that hangs cannot be stopped. It is left to itself, and `GivenUp` says so.
 //!
@@ -16,13 +15,12 @@ use std::thread::JoinHandle;
 use std::time::Instant;
 
 use crate::formats::Name;
-use crate::imprint::Imprint;
 use crate::memory::MemoryGuard;
 use crate::quote::shortened;
 use crate::recognition::{Model, TrainingError};
 use crate::storage::{Library, ModelCache, ModelFolder, load_whole_model, location};
 use crate::tui::app::worker_event::WorkerEvent;
-use crate::tui::recognise::message::{Look, Prepared, RecognitionEvent};
+use crate::tui::recognise::message::{Prepared, RecognitionEvent};
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel, unknown_set};
 use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::progress::{
@@ -284,38 +282,4 @@ fn prepare(
         stored,
         trained: model.map(|model| Arc::new(TrainedModel::new(choice, model))),
     }))
-}
-
-/// Outlines of poses that are drawn at most; more cannot be told apart over a matrix.
-const POSES: usize = 13;
-
-/// Searches a model, on a thread of its own or at once.
-pub(super) fn look(
-    trained: Arc<TrainedModel>,
-    imprint: Box<Imprint>,
-    named: Option<usize>,
-    post: Option<WorkerEventSink>,
-) -> Option<WorkerEvent> {
-    let search = move || {
-        let nearest = trained.model.nearest(&imprint);
-        let found = nearest.as_ref().and_then(|nearest| {
-            let shape = named.unwrap_or(nearest.shape);
-            let all = &|_| true;
-            let (pose, poses) = (trained.model).poses_of(shape, &nearest.imprint, POSES, all)?;
-            Some(((shape, pose), poses))
-        });
-        let (pose, poses) = found.unzip();
-        WorkerEvent::Recognition(RecognitionEvent::Looked(Box::new(Look {
-            trained,
-            imprint: *imprint,
-            named,
-            nearest,
-            pose,
-            poses: poses.into_iter().flatten().collect(),
-        })))
-    };
-    let Some(post) = post else {
-        return Some(search());
-    };
-    on_a_thread(0, &post, move |post| post(guarded(0, search))).err()
 }

@@ -26,7 +26,8 @@ use crate::tui::explore::message::Findings;
 use crate::tui::live::naming::NamingRequest;
 use crate::tui::runtime::effect::Work;
 use crate::tui::runtime::frames::FrameWatcher;
-use crate::tui::runtime::models::{self, ModelStore, ModelWorker};
+use crate::tui::runtime::look::LookWorker;
+use crate::tui::runtime::models::{ModelStore, ModelWorker};
 use crate::tui::runtime::naming::ShapeNamer;
 use crate::tui::runtime::progress::{
     PoseLimit, ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
@@ -57,6 +58,8 @@ pub(in crate::tui) struct Workers {
     writing: Option<JoinHandle<()>>,
     /// Prepares models.
     models: ModelWorker,
+    /// Searches them.
+    look: LookWorker,
     /// Looks at sizes of a set.
     sizes: SizeWorker,
     /// Watches a source of frames.
@@ -94,6 +97,7 @@ impl Workers {
     pub(super) fn stop_after(&mut self, poses: u64) {
         self.limit = PoseLimit(Some(poses));
         self.models.limit = self.limit;
+        self.look.limit = self.limit;
         self.sizes.limit = self.limit;
         self.namer.limit = self.limit;
     }
@@ -135,7 +139,10 @@ impl Workers {
                     Err(refused) => Some(WorkerEvent::Failed(number, refused)),
                 }
             }
-            Work::Prepare(number, choice) => self.models.prepare(number, choice, self.post.clone()),
+            Work::Prepare(number, choice) => {
+                self.look.stop();
+                self.models.prepare(number, choice, self.post.clone())
+            }
             Work::StopPreparing => self.models.give_up(),
             Work::Separate(number, request, known) => {
                 self.sizes.look(number, request, known, self.post.clone())
@@ -144,8 +151,10 @@ impl Workers {
                 self.sizes.stop();
                 None
             }
-            Work::Look(trained, imprint, shape) => {
-                models::look(trained, imprint, shape, self.post.clone())
+            Work::Look(number, search) => self.look.look(number, search, self.post.clone()),
+            Work::StopLooking => {
+                self.look.stop();
+                None
             }
             work => self.perform_live(work),
         }
