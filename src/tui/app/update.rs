@@ -356,7 +356,9 @@ fn on_worker(app: &mut App, event: WorkerEvent) {
         }
         WorkerEvent::Estimate(grid, time) => explore::work::on_estimate(app, &grid, time),
         WorkerEvent::Swept(number, findings) => explore::work::take_findings(app, number, findings),
-        WorkerEvent::Angles(findings, curve) => explore::work::on_angles(app, &findings, curve),
+        WorkerEvent::Angles(findings, place, curve) => {
+            explore::work::on_angles(app, &findings, place, curve);
+        }
         WorkerEvent::Written(number, name) => explore::work::on_written(app, number, &name),
         WorkerEvent::Exists(number, name) => explore::work::on_existing(app, number, name),
         WorkerEvent::Failed(number, reason) => {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::pose::PoseGrid;
+use crate::pose::{PoseGrid, PoseIndex};
 use crate::tui::explore::angles::curve::AngleCurve;
 use crate::tui::explore::message::{Findings, SweepProgress};
 use crate::tui::live::message::LiveEvent;
@@ -24,8 +24,8 @@ pub enum WorkerEvent {
     GivenUp(String),
     /// A sweep is over, at its end or because it was stopped.
     Swept(u64, Arc<Findings>),
-    /// The imprints of each angle of these results.
-    Angles(Arc<Findings>, Arc<AngleCurve>),
+    /// The imprints of each angle of these results at a place, or why they were not found.
+    Angles(Arc<Findings>, PoseIndex, Result<Arc<AngleCurve>, String>),
     /// A file was written.
     Written(u64, String),
     /// It was not written, because a file of that name exists.

@@ -39,6 +39,8 @@ pub struct Results {
     angle_curve: Option<Arc<AngleCurve>>,
     /// Where those were asked for last.
     angles_asked: Option<PoseIndex>,
+    /// Where they could not be found last.
+    angles_failed: Option<PoseIndex>,
     /// The imprints that the map shows.
     map_sight: MapSight,
     /// How often the map was zoomed in, from its whole range on.
@@ -77,6 +79,7 @@ impl Results {
             across: (ACROSS, findings.sweep.atlas.values(ACROSS)),
             angle_curve: None,
             angles_asked: None,
+            angles_failed: None,
             map_sight: MapSight::default(),
             closer: 0,
             findings,
@@ -182,9 +185,21 @@ impl Results {
         missing.then_some(self.pose_index)
     }
 
-    /// Takes the imprints of each angle.
+    /// Takes the imprints of each angle. Those of zooms that were left meanwhile are not needed.
     pub fn take_angles(&mut self, curve: Arc<AngleCurve>) {
-        self.angle_curve = Some(curve);
+        if curve.is_at(self.pose_index) {
+            self.angle_curve = Some(curve);
+        }
+    }
+
+    /// Takes that the imprints of each angle could not be found at a place.
+    pub fn fail_angles(&mut self, place: PoseIndex) {
+        self.angles_failed = Some(place);
+    }
+
+    /// Whether that is so where the map's cursor is.
+    pub fn angles_failed(&self) -> bool {
+        self.angles_failed == Some(self.pose_index)
     }
 
     /// The imprints that the map showed last.
@@ -457,17 +472,33 @@ impl Results {
 mod tests {
     use super::*;
     use crate::figure::{Figure, FigureKind};
+    use crate::picture::Picture;
     use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
     use crate::sweep::Sweep;
 
     fn results() -> Results {
-        let ranges = Ranges::default()
+        let source = Source::Figure(Figure::default_of(FigureKind::Heptagon, &Sensor::default()));
+        of(source, ranges())
+    }
+
+    /// A picture in two zooms.
+    fn with_zooms() -> Results {
+        let bar = "####\n####".parse().expect("an imprint");
+        let zooms = "1:1.5:0.5".parse().expect("a range");
+        let source = Source::Picture(Picture::at_home(bar));
+        of(source, ranges().with(Axis::ZoomX, zooms))
+    }
+
+    fn ranges() -> Ranges {
+        Ranges::default()
             .with(Axis::X0, "5:5.9:0.1".parse().expect("a range"))
             .with(Axis::Y0, "5:5.5:0.1".parse().expect("a range"))
-            .with(Axis::Angle, "0:80:20".parse().expect("a range"));
-        let source = Source::Figure(Figure::default_of(FigureKind::Heptagon, &Sensor::default()));
+            .with(Axis::Angle, "0:80:20".parse().expect("a range"))
+    }
+
+    fn of(source: Source, ranges: Ranges) -> Results {
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
         let result = Sweep::new(&grid.expect("in range")).run();
         let classes = result.atlas.distinct_classes();
@@ -496,6 +527,23 @@ mod tests {
         );
         results.sort(ListColumn::Poses);
         assert_eq!(results.sort_key(), (ListColumn::Poses, false));
+    }
+
+    #[test]
+    fn angles_of_a_zoom_that_was_left_do_not_replace_those_of_the_present_one() {
+        let mut results = with_zooms();
+        results.turn_to(ExplorePage::Angles);
+        let curve = |place| Arc::new(AngleCurve::of(results.sweep(), place));
+        let first = results.pose_index();
+        let (early, late) = (curve(first), curve(first.with(Axis::ZoomX, 1)));
+        assert_eq!(results.missing_angles(), Some(first));
+        results.zoom(Zoom::X, 1);
+        assert!(results.missing_angles().is_some());
+        results.take_angles(late);
+        results.take_angles(early);
+        assert!(results.angle_curve().is_some());
+        results.zoom(Zoom::X, -1);
+        assert_eq!(results.missing_angles(), Some(first), "asked for again");
     }
 
     #[test]

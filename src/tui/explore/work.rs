@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use crate::formats::value::{counted, grouped};
 use crate::picture::Picture;
-use crate::pose::PoseGrid;
+use crate::pose::{PoseGrid, PoseIndex};
 use crate::source::Source;
 use crate::storage::{Existing, is_poses};
 use crate::tui::app::change::{inform, refuse};
@@ -213,15 +213,27 @@ pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
     Some(Effect::Work(Work::Angles(findings, place)))
 }
 
-/// Takes the imprints of each angle, if these results are still there.
-pub(in crate::tui) fn on_angles(app: &mut App, findings: &Arc<Findings>, curve: Arc<AngleCurve>) {
+/// Takes the imprints of each angle at a place, if these results are still there. Says why they were not found.
+pub(in crate::tui) fn on_angles(
+    app: &mut App,
+    findings: &Arc<Findings>,
+    place: PoseIndex,
+    curve: Result<Arc<AngleCurve>, String>,
+) {
     let open = app.dialogs.iter_mut().find_map(|dialog| match dialog {
         Dialog::Results(results) => Some(results),
         _ => None,
     });
     let results = open.or(app.results.as_mut());
-    if let Some(results) = results.filter(|own| Arc::ptr_eq(own.findings(), findings)) {
-        results.take_angles(curve);
+    let Some(results) = results.filter(|own| Arc::ptr_eq(own.findings(), findings)) else {
+        return;
+    };
+    match curve {
+        Ok(curve) => results.take_angles(curve),
+        Err(reason) => {
+            results.fail_angles(place);
+            refuse(app, reason);
+        }
     }
 }
 

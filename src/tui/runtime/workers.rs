@@ -4,7 +4,7 @@
 //! ```text
 //! Measure(grid)        -> Estimate         best of several short runs, stopped by the next piece of work
 //! Sweep(number, grid)  -> Progress …, then Swept, also after Stop, with what is complete
-//! Angles(results, …)   -> Angles
+//! Angles(results, …)   -> Angles: what was found, or why that failed
 //! Write(number, …)     -> Progress …, then Written, Exists or Failed; after Stop no file stays
 //! ```
 //! When the program ends, a running sweep ends with it; an export is stopped first, so that no partial file stays. A
@@ -30,7 +30,7 @@ use crate::tui::runtime::look::LookWorker;
 use crate::tui::runtime::models::{ModelStore, ModelWorker};
 use crate::tui::runtime::naming::ShapeNamer;
 use crate::tui::runtime::progress::{
-    PoseLimit, ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
+    PoseLimit, ProgressReporter, WorkerEventSink, caught, guarded, on_a_thread, proceed,
 };
 use crate::tui::runtime::sizes::SizeWorker;
 use crate::tui::runtime::threads;
@@ -203,17 +203,15 @@ impl Workers {
         let post = self.post.clone()?;
         self.measuring = Arc::default();
         let stop = Arc::clone(&self.measuring);
-        let thread = on_a_thread(0, &post, move |post| {
+        let work = move || {
             if let Some(time) = measure(&grid, &stop) {
                 post(WorkerEvent::Estimate(grid, time));
             }
-        });
-        match thread.err()? {
-            WorkerEvent::Failed(_, reason) => Some(WorkerEvent::Refused(format!(
-                "the time of the sweep cannot be measured: {reason}"
-            ))),
-            event => Some(event),
-        }
+        };
+        let reason = threads::start(move || threads::run(work)).err()?;
+        Some(WorkerEvent::Refused(format!(
+            "the time of the sweep cannot be measured: {reason}"
+        )))
     }
 
     /// Sweeps a grid, on a thread of its own if there is a receiver.
@@ -237,12 +235,12 @@ impl Workers {
     /// Finds the imprints of each angle, on a thread of its own if there is a receiver and the system has one to give.
     fn angles(&self, findings: Arc<Findings>, place: PoseIndex) -> Option<WorkerEvent> {
         let run = move || {
-            let curve = AngleCurve::of(&findings.sweep, place);
-            WorkerEvent::Angles(Arc::clone(&findings), Arc::new(curve))
+            let curve = caught(|| Arc::new(AngleCurve::of(&findings.sweep, place)));
+            WorkerEvent::Angles(findings, place, curve)
         };
-        let beside = self.post.as_ref().is_some_and(|post| {
+        let beside = self.post.clone().is_some_and(|post| {
             let run = run.clone();
-            on_a_thread(0, post, move |post| post(guarded(0, run))).is_ok()
+            threads::start(move || threads::run(|| post(run()))).is_ok()
         });
         (!beside).then(run)
     }

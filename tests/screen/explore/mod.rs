@@ -151,6 +151,24 @@ fn keys_do_not_wait_for_the_plot_of_angles() {
 }
 
 #[test]
+fn a_plot_of_angles_that_fails_says_so_and_is_not_waited_for() {
+    let mut program = Beside::new("fr<Enter>");
+    program.press(":explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>");
+    program.until("distinct imprints");
+    program.then("6", &["computing"]);
+    let told = program.told.recv_timeout(DEADLINE).expect("it is told");
+    let WorkerEvent::Angles(findings, place, Ok(_)) = told else {
+        panic!("{told:?}");
+    };
+    let failed = WorkerEvent::Angles(findings, place, Err("no memory".to_owned()));
+    program.session.send(Message::Worker(failed));
+    shows(
+        &program.session,
+        &["no memory", "the imprints of each angle were not found"],
+    );
+}
+
+#[test]
 fn the_time_is_told_while_ranges_are_typed() {
     let mut program = Beside::new("fh<Enter>e");
     shows(&program.session, &["3,600,000 poses"]);

@@ -107,6 +107,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     let Some(here) = nearest(results, &spread) else {
         let text = match results.angle_curve() {
             Some(_) => "no pose has a value",
+            None if results.angles_failed() => "the imprints of each angle were not found",
             None => "computing",
         };
         write::line(buffer, write::row(page, 1), theme, [(text, Role::Quiet)]);
