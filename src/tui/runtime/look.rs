@@ -85,11 +85,14 @@ fn find(
         let (pose, poses) = model.poses_of(shape, &nearest.imprint, POSES, &within)?;
         Some(((shape, pose), poses))
     });
-    let (pose, poses) = found.unzip();
+    let (pose, poses) = match found {
+        Some((pose, poses)) => (Some(pose), poses),
+        None => (None, Vec::new()),
+    };
     Look {
         nearest,
         pose,
-        poses: poses.unwrap_or_default(),
+        poses,
         refused: memory.exceeded().then(|| memory.message()),
     }
 }

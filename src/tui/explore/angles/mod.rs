@@ -125,6 +125,16 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     let key = results.feature().key.as_str();
     let across = if theme.ascii { "angle/deg" } else { "angle/°" };
     field.draw_axes(theme, buffer, [key, across]);
+    draw_curves(&field, &spread, theme, buffer);
+    let at = field.character((here.degrees, here.mean))?;
+    if let Some(cell) = buffer.cell_mut(at) {
+        cell.set_char('o').set_style(theme.style(Role::Cursor));
+    }
+    Some(at)
+}
+
+/// Draws the curves of all values.
+fn draw_curves(field: &PlotField, spread: &[AngleSpread], theme: &Theme, buffer: &mut Buffer) {
     let quiet = theme.style(Role::Text);
     for (of, dashed) in CURVES {
         let mut canvas = field.canvas();
@@ -151,11 +161,6 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
         };
         field.draw_lines(theme, buffer, &canvas, style);
     }
-    let at = field.character((here.degrees, here.mean))?;
-    if let Some(cell) = buffer.cell_mut(at) {
-        cell.set_char('o').set_style(theme.style(Role::Cursor));
-    }
-    Some(at)
 }
 
 /// A value of a spread.
