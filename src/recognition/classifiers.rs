@@ -16,6 +16,7 @@ use rayon::prelude::*;
 
 use crate::atlas::{feature_values, features};
 use crate::description::{Description, Descriptor, Value};
+use crate::recognition::confusion::ConfusionMatrix;
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::given::{GivenTable, ShapeDescriptor};
 use crate::recognition::model::{Model, share};
@@ -202,7 +203,7 @@ fn evaluate(model: &Model, scores: impl Fn(usize) -> Scores + Sync) -> Evaluatio
         for &count in model.counts(key) {
             let (shape, touches) = (usize::from(count.shape), model.weighted(count));
             let Some(named) = named else { continue };
-            evaluation.confusion[shape][named] += touches;
+            evaluation.confusion.add(shape, named, touches);
             if named == shape {
                 evaluation.right += touches;
             }
@@ -239,23 +240,18 @@ fn first_two(scores: &[f64]) -> [Option<usize>; 3] {
 }
 
 /// How much the name tells about the shape, in bits.
-fn information(confusion: &[Vec<u128>]) -> f64 {
-    let total: u128 = confusion.iter().flatten().sum();
-    let rows: Vec<u128> = confusion.iter().map(|row| row.iter().sum()).collect();
-    let column = |named: usize| confusion.iter().map(|row| row[named]).sum::<u128>();
-    let columns: Vec<u128> = (0..confusion.len()).map(column).collect();
-    let mut bits = 0.0;
-    for (row, touches) in confusion.iter().enumerate() {
-        for (named, &touches) in touches
-            .iter()
-            .enumerate()
-            .filter(|(_, touches)| **touches > 0)
-        {
-            let ratio = share(touches, rows[row]) / share(columns[named], total);
-            bits += share(touches, total) * libm::log2(ratio);
-        }
-    }
-    bits
+fn information(confusion: &ConfusionMatrix) -> f64 {
+    let shapes = 0..confusion.shapes();
+    let rows: Vec<u128> = (shapes.clone())
+        .map(|shape| confusion.touches_of(shape))
+        .collect();
+    let columns: Vec<u128> = shapes.map(|shape| confusion.touches_named(shape)).collect();
+    let total = rows.iter().sum();
+    let bits = confusion.cells().map(|(touched, named, touches)| {
+        let ratio = share(touches, rows[touched]) / share(columns[named], total);
+        share(touches, total) * libm::log2(ratio)
+    });
+    bits.sum()
 }
 
 /// The features of all keys, in units of their deviation.

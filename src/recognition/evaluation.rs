@@ -1,5 +1,8 @@
 //! How well any method can name the shapes of a model from one touch: exact counts over all its touches.
 
+use std::collections::BTreeMap;
+
+use crate::recognition::confusion::ConfusionMatrix;
 use crate::recognition::model::{Model, NamedShape, ShapeCount, first_of_most, share};
 
 /// How well the best classifier of one touch does, over every touch of a model.
@@ -47,8 +50,8 @@ pub struct Evaluation {
     pub keys: usize,
     /// How many of these only one shape leaves.
     pub keys_of_one_shape: usize,
-    /// `confusion[i][j]`: touches of shape i that are named j.
-    pub confusion: Vec<Vec<u128>>,
+    /// Which shapes are named as which.
+    pub confusion: ConfusionMatrix,
 }
 
 impl Evaluation {
@@ -76,7 +79,7 @@ impl Evaluation {
             prior_bits: prior_bits(shapes),
             keys: 0,
             keys_of_one_shape: 0,
-            confusion: vec![vec![0; shapes.len()]; shapes.len()],
+            confusion: ConfusionMatrix::new(shapes.len()),
         }
     }
 
@@ -100,7 +103,7 @@ impl Evaluation {
             self.keys_of_one_shape += 1;
         }
         for (shape, touches) in shapes {
-            self.confusion[shape][named] += touches;
+            self.confusion.add(shape, named, touches);
             // Of all touches, those of this shape with this key; per touch of the key and of the shape.
             let prior = u128::from(model.shapes()[shape].weight);
             let joint = share(touches, self.touches);
@@ -126,34 +129,30 @@ impl Evaluation {
     }
 
     /// Returns the recall of a shape: the share of its touches that get its name.
-    ///
-    /// # Panics
-    /// If there is no such shape.
     pub fn recall(&self, shape: usize) -> f64 {
-        let row = &self.confusion[shape];
-        share(row[shape], row.iter().sum())
+        let right = self.confusion.get(shape, shape);
+        share(right, self.confusion.touches_of(shape))
     }
 
     /// Returns the precision of a shape: the share of the touches with its name that are really its own; None if no
     /// touch gets its name.
-    ///
-    /// # Panics
-    /// If there is no such shape.
     pub fn precision(&self, shape: usize) -> Option<f64> {
-        let named: u128 = self.confusion.iter().map(|row| row[shape]).sum();
-        (named > 0).then(|| share(self.confusion[shape][shape], named))
+        let named = self.confusion.touches_named(shape);
+        (named > 0).then(|| share(self.confusion.get(shape, shape), named))
     }
 
     /// Returns the pairs of shapes that are confused, those with the most touches first: (one, other, touches).
     pub fn worst_pairs(&self) -> Vec<(usize, usize, u128)> {
-        let shapes = self.labels.len();
-        let pairs = (0..shapes).flat_map(|one| (one + 1..shapes).map(move |other| (one, other)));
+        let mut sums = BTreeMap::new();
+        for (touched, named, touches) in self.confusion.cells() {
+            if touched != named {
+                let pair = (touched.min(named), touched.max(named));
+                *sums.entry(pair).or_insert(0) += touches;
+            }
+        }
+        let pairs = sums.into_iter();
         let mut pairs: Vec<_> = pairs
-            .map(|(one, other)| {
-                let touches = self.confusion[one][other] + self.confusion[other][one];
-                (one, other, touches)
-            })
-            .filter(|&(_, _, touches)| touches > 0)
+            .map(|((one, other), touches)| (one, other, touches))
             .collect();
         pairs.sort_by_key(|&(one, other, touches)| (std::cmp::Reverse(touches), one, other));
         pairs
@@ -210,5 +209,44 @@ impl Model {
         (0..certain.len())
             .filter(|&shape| !certain[shape])
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::pose::{Anchor, Axis, Ranges};
+    use crate::recognition::model::ModelParts;
+    use crate::sensor::Sensor;
+    use crate::sweep::Shard;
+
+    /// A whole matrix would take 6.4 GB.
+    #[test]
+    fn a_large_set_takes_memory_for_the_pairs_that_are_confused() {
+        const SHAPES: u16 = 20_000;
+        let bar = Figure::rectangle(4.0, 2.0).on(&Sensor::default());
+        let bar = bar.expect("in range");
+        let shapes = (0..SHAPES).map(|number| NamedShape::new(number.to_string(), bar));
+        let ranges = [Axis::X0, Axis::Y0, Axis::Angle].map(|axis| (axis, "0"));
+        let ranges = ranges
+            .into_iter()
+            .fold(Ranges::default(), |all, (axis, at)| {
+                all.with(axis, at.parse().expect("a range"))
+            });
+        let poses = (Anchor::Centre, ranges);
+        let mut parts = ModelParts::new(
+            shapes.collect(),
+            Sensor::default(),
+            poses,
+            (Shard::WHOLE, 1),
+        );
+        let counts = (0..SHAPES).map(|shape| ShapeCount::new(shape, 1));
+        parts.keys = vec![("####\n####".parse().ok(), counts.collect())];
+        let limit = Evaluation::of(&Model::from_parts(parts).expect("a model"));
+        assert_eq!((limit.touches, limit.right), (SHAPES.into(), 1));
+        assert_eq!(limit.worst_pairs().len(), usize::from(SHAPES) - 1);
+        assert_eq!(limit.worst_pairs()[0], (0, 1, 1));
+        assert_eq!((limit.recall(0), limit.recall(1)), (1.0, 0.0));
     }
 }

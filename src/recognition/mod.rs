@@ -30,6 +30,8 @@ mod sets;
 
 mod pose_estimate;
 
+mod confusion;
+
 mod evaluation;
 
 mod separation;
@@ -54,6 +56,7 @@ mod scan;
 
 pub use answer::{Answer, AnswerState, Evidence};
 pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings, PoseSample};
+pub use confusion::ConfusionMatrix;
 pub use evaluation::Evaluation;
 pub use given::{GivenDescriptors, GivenError, GivenTable, Rounding, ShapeDescriptor, greedy};
 pub use half_step::HalfStep;

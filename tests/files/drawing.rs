@@ -221,7 +221,7 @@ mod pixels {
 fn a_confusion_matrix_has_its_numbers_and_shades() {
     let labels = ["disc", "a long name <&>", "bar"].map(str::to_owned);
     let counts = [vec![90, 10, 0], vec![3, 9996, 1], vec![0, 0, 1_234_567]];
-    let map = ConfusionMap::new(&labels, &counts).expect("few shapes");
+    let map = ConfusionMap::new(&labels, counts).expect("few shapes");
     let svg = map.clone().with_title("error 1 %").svg();
     golden("confusion", &svg);
     for text in [
@@ -235,10 +235,10 @@ fn a_confusion_matrix_has_its_numbers_and_shades() {
     }
     assert_eq!(map.svg().matches(">·</text>").count(), 3);
     // What is missing counts as nothing, and what is too much is left out.
-    let odd = ConfusionMap::new(&labels, &[vec![1; 9]]).expect("few shapes");
+    let odd = ConfusionMap::new(&labels, [vec![1; 9]]).expect("few shapes");
     assert_eq!(odd.svg().matches(">·</text>").count(), 6);
     let many = vec!["x".to_owned(); 65];
-    assert!(ConfusionMap::new(&many, &[]).is_none() && ConfusionMap::new(&[], &[]).is_none());
+    assert!(ConfusionMap::new(&many, []).is_none() && ConfusionMap::new(&[], []).is_none());
 }
 
 #[test]
@@ -359,7 +359,7 @@ fn a_map_has_areas_with_borders() {
 fn matrices_and_curves_are_drawn_in_pixels() {
     let labels = ["a", "b"].map(str::to_owned);
     let map = |row| {
-        let map = ConfusionMap::new(&labels, &[row, vec![0, 10]]);
+        let map = ConfusionMap::new(&labels, [row, vec![0, 10]]);
         map.expect("few shapes").png()
     };
     let plot = |ends: [(f64, f64); 2]| LinePlot::new("x", "y").with_curve("c", &ends).png();

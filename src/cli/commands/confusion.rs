@@ -186,7 +186,7 @@ fn advice(asked: &ConfusionArguments) -> String {
 /// [`CliError::TooManyShapes`] for a drawing whose matrix would not be legible.
 fn file(path: &Path, own: &Evaluation, knows_certain: bool) -> Result<Vec<u8>, CliError> {
     let map = || {
-        let map = ConfusionMap::new(&own.labels, &own.confusion);
+        let map = ConfusionMap::new(&own.labels, own.confusion.rows());
         map.ok_or_else(|| CliError::TooManyShapes {
             name: path.to_string_lossy().into_owned(),
             shapes: own.labels.len(),

@@ -22,7 +22,9 @@ use serde_json::json;
 
 use crate::cli::output::charset::Charset;
 use crate::formats::value::{counted, decimal, grouped};
-use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, ShapeDescriptor, share};
+use crate::recognition::{
+    Classifier, ClassifierEvaluation, ConfusionMatrix, Evaluation, ShapeDescriptor, share,
+};
 
 /// An evaluation as an object of JSON, its keys in the order of the documentation.
 pub(crate) struct EvaluationJson<'a> {
@@ -49,7 +51,7 @@ impl Serialize for EvaluationJson<'_> {
         map.serialize_entry("prior_bits", &own.prior_bits)?;
         map.serialize_entry("keys", &own.keys)?;
         map.serialize_entry("keys_of_one_shape", &known(own.keys_of_one_shape as u128))?;
-        map.serialize_entry("confusion", &own.confusion)?;
+        map.serialize_entry("confusion", &MatrixRows(&own.confusion))?;
         if let Some(reached) = self.classifier {
             map.serialize_entry("classifier", reached.classifier.name())?;
             map.serialize_entry("features", &reached.features)?;
@@ -64,6 +66,15 @@ impl Serialize for EvaluationJson<'_> {
             }
         }
         map.end()
+    }
+}
+
+/// A confusion matrix as an array of its rows.
+struct MatrixRows<'a>(&'a ConfusionMatrix);
+
+impl Serialize for MatrixRows<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.0.rows())
     }
 }
 
@@ -178,7 +189,7 @@ pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
         Charset::Unicode => "·",
     };
     let cell = |row: usize, column: usize| {
-        let touches = evaluation.confusion[row][column];
+        let touches = evaluation.confusion.get(row, column);
         match (touches, row == column) {
             (touches, true) => format!("[{touches}]"),
             (0, false) => format!("{dot} "),
@@ -261,7 +272,7 @@ pub(crate) fn csv(evaluation: &Evaluation) -> String {
     };
     let names: Vec<String> = evaluation.labels.iter().map(quoted).collect();
     let mut text = format!("true,{}\n", names.join(","));
-    for (name, row) in names.iter().zip(&evaluation.confusion) {
+    for (name, row) in names.iter().zip(evaluation.confusion.rows()) {
         let cells: Vec<String> = row.iter().map(ToString::to_string).collect();
         let _ = writeln!(text, "{name},{}", cells.join(","));
     }

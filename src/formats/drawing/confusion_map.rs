@@ -28,7 +28,7 @@ const CELL: Stroke = Stroke {
 ///
 /// ```
 /// use taxel::formats::ConfusionMap;
-/// let map = ConfusionMap::new(&["disc".into(), "bar".into()], &[vec![9, 1], vec![0, 10]]).expect("few shapes");
+/// let map = ConfusionMap::new(&["disc".into(), "bar".into()], [vec![9, 1], vec![0, 10]]).expect("few shapes");
 /// assert!(map.svg().contains(">90 %</text>"));
 /// ```
 #[derive(Clone, Debug)]
@@ -44,14 +44,14 @@ pub struct ConfusionMap {
 impl ConfusionMap {
     /// The matrix of some shapes: `counts[i][j]` touches of shape i are named j; missing ones are 0. None without a
     /// shape, and for more than 64.
-    pub fn new(labels: &[String], counts: &[Vec<u128>]) -> Option<Self> {
+    pub fn new(labels: &[String], counts: impl IntoIterator<Item = Vec<u128>>) -> Option<Self> {
         if labels.is_empty() || labels.len() > MOST {
             return None;
         }
         let cut = |label: &String| label.chars().take(LONGEST).collect();
         Some(Self {
             labels: labels.iter().map(cut).collect(),
-            counts: counts.to_vec(),
+            counts: counts.into_iter().collect(),
             title: None,
         })
     }

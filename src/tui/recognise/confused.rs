@@ -46,13 +46,11 @@ impl Example {
 /// The cell beside the diagonal with the most touches, of equals the first: the shape that touches, the shape that is
 /// named. None of a single shape.
 pub fn worst_cell(evaluation: &Evaluation) -> Option<(usize, usize)> {
-    let confusion = &evaluation.confusion;
-    let cells =
-        (0..confusion.len()).flat_map(|row| (0..confusion.len()).map(move |column| (row, column)));
-    let wrong = cells.filter(|(row, column)| row != column);
-    wrong
-        .rev()
-        .max_by_key(|&(row, column)| confusion[row][column])
+    let cells = evaluation.confusion.cells();
+    let wrong = cells.filter(|(row, column, _)| row != column);
+    let most = wrong.rev().max_by_key(|&(_, _, touches)| touches);
+    let first = (evaluation.confusion.shapes() > 1).then_some((0, 1));
+    most.map(|(row, column, _)| (row, column)).or(first)
 }
 
 /// A shape that is taken for another one.
@@ -72,12 +70,12 @@ impl ConfusedPair {
     /// The pair of a model that is confused in the most touches; None if none is confused.
     pub fn worst(model: &Model, evaluation: &Evaluation) -> Option<Self> {
         let (touched, named) = worst_cell(evaluation)?;
-        let row = &evaluation.confusion[touched];
-        let wrong = row[named];
+        let confusion = &evaluation.confusion;
+        let wrong = confusion.get(touched, named);
         (wrong > 0).then(|| Self {
             touched,
             named,
-            share: share(wrong, row.iter().sum()),
+            share: share(wrong, confusion.touches_of(touched)),
             example: Example::of(model, (touched, named)),
         })
     }

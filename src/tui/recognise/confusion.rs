@@ -278,12 +278,12 @@ impl Confusion {
             (self.trained.name(row), Role::Text),
         ];
         write::line(buffer, name, theme, pieces);
-        let touches: u128 = self.trained.evaluation.confusion[row].iter().sum();
+        let touches = self.trained.evaluation.confusion.touches_of(row);
         let mut cursor = None;
         let last = panes.first.1 + panes.columns;
         for (index, column) in (panes.first.1..last.min(self.count())).enumerate() {
             let place = panes.cell(line, index);
-            let count = self.trained.evaluation.confusion[row][column];
+            let count = self.trained.evaluation.confusion.get(row, column);
             let text = cell_text(theme, count, touches, row == column);
             let here = (row, column) == self.cell;
             let role = match (here, row == column, count) {
@@ -303,14 +303,13 @@ impl Confusion {
     /// What the cursor is on.
     fn draw_detail(&self, theme: &Theme, panes: &ConfusionPanes, buffer: &mut Buffer) {
         let (row, column) = self.cell;
-        let confusion = &self.trained.evaluation.confusion[row];
-        let touches: u128 = confusion.iter().sum();
+        let confusion = &self.trained.evaluation.confusion;
         let text = format!(
             "{} named {}: {} of {}",
             self.trained.name(row),
             self.trained.name(column),
-            grouped(confusion[column]),
-            counted(touches, "touch"),
+            grouped(confusion.get(row, column)),
+            counted(confusion.touches_of(row), "touch"),
         );
         write::line(buffer, panes.detail, theme, [(text.as_str(), Role::Text)]);
         let Some(example) = &self.example else { return };
