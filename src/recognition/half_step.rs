@@ -44,7 +44,8 @@ impl HalfStep {
 impl Model {
     /// Touches every shape half a step beyond each pose of the model, and names what that leaves.
     ///
-    /// It takes about as long as the training, and more where many imprints are new.
+    /// It takes about as long as the training, and more where many imprints are new. `progress` is called as by
+    /// [`Training::progress`]; after the training with 0, for each new imprint whose nearest one is searched.
     ///
     /// # Errors
     /// [`TrainingError::Steps`] if half a step has too many decimals; [`TrainingError::Stopped`].
@@ -67,10 +68,13 @@ impl Model {
             .filter(|&key| known[key].is_none())
             .collect();
         let nearest = missing.par_iter().map(|&key| {
-            let nearest = self.nearest(&with_margin(keys.imprint(key).as_ref()))?;
-            Some((key, nearest.shape))
+            if !progress(0) {
+                return Err(TrainingError::Stopped);
+            }
+            let nearest = self.nearest(&with_margin(keys.imprint(key).as_ref()));
+            Ok(nearest.map(|nearest| (key, nearest.shape)))
         });
-        let nearest: Vec<Option<(usize, usize)>> = nearest.collect();
+        let nearest: Vec<Option<(usize, usize)>> = nearest.collect::<Result<_, _>>()?;
         let nearest: HashMap<usize, usize> = nearest.into_iter().flatten().collect();
         let mut result = HalfStep {
             touches: u128::from(between.poses()) * between.weights(),
@@ -119,4 +123,30 @@ fn with_margin(imprint: Option<&Imprint>) -> Imprint {
         wider.set_word(row + top, word << left);
     }
     wider
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+    use crate::recognition::sets::{GridSteps, equal_figures};
+
+    #[test]
+    fn it_can_be_stopped_while_nearest_imprints_are_searched() {
+        let steps = GridSteps::new(4, 30).expect("divisors");
+        let training = Training::fitting(equal_figures(), steps).expect("they fit");
+        let model = training.run().expect("not stopped");
+        let calls = AtomicUsize::new(0);
+        let stop_after = |most: usize| {
+            calls.store(0, Ordering::Relaxed);
+            model.half_step(&|_| calls.fetch_add(1, Ordering::Relaxed) < most)
+        };
+        let result = stop_after(usize::MAX).expect("not stopped");
+        assert!(result.missing() > 0.0);
+        // The last call is that of the last imprint that the model does not hold.
+        let all = calls.load(Ordering::Relaxed);
+        assert_eq!(stop_after(all - 1), Err(TrainingError::Stopped));
+        assert_eq!(stop_after(all), Ok(result));
+    }
 }

@@ -49,7 +49,7 @@ pub(crate) fn confusion(
         Evaluated::Pairs => Ok(pairs(&model, as_json, charset)),
         Evaluated::AllClassifiers => all_classifiers(&model, asked, charset),
         Evaluated::Noise(noise) => noise::degradation(&model, noise, asked, charset),
-        Evaluated::HalfStep => noise::half_step(&model, as_json, charset),
+        Evaluated::HalfStep => noise::half_step(&model, asked, charset),
     }
 }
 

@@ -32,6 +32,7 @@ use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
 use crate::formats::value::counted;
 use crate::formats::{LinePlot, json};
+use crate::memory::MemoryGuard;
 use crate::recognition::{
     GivenDescriptors, Model, Noise, RecognitionRate, TouchesUntil, TrainingError, random_taxels,
 };
@@ -66,7 +67,7 @@ pub(crate) fn degradation(
     let values: Vec<f64> = asked.noise.values().collect();
     let each = asked.touches * model.shapes().len() as u64;
     let all = each * values.len() as u64 * asked.dead.len() as u64;
-    let progress = Progress::counting("touches", all, asked.quiet, charset);
+    let progress = Progress::counting("touches", all, all_asked.quiet, charset);
     let report = |touches: u64| {
         progress.add(touches);
         !signals.stopped.load(Ordering::Relaxed)
@@ -286,15 +287,28 @@ fn noise_text(table: &[NoiseRow], seed: u64, given: bool, charset: Charset) -> S
 /// The second counts a touch that the model does not hold as wrong; the third names it by the nearest imprint.
 ///
 /// # Errors
-/// [`CliError::Stopped`] after a signal; of a grid whose half steps have too many decimals.
-pub(crate) fn half_step(model: &Model, json: bool, charset: Charset) -> Result<String, CliError> {
+/// [`CliError::Stopped`] after a signal; [`CliError::Memory`]; of a grid whose half steps have too many decimals.
+pub(crate) fn half_step(
+    model: &Model,
+    asked: &ConfusionArguments,
+    charset: Charset,
+) -> Result<String, CliError> {
     let signals = Signals::heard().map_err(CliError::System)?;
-    let going = |_| !signals.stopped.load(Ordering::Relaxed);
-    let result = model.half_step(&going).map_err(|error| match error {
+    let memory = MemoryGuard::new(None, "test a model of fewer shapes or coarser steps");
+    let poses = model.poses() * model.shapes().len() as u64;
+    let progress = Progress::new(poses, asked.quiet, charset);
+    let report = |poses: u64| {
+        progress.add(poses);
+        !signals.stopped.load(Ordering::Relaxed) && memory.allows()
+    };
+    let result = model.half_step(&report);
+    progress.finish();
+    let result = result.map_err(|error| match error {
+        TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),
         TrainingError::Stopped => signals.failure(),
         error => error.into(),
     })?;
-    if json {
+    if asked.form == EvaluationForm::Json {
         let answer = json!({
             "touches": evaluation::number(result.touches),
             "missing": result.missing(),

@@ -49,6 +49,8 @@ pub(crate) struct ConfusionArguments {
     pub(crate) export: Option<PathBuf>,
     /// Whether that file may exist already.
     pub(crate) existing: Existing,
+    /// Whether no progress is shown.
+    pub(crate) quiet: bool,
 }
 
 /// Who names the shapes, and from what.
@@ -87,8 +89,6 @@ pub(crate) struct NoiseArguments {
     pub(crate) seed: u64,
     /// Columns and rows of the matrix; those of the model's sensor if not given.
     pub(crate) size: Option<(u8, u8)>,
-    /// Whether no progress is shown.
-    pub(crate) quiet: bool,
 }
 
 /// `taxel model confusion`.
@@ -256,6 +256,7 @@ impl ConfusionArguments {
             form: EvaluationForm::of(matches),
             export: matches.get_one::<PathBuf>("export").cloned(),
             existing: parameters::existing(matches),
+            quiet: matches.get_flag("quiet"),
         })
     }
 }
@@ -339,7 +340,6 @@ impl NoiseArguments {
             touches: number(matches, "touches", 1000),
             seed: number(matches, "seed", 0),
             size: matches.get_one("matrix").copied(),
-            quiet: matches.get_flag("quiet"),
         }
     }
 }
