@@ -103,6 +103,24 @@ impl DecimalRange {
         Self::shortest(start, step, places, count)
     }
 
+    /// The range of one number, rounded to some decimals.
+    ///
+    /// # Errors
+    /// [`RangeError::Digits`] if it has more digits than are exact, or is not finite.
+    #[cfg(feature = "recognition")]
+    pub(crate) fn rounded(value: f64, places: u32) -> Result<Self, RangeError> {
+        #[expect(clippy::cast_precision_loss, reason = "at most 2^53")]
+        let (one, most) = (10_u64.pow(places) as f64, MAX_UNITS as f64);
+        let units = libm::round(value * one);
+        if units.is_nan() || units.abs() > most {
+            let text = shortened(&value.to_string());
+            return Err(RangeError::Digits { text });
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "a whole number below 2^53")]
+        let start = units as i64;
+        Ok(Self::shortest(start, 1, places, 1))
+    }
+
     /// The values from this range's first one on to below the next unit, in steps that divide a unit into `parts`: a
     /// divisor of 100.
     #[cfg(feature = "recognition")]
@@ -354,6 +372,28 @@ impl RangeError {
             Self::Step { .. } => "expected a step above 0".to_owned(),
             Self::Backwards { start, .. } => format!("expected an end from {start} on"),
             Self::Many { .. } => self.to_string(),
+        }
+    }
+}
+
+#[cfg(all(test, feature = "recognition"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rounded_number_equals_the_decimal_that_it_is_written_as() {
+        for (value, expected) in [
+            (1.0, "1"),
+            (0.1 + 0.2, "0.3"),
+            (2.0 / 3.0, "0.666666667"),
+            (-1e-12, "0"),
+            (64.0, "64"),
+        ] {
+            assert_eq!(DecimalRange::rounded(value, 9), expected.parse());
+        }
+        for odd in [f64::NAN, f64::INFINITY, 1e6] {
+            let refused = DecimalRange::rounded(odd, 9);
+            assert!(matches!(refused, Err(RangeError::Digits { .. })), "{odd}");
         }
     }
 }

@@ -66,7 +66,7 @@ pub use nearest::Nearest;
 pub use noise::{Distances, Method, Noise, NoiseError, UnexplainedDifference};
 pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
-pub use sets::{GridSteps, GridStepsError, default_figures, equal_figures};
+pub use sets::{CellPositions, GridSteps, GridStepsError, default_figures, equal_figures};
 pub use simulation::{MOST_TOUCHES, RecognitionRate, TouchesUntil, random_taxels};
 pub use training::{LEAST_SIDE, Training, TrainingError};
 #[cfg(feature = "tui")]

@@ -10,6 +10,7 @@ use crate::parameter::number::to_decimals;
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, smallest_sensor};
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, NamedShape, check_shapes, share};
+use crate::recognition::sets::CellPositions;
 use crate::recognition::training::{LEAST_SIDE, Training, TrainingError};
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -58,14 +59,14 @@ impl SizeAxis {
 ///
 /// ```
 /// use taxel::prelude::*;
-/// use taxel::recognition::{NamedShape, Separation, SizeAxis};
+/// use taxel::recognition::{CellPositions, NamedShape, Separation, SizeAxis};
 ///
 /// let sensor = Sensor::default();
 /// let shapes = vec![
 ///     NamedShape::new("square", Figure::rectangle(2.0, 2.0).on(&sensor)?),
 ///     NamedShape::new("disc", Figure::ellipse(1.13, 1.13).on(&sensor)?),
 /// ];
-/// let separation = Separation::new(shapes)?.positions(10)?.angles("0:350:10".parse()?);
+/// let separation = Separation::new(shapes)?.positions(CellPositions::COARSE).angles("0:350:10".parse()?);
 /// let scales = "1:5:1".parse()?;
 /// let points = separation.scan(SizeAxis::Scale, &scales, 0.5, &|_| true)?;
 /// assert!(points[0].error() > 0.3 && points[4].error() < 0.05);
@@ -74,7 +75,7 @@ impl SizeAxis {
 #[derive(Clone, Debug)]
 pub struct Separation {
     shapes: Vec<NamedShape>,
-    positions: u8,
+    positions: CellPositions,
     angles: DecimalRange,
 }
 
@@ -133,21 +134,16 @@ impl Separation {
         check_shapes(&shapes)?;
         Ok(Self {
             shapes,
-            positions: 100,
+            positions: CellPositions::FINE,
             angles: crate::pose::Ranges::default()[Axis::Angle],
         })
     }
 
-    /// Touches at that many positions of a cell in each direction.
-    ///
-    /// # Errors
-    /// [`TrainingError::Positions`] if it is not a divisor of 100.
-    pub fn positions(mut self, positions: u8) -> Result<Self, TrainingError> {
-        if positions == 0 || !100_u8.is_multiple_of(positions) {
-            return Err(TrainingError::Positions { found: positions });
-        }
+    /// Touches at these positions of a cell in each direction.
+    #[must_use]
+    pub fn positions(mut self, positions: CellPositions) -> Self {
         self.positions = positions;
-        Ok(self)
+        self
     }
 
     /// Touches at these angles.
@@ -159,7 +155,7 @@ impl Separation {
 
     /// Returns the number of touches of one point, for progress.
     pub fn touches(&self) -> u64 {
-        let cell = u64::from(self.positions).pow(2);
+        let cell = u64::from(self.positions.get()).pow(2);
         cell * self.angles.count() * self.shapes.len() as u64
     }
 
@@ -213,7 +209,7 @@ impl Separation {
                         .map_or(scale, |own| own * scale);
                     // The error of a zoom out of range names it.
                     Sensor::LARGEST.check(axis.parameter(), zoom)?;
-                    given[axis] = format!("{:.9}", to_decimals(zoom, 9)).parse().ok();
+                    given[axis] = Some(DecimalRange::rounded(zoom, 9)?);
                 }
                 source.clone()
             }
@@ -232,7 +228,7 @@ impl Separation {
             return Ok(None);
         };
         let sensor = Sensor::new(side, side)?.with(Parameter::Threshold, threshold)?;
-        let cell = whole.divided_unit(self.positions);
+        let cell = self.positions.of_cell(&whole);
         let ranges = ranges.with(Axis::X0, cell).with(Axis::Y0, cell);
         PoseGrid::new(source, sensor, Anchor::Centre, ranges).map(Some)
     }
@@ -372,8 +368,7 @@ mod tests {
     fn coarse(shapes: Vec<NamedShape>) -> Separation {
         let separation = Separation::new(shapes).expect("a set");
         separation
-            .positions(10)
-            .expect("a divisor")
+            .positions(CellPositions::COARSE)
             .angles("0:355:5".parse().expect("a range"))
     }
 
@@ -487,9 +482,5 @@ mod tests {
         let stopped = separation.at(SizeAxis::Scale, 1.0, 0.5, &|_| false);
         assert_eq!(stopped, Err(TrainingError::Stopped));
         assert_eq!(separation.touches(), 7 * 100 * 72);
-        for found in [0, 33, 101] {
-            let refused = separation.clone().positions(found);
-            assert_eq!(refused.err(), Some(TrainingError::Positions { found }));
-        }
     }
 }

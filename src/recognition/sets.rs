@@ -52,10 +52,44 @@ pub fn equal_figures() -> Vec<NamedShape> {
     EQUAL.map(shape).to_vec()
 }
 
+/// How many positions of a cell there are in each direction: a divisor of 100, so that their steps are whole hundredths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CellPositions(u8);
+
+impl CellPositions {
+    /// Hundredths of a cell, as in a sweep.
+    pub const FINE: Self = Self(100);
+
+    /// Tenths of a cell.
+    pub const COARSE: Self = Self(10);
+
+    /// That many positions.
+    ///
+    /// # Errors
+    /// [`GridStepsError::Positions`] if it is not a divisor of 100.
+    pub fn new(count: u8) -> Result<Self, GridStepsError> {
+        if count > 0 && 100_u8.is_multiple_of(count) {
+            Ok(Self(count))
+        } else {
+            Err(GridStepsError::Positions { found: count })
+        }
+    }
+
+    /// Returns their number.
+    pub fn get(self) -> u8 {
+        self.0
+    }
+
+    /// Returns the positions of the cell that begins where this range does.
+    pub(crate) fn of_cell(self, fine: &DecimalRange) -> DecimalRange {
+        fine.divided_unit(self.0)
+    }
+}
+
 /// The steps of a grid of poses: one cell of positions, all angles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GridSteps {
-    positions: u8,
+    positions: CellPositions,
     degrees: u16,
 }
 
@@ -80,13 +114,13 @@ pub enum GridStepsError {
 impl GridSteps {
     /// Hundredths of a cell and whole degrees, as in a sweep.
     pub const FINE: Self = Self {
-        positions: 100,
+        positions: CellPositions::FINE,
         degrees: 1,
     };
 
     /// Tenths of a cell and every second degree: of 200 poses of [`Self::FINE`], one.
     pub const COARSE: Self = Self {
-        positions: 10,
+        positions: CellPositions::COARSE,
         degrees: 2,
     };
 
@@ -96,17 +130,15 @@ impl GridSteps {
     /// # Errors
     /// If one is not a divisor.
     pub fn new(positions: u8, degrees: u16) -> Result<Self, GridStepsError> {
-        if positions == 0 || !100_u8.is_multiple_of(positions) {
-            return Err(GridStepsError::Positions { found: positions });
-        }
+        let positions = CellPositions::new(positions)?;
         if degrees == 0 || !360_u16.is_multiple_of(degrees) {
             return Err(GridStepsError::Degrees { found: degrees });
         }
         Ok(Self { positions, degrees })
     }
 
-    /// Returns how many positions of a cell there are in each direction.
-    pub fn positions(self) -> u8 {
+    /// Returns the positions of a cell in each direction.
+    pub fn positions(self) -> CellPositions {
         self.positions
     }
 
@@ -119,11 +151,6 @@ impl GridSteps {
     fn angles(self) -> DecimalRange {
         let count = u64::from(360 / self.degrees);
         DecimalRange::in_units(0, self.degrees.into(), 0, count)
-    }
-
-    /// Returns the cell of positions that begins where this range does, in these steps.
-    pub(crate) fn cell(self, fine: &DecimalRange) -> DecimalRange {
-        fine.divided_unit(self.positions)
     }
 }
 
@@ -151,7 +178,7 @@ impl Training<'_> {
 fn coarser(fine: &Ranges, steps: GridSteps) -> Ranges {
     let mut ranges = *fine;
     for axis in [Axis::X0, Axis::Y0] {
-        ranges[axis] = steps.cell(&fine[axis]);
+        ranges[axis] = steps.positions().of_cell(&fine[axis]);
     }
     ranges
 }
@@ -206,7 +233,7 @@ mod tests {
             let steps = GridSteps::new(positions, 360).expect("divisors");
             assert_eq!(steps.angles().to_string(), "0");
             let fine: DecimalRange = fine.parse().expect("a range");
-            steps.cell(&fine).to_string()
+            steps.positions().of_cell(&fine).to_string()
         };
         assert_eq!(cell(1, "7:7.99:0.01"), "7");
         assert_eq!(cell(4, "-7.35:-6.36:0.01"), "-7.35:-6.6:0.25");

@@ -91,12 +91,6 @@ pub enum TrainingError {
     /// Shapes that no sensor holds in every angle.
     #[error("the shapes do not fit on 64 × 64 taxels in every angle")]
     Large,
-    /// A number of positions per cell that does not divide 100.
-    #[error("{found} positions in a cell: expected a divisor of 100")]
-    Positions {
-        /// What was given.
-        found: u8,
-    },
     /// Half a step has too many decimals.
     #[error("half a step of this grid has more decimals than a range can have")]
     Steps,

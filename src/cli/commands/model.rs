@@ -165,10 +165,10 @@ fn grid(
     };
     let anchor = asked.anchor.unwrap_or(usual);
     let (sensor, mut ranges) = fitting(shapes, asked.sensor, anchor, &asked.ranges)?;
-    if let Some(steps) = asked.positions {
+    if let Some(positions) = asked.positions {
         for axis in [Axis::X0, Axis::Y0] {
             if asked.ranges[axis].is_none() {
-                ranges[axis] = steps.cell(&ranges[axis]);
+                ranges[axis] = positions.of_cell(&ranges[axis]);
             }
         }
     }

@@ -25,7 +25,7 @@ use crate::formats::Name;
 use crate::formats::separation::{SeparationCurve, csv, drawing};
 use crate::memory::MemoryGuard;
 use crate::pose::{Axis, DecimalRange, Ranges};
-use crate::recognition::{GridSteps, Model, Separation, TrainingError};
+use crate::recognition::{CellPositions, Model, Separation, TrainingError};
 use crate::sensor::Sensor;
 use crate::storage::UnfinishedFile;
 use crate::tui::recognise::sets::ModelChoice;
@@ -145,18 +145,14 @@ fn set(asked: &SeparateArguments, shelf: &Shelf) -> Result<(Separation, f64), Cl
     {
         let model = model::find(what, shelf)?;
         let separation = Separation::new(model.shapes().to_vec())?
-            .positions(
-                asked
-                    .positions
-                    .map_or(positions(&model), GridSteps::positions),
-            )?
+            .positions(asked.positions.unwrap_or_else(|| positions(&model)))
             .angles(asked.angles.unwrap_or(model.ranges()[Axis::Angle]));
         return Ok((separation, model.sensor().threshold()));
     }
     let mut separation = Separation::new(shape_set::read(&asked.set, shelf)?)?
         .angles(asked.angles.unwrap_or(Ranges::default()[Axis::Angle]));
-    if let Some(steps) = asked.positions {
-        separation = separation.positions(steps.positions())?;
+    if let Some(positions) = asked.positions {
+        separation = separation.positions(positions);
     }
     Ok((separation, Sensor::default().threshold()))
 }
@@ -177,15 +173,16 @@ fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
 
 /// The positions of a model's cell in each direction; 100 where it has another grid than one cell.
 /// Only a grid of one cell has a number of positions: `7:7.8:0.2` are 5.
-fn positions(model: &Model) -> u8 {
+fn positions(model: &Model) -> CellPositions {
     let of = |range: &DecimalRange| {
         let count = u8::try_from(range.count()).ok()?;
         let whole = (range.step() * f64::from(count) - 1.0).abs() < 1e-9;
-        (whole && 100_u8.is_multiple_of(count)).then_some(count)
+        let positions = CellPositions::new(count).ok();
+        positions.filter(|_| whole)
     };
     let ranges = model.ranges();
     match (of(&ranges[Axis::X0]), of(&ranges[Axis::Y0])) {
         (Some(x), Some(y)) if x == y => x,
-        _ => 100,
+        _ => CellPositions::FINE,
     }
 }

@@ -22,7 +22,7 @@ use crate::cli::arguments::parameters;
 use crate::cli::error::CliError;
 use crate::parameter::number::short;
 use crate::pose::{Axis, DecimalRange};
-use crate::recognition::{GridSteps, SizeAxis};
+use crate::recognition::{CellPositions, SizeAxis};
 use crate::storage::Existing;
 
 /// A set of shapes, and the sizes and thresholds to look at.
@@ -39,7 +39,7 @@ pub(crate) struct SeparateArguments {
     /// Angles in degrees; None for those of the model, else a whole turn in steps of 1.
     pub(crate) angles: Option<DecimalRange>,
     /// Positions of a cell in each direction; None for those of the model, else 100.
-    pub(crate) positions: Option<GridSteps>,
+    pub(crate) positions: Option<CellPositions>,
     /// The error (0 to 1) to reach; the smallest size that does is searched for.
     pub(crate) wanted: Option<f64>,
     /// Threads; 0 for as many as there are cores.
@@ -159,7 +159,7 @@ impl SeparateArguments {
             sizes: sizes.unwrap_or(DecimalRange::whole(1)),
             thresholds: range("range_threshold"),
             angles: range("range_angle"),
-            positions: matches.get_one::<GridSteps>("positions").copied(),
+            positions: matches.get_one::<CellPositions>("positions").copied(),
             wanted: matches.get_one("want").copied(),
             jobs: flags::jobs_of(matches),
             form: EvaluationForm::of(matches),

@@ -13,7 +13,7 @@ use std::ffi::OsString;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches};
 
 use crate::cli::arguments::flags::{name_or_path, option, switch};
-use crate::recognition::GridSteps;
+use crate::recognition::CellPositions;
 
 /// A set of shapes, not read yet.
 #[derive(Clone, Debug)]
@@ -76,9 +76,9 @@ pub(super) fn positions() -> Arg {
 
 /// A number of positions whose step is a whole number of hundredths of a cell, as ranges are exact in hundredths. Angles
 /// have ranges of their own.
-fn parse_positions(text: &str) -> Result<GridSteps, &'static str> {
+fn parse_positions(text: &str) -> Result<CellPositions, &'static str> {
     let number = text.trim().parse::<u8>().ok();
     number
-        .and_then(|number| GridSteps::new(number, GridSteps::FINE.degrees()).ok())
+        .and_then(|number| CellPositions::new(number).ok())
         .ok_or("expected 1, 2, 4, 5, 10, 20, 25, 50 or 100")
 }

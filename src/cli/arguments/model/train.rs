@@ -16,7 +16,7 @@ use crate::formats::Name;
 use crate::memory::MemorySize;
 use crate::parameter::Parameter;
 use crate::pose::{Anchor, Axis, GivenRanges};
-use crate::recognition::GridSteps;
+use crate::recognition::CellPositions;
 use crate::sensor::Sensor;
 use crate::sweep::Shard;
 
@@ -30,7 +30,7 @@ pub(crate) struct TrainArguments {
     /// The given axes of the grid. Those not given are chosen so that the sensor cuts no shape off.
     pub(crate) ranges: GivenRanges,
     /// Positions of a cell in each direction, where its range is not given.
-    pub(crate) positions: Option<GridSteps>,
+    pub(crate) positions: Option<CellPositions>,
     /// The sensor, if its columns or rows are given; otherwise the smallest one, changed by the other values.
     pub(crate) sensor: Option<Sensor>,
     /// The values of the sensor's flags.
@@ -134,7 +134,7 @@ impl TrainArguments {
             model_file(path)?;
         }
         let ranges = flags::ranges_of(matches);
-        let positions = matches.get_one::<GridSteps>("positions").copied();
+        let positions = matches.get_one::<CellPositions>("positions").copied();
         if positions.is_some() && ranges[Axis::X0].is_some() && ranges[Axis::Y0].is_some() {
             let (flag, reason) = ("positions", "with both --x0 and --y0".to_owned());
             return Err(CliError::Unused { flag, reason });

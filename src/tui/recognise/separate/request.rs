@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::formats::separation::short;
 use crate::pose::{Axis, DecimalRange, RangeError};
 use crate::quote::shortened;
-use crate::recognition::{Separation, SizeAxis, TrainingError};
+use crate::recognition::{CellPositions, Separation, SizeAxis, TrainingError};
 use crate::tui::prompt::flags;
 use crate::tui::recognise::sets::TrainedModel;
 
@@ -14,7 +14,7 @@ const SIZES: &str = "0.5:3:0.1";
 
 /// Steps of a cell in each direction, unless others are asked for. Finer ones show more kinds of imprints, and take
 /// longer.
-const POSITIONS: u8 = 10;
+const POSITIONS: CellPositions = CellPositions::COARSE;
 /// Degrees between angles, unless others are asked for.
 const DEGREES: u32 = 2;
 
@@ -33,7 +33,7 @@ pub struct SeparationRequest {
     /// The threshold of the sensor.
     pub threshold: f64,
     /// Steps of a cell in each direction.
-    pub positions: u8,
+    pub positions: CellPositions,
     /// The angles.
     pub angles: DecimalRange,
     /// The error to reach.
@@ -58,7 +58,7 @@ pub struct SeparationFlags {
     /// The threshold.
     threshold: Option<f64>,
     /// Steps of a cell.
-    positions: Option<u8>,
+    positions: Option<CellPositions>,
     /// The angles.
     angles: Option<DecimalRange>,
     /// The error to reach.
@@ -144,12 +144,11 @@ impl SeparationFlags {
             }
             "--angle" => self.angles = Some(range()?),
             _ => {
-                let steps = text.parse().ok().filter(|steps: &u8| *steps > 0);
-                let steps = steps.filter(|&steps| 100_u8.is_multiple_of(steps));
+                let count = text.parse().ok();
+                let positions = count.and_then(|count| CellPositions::new(count).ok());
                 let found = shortened(text);
-                let steps =
-                    steps.ok_or_else(|| format!("{flag} takes a divisor of 100, found {found}"))?;
-                self.positions = Some(steps);
+                let refused = || format!("{flag} takes a divisor of 100, found {found}");
+                self.positions = Some(positions.ok_or_else(refused)?);
             }
         }
         Ok(())
@@ -187,7 +186,7 @@ impl SeparationRequest {
     /// Those of [`Separation::new`], which a trained set has none of.
     pub fn separation(&self) -> Result<Separation, TrainingError> {
         let separation = Separation::new(self.trained.model.shapes().to_vec())?;
-        Ok(separation.positions(self.positions)?.angles(self.angles))
+        Ok(separation.positions(self.positions).angles(self.angles))
     }
 
     /// The sizes, the smallest first.
@@ -197,7 +196,7 @@ impl SeparationRequest {
 
     /// The steps in words.
     pub fn steps(&self) -> String {
-        let positions = match self.positions {
+        let positions = match self.positions.get() {
             1 => "one position".to_owned(),
             count => format!("{count} × {count} positions"),
         };
@@ -221,7 +220,10 @@ mod tests {
         };
         let flags = read("--pitch 1:4:0.5 --want 0.05 --positions 20").expect("flags");
         assert_eq!(flags.sizes.map(|(axis, _)| axis), Some(SizeAxis::Pitch));
-        assert_eq!((flags.wanted, flags.positions), (Some(0.05), Some(20)));
+        assert_eq!(
+            (flags.wanted, flags.positions),
+            (Some(0.05), CellPositions::new(20).ok())
+        );
         assert_eq!(read(""), Ok(SeparationFlags::NONE));
         for (line, part) in [
             ("--scale", "--scale needs a value"),
