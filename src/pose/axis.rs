@@ -126,9 +126,9 @@ impl Default for Ranges {
     /// The paper's grid: x0 and y0 over one cell from 5 on in hundredths, every whole degree, no zoom.
     fn default() -> Self {
         Self([
-            DecimalRange::from_units(500, 2, 100),
-            DecimalRange::from_units(500, 2, 100),
-            DecimalRange::from_units(0, 0, 360),
+            DecimalRange::from_units(500, 1, 2, 100),
+            DecimalRange::from_units(500, 1, 2, 100),
+            DecimalRange::from_units(0, 1, 0, 360),
             DecimalRange::whole(1),
             DecimalRange::whole(1),
         ])

@@ -44,22 +44,15 @@ pub struct DecimalRange {
 impl DecimalRange {
     /// The range of one whole number.
     pub const fn whole(value: i32) -> Self {
-        Self::from_units(value as i64, 0, 1)
+        Self::from_units(value as i64, 1, 0, 1)
     }
 
-    /// `count` neighbouring units of the last of `places` decimals.
-    pub(crate) const fn from_units(start: i64, places: u32, count: u64) -> Self {
-        Self {
-            start,
-            step: 1,
-            places,
-            count,
-        }
-    }
-
-    /// The same values in units of as few decimals as they need; the step of a single value is 1. Equal ranges are
-    /// equal in their fields then, however they were written.
-    fn shortest(mut start: i64, step: i64, mut places: u32, count: u64) -> Self {
+    /// `count` values from `start` on, each `step` from the last, all in units of the last of `places` decimals; `count` and
+    /// `step` are above 0.
+    ///
+    /// Its fields are in units of as few decimals as the values need, and the step of a single value is 1. So equal ranges
+    /// are equal in their fields, however they were written.
+    pub(crate) const fn from_units(mut start: i64, step: i64, mut places: u32, count: u64) -> Self {
         let mut step = if count == 1 { 10_i64.pow(places) } else { step };
         while places > 0 && start % 10 == 0 && step % 10 == 0 {
             (start, step, places) = (start / 10, step / 10, places - 1);
@@ -96,13 +89,6 @@ impl DecimalRange {
         scaled(self.step, self.places)
     }
 
-    /// `count` values from `start` on, each `step` from the last, all in units of the last of `places` decimals; `count` and
-    /// `step` are above 0.
-    #[cfg(feature = "recognition")]
-    pub(crate) fn in_units(start: i64, step: i64, places: u32, count: u64) -> Self {
-        Self::shortest(start, step, places, count)
-    }
-
     /// The range of one number, rounded to some decimals.
     ///
     /// # Errors
@@ -118,7 +104,7 @@ impl DecimalRange {
         }
         #[expect(clippy::cast_possible_truncation, reason = "a whole number below 2^53")]
         let start = units as i64;
-        Ok(Self::shortest(start, 1, places, 1))
+        Ok(Self::from_units(start, 1, places, 1))
     }
 
     /// The values from this range's first one on to below the next unit, in steps that divide a unit into `parts`: a
@@ -129,14 +115,14 @@ impl DecimalRange {
         let places = self.places.max(PLACES);
         let start = self.start * 10_i64.pow(places - self.places);
         let step = 10_i64.pow(places) / i64::from(parts);
-        Self::shortest(start, step, places, parts.into())
+        Self::from_units(start, step, places, parts.into())
     }
 
     /// The smallest whole number that is not below the first value.
     #[cfg(feature = "recognition")]
     pub(crate) fn whole_start(&self) -> Self {
         let start = -(-self.start).div_euclid(10_i64.pow(self.places));
-        Self::shortest(start, 1, 0, 1)
+        Self::from_units(start, 1, 0, 1)
     }
 
     /// The values with these indices as a range of their own; None if `indices` is empty or leaves the range.
@@ -154,7 +140,7 @@ impl DecimalRange {
         }
         let way = i64::try_from(indices.start).ok()?.checked_mul(self.step)?;
         let count = indices.end - indices.start;
-        Some(Self::shortest(
+        Some(Self::from_units(
             self.start + way,
             self.step,
             self.places,
@@ -185,7 +171,7 @@ impl DecimalRange {
             .checked_mul(step)?
             .checked_add(start)?;
         let fits = places as usize <= MAX_PLACES && start.abs().max(last.abs()) <= MAX_UNITS;
-        fits.then(|| Self::shortest(start, step, places, self.count))
+        fits.then(|| Self::from_units(start, step, places, self.count))
     }
 
     /// All values in order.
@@ -259,7 +245,7 @@ impl FromStr for DecimalRange {
         if count > MAX_VALUES {
             return Err(RangeError::Many { count });
         }
-        Ok(Self::shortest(first, by, narrow(places), count))
+        Ok(Self::from_units(first, by, narrow(places), count))
     }
 }
 

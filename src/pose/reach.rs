@@ -444,7 +444,7 @@ fn filled(given: &GivenRanges) -> Ranges {
 fn cell_from(start: i64, sensor: &Sensor) -> DecimalRange {
     let limit = limit(sensor);
     let start = start.clamp(-limit, limit - i64::from(CELL) + 1);
-    DecimalRange::from_units(start, 2, u64::from(CELL))
+    DecimalRange::from_units(start, 1, 2, u64::from(CELL))
 }
 
 /// The largest position that a sensor allows, in hundredths.

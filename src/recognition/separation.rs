@@ -108,7 +108,7 @@ impl SeparationPoint {
     }
 
     /// Returns the share of touches that only one shape can leave.
-    pub fn certain(&self) -> f64 {
+    pub fn certain_share(&self) -> f64 {
         share(self.certain, self.touches)
     }
 }

@@ -150,7 +150,7 @@ impl GridSteps {
     /// Returns all angles.
     fn angles(self) -> DecimalRange {
         let count = u64::from(360 / self.degrees);
-        DecimalRange::in_units(0, self.degrees.into(), 0, count)
+        DecimalRange::from_units(0, self.degrees.into(), 0, count)
     }
 }
 

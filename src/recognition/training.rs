@@ -176,11 +176,6 @@ impl<'a> Training<'a> {
         &self.shapes
     }
 
-    /// Returns the part of the poses that it takes.
-    pub fn part(&self) -> Shard {
-        self.shard
-    }
-
     /// Returns the grid of poses of each shape, in the order of the set.
     pub fn grids(&self) -> &[PoseGrid] {
         &self.grids

@@ -62,7 +62,7 @@ pub(crate) fn train(
         .shard(asked.shard)
         .allow_cut(asked.allow_cut);
     if asked.there == ShardFile::Resumed
-        && let Some(model) = resume::model(&path, &training, asked.allow_cut)?
+        && let Some(model) = resume::model(&path, &training, asked.shard, asked.allow_cut)?
     {
         return trained(&model, &path, KEPT, asked, charset);
     }

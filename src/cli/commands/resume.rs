@@ -50,6 +50,7 @@ pub(crate) fn atlas(
 pub(crate) fn model(
     path: &Path,
     training: &Training<'_>,
+    shard: Shard,
     allow_cut: bool,
 ) -> Result<Option<Model>, CliError> {
     let Some(found) = whole(path, load_model(path))? else {
@@ -62,7 +63,7 @@ pub(crate) fn model(
         ranges: *found.ranges(),
         shard: found.shard(),
     };
-    if let Some(difference) = own.difference(&Poses::of(grid, training.part())) {
+    if let Some(difference) = own.difference(&Poses::of(grid, shard)) {
         return Err(foreign(path, &difference));
     }
     let (mut shapes, asked) = (found.shapes().iter(), training.shapes());

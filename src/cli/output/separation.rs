@@ -52,7 +52,7 @@ pub(crate) fn text(
             short(point.value),
             short(point.threshold),
             percent(point.error()),
-            percent(point.certain()),
+            percent(point.certain_share()),
             grouped(point.keys as u64),
             side = point.side
         );

@@ -288,7 +288,7 @@ fn row_text(size: &SizeFound) -> String {
         "{:<8}{}{} {:>10}  {side} × {side}",
         short(point.value),
         percent(point.error()),
-        percent(point.certain()),
+        percent(point.certain_share()),
         grouped(point.keys as u128),
         side = point.side
     )
