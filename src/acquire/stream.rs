@@ -159,7 +159,7 @@ fn finish(
     }
 }
 
-/// Opens the source, unless what it calls meanwhile breaks.
+/// Opens the source. While that takes long, it calls its argument now and then, and gives up with None when that breaks.
 type Open<'a> = dyn Fn(&mut dyn FnMut() -> ControlFlow<()>) -> io::Result<Option<ByteInput>> + 'a;
 
 /// Says that time goes by while a source is opened or waited for; `Break` if no more is wanted.

@@ -118,11 +118,16 @@ impl std::str::FromStr for Rounding {
 /// Descriptors that are known instead of the imprint itself.
 ///
 /// ```
-/// use taxel::recognition::GivenDescriptors;
-/// let given = GivenDescriptors::new("na, p".parse::<GivenDescriptors>()?.descriptors().to_vec(), Vec::new());
-/// assert_eq!(given.to_string(), "na,p");
-/// assert!("na,cg".parse::<GivenDescriptors>().is_err());
-/// # Ok::<(), taxel::recognition::GivenError>(())
+/// use taxel::recognition::{Evaluation, GivenDescriptors, GridSteps, Training, equal_figures};
+///
+/// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
+/// let error = |given: &str| given.parse().map(|given: GivenDescriptors| given.evaluate(&model).error());
+/// // The perimeter helps, but the whole imprint says more.
+/// assert!(error("na")? > error("na,p")?);
+/// assert!(error("na,p")? > Evaluation::of(&model).error());
+/// // The centre of gravity says where the imprint lies, not what it is.
+/// assert!(error("na,cg").is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GivenDescriptors {
@@ -159,9 +164,7 @@ impl GivenDescriptors {
         }
         table.evaluate(&classes)
     }
-}
 
-impl GivenDescriptors {
     /// Draws noisy touches as [`Model::recognition_rate`] does and names them by these descriptors alone: by the shape
     /// that has their values most often without noise. Values that no shape has without noise get no name, which counts
     /// as wrong. None if `progress` stops it.

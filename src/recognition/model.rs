@@ -147,7 +147,7 @@ pub enum ModelError {
         /// How many.
         found: usize,
     },
-    /// A name that is empty or that two shapes have.
+    /// A name that two shapes have.
     #[error("name {name:?} is given twice; each shape needs its own")]
     Name {
         /// The name.
@@ -176,6 +176,9 @@ pub enum ModelError {
     /// Numbers that contradict each other.
     #[error("{0}")]
     Parts(&'static str),
+    /// No shard to merge.
+    #[error("no shard was given, expected all those of one training")]
+    NoShards,
     /// Models that are not parts of one training.
     #[error("shard {shard} belongs to another training")]
     Foreign {
@@ -315,7 +318,7 @@ impl Model {
     /// Merges all shards of one training into the same model as that of a single run. [`ModelMerge`] needs less memory.
     ///
     /// # Errors
-    /// If a shard is missing, given twice, or of another training.
+    /// If no shard is given, or one is missing, given twice, or of another training.
     pub fn merge(shards: impl IntoIterator<Item = Self>) -> Result<Self, ModelError> {
         let mut shards: Vec<Self> = shards.into_iter().collect();
         shards.sort_by_key(|model| model.shard.number());
@@ -582,9 +585,9 @@ impl ModelMerge {
     /// Returns the model of all shards.
     ///
     /// # Errors
-    /// If some are missing.
+    /// If some are missing, or all.
     pub fn finish(self) -> Result<Model, ModelError> {
-        let mut head = self.head.ok_or(ModelError::Shapes { found: 0 })?;
+        let mut head = self.head.ok_or(ModelError::NoShards)?;
         let (last, of) = (head.shard.number(), head.shard.of());
         if last < of {
             let number = last + 1;

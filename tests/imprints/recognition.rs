@@ -255,6 +255,10 @@ fn shards_together_are_the_whole() {
         assert_eq!(merged.counts(key), whole.counts(key));
     }
     let error = |parts: Vec<Model>| Model::merge(parts).expect_err("no whole").to_string();
+    assert_eq!(
+        error(Vec::new()),
+        "no shard was given, expected all those of one training"
+    );
     assert_eq!(error(vec![part(1), part(3)]), "shard 2/3 is missing");
     assert_eq!(error(vec![part(1), part(2)]), "shard 3/3 is missing");
     assert_eq!(

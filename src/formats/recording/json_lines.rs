@@ -229,8 +229,7 @@ pub(super) struct CellsSeed<'a>(
     pub(super) Option<&'a mut usize>,
 );
 
-/// A frame of 512 × 512 has as many.
-/// A frame of more is refused before it takes memory.
+/// The most cells of a frame: 512 × 512. A frame of more cells is refused before it takes memory.
 const MOST_CELLS: usize = 512 * 512;
 
 impl<'de> DeserializeSeed<'de> for CellsSeed<'_> {
