@@ -98,6 +98,11 @@ impl Atlas {
         self.counter.tallies().iter().map(|tally| tally.count)
     }
 
+    /// The numbers of the first poses that leave the imprints, in their order.
+    pub fn first_poses(&self) -> impl Iterator<Item = u64> + '_ {
+        self.counter.tallies().iter().map(|tally| tally.first)
+    }
+
     /// Number of distinct imprints.
     pub fn len(&self) -> usize {
         self.summaries.len()

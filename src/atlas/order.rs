@@ -43,23 +43,19 @@ pub fn sorted(atlas: &Atlas, values: &[Option<f64>], by: SortKey, descending: bo
         SortKey::Value => return by_value(count, values, descending),
     };
     let mut ids: Vec<(u64, u32)> = keys.into_iter().zip(0..count).collect();
-    ids.sort_unstable_by(|(one, id), (other, other_id)| {
-        turned(one.cmp(other), descending).then(id.cmp(other_id))
-    });
+    // Stable: the ids are in order already. Many keys are equal, which a stable sort also makes use of.
+    ids.sort_by(|(one, _), (other, _)| turned(one.cmp(other), descending));
     ids.into_iter().map(|(_, id)| id).collect()
 }
 
 fn by_value(count: u32, values: &[Option<f64>], descending: bool) -> Vec<u32> {
     let values = values.iter().copied().chain(std::iter::repeat(None));
     let mut ids: Vec<(Option<f64>, u32)> = values.zip(0..count).collect();
-    ids.sort_unstable_by(|(one, id), (other, other_id)| {
-        let order = match (one, other) {
-            (Some(one), Some(other)) => turned(one.total_cmp(other), descending),
-            (Some(_), None) => Ordering::Less,
-            (None, Some(_)) => Ordering::Greater,
-            (None, None) => Ordering::Equal,
-        };
-        order.then(id.cmp(other_id))
+    ids.sort_by(|(one, _), (other, _)| match (one, other) {
+        (Some(one), Some(other)) => turned(one.total_cmp(other), descending),
+        (Some(_), None) => Ordering::Less,
+        (None, Some(_)) => Ordering::Greater,
+        (None, None) => Ordering::Equal,
     });
     ids.into_iter().map(|(_, id)| id).collect()
 }

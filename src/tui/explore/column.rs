@@ -37,9 +37,10 @@ impl ListColumn {
             Self::Holes => SortKey::Holes,
             Self::Value => SortKey::Value,
             Self::Place(axis) => {
-                let grid = &sweep.grid;
-                let entries = sweep.atlas.entries();
-                let places = entries.map(|entry| Some(grid.pose(entry.first_pose)[axis]));
+                let range = sweep.grid.ranges()[axis];
+                let first_poses = sweep.atlas.first_poses();
+                let places =
+                    first_poses.map(|pose| Some(range.value(sweep.grid.index(pose)[axis])));
                 let places: Vec<Option<f64>> = places.collect();
                 return sorted(&sweep.atlas, &places, SortKey::Value, descending);
             }

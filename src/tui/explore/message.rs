@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::atlas::{SortKey, sorted};
 use crate::pose::PoseGrid;
 use crate::source::Source;
 use crate::storage::Existing;
@@ -15,6 +16,19 @@ pub struct Findings {
     pub sweep: SweepResult,
     /// How many of its imprints are distinct up to shifts, and up to quarter turns and mirror images too.
     pub classes: (usize, usize),
+    /// The numbers of its imprints, the most frequent first.
+    pub by_poses: Vec<u32>,
+}
+
+impl Findings {
+    /// What a sweep found. It is counted and sorted here, which takes a moment for millions of imprints.
+    pub fn new(sweep: SweepResult) -> Self {
+        Self {
+            classes: sweep.atlas.distinct_classes(),
+            by_poses: sorted(&sweep.atlas, &[], SortKey::Poses, true),
+            sweep,
+        }
+    }
 }
 
 impl PartialEq for Findings {

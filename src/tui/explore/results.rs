@@ -82,11 +82,11 @@ impl Results {
             angles_failed: None,
             map_sight: MapSight::default(),
             closer: 0,
+            order: findings.by_poses.clone(),
             findings,
             sort: (ListColumn::Poses, true),
             heading: ListColumn::Poses,
             filter: String::new(),
-            order: Vec::new(),
             kept: Vec::new(),
             rows: Vec::new(),
             selected: 0,
@@ -95,7 +95,7 @@ impl Results {
             pose_index: PoseIndex::new([0; 5]),
             marks: BTreeMap::new(),
         };
-        results.arrange();
+        results.sift();
         results
     }
 
@@ -500,12 +500,8 @@ mod tests {
 
     fn of(source: Source, ranges: Ranges) -> Results {
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
-        let result = Sweep::new(&grid.expect("in range")).run();
-        let classes = result.atlas.distinct_classes();
-        Results::new(Arc::new(Findings {
-            sweep: result,
-            classes,
-        }))
+        let sweep = Sweep::new(&grid.expect("in range")).run();
+        Results::new(Arc::new(Findings::new(sweep)))
     }
 
     #[test]

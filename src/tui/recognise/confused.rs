@@ -1,5 +1,7 @@
 //! Pairs of shapes that are confused, each with an example imprint.
 
+use std::collections::BTreeMap;
+
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
 use crate::recognition::{Evaluation, Model, ShapeCount, share};
@@ -13,25 +15,44 @@ pub struct Example {
     counts: Vec<ShapeCount>,
 }
 
-impl Example {
-    /// The imprint that a shape leaves in the most poses among those that are named as another one; the first of equals.
-    /// None if there is none.
-    pub fn of(model: &Model, (touched, named): (usize, usize)) -> Option<Self> {
-        let poses_of = |key: usize| {
+/// Which imprint is the example of each cell of the confusion matrix. All are found at once: a model may have millions of
+/// imprints, and no key waits for them.
+#[derive(Clone, Debug)]
+pub struct Examples {
+    /// For each cell, by the shapes that touch and are named, in how many poses the first one leaves the example, and which
+    /// imprint of the model that is.
+    cells: BTreeMap<(usize, usize), (u64, usize)>,
+}
+
+impl Examples {
+    /// Those of a model: of the imprints that a shape leaves and that are named as another one, the one that it leaves in
+    /// the most poses; the first of equals.
+    pub fn of(model: &Model) -> Self {
+        let mut cells = BTreeMap::new();
+        for key in 0..model.keys().len() {
             let counts = model.counts(key);
-            let own = counts
-                .iter()
-                .find(|count| usize::from(count.shape) == touched)?;
-            (model.most_frequent(key).0 == named).then_some(own.poses)
-        };
-        let found = (0..model.keys().len()).filter_map(|key| Some((poses_of(key)?, key)));
-        let (_, key) = found.rev().max_by_key(|(poses, _)| *poses)?;
-        Some(Self {
+            let (named, _) = model.most_frequent(key);
+            for own in counts {
+                let cell = cells.entry((own.shape.into(), named)).or_insert((0, 0));
+                if own.poses > cell.0 {
+                    *cell = (own.poses, key);
+                }
+            }
+        }
+        Self { cells }
+    }
+
+    /// That of a cell of the same model; None if there is none.
+    pub fn get(&self, model: &Model, cell: (usize, usize)) -> Option<Example> {
+        let &(_, key) = self.cells.get(&cell)?;
+        Some(Example {
             imprint: model.keys().imprint(key),
             counts: model.counts(key).to_vec(),
         })
     }
+}
 
+impl Example {
     /// Which shapes leave it, and in how many poses.
     pub fn in_words<'a>(&self, name: impl Fn(usize) -> &'a str) -> String {
         let leaves = self.counts.iter().map(|own| {
@@ -76,7 +97,48 @@ impl ConfusedPair {
             touched,
             named,
             share: share(wrong, confusion.touches_of(touched)),
-            example: Example::of(model, (touched, named)),
+            example: Examples::of(model).get(model, (touched, named)),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::pose::{Anchor, Axis, Ranges};
+    use crate::recognition::{NamedShape, Training};
+    use crate::sensor::Sensor;
+
+    #[test]
+    fn the_example_of_a_cell_is_the_most_frequent_imprint_that_is_named_so() {
+        let sensor = Sensor::default();
+        let shape = |name: &str, length: f64| {
+            let bar = Figure::rectangle(length, 2.0).on(&sensor);
+            NamedShape::new(name, bar.expect("in range"))
+        };
+        let shapes = [shape("a", 4.0), shape("b", 4.2), shape("c", 4.4)];
+        let ranges = Ranges::default().with(Axis::Angle, "0:80:10".parse().expect("a range"));
+        let training = Training::new(shapes, sensor, Anchor::Centre, ranges).expect("a set");
+        let model = training.run().expect("not stopped");
+        let examples = Examples::of(&model);
+        let evaluation = Evaluation::of(&model);
+        for cell in (0..9).map(|cell| (cell / 3, cell % 3)) {
+            let (touched, named) = cell;
+            let poses = |counts: &[ShapeCount]| {
+                let mut own = counts.iter();
+                let own = own.find(|count| usize::from(count.shape) == touched);
+                own.map(|own| own.poses)
+            };
+            let keys = 0..model.keys().len();
+            let keys = keys.filter(|&key| model.most_frequent(key).0 == named);
+            let most = keys.filter_map(|key| poses(model.counts(key)));
+            let example = examples.get(&model, cell);
+            let found = example.as_ref().and_then(|own| poses(&own.counts));
+            assert_eq!(found, most.max(), "{cell:?}");
+            let touches = evaluation.confusion.get(touched, named);
+            assert_eq!(example.is_some(), touches > 0, "{cell:?}");
+        }
+        assert_eq!(examples.get(&model, (3, 0)), None);
     }
 }

@@ -70,7 +70,7 @@ impl Confusion {
     fn go_to(&mut self, (row, column): (usize, usize)) {
         let last = self.count() - 1;
         self.cell = (row.min(last), column.min(last));
-        self.example = Example::of(&self.trained.model, self.cell);
+        self.example = (self.trained.examples).get(&self.trained.model, self.cell);
     }
 
     /// Moves the cursor.

@@ -18,6 +18,7 @@ use crate::recognition::{
 };
 use crate::storage::shipped;
 use crate::touch::Plane;
+use crate::tui::recognise::confused::Examples;
 
 /// A set of shapes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -126,6 +127,8 @@ pub struct TrainedModel {
     pub model: Model,
     /// How well it tells its shapes apart.
     pub evaluation: Evaluation,
+    /// An imprint of each cell of its confusion matrix.
+    pub examples: Examples,
     /// Where its grid is coarser than hundredths and whole degrees: the share of poses in these steps that leave an
     /// imprint which the model does not know.
     pub unknown_between: Option<f64>,
@@ -143,6 +146,7 @@ impl TrainedModel {
     pub fn new(choice: ModelChoice, model: Model) -> Self {
         Self {
             evaluation: Evaluation::of(&model),
+            examples: Examples::of(&model),
             unknown_between: unknown_between(&model),
             choice,
             model,

@@ -325,14 +325,7 @@ fn sweep(number: u64, grid: &PoseGrid, progress: &(dyn Fn(u64) -> bool + Sync)) 
         // What was found is given up: there is no memory to show it.
         return WorkerEvent::Failed(number, memory.message());
     }
-    let classes = result.atlas.distinct_classes();
-    WorkerEvent::Swept(
-        number,
-        Arc::new(Findings {
-            sweep: result,
-            classes,
-        }),
-    )
+    WorkerEvent::Swept(number, Arc::new(Findings::new(result)))
 }
 
 /// Writes the results to a file and sends whether that worked.
