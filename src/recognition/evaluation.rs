@@ -92,7 +92,7 @@ impl Evaluation {
             return;
         };
         let others = shapes.clone().filter(|&(shape, _)| shape != named);
-        let second = others.map(|(_, touches)| touches).max().unwrap_or(0);
+        let second = others.map(|(_, touches)| touches).fold(0, u128::max);
         self.right += most;
         self.right_in_top_two += most + second;
         if second == most {
