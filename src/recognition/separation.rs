@@ -207,6 +207,10 @@ impl Separation {
                     let zoom = source
                         .get(axis.parameter())
                         .map_or(scale, |own| own * scale);
+                    // The zoom that makes one taxel as large as the largest sensor.
+                    if zoom > f64::from(Sensor::LARGEST.side()) {
+                        return Ok(None);
+                    }
                     // The error of a zoom out of range names it.
                     Sensor::LARGEST.check(axis.parameter(), zoom)?;
                     given[axis] = Some(DecimalRange::rounded(zoom, 9)?);

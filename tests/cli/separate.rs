@@ -169,12 +169,42 @@ fn every_threshold_has_its_curve() {
 }
 
 #[test]
-fn sizes_that_fit_on_no_sensor_are_refused_before_the_work() {
+fn sizes_that_fit_on_no_sensor_are_left_out() {
     let place = Place::new();
+    let coarse = "--positions 2 --angle 0 --quiet --json";
+    let scales = |run: &super::Run| {
+        let answer: serde_json::Value = serde_json::from_str(&run.stdout).expect("JSON");
+        let points = answer["points"].as_array().expect("points").iter();
+        let scales = points.map(|point| point["scale"].as_f64().expect("a number"));
+        scales.collect::<Vec<_>>()
+    };
+    let too_large = "the shapes do not fit on 64 × 64 taxels in every angle";
+    let run = place.run(
+        &format!("model separate rectangles.jsonl --scale 7:20:2 {coarse}"),
+        "",
+    );
+    assert_eq!((run.status, scales(&run)), (Some(0), vec![7.0, 9.0]));
+    assert_eq!(
+        run.stderr,
+        format!("left out: scale 11 to 19: {too_large}\n")
+    );
+    // The finest pitch makes the largest shapes.
+    let run = place.run(
+        &format!("model separate rectangles.jsonl --pitch 0.05:0.25:0.2 {coarse}"),
+        "",
+    );
+    assert_eq!((run.status, scales(&run)), (Some(0), vec![4.0]));
+    assert_eq!(
+        run.stderr,
+        format!("left out: pitch_mm 0.05: {too_large}\n")
+    );
     refused(
-        &place.run("model separate rectangles.jsonl --scale 1:20:1 --quiet", ""),
+        &place.run(
+            "model separate rectangles.jsonl --scale 19:20:1 --quiet",
+            "",
+        ),
         1,
-        "scale 10, threshold 0.5: the shapes do not fit on 64 × 64 taxels in every angle",
+        &format!("scale 19, threshold 0.5: {too_large}"),
     );
     for (range, value) in [("0:0.5:0.1", "0"), ("0.5:1.5:0.5", "1.5")] {
         let line = format!("model separate rectangles.jsonl --threshold {range} --quiet");

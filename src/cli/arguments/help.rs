@@ -286,9 +286,10 @@ Examples:
 pub(crate) const MODEL_SEPARATE_EXAMPLES: &str = "\
 Trains the set at each scale, which multiplies all lengths, or, if lengths are
 in mm, at each pitch, and prints how many touches even the best classifier names
-wrong. --want scans from the smallest size upwards, then in tenths of the step
-before the first size that reaches the error. The error is not monotonic, so
---want also reports how many larger sizes miss it again.
+wrong. Sizes at which the shapes do not fit on 64 x 64 taxels are left out, and
+standard error says which. --want scans from the smallest size upwards, then in
+tenths of the step before the first size that reaches the error. The error is
+not monotonic, so --want also reports how many larger sizes miss it again.
 
 Examples:
   taxel model separate parts --scale 0.5:2:0.1 --positions 20

@@ -2,8 +2,8 @@
 //!
 //! For each threshold, sizes are tried from the smallest on; each is a training of its own, so the work grows with their
 //! product. With `--want ERROR` the first size that reaches it is then searched between the last one that does not and
-//! itself. What can be refused is refused before the first training: a size at which no sensor holds the shapes, a file
-//! that exists.
+//! itself. Sizes at which no sensor holds the shapes are left out, and standard error says so. What can be refused is
+//! refused before the first training: a set that fits at no size, a file that exists.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -47,13 +47,16 @@ pub(crate) fn separate(
         Some(range) => range.values().collect(),
         None => vec![usual],
     };
-    check(asked, &separation, &thresholds)?;
+    let sizes = fitting(asked, &separation, &thresholds)?;
     let signals = Signals::heard().map_err(CliError::System)?;
     if let Some(path) = &asked.export {
         drop(UnfinishedFile::new(path, asked.existing)?);
     }
+    if let Some(text) = left_out(asked, &sizes) {
+        crate::cli::note(&text, charset);
+    }
     let more = asked.wanted.map_or(0, |_| REFINED);
-    let points = (asked.sizes.count() + more) * thresholds.len() as u64;
+    let points = (sizes.len() as u64 + more) * thresholds.len() as u64;
     let progress = Progress::new(separation.touches() * points, asked.quiet, charset);
     let memory = MemoryGuard::new(None, "take fewer shapes, smaller sizes or coarser steps");
     let report = |poses: u64| {
@@ -61,7 +64,7 @@ pub(crate) fn separate(
         !signals.stopped.load(Ordering::Relaxed) && memory.allows()
     };
     let pool = threads::pool(asked.jobs)?;
-    let curves = pool.install(|| curves(asked, &separation, &thresholds, &report));
+    let curves = pool.install(|| curves(asked, &separation, (&sizes, &thresholds), &report));
     progress.finish();
     let curves = curves.map_err(|error| match error {
         TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),
@@ -94,12 +97,14 @@ pub(crate) fn separate(
 fn curves(
     asked: &SeparateArguments,
     separation: &Separation,
-    thresholds: &[f64],
+    (sizes, thresholds): (&[f64], &[f64]),
     report: &(dyn Fn(u64) -> bool + Sync),
 ) -> Result<Vec<SeparationCurve>, TrainingError> {
     let mut curves = Vec::with_capacity(thresholds.len());
     for &threshold in thresholds {
-        let points = separation.scan(asked.axis, &asked.sizes, threshold, report)?;
+        let points = sizes.iter();
+        let points = points.map(|&size| separation.at(asked.axis, size, threshold, report));
+        let points = points.collect::<Result<Vec<_>, _>>()?;
         let smallest = match asked.wanted {
             Some(error) => separation.smallest(asked.axis, &points, error, report)?,
             None => None,
@@ -113,26 +118,57 @@ fn curves(
     Ok(curves)
 }
 
-/// Refuses what would fail on the way, before the work.
-fn check(
+/// The sizes at which a sensor holds the shapes, the smallest first.
+///
+/// # Errors
+/// [`CliError::Separation`] of what would fail on the way: a value out of range, or shapes that fit at no size.
+fn fitting(
     asked: &SeparateArguments,
     separation: &Separation,
     thresholds: &[f64],
-) -> Result<(), CliError> {
-    for &threshold in thresholds {
-        for size in asked.sizes.values() {
+) -> Result<Vec<f64>, CliError> {
+    let mut fitting = Vec::new();
+    let mut too_large = None;
+    for size in asked.axis.smallest_first(&asked.sizes) {
+        let fits = thresholds.iter().try_for_each(|&threshold| {
+            let training = separation.training(asked.axis.scale(size), threshold);
             let name = asked.axis.name();
-            let place = || format!("{name} {size}, threshold {threshold}");
-            let refused = |error| CliError::Separation {
-                place: place(),
+            training.map(drop).map_err(|error| CliError::Separation {
+                place: format!("{name} {size}, threshold {threshold}"),
                 error,
-            };
-            separation
-                .training(asked.axis.scale(size), threshold)
-                .map_err(refused)?;
+            })
+        });
+        match fits {
+            Ok(()) => fitting.push(size),
+            // A pitch of 0 makes every shape too large, but it is no pitch.
+            Err(CliError::Separation {
+                place,
+                error: error @ TrainingError::Large,
+            }) if size > 0.0 => {
+                too_large.get_or_insert(CliError::Separation { place, error });
+            }
+            Err(error) => return Err(error),
         }
     }
-    Ok(())
+    match too_large {
+        Some(error) if fitting.is_empty() => Err(error),
+        _ => Ok(fitting),
+    }
+}
+
+/// Says which sizes are left out, because they do not fit; None if all fit.
+fn left_out(asked: &SeparateArguments, fitting: &[f64]) -> Option<String> {
+    let all = asked.axis.smallest_first(&asked.sizes);
+    let left_out: Vec<f64> = (all.into_iter())
+        .filter(|size| !fitting.contains(size))
+        .collect();
+    let sizes = match left_out[..] {
+        [] => return None,
+        [only] => only.to_string(),
+        [first, .., last] => format!("{first} to {last}"),
+    };
+    let (name, reason) = (asked.axis.name(), TrainingError::Large);
+    Some(format!("left out: {name} {sizes}: {reason}"))
 }
 
 /// The set, and the threshold if none is given.
