@@ -141,6 +141,11 @@ impl FrameFeed {
     ) {
         let mut wanted = ControlFlow::Continue(());
         let ended = acquire(source, options, stop, &mut |event| {
+            let is_time = matches!(event, AcquireEvent::Tick(_) | AcquireEvent::Silent { .. });
+            // A script has no clock: the time between its frames is its own, not a silence of the source.
+            if is_time && options.once {
+                return ControlFlow::Continue(());
+            }
             if self.take_in(event, request) {
                 wanted = fresh(self);
             }

@@ -15,11 +15,12 @@ use std::time::{Duration, Instant};
 
 use crate::storage::Existing;
 use crate::tui::app::worker_event::WorkerEvent;
-use crate::tui::live::message::LiveEvent;
+use crate::tui::live::message::{FrameBatch, LiveEvent};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::frame_feed::FrameFeed;
 use crate::tui::runtime::progress::WorkerEventSink;
 use crate::tui::runtime::recording::Recording;
+use crate::tui::runtime::script_frames::{ScriptReader, ScriptSource};
 use crate::tui::runtime::source;
 use crate::tui::runtime::threads;
 use crate::tui::runtime::write_access::WriteAccess;
@@ -46,6 +47,8 @@ struct Watched {
     stop: Arc<AtomicBool>,
     /// Frames that a script has taken.
     taken: usize,
+    /// Where the next one comes from, while the source is open for a script.
+    reader: Option<ScriptReader>,
     /// Whether a file is being created for a recording.
     begins: bool,
 }
@@ -79,6 +82,7 @@ impl FrameWatcher {
             feed: Arc::new(FrameFeed::of(&request)),
             stop: Arc::default(),
             taken: 0,
+            reader: None,
             begins: false,
         };
         let feed = Arc::clone(&watched.feed);
@@ -189,57 +193,80 @@ impl FrameWatcher {
     }
 
     /// Reads the next frames of the source, up to `count`, each as an event; for scripts, which have no clock.
-    /// Nothing reads ahead in a script: the source is read anew from its start, and what was taken is skipped.
     pub(super) fn next(&mut self, count: usize, access: &WriteAccess) -> Vec<WorkerEvent> {
         let Some(watched) = &mut self.watched else {
             return Vec::new();
         };
-        let (request, number) = (Arc::clone(&watched.request), watched.number);
-        let mut options = request.options.clone();
-        (options.once, options.repeat) = (true, false);
-        let (skipped, mut seen) = (watched.taken, 0);
-        let feed = FrameFeed::of(&request);
-        let recording = watched.feed.recording();
-        // What is skipped was recorded before.
-        let record_from = |feed: &FrameFeed, seen: usize| {
-            if seen == skipped {
-                feed.go_on_with(recording.clone());
-            }
-        };
-        record_from(&feed, seen);
-        let mut events = Vec::new();
-        let source = match source::readable(&request.source, access) {
-            Ok(source) => source,
-            Err(reason) => {
-                feed.fail(reason);
-                let batch = feed.take().map(Arc::new);
-                let event = batch.map(|batch| WorkerEvent::Live(number, LiveEvent::Arrived(batch)));
-                return event.into_iter().collect();
-            }
-        };
-        feed.run(
-            &source,
-            &request,
-            &options,
-            &AtomicBool::new(false),
-            &mut |feed| {
-                let Some(batch) = feed.take() else {
-                    return ControlFlow::Continue(());
-                };
-                seen += batch.frames.len();
-                record_from(feed, seen);
-                if seen > skipped || batch.frames.is_empty() {
-                    let event = LiveEvent::Arrived(Arc::new(batch));
-                    events.push(WorkerEvent::Live(number, event));
-                }
-                if seen >= skipped + count {
-                    return ControlFlow::Break(());
-                }
-                ControlFlow::Continue(())
-            },
-        );
-        watched.taken = seen.max(skipped);
+        let number = watched.number;
+        let batches = watched.next(count, access).into_iter();
+        let events = batches.map(|batch| LiveEvent::Arrived(Arc::new(batch)));
         events
+            .map(|event| WorkerEvent::Live(number, event))
+            .collect()
+    }
+}
+
+impl Watched {
+    /// Reads the next frames, up to `count`. A source that has ended is read anew from its start, as it may have grown; what
+    /// was taken is skipped then.
+    fn next(&mut self, count: usize, access: &WriteAccess) -> Vec<FrameBatch> {
+        let mut batches = Vec::new();
+        let mut reader = match self.reader.take() {
+            Some(reader) => reader,
+            None => match self.open(access) {
+                Ok(source) => match ScriptReader::open(source.clone()) {
+                    Ok(reader) => reader,
+                    // Without threads, the source is read anew each time.
+                    Err(_) => return self.next_of(&source, count),
+                },
+                Err(reason) => {
+                    self.feed.fail(reason);
+                    return self.feed.take().into_iter().collect();
+                }
+            },
+        };
+        let end = self.taken + count;
+        while self.taken < end {
+            let Some(batch) = reader.next() else {
+                return batches;
+            };
+            self.taken += batch.frames.len();
+            batches.push(batch);
+        }
+        self.reader = Some(reader);
+        batches
+    }
+
+    /// The same of a source that is read from its start on this thread.
+    fn next_of(&mut self, source: &ScriptSource, count: usize) -> Vec<FrameBatch> {
+        let (mut batches, end) = (Vec::new(), self.taken + count);
+        source.read(&mut |batch| {
+            self.taken += batch.frames.len();
+            batches.push(batch);
+            if self.taken < end {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        });
+        batches
+    }
+
+    /// The source from its start on, with a feed that takes over the recording.
+    ///
+    /// # Errors
+    /// Why it cannot be read, in a sentence.
+    fn open(&mut self, access: &WriteAccess) -> Result<ScriptSource, String> {
+        let source = source::readable(&self.request.source, access)?;
+        let recording = self.feed.recording();
+        self.feed = Arc::new(FrameFeed::of(&self.request));
+        Ok(ScriptSource {
+            source,
+            request: Arc::clone(&self.request),
+            feed: Arc::clone(&self.feed),
+            skipped: self.taken,
+            recording,
+        })
     }
 }
 
@@ -278,5 +305,57 @@ mod tests {
             over.finish(),
             Some(LiveEvent::Recorded(over.path().to_string_lossy().into(), 0))
         );
+    }
+
+    /// A recording of frames of 2 × 2, each full of its own number.
+    fn frames(numbers: std::ops::Range<u32>) -> String {
+        let line = |number| format!("{number},{number},{number},{number}\n");
+        let lines = numbers.map(line).collect::<String>();
+        "S0_0,S0_1,S1_0,S1_1\n".to_owned() + &lines
+    }
+
+    /// The numbers in the frames of events, `None` for an event without one.
+    fn numbers(events: &[WorkerEvent]) -> Vec<Option<f64>> {
+        let number = |event: &WorkerEvent| {
+            let WorkerEvent::Live(7, LiveEvent::Arrived(batch)) = event else {
+                panic!("{event:?}");
+            };
+            Some(batch.frames.first()?.values()[0].into())
+        };
+        events.iter().map(number).collect()
+    }
+
+    #[test]
+    fn a_script_reads_a_source_once_and_again_from_its_end_where_it_has_grown() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.csv");
+        std::fs::write(&path, frames(0..6)).expect("written");
+        let access = WriteAccess::below(folder.path().to_owned());
+        let request = Arc::new(WatchRequest::new(path.clone()));
+        let mut watcher = FrameWatcher::default();
+        assert_eq!(watcher.watch(7, Arc::clone(&request), None, None), None);
+        let mut taken = Vec::new();
+        let mut take = |watcher: &mut FrameWatcher, count| {
+            let found = numbers(&watcher.next(count, &access));
+            let frames = found.iter().flatten().count();
+            taken.extend(found.into_iter().flatten());
+            frames
+        };
+        assert_eq!(take(&mut watcher, 2), 2);
+        // It is open: what its name stands for meanwhile does not matter.
+        let aside = folder.path().join("b.csv");
+        std::fs::rename(&path, &aside).expect("renamed");
+        assert_eq!([take(&mut watcher, 1), take(&mut watcher, 9)], [1, 3]);
+        std::fs::write(&path, frames(0..8)).expect("written");
+        assert_eq!([take(&mut watcher, 1), take(&mut watcher, 9)], [1, 1]);
+        assert_eq!(taken, (0..8).map(f64::from).collect::<Vec<_>>());
+        // The same without a thread.
+        let mut watched = watcher.watched.take().expect("it is watched");
+        watched.taken = 3;
+        let source = watched.open(&access).expect("it is there");
+        let batches = watched.next_of(&source, 2);
+        let firsts = batches.iter().filter_map(|batch| batch.frames.first());
+        let firsts: Vec<f64> = firsts.map(|frame| frame.values()[0].into()).collect();
+        assert_eq!((firsts, watched.taken), (vec![3.0, 4.0], 5));
     }
 }

@@ -12,6 +12,7 @@
 //! look             searches them for what an imprint may be
 //! sizes            the limit of a set in several sizes
 //! frames           a source of frames: watched, recorded
+//! script_frames    one read frame by frame, for a script
 //! frame_feed       what it has brought and the screen has not taken
 //! recording        the file that frames are recorded in
 //! naming           the shapes that left the imprints of frames
@@ -43,6 +44,8 @@ mod sizes;
 mod frame_feed;
 
 mod frames;
+
+mod script_frames;
 
 mod recording;
 
