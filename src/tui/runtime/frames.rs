@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::storage::Existing;
 use crate::tui::app::worker_event::WorkerEvent;
@@ -53,18 +53,9 @@ struct Watched {
     begins: bool,
 }
 
-/// How long a source waits for the thread of the one before.
+/// How long a source waits until the thread of the one before has closed that: it may be the same serial line, which only
+/// one can open, or the same pipe, whose bytes it would take.
 const ENDING: Duration = Duration::from_millis(500);
-
-/// Waits until a thread that was stopped has closed its source: the next one may be the same serial line, which only one
-/// can open, or the same pipe, whose bytes it would take. It is not joined, since a disk or a host that does not answer
-/// may hold it up.
-fn give_time_to_end(thread: &JoinHandle<()>) {
-    let begun = Instant::now();
-    while !thread.is_finished() && begun.elapsed() < ENDING {
-        std::thread::sleep(Duration::from_millis(5));
-    }
-}
 
 impl FrameWatcher {
     /// Watches a source, recorded in a file if one is given. Returns an event where that cannot be begun. The source
@@ -99,7 +90,7 @@ impl FrameWatcher {
         let before = self.thread.take();
         let thread = threads::start(move || {
             if let Some(before) = before {
-                give_time_to_end(&before);
+                threads::wait_until_finished(&before, ENDING);
             }
             // Before the first frame: each one is wanted. Not on the screen's thread: the disk may hang.
             if let Err(refused) = feed.begin_recording(&request, existing) {

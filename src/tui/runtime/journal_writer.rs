@@ -20,13 +20,10 @@ use crate::storage::{Journal, Orphan};
 use crate::tui::app::state::App;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::runtime::progress::WorkerEventSink;
-use crate::tui::runtime::threads;
+use crate::tui::runtime::threads::{self, PATIENCE};
 
 /// Changes are gathered for this time before they are written, so a crash loses less than a second of work.
 const GATHER: Duration = Duration::from_millis(400);
-
-/// How long the end of the program waits for the disk.
-const PATIENCE: Duration = Duration::from_millis(1500);
 
 /// The program's end of the channel to the thread.
 #[derive(Debug)]

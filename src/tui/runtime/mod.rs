@@ -93,6 +93,7 @@ use crate::tui::runtime::recording::Recording;
 use crate::tui::runtime::reminders::Reminders;
 use crate::tui::runtime::shape_log::ShapeLog;
 pub use crate::tui::runtime::shape_log::ShapeSink;
+use crate::tui::runtime::threads::PATIENCE;
 use crate::tui::runtime::workers::Workers;
 use crate::tui::runtime::write_access::WriteAccess;
 
@@ -105,9 +106,6 @@ use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::key::Key;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::effect::{Effect, FileRequest, LibraryRequest, TerminalEffect, Work};
-
-/// How long the end of the program waits for the disk.
-const PATIENCE: Duration = Duration::from_millis(1500);
 
 /// The outside world: a library, unsaved work that crashed programs left in it, this program's journal, and workers.
 #[derive(Debug)]

@@ -12,8 +12,15 @@ use std::io;
 use std::sync::OnceLock;
 use std::sync::mpsc::{Sender, channel};
 use std::thread::{Builder, JoinHandle, available_parallelism};
+use std::time::{Duration, Instant};
 
 use rayon::{ThreadBuilder, ThreadPoolBuilder};
+
+/// How long the end of the program waits for the disk.
+pub(super) const PATIENCE: Duration = Duration::from_millis(1500);
+
+/// The pause between two looks at a thread that is about to end.
+const PAUSE: Duration = Duration::from_millis(5);
 
 /// Whether there is a pool whose threads share work.
 static SHARED: OnceLock<bool> = OnceLock::new();
@@ -57,6 +64,15 @@ fn spare_threads() -> io::Result<Vec<Sender<ThreadBuilder>>> {
 pub(super) fn start(body: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>, String> {
     let thread = Builder::new().spawn(body);
     thread.map_err(|error| format!("cannot start a thread: {error}"))
+}
+
+/// Waits for a thread to end, but not for longer than `patience`. It is not joined: a disk or a host that does not answer may
+/// hold it up.
+pub(super) fn wait_until_finished(thread: &JoinHandle<()>, patience: Duration) {
+    let begun = Instant::now();
+    while !thread.is_finished() && begun.elapsed() < patience {
+        std::thread::sleep(PAUSE);
+    }
 }
 
 /// Does work on a thread that was started for it.

@@ -37,10 +37,7 @@ use crate::tui::runtime::threads;
 use crate::tui::runtime::write_access::WriteAccess;
 
 /// How long the end of the program waits for files that are being written.
-const PATIENCE: Duration = Duration::from_millis(400);
-
-/// The pause between two looks at it.
-const PAUSE: Duration = Duration::from_millis(5);
+const WRITING: Duration = Duration::from_millis(400);
 
 /// An estimate is the best of all runs within this time.
 const MEASURED: Duration = Duration::from_millis(30);
@@ -285,11 +282,9 @@ impl Drop for Workers {
         self.begin();
         // Files are removed where they are half-written, models are written to the cache as a whole; but a disk may hang.
         let threads = [self.writing.take(), self.models.end(), self.namer.leave()];
-        let end = Instant::now() + PATIENCE;
+        let end = Instant::now() + WRITING;
         for thread in threads.into_iter().flatten() {
-            while !thread.is_finished() && Instant::now() < end {
-                std::thread::sleep(PAUSE);
-            }
+            threads::wait_until_finished(&thread, end.saturating_duration_since(Instant::now()));
         }
     }
 }
