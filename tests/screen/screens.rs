@@ -333,4 +333,27 @@ fn no_descriptor_is_cut_on_a_small_screen() {
             assert!(screen.contains(symbol), "{keys}: no {symbol}\n{screen}");
         }
     }
+    // Beside a small sensor there is room for both, but perhaps not for all of the values.
+    let figure = ":figure rectangle --length 2 --width 3 --x0 1.3 --y0 0.7 --angle 17<Enter>";
+    for (size, sensor) in [
+        ((52, 14), (8, 8)),
+        ((50, 14), (6, 6)),
+        ((40, 12), (3, 12)),
+        ((80, 20), (16, 16)),
+    ] {
+        let (columns, rows) = sensor;
+        let keys = format!(":sensor --columns {columns} --rows {rows}<Enter>{figure}");
+        let both = sized(size, false, &keys);
+        let screen = both.screen();
+        assert!(screen.contains("\n   0 "), "{size:?} {sensor:?}\n{screen}");
+        let hints = screen.lines().last();
+        let named = hints.is_some_and(|hints| hints.starts_with("i descriptors"));
+        assert!(named, "{size:?} {sensor:?}\n{screen}");
+        let mut alone = sized(size, false, &format!("{keys}i"));
+        let screen = alone.screen();
+        assert!(!screen.contains('…'), "{size:?} {sensor:?}\n{screen}");
+        assert!(screen.contains("Diag "), "{size:?} {sensor:?}\n{screen}");
+        press(&mut alone, "i");
+        assert_eq!(alone.screen(), both.screen());
+    }
 }

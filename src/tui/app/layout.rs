@@ -6,6 +6,7 @@
 
 use ratatui::layout::Rect;
 
+use crate::description::DESCRIPTORS;
 use crate::imprint::Imprint;
 use crate::tui::app::page::Slot;
 use crate::tui::matrix::layout::{RULER, TaxelSize};
@@ -13,6 +14,9 @@ use crate::tui::widget::write::{below, right_of};
 
 /// The panel is not made narrower than this; below, it is a page of its own.
 const PANEL: u16 = 30;
+
+/// A column of descriptors with the longest values is as wide as this, where they stand in several columns.
+const LONGEST_VALUES: usize = 23;
 
 /// From this width on the panel stands beside every matrix: the default sensor fits there.
 const BOTH: u16 = RULER + 2 * 16 + 1 + PANEL;
@@ -54,6 +58,8 @@ pub struct Panes {
     pub matrix: Rect,
     /// The descriptors, where there is room beside the matrix.
     pub panel: Option<Rect>,
+    /// Whether they have room for all their values there.
+    pub is_panel_roomy: bool,
     /// A form: in place of the panel, or over the foot of the matrix.
     pub form: Rect,
     /// The descriptors while a form is open, where there is room for both.
@@ -108,6 +114,7 @@ impl Panes {
             content,
             matrix,
             panel: (beside.width >= PANEL).then_some(beside),
+            is_panel_roomy: is_roomy(beside),
             form,
             form_panel,
             source: if foot > 2 { line(foot) } else { absent },
@@ -151,6 +158,15 @@ fn matrix_width(content: Rect, imprint: &Imprint, halves: bool) -> u16 {
         (small, _) => small,
     };
     size.matrix_width(imprint).min(room.width)
+}
+
+/// Whether the descriptors have room for the longest values below their heading. On a low screen they need several columns.
+fn is_roomy(panel: Rect) -> bool {
+    let lines = usize::from(panel.height.saturating_sub(1)).max(1);
+    match DESCRIPTORS.len().div_ceil(lines) {
+        1 => true,
+        columns => usize::from(panel.width) >= columns * LONGEST_VALUES,
+    }
 }
 
 /// The area of a form: beside the matrix, or over its foot where there is too little room; and that of the descriptors,

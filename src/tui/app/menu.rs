@@ -161,7 +161,7 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
     // Where the descriptors are a page of their own, its key comes first; elsewhere it does nothing.
     let page = |row: &&Binding| row.does(&Message::SwitchPage);
     let (first, others): (Vec<_>, Vec<_>) = rest.partition(page);
-    let first = first.into_iter().filter(|_| panes.panel.is_none());
+    let first = first.into_iter().filter(|_| app.has_pages(panes));
     // On that page the key leads back to the matrix.
     let name = |row: &Binding| match app.page {
         NarrowPage::Panel if row.does(&Message::SwitchPage) => "matrix",

@@ -125,11 +125,12 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
             return None;
         }
     }
-    if panes.panel.is_some_and(inside) {
+    let beside = app.beside(&panes);
+    if beside.is_some_and(inside) {
         return Some(Target::Panel);
     }
-    // On a narrow screen the descriptors may have the place of the matrix.
-    if panes.panel.is_none() && app.page == NarrowPage::Panel {
+    // On a small screen the descriptors may have the place of the matrix.
+    if beside.is_none() && app.page == NarrowPage::Panel {
         return inside(panes.content).then_some(Target::Panel);
     }
     let grid = app.grid().filter(|_| inside(panes.matrix))?;

@@ -109,7 +109,7 @@ pub enum Display {
     Percent,
 }
 
-/// What a screen shows that is too narrow for matrix and descriptors side by side.
+/// What a screen shows that is too small for matrix and descriptors side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NarrowPage {
     /// The matrix.
@@ -368,6 +368,18 @@ impl App {
         let (columns, rows) = self.screen;
         let area = Rect::new(0, 0, columns, rows);
         Panes::of(area, &self.reading().imprint, self.halves())
+    }
+
+    /// Whether a key shows the matrix or what else is on the screen in turn: where only one of them has room, and where
+    /// descriptors may be cut beside the matrix.
+    pub(in crate::tui) fn has_pages(&self, panes: &Panes) -> bool {
+        panes.panel.is_none() || self.pane().is_none() && !panes.is_panel_roomy
+    }
+
+    /// Where the descriptors stand beside the matrix; None where one of them has the whole page.
+    pub(in crate::tui) fn beside(&self, panes: &Panes) -> Option<Rect> {
+        let alone = self.page == NarrowPage::Panel && self.has_pages(panes);
+        panes.panel.filter(|_| !alone)
     }
 
     /// Whether two taxels may share a character of the screen. Coverage and marks of a comparison need one for each.

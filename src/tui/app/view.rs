@@ -14,7 +14,8 @@
 //! | hints: other keys that mean something now        |
 //! +--------------------------------------------------+
 //! ```
-//! On a narrow screen matrix and panel are two pages; on a low one the lines below the matrix give way first. A screen
+//! On a narrow screen matrix and panel are two pages, and where the panel beside the matrix may cut values it can have
+//! the whole page; on a low one the lines below the matrix give way first. A screen
 //! that is too small for anything says so. Every pane accepts any rectangle, also an empty one.
 //!
 //! Views borrow what they draw, `&Theme` and `&Keymap`. Only this file and the lines at the foot see the whole state.
@@ -57,7 +58,7 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
     }
     let panel = |buffer: &mut Buffer, area: Rect| panel::draw(&matrix, theme, buffer, area);
     let mut cursor = None;
-    match (app.pane(), panes.panel) {
+    match (app.pane(), app.beside(&panes)) {
         (Some(page), beside) if page.slot() == Slot::Panel => {
             if beside.is_some() || app.page == NarrowPage::Matrix {
                 cursor = matrix.draw(theme, buffer, panes.matrix);

@@ -79,7 +79,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "" "zoom a picture in, out, by the current step";
         [Char('C') => ZOOM_CENTRE] "" "zoom about the picture's centre, or about the origin";
         [Char('S') => SENSOR] "" "Sensor: columns, rows, threshold, pitch";
-        [Char('i') => PANEL] "descriptors" "on a narrow screen: descriptors or matrix";
+        [Char('i') => PANEL] "descriptors" "on a small screen: descriptors or matrix";
         [Char('y') => COPY_DESCRIPTORS, Char('Y') => COPY_IMPRINT]
             "" "copy descriptors, imprint to your terminal's clipboard";
         [Char('m') => MOUSE] "" "the mouse sets taxels, or selects text";

@@ -288,7 +288,7 @@ fn edit(app: &mut App, message: &Message) {
         }
         Message::Display => next_display(app),
         Message::Layer(layer) => switch_layer(app, layer),
-        Message::SwitchPage if app.panes().is_some_and(|panes| panes.panel.is_some()) => {
+        Message::SwitchPage if app.panes().is_some_and(|panes| !app.has_pages(&panes)) => {
             inform(app, "matrix and descriptors are both visible");
         }
         Message::SwitchPage => {
