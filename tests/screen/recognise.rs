@@ -128,6 +128,36 @@ fn the_pose_is_that_of_the_shape_that_the_touches_name() {
     );
 }
 
+/// Beside a large sensor there are few columns: what does not fit into one line goes on in the next.
+#[test]
+fn nothing_is_cut_beside_a_large_sensor() {
+    let sensor = ":sensor --columns 64 --rows 64<Enter>:seed 4<Enter>";
+    let mut session = started(
+        world(),
+        &format!("{sensor}:recognise figures-30<Enter>t<Enter>"),
+    );
+    for size in [(80, 24), (70, 24)] {
+        session.resize(size.0, size.1);
+        let screen = session.screen();
+        assert!(!screen.contains('…'), "{size:?}\n{screen}");
+        // The panel alone, as one text.
+        let panel = screen.lines().map(|line| {
+            let columns: Vec<char> = line.chars().collect();
+            let first = columns.len().min(usize::from(size.0) - 30);
+            columns[first..].iter().collect::<String>()
+        });
+        let panel = panel.collect::<Vec<_>>().join(" ");
+        let panel = panel.split_whitespace().collect::<Vec<_>>().join(" ");
+        for text in [
+            "grid: 0.01 cells, 1°; 25,200,000 touches",
+            "best possible error 33.0 %, certain 38.3 %",
+            "answer: 1",
+        ] {
+            assert!(panel.contains(text), "{size:?}: no {text:?}\n{screen}");
+        }
+    }
+}
+
 #[test]
 fn a_set_that_does_not_exist_changes_nothing() {
     let refused = "no model or file \"nope\"; there are figures, figures-30, shapes";

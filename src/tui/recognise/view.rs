@@ -41,6 +41,9 @@ const PERCENT: usize = 9;
 /// The most columns of a name.
 const NAME: usize = 14;
 
+/// Lines below the list of shapes that are always left free, so that the list has one length for nearly all touches.
+const BELOW: usize = 6;
+
 impl Page for Recognition {
     fn context(&self) -> Context {
         Context::Recognise
@@ -85,7 +88,10 @@ impl Page for Recognition {
                 panel.model(trained);
                 panel.gap();
                 panel.answer(self, trained);
-                panel.touches(self);
+                for text in panel.touches(self) {
+                    panel.gap();
+                    panel.text(&text, Role::Text);
+                }
             }
         }
         None
@@ -123,24 +129,27 @@ struct Panel<'a> {
 }
 
 impl Panel<'_> {
-    /// Writes a line of its own.
-    fn text(&mut self, text: &str, role: Role) {
-        let row = write::row(self.area, self.line);
-        write::line(self.buffer, row, self.theme, [(text, role)]);
-        self.line += 1;
-    }
-
     /// Writes a text over as many lines as it needs.
-    fn wrapped(&mut self, text: &str, role: Role) {
+    fn text(&mut self, text: &str, role: Role) {
         let rest = write::below(self.area, narrow(self.line));
         if rest.height > 0 {
             self.line += write::wrapped(self.buffer, rest, self.theme, text, role);
         }
     }
 
+    /// The lines that a text needs.
+    fn lines_of(&self, text: &str) -> usize {
+        write::broken(&self.theme.text(text), usize::from(self.area.width)).len()
+    }
+
     /// Leaves a line free where there is room.
     fn gap(&mut self) {
-        self.line += usize::from(self.area.height >= 16);
+        self.line += self.gap_lines();
+    }
+
+    /// The lines of a gap.
+    fn gap_lines(&self) -> usize {
+        usize::from(self.area.height >= 16)
     }
 
     /// The key of an action on this page, as the user has set it.
@@ -190,7 +199,7 @@ impl Panel<'_> {
                 "between grid points, {} of poses are not in the model",
                 percent(unknown).trim_start()
             );
-            self.wrapped(&text, Role::Quiet);
+            self.text(&text, Role::Quiet);
         }
     }
 
@@ -200,16 +209,31 @@ impl Panel<'_> {
             let touch = self.key(&action::QUIZ);
             let text =
                 format!("Nothing is touched. {touch} touches at random; draw, or place a shape.");
-            return self.wrapped(&text, Role::Text);
+            return self.text(&text, Role::Text);
         };
         let verdict = verdict(answer, page.touches().len(), trained);
-        self.wrapped(&verdict, Role::Title);
+        self.text(&verdict, Role::Title);
         let names = answer.ranking.iter().map(|&(shape, _)| trained.name(shape));
         let name = names.map(write::width).fold(0, usize::max).min(NAME);
         // The lines about the touch come first.
+        let look = page.look().into_iter();
+        let look: Vec<_> = look
+            .flat_map(|look| look_lines(page.present(), look, answer, trained))
+            .collect();
+        let kept = self.touches(page);
+        let texts = look.iter().map(|(text, _)| text);
+        let lines = texts.chain(&kept).map(|text| self.lines_of(text));
+        let gaps = (1 + kept.len()) * self.gap_lines();
+        let below = (lines.sum::<usize>() + gaps).max(BELOW);
         let room = usize::from(self.area.height)
-            .saturating_sub(self.line + 6)
+            .saturating_sub(self.line + below)
             .max(1);
+        // The last of these lines says how many are left out, where any are.
+        let room = if answer.ranking.len() > room {
+            (room - 1).max(1)
+        } else {
+            room
+        };
         for &(shape, probability) in answer.ranking.iter().take(room) {
             self.shape(trained.name(shape), name, probability);
         }
@@ -217,9 +241,11 @@ impl Panel<'_> {
         if rest > 0 {
             self.text(&format!("and {rest} more"), Role::Quiet);
         }
-        if let Some(look) = page.look() {
+        if !look.is_empty() {
             self.gap();
-            self.look(page.present(), look, answer, trained);
+        }
+        for (text, role) in look {
+            self.text(&text, role);
         }
     }
 
@@ -242,48 +268,22 @@ impl Panel<'_> {
         write::line(self.buffer, row, self.theme, pieces);
     }
 
-    /// The nearest imprint, and the pose.
-    fn look(&mut self, present: &Imprint, look: &Look, answer: &Answer, trained: &TrainedModel) {
-        match &look.nearest {
-            None => self.text("no imprint of the model fits the matrix", Role::Text),
-            Some(nearest) if nearest.distance > 0 => {
-                let text = format!(
-                    "nearest: {}, {}",
-                    trained.name(nearest.shape),
-                    differ(nearest.distance)
-                );
-                self.text(&text, Role::Text);
-                self.text(&legend(present, nearest), Role::Quiet);
-            }
-            Some(_) => {}
-        }
-        if let Some((shape, pose)) = &look.pose {
-            // Of shapes that are tied, the pose is that of the first.
-            let is_named = answer.state != AnswerState::Tied && answer.shape == Some(*shape);
-            let whose = if is_named { "" } else { trained.name(*shape) };
-            for line in pose_lines(trained, whose, pose) {
-                self.text(&line, Role::Text);
-            }
-        }
-    }
-
     /// The touches that were kept, and the score.
-    fn touches(&mut self, page: &Recognition) {
+    fn touches(&self, page: &Recognition) -> Vec<String> {
+        let mut lines = Vec::new();
         if page.kept() > 0 {
-            self.gap();
             let touches = counted(page.kept() as u64, "touch");
             let forget = self.key(&action::FORGET);
-            self.text(&format!("{touches} kept; {forget} forgets"), Role::Text);
+            lines.push(format!("{touches} kept; {forget} forgets"));
         }
         let score = page.score;
         if score.asked > 0 {
-            self.gap();
-            let text = format!(
+            lines.push(format!(
                 "quiz: {} of {} right; the best answer: {}",
                 score.right, score.asked, score.best
-            );
-            self.text(&text, Role::Text);
+            ));
         }
+        lines
     }
 }
 
@@ -310,6 +310,35 @@ fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
         ""
     };
     format!("{state}{what}{rim}")
+}
+
+/// The nearest imprint, and the pose.
+fn look_lines(
+    present: &Imprint,
+    look: &Look,
+    answer: &Answer,
+    trained: &TrainedModel,
+) -> Vec<(String, Role)> {
+    let mut lines = Vec::new();
+    match &look.nearest {
+        None => {
+            let text = "no imprint of the model fits the matrix".to_owned();
+            lines.push((text, Role::Text));
+        }
+        Some(nearest) if nearest.distance > 0 => {
+            let (name, differ) = (trained.name(nearest.shape), differ(nearest.distance));
+            lines.push((format!("nearest: {name}, {differ}"), Role::Text));
+            lines.push((legend(present, nearest), Role::Quiet));
+        }
+        Some(_) => {}
+    }
+    if let Some((shape, pose)) = &look.pose {
+        // Of shapes that are tied, the pose is that of the first.
+        let is_named = answer.state != AnswerState::Tied && answer.shape == Some(*shape);
+        let whose = if is_named { "" } else { trained.name(*shape) };
+        lines.extend(pose_lines(trained, whose, pose).map(|line| (line, Role::Text)));
+    }
+    lines
 }
 
 /// Which taxels differ from the nearest imprint, with the marks that they have on the matrix.
