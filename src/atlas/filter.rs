@@ -6,8 +6,8 @@
 //!  |  sign
 //!  a descriptor as in JSON and CSV, or id, count (also: poses), pieces, holes
 //! ```
-//! `=` and `!=` compare as many decimals as were typed: `f=12.3` holds for 12.26 and for 12.34. An imprint for which a
-//! descriptor does not exist fulfils no condition on it.
+//! `=` and `!=` compare as many decimals as were typed: `f=12.3`, or `f=1.23e1`, holds for 12.26 and for 12.34. An imprint
+//! for which a descriptor does not exist fulfils no condition on it.
 
 use rayon::prelude::*;
 
@@ -234,16 +234,20 @@ fn quantity(name: &str) -> Option<Quantity> {
     feature.map(Quantity::Feature).or(own.next())
 }
 
-/// Half of the last decimal of a number as it was typed; 0 where it has an exponent.
+/// Half of the last decimal of a number as it was typed. One with an exponent has the decimals that it has when written
+/// out: two in `1.166e1`, none in `4e1`.
 fn half_a_unit(number: &str) -> f64 {
-    if number.contains(['e', 'E']) {
+    let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
+    // An exponent that has no place in 32 bits makes the number 0, without a last decimal.
+    let Ok(exponent) = exponent.parse::<i32>() else {
         return 0.0;
-    }
-    let decimals = number
+    };
+    let decimals = mantissa
         .split_once('.')
         .map_or(0, |(_, decimals)| decimals.len());
-    // A hair more, as ends are decimals that f64 cannot hold.
     let decimals = i32::try_from(decimals).unwrap_or(i32::MAX);
+    let decimals = decimals.saturating_sub(exponent).max(0);
+    // A hair more, as ends are decimals that f64 cannot hold.
     0.5 * 10_f64.powi(-decimals) * (1.0 + 1e-9)
 }
 
@@ -362,6 +366,10 @@ mod tests {
         let holds = |text: &str, value: f64| filter(text).conditions[0].holds(value);
         assert!(holds("f=12.3", 12.26) && holds("f=12.3", 12.34) && !holds("f=12.3", 12.36));
         assert!(holds("f!=12.3", 12.36) && holds("f=12", 12.36) && !holds("f=12.300", 12.26));
-        assert!(holds("f=1e1", 10.0) && !holds("f=1e1", 10.01));
+        // The same numbers with an exponent.
+        assert!(holds("f=1.166e1", 11.6593) && !holds("f=1.166e1", 11.6651));
+        assert!(holds("f=1166E-2", 11.6593) && !holds("f=1166E-2", 11.6651));
+        assert!(holds("na=4e+1", 40.4) && !holds("na=4e1", 40.6));
+        assert!(holds("cg_cd=0e99999999999", 0.0) && !holds("cg_cd=0e99999999999", 0.1));
     }
 }
