@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::frame::{Frame, FrameError, Processing, Rule};
+use crate::frame::{Frame, FrameError, LARGEST_VALUE, Processing, Rule};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::parameter::number::counted;
@@ -77,7 +77,8 @@ const MOST_TAXELS: u32 = MAX_SIDE as u32 * MAX_SIDE as u32;
 /// A matrix of its rows; NaN where there is no cell.
 ///
 /// # Errors
-/// If the rows are of different lengths, or one of the sides is not from 1 to [`MAX_SIDE`]; the message is one sentence.
+/// If the rows are of different lengths, one of the sides is not from 1 to [`MAX_SIDE`], or a value is beyond
+/// ±[`LARGEST_VALUE`]; the message is one sentence.
 pub(crate) fn matrix(rows: &[Vec<Option<f64>>]) -> Result<Matrix<f64>, String> {
     let (height, width) = (rows.len(), rows.first().map_or(0, Vec::len));
     let side = |length: usize| {
@@ -96,11 +97,23 @@ pub(crate) fn matrix(rows: &[Vec<Option<f64>>]) -> Result<Matrix<f64>, String> {
             "row {number} has {found}, expected {width} as in the first row"
         ));
     }
+    let mut values = rows.iter().flatten().flatten();
+    if let Some(&value) = values.find(|value| value.abs() > LARGEST_VALUE) {
+        return Err(too_large(value));
+    }
     let mut matrix = Matrix::filled(columns, lines, f64::NAN);
     for (slot, value) in matrix.values_mut().iter_mut().zip(rows.iter().flatten()) {
         *slot = value.unwrap_or(f64::NAN);
     }
     Ok(matrix)
+}
+
+/// That a value is beyond all that are taken.
+pub(crate) fn too_large(value: f64) -> String {
+    if value.is_infinite() {
+        return "infinite, expected a number".to_owned();
+    }
+    format!("{value:e} is too large, expected at most {LARGEST_VALUE:e}")
 }
 
 #[cfg(test)]
@@ -134,6 +147,8 @@ mod tests {
             wrong("{\"at_least\":1}", "[[1, 2], [3]]"),
             "frame: row 2 has 1 value, expected 2 as in the first row"
         );
+        let large = "frame: -1e301 is too large, expected at most 1e300";
+        assert_eq!(wrong("{\"at_least\":1}", "[[1e300, -1e301]]"), large);
         assert_eq!(
             wrong("{\"at_least\":1}", "[]"),
             "frame: 0 rows of 0, expected 1 to 64 of each"

@@ -13,12 +13,12 @@ use std::io::BufRead;
 
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
+use crate::formats::framed::too_large;
 use crate::formats::json;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::lines::TextLines;
 use crate::formats::recording::side::shape;
-use crate::formats::recording::text_row::too_large;
 use crate::formats::seconds::since;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::parameter::number::counted;

@@ -21,13 +21,13 @@ use std::rc::Rc;
 
 use flate2::CrcReader;
 
+use crate::formats::framed::too_large;
 use crate::formats::recording::cdr::CdrReader;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::ros_message::{
     ImageFrame, MessageKind, header, image, matrix_shape, multi_array,
 };
-use crate::formats::recording::text_row::too_large;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::index::wide;
 use crate::parameter::number::counted;

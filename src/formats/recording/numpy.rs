@@ -15,6 +15,7 @@
 
 use std::io::{ErrorKind, Read};
 
+use crate::formats::framed::too_large;
 use crate::formats::npy;
 use crate::formats::npy::{Header, NumberType};
 use crate::formats::recording::error::RecordingError;
@@ -22,7 +23,6 @@ use crate::formats::recording::event::{
     ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
 use crate::formats::recording::side::shape;
-use crate::formats::recording::text_row::too_large;
 use crate::formats::seconds::since;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::parameter::number::counted;

@@ -3,6 +3,7 @@
 //! Whether a field is a value is the reader's to say ([`Field`]): what stands for a cell without a value differs from
 //! format to format. The messages are the same in all: `line 7, column 3: found "x", expected a number`.
 
+use crate::formats::framed::too_large;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::lines::text;
 use crate::formats::recording::number;
@@ -61,14 +62,6 @@ pub(crate) fn fill<'a>(
 pub(crate) fn count(line: u64, found: usize, expected: usize) -> RecordingError {
     let found = counted(found as u64, "value");
     RecordingError::in_line(line, format!("found {found}, expected {expected}"))
-}
-
-/// That a value is beyond all that are taken.
-pub(crate) fn too_large(value: f64) -> String {
-    if value.is_infinite() {
-        return "infinite, expected a number".to_owned();
-    }
-    format!("{value:e} is too large, expected at most {LARGEST_VALUE:e}")
 }
 
 /// A field that is not a value.
