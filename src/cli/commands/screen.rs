@@ -20,9 +20,11 @@ use crate::cli::settings::resolved::Effective;
 use crate::storage::{Library, ModelCache, Orphan};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, Options};
+use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::message::LiveMessage;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::World;
+use crate::tui::runtime::mailbox::{self, Sender};
 use crate::tui::script::record::Recorder;
 use crate::tui::script::setting::{ScriptSetting, of_options};
 use crate::tui::terminal;
@@ -34,7 +36,7 @@ use crate::tui::terminal::settings::{Flags, TerminalSettings};
 ///
 /// # Errors
 /// [`CliError::Screen`] if there is no terminal; [`CliError::Recorded`] or [`CliError::Record`] if the record cannot be
-/// created. A record that fails later only gives a message.
+/// created. A record that fails later gives messages, and 1 as the exit status of a program that ends well.
 pub(crate) fn screen(
     settings: &Effective,
     size: Option<(u16, u16)>,
@@ -52,8 +54,9 @@ pub(crate) fn screen(
         seed: RandomState::new().hash_one(0),
     };
     let library = shelf.library()?;
+    let (sender, mailbox) = mailbox::new().map_err(CliError::Screen)?;
     let record = record
-        .map(|path| ScreenRecord::begin(path, &options, &library))
+        .map(|path| ScreenRecord::begin(path, &options, &library, sender.clone()))
         .transpose()?;
     // Inputs and shapes come from two places.
     let record = Rc::new(RefCell::new(record));
@@ -77,16 +80,21 @@ pub(crate) fn screen(
         }));
     }
     let first = watched.map(|request| Message::Live(LiveMessage::Watch(Arc::new(request))));
-    let ended = terminal::run(app, first, world, &terminal, &mut watch);
+    let ended = terminal::run(app, first, world, &terminal, (sender, mailbox), &mut watch);
+    let mut is_whole = true;
     if let Some(record) = record.take() {
         let name = record.path.to_string_lossy().into_owned();
         if let Err(error) = record.end(ended.as_ref().ok().copied()) {
-            // The screen itself did not fail, so its status stays.
+            is_whole = false;
             let message = format!("error: {name}: the record ends early: {error}");
             let _ = writeln!(io::stderr().lock(), "{}", charset.line(&message));
         }
     }
-    Ok(ended.map_err(CliError::Screen)?.status())
+    match ended.map_err(CliError::Screen)?.status() {
+        0 => Ok(u8::from(!is_whole)),
+        // What ended the program is more.
+        status => Ok(status),
+    }
 }
 
 /// How the terminal is used: by the settings, and by what the environment says of it.
@@ -121,8 +129,14 @@ impl ScreenRecord {
     /// Creates the file, which must not exist: it may be another record.
     ///
     /// # Errors
-    /// [`CliError::Recorded`] if it exists; [`CliError::Record`] if it cannot be created.
-    fn begin(path: PathBuf, options: &Options, library: &Library) -> Result<Self, CliError> {
+    /// [`CliError::Recorded`] if it exists; [`CliError::Record`] if it cannot be created. One that comes later is sent to
+    /// the screen.
+    fn begin(
+        path: PathBuf,
+        options: &Options,
+        library: &Library,
+        sender: Sender,
+    ) -> Result<Self, CliError> {
         // First whatever else may fail: a file left behind would be in the way of the next try.
         let mut start = of_options(options);
         start.extend(found(library));
@@ -136,8 +150,13 @@ impl ScreenRecord {
                 error,
             },
         })?;
+        let name = path.to_string_lossy().into_owned();
+        let on_failure = move |error: &io::Error| {
+            let reason = format!("{name}: the record ends here: {error}");
+            sender.send(Message::Worker(WorkerEvent::Refused(reason)));
+        };
         Ok(Self {
-            writer: RecordWriter::start(path.clone(), file),
+            writer: RecordWriter::start(path.clone(), file, Arc::new(on_failure)),
             path,
             recorder: Recorder::new(&start),
         })

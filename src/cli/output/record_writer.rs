@@ -12,11 +12,9 @@ use std::time::Duration;
 const PATIENCE: Duration = Duration::from_millis(1500);
 
 /// Writes the file. Dropped, as by a panic, it waits for the last lines too: they tell most.
-#[derive(Debug)]
 pub(crate) struct RecordWriter(Option<RecordSink>);
 
 /// Where lines go.
-#[derive(Debug)]
 enum RecordSink {
     /// To the thread, which returns the first error.
     Thread(Sender<String>, Receiver<io::Result<()>>),
@@ -25,7 +23,6 @@ enum RecordSink {
 }
 
 /// The file.
-#[derive(Debug)]
 struct RecordFile {
     /// Its path.
     path: PathBuf,
@@ -33,26 +30,45 @@ struct RecordFile {
     file: Arc<File>,
     /// Whether anything has been written.
     begun: bool,
+    /// The bytes of the whole lines.
+    length: u64,
+    /// Called with the first error, at once.
+    on_failure: OnFailure,
     /// The error that ended it.
     failed: io::Result<()>,
 }
 
+/// Is told of the error that ends a record, on whatever thread writes it.
+pub(crate) type OnFailure = Arc<dyn Fn(&io::Error) + Send + Sync>;
+
 impl RecordFile {
-    fn new(path: PathBuf, file: Arc<File>) -> Self {
-        let failed = Ok(());
+    fn new(path: PathBuf, file: Arc<File>, on_failure: OnFailure) -> Self {
         Self {
             path,
             file,
             begun: false,
-            failed,
+            length: 0,
+            on_failure,
+            failed: Ok(()),
         }
     }
 
-    /// Appends lines. After the first error nothing more is written: the record ends without a gap.
+    /// Appends lines. After the first error nothing more is written: the record ends after a whole line, without a gap.
     fn write(&mut self, lines: &str) {
-        self.begun |= !lines.is_empty();
-        if self.failed.is_ok() {
-            self.failed = self.file.as_ref().write_all(lines.as_bytes());
+        for line in lines.split_inclusive('\n') {
+            self.begun = true;
+            if self.failed.is_err() {
+                return;
+            }
+            self.failed = self.file.as_ref().write_all(line.as_bytes());
+            match &self.failed {
+                Ok(()) => self.length += line.len() as u64,
+                Err(error) => {
+                    // A line that is cut would be an error of the script. At worst it stays.
+                    let _ = self.file.set_len(self.length);
+                    (self.on_failure)(error);
+                }
+            }
         }
     }
 
@@ -67,12 +83,12 @@ impl RecordFile {
 }
 
 impl RecordWriter {
-    /// Writes to a file that is open.
-    pub(crate) fn start(path: PathBuf, file: File) -> Self {
+    /// Writes to a file that is open and empty.
+    pub(crate) fn start(path: PathBuf, file: File, on_failure: OnFailure) -> Self {
         let file = Arc::new(file);
         let (lines, given) = channel::<String>();
         let (done, ended) = channel();
-        let mut own = RecordFile::new(path.clone(), Arc::clone(&file));
+        let mut own = RecordFile::new(path.clone(), Arc::clone(&file), Arc::clone(&on_failure));
         let thread = Builder::new().spawn(move || {
             for lines in given {
                 own.write(&lines);
@@ -82,7 +98,9 @@ impl RecordWriter {
         });
         match thread {
             Ok(_) => Self(Some(RecordSink::Thread(lines, ended))),
-            Err(_) => Self(Some(RecordSink::Here(RecordFile::new(path, file)))),
+            Err(_) => Self(Some(RecordSink::Here(RecordFile::new(
+                path, file, on_failure,
+            )))),
         }
     }
 

@@ -40,7 +40,6 @@ mod outcome;
 
 mod event_loop;
 
-use crate::tui::runtime::mailbox;
 use std::io;
 use std::sync::Arc;
 
@@ -51,9 +50,11 @@ pub use settings::TerminalSettings;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::runtime::World;
+use crate::tui::runtime::mailbox::{Mailbox, Sender};
 
 /// Runs the program until it ends. The terminal is left as it was, after an error, a signal and a panic too, and
-/// unsaved work is in the journal wherever the program may not come back. `first` is sent to it at its start; `watch` is called with each input.
+/// unsaved work is in the journal wherever the program may not come back. `first` is sent to it at its start, and later what
+/// comes through the mailbox; `watch` is called with what is recorded.
 ///
 /// # Errors
 /// Where there is no terminal, or it cannot be read or written.
@@ -62,9 +63,9 @@ pub fn run(
     first: Option<Message>,
     world: World,
     settings: &TerminalSettings,
+    (sender, mailbox): (Sender, Mailbox),
     watch: &mut dyn FnMut(SessionEvent<'_>),
 ) -> io::Result<Outcome> {
-    let (sender, mailbox) = mailbox::new()?;
     let world = world.with_workers(Arc::new(move |event| sender.send(Message::Worker(event))));
     event_loop::run(app, first, world, settings, mailbox, watch)
 }

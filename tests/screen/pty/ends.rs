@@ -5,7 +5,7 @@ use std::time::Duration;
 use rustix::process::Signal;
 use taxel::storage::{Library, Orphan};
 use taxel::tui::app::state::{App, Options};
-use taxel::tui::runtime::World;
+use taxel::tui::runtime::{World, mailbox};
 use taxel::tui::terminal::input::Input;
 use taxel::tui::terminal::settings::{Flags, TerminalSettings};
 use taxel::tui::terminal::{self, SessionEvent};
@@ -174,7 +174,8 @@ fn panics() {
     let settings = TerminalSettings::from_environment(std::env::var_os, &Flags::default());
     let app = App::new(&Options::plain(true));
     let world = World::scratch().expect("a folder");
-    let outcome = terminal::run(app, None, world, &settings, &mut |event| {
+    let mail = mailbox::new().expect("a mailbox");
+    let outcome = terminal::run(app, None, world, &settings, mail, &mut |event| {
         assert!(
             !matches!(event, SessionEvent::Input(Input::Key(_))),
             "on purpose"

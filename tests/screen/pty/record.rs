@@ -200,9 +200,34 @@ fn keys_go_on_while_a_hanging_disk_takes_the_record() {
             program.shows("the record ends early: the disk does not answer");
             program.until("its end", |program| program.state() == 'Z');
             hanging.end();
-            program.ends_well(0);
+            program.ends_well(1);
         }
     }
+}
+
+/// A disk that is full ends the record after a whole line, which is said at once, and the exit status tells it.
+#[test]
+fn a_full_disk_ends_a_record_after_a_whole_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let record = folder.path().join("record.taxel");
+    // A limit in blocks of at least 512 bytes stands for the disk.
+    let command = format!(
+        "trap '' XFSZ; ulimit -f 4; exec '{TAXEL}' --record '{}'",
+        record.display()
+    );
+    let mut program = Program::started(&Start {
+        command: &["sh", "-c", &command],
+        ..Start::default()
+    });
+    program.types(&b"\x1b[C".repeat(400));
+    program.shows("the record ends here: File too large");
+    program.types(b"q");
+    program.shows("the record ends early: File too large");
+    program.ends_well(1);
+    let whole = fs::read_to_string(&record).expect("a record");
+    assert!(whole.ends_with("\nKeys <Right>\n"), "{whole}");
+    let output = replayed(&format!("{whole}Screen\n"), folder.path());
+    assert!(output.status.success(), "{output:?}");
 }
 
 /// A file that is there is not replaced; a record of nothing leaves none.
