@@ -265,10 +265,6 @@ impl FrameRecorder {
     fn draft(&self) -> DescriptionDraft {
         DescriptionDraft {
             path: self.path.clone(),
-            existing: match self.names {
-                Names::Waiting(..) => self.existing,
-                _ => Existing::Replaced,
-            },
             metadata: self.metadata.clone(),
         }
     }
@@ -277,7 +273,7 @@ impl FrameRecorder {
     /// name already: it is to be given its own at once.
     pub(crate) fn take_description(&mut self, file: FinishedFile) -> Option<FinishedFile> {
         match &mut self.names {
-            Names::Waiting(_, description) => *description = file,
+            Names::Waiting(_, description) => *description = file.with_existing(self.existing),
             Names::Given => return Some(file),
             Names::Refused => {}
         }
@@ -490,17 +486,17 @@ impl FrameRecorder {
 #[derive(Debug)]
 pub(crate) struct DescriptionDraft {
     path: PathBuf,
-    existing: Existing,
     metadata: RecordingMetadata,
 }
 
 impl DescriptionDraft {
-    /// Writes it, on disk but without its name.
+    /// Writes it, on disk but without its name. What lies under that name does not matter yet: the array may get its own
+    /// meanwhile, and the description before this one with it.
     ///
     /// # Errors
     /// What the system reports.
     pub(crate) fn prepare(&self) -> Result<FinishedFile, RecorderError> {
-        prepared(&self.path, self.existing, &self.metadata)
+        prepared(&self.path, Existing::Replaced, &self.metadata)
     }
 }
 
@@ -593,6 +589,7 @@ pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, Strin
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::recording::FrameMark;
 
     #[test]
     fn an_error_of_a_sync_is_not_lost() {
@@ -601,6 +598,59 @@ mod tests {
         syncer.last = Instant::now().checked_sub(SYNCED).expect("later than that");
         assert!(syncer.tick().is_ok(), "it does not wait");
         assert!(syncer.end().is_err());
+    }
+
+    /// The recording gets its names with the first frame, at any time while a description of it is being written.
+    #[test]
+    fn a_description_is_written_while_the_first_frame_comes() {
+        for comes_first in [true, false] {
+            let folder = tempfile::tempdir().expect("a folder");
+            let path = folder.path().join("a.npy");
+            let metadata = RecordingMetadata::default();
+            let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
+            let mut recorder = recorder.expect("begun");
+            let marks = vec![FrameMark {
+                number: 7,
+                time: None,
+            }];
+            let draft = recorder.set_view(RecordedView {
+                marks: marks.clone(),
+                ..RecordedView::default()
+            });
+            let add = |recorder: &mut FrameRecorder| {
+                recorder.add(&Frame::new(1, 1), None).expect("recorded");
+            };
+            let prepare = || draft.prepare().expect("on the disk");
+            let file = if comes_first {
+                add(&mut recorder);
+                prepare()
+            } else {
+                let file = prepare();
+                add(&mut recorder);
+                file
+            };
+            let file = recorder.take_description(file).expect("to be named");
+            name_description(file).expect("named");
+            let beside = description_beside(&path).expect("there").expect("read");
+            assert_eq!(beside.marks, marks);
+        }
+    }
+
+    #[test]
+    fn what_others_have_put_there_is_not_replaced_by_a_later_description() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let metadata = RecordingMetadata::default();
+        let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
+        let mut recorder = recorder.expect("begun");
+        let beside = path.with_extension("json");
+        std::fs::write(&beside, "mine").expect("written");
+        let file = recorder.set_view(RecordedView::default()).prepare();
+        let named = recorder.take_description(file.expect("on the disk"));
+        assert!(named.is_none(), "it waits for the first frame");
+        let added = recorder.add(&Frame::new(1, 1), None);
+        assert!(matches!(added, Err(RecorderError::Exists { .. })));
+        assert_eq!(std::fs::read_to_string(&beside).expect("read"), "mine");
     }
 
     #[test]

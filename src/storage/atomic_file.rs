@@ -154,6 +154,12 @@ impl FinishedFile {
         &self.path
     }
 
+    /// The same file, with what is to become of one that has its name by then.
+    #[must_use]
+    pub fn with_existing(self, existing: Existing) -> Self {
+        Self { existing, ..self }
+    }
+
     /// Gives the file its name and syncs the folder.
     ///
     /// # Errors
