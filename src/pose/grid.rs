@@ -14,7 +14,7 @@ use crate::parameter::{Parameter, ParameterError};
 use crate::pose::axis::{Anchor, Axis, Pose, PoseIndex, Ranges};
 use crate::pose::boundary::Boundary;
 use crate::pose::placed::{Placed, centre};
-use crate::pose::range::{DecimalRange, RangeError};
+use crate::pose::range::DecimalRange;
 use crate::sensor::Sensor;
 use crate::source::Source;
 
@@ -312,9 +312,12 @@ pub enum GridError {
     /// A range that leaves that of its parameter.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// A number that is not a value of a range.
-    #[error(transparent)]
-    Range(#[from] RangeError),
+    /// A number that no range can have.
+    #[error("{value} has too many digits for a range")]
+    Digits {
+        /// The number.
+        value: f64,
+    },
     /// Zooms of a figure.
     #[error("zoom_x, zoom_y: a {noun} has none, only pictures have")]
     Zoom {

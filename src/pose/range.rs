@@ -89,22 +89,18 @@ impl DecimalRange {
         scaled(self.step, self.places)
     }
 
-    /// The range of one number, rounded to some decimals.
-    ///
-    /// # Errors
-    /// [`RangeError::Digits`] if it has more digits than are exact, or is not finite.
+    /// The range of one number, rounded to some decimals; None if it has more digits than are exact, or is not finite.
     #[cfg(feature = "recognition")]
-    pub(crate) fn rounded(value: f64, places: u32) -> Result<Self, RangeError> {
+    pub(crate) fn rounded(value: f64, places: u32) -> Option<Self> {
         #[expect(clippy::cast_precision_loss, reason = "at most 2^53")]
         let (one, most) = (10_u64.pow(places) as f64, MAX_UNITS as f64);
         let units = libm::round(value * one);
         if units.is_nan() || units.abs() > most {
-            let text = shortened(&value.to_string());
-            return Err(RangeError::Digits { text });
+            return None;
         }
         #[expect(clippy::cast_possible_truncation, reason = "a whole number below 2^53")]
         let start = units as i64;
-        Ok(Self::from_units(start, 1, places, 1))
+        Some(Self::from_units(start, 1, places, 1))
     }
 
     /// The values from this range's first one on to below the next unit, in steps that divide a unit into `parts`: a
@@ -375,11 +371,10 @@ mod tests {
             (-1e-12, "0"),
             (64.0, "64"),
         ] {
-            assert_eq!(DecimalRange::rounded(value, 9), expected.parse());
+            assert_eq!(DecimalRange::rounded(value, 9), expected.parse().ok());
         }
         for odd in [f64::NAN, f64::INFINITY, 1e6] {
-            let refused = DecimalRange::rounded(odd, 9);
-            assert!(matches!(refused, Err(RangeError::Digits { .. })), "{odd}");
+            assert_eq!(DecimalRange::rounded(odd, 9), None, "{odd}");
         }
     }
 }

@@ -7,7 +7,7 @@
 use crate::figure::Figure;
 use crate::parameter::Parameter;
 use crate::parameter::number::to_decimals;
-use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, PoseGrid, smallest_sensor};
+use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, smallest_sensor};
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, NamedShape, check_shapes, share};
 use crate::recognition::sets::CellPositions;
@@ -194,7 +194,7 @@ impl Separation {
         source: &Source,
         scale: f64,
         threshold: f64,
-    ) -> Result<Option<PoseGrid>, crate::pose::GridError> {
+    ) -> Result<Option<PoseGrid>, GridError> {
         let mut given = GivenRanges::default();
         given[Axis::Angle] = Some(self.angles);
         let source = match source {
@@ -213,7 +213,8 @@ impl Separation {
                     }
                     // The error of a zoom out of range names it.
                     Sensor::LARGEST.check(axis.parameter(), zoom)?;
-                    given[axis] = Some(DecimalRange::rounded(zoom, 9)?);
+                    let rounded = DecimalRange::rounded(zoom, 9);
+                    given[axis] = Some(rounded.ok_or(GridError::Digits { value: zoom })?);
                 }
                 source.clone()
             }
@@ -343,7 +344,7 @@ impl Separation {
 }
 
 /// A figure with every length multiplied; None if one is longer than the largest sensor.
-fn enlarged(figure: &Figure, scale: f64) -> Result<Option<Figure>, crate::pose::GridError> {
+fn enlarged(figure: &Figure, scale: f64) -> Result<Option<Figure>, GridError> {
     let sensor = Sensor::LARGEST;
     let mut scaled = *figure;
     for parameter in [Parameter::X0, Parameter::Y0, Parameter::Angle] {

@@ -56,17 +56,20 @@ impl RecognitionRate {
     }
 
     /// The rate of all shapes, each with its weight.
-    fn of(shapes: impl Iterator<Item = (u32, ShapeRate)> + Clone) -> Self {
-        let sum = |of: fn(&ShapeRate) -> u64| shapes.clone().map(|(_, own)| of(&own)).sum();
+    fn of(shapes: &[(u32, ShapeRate)]) -> Self {
+        let sum = |of: fn(&ShapeRate) -> u64| shapes.iter().map(|(_, own)| of(own)).sum();
         let weighted = |of: fn(&ShapeRate) -> u64| -> u128 {
-            let all = shapes.clone();
-            all.map(|(weight, own)| u128::from(weight) * u128::from(of(&own)))
-                .sum()
+            let products = shapes
+                .iter()
+                .map(|(weight, own)| u128::from(*weight) * u128::from(of(own)));
+            products.sum()
         };
         let all = weighted(|own| own.touches);
         let squared = |weight: u32| f64::from(weight) * f64::from(weight);
-        let variances = (shapes.clone()).map(|(weight, own)| squared(weight) * own.variance());
-        let claimed = (shapes.clone()).map(|(weight, own)| f64::from(weight) * own.claimed);
+        let variances = (shapes.iter()).map(|(weight, own)| squared(*weight) * own.variance());
+        let claimed = shapes
+            .iter()
+            .map(|(weight, own)| f64::from(*weight) * own.claimed);
         let part = share(1, all);
         Self {
             touches: sum(|own| own.touches),
@@ -286,7 +289,8 @@ impl Model {
             }
         }
         let weights = self.shapes().iter().map(|shape| shape.weight);
-        (!stopped.into_inner()).then(|| RecognitionRate::of(weights.zip(rates.iter().copied())))
+        let rates: Vec<(u32, ShapeRate)> = weights.zip(rates).collect();
+        (!stopped.into_inner()).then(|| RecognitionRate::of(&rates))
     }
 
     /// A key in a random place, with random flips.
