@@ -23,6 +23,8 @@ pub enum ExportKind {
         poses: bool,
         /// Whether the page has a drawing.
         drawing: bool,
+        /// Whether a CSV file holds the table of the page.
+        table: bool,
     },
     /// The error of a set against size.
     Curve,
@@ -31,16 +33,18 @@ pub enum ExportKind {
 impl ExportKind {
     /// What the results of a sweep can be written as from the page that is open.
     pub fn of(results: &Results) -> Self {
+        let page = pages::row(results.page());
         Self::Sweep {
             poses: results.sweep().complete(),
-            drawing: pages::row(results.page()).drawing.is_some(),
+            drawing: page.drawing.is_some(),
+            table: page.table.is_some(),
         }
     }
 
     /// What a name can end in.
     fn endings(self) -> Vec<&'static str> {
         match self {
-            Self::Sweep { poses, drawing } => {
+            Self::Sweep { poses, drawing, .. } => {
                 let poses: &[&str] = if poses { &[".npy"] } else { &[] };
                 let drawings: &[&str] = if drawing { &[".svg", ".png"] } else { &[] };
                 [&[".csv", ".jsonl", ".npz"], poses, drawings].concat()
@@ -115,10 +119,14 @@ impl ExportDialog {
 impl LinePrompt for ExportDialog {
     const CONTEXT: Context = Context::Export;
 
-    /// A page without a drawing looks as if its own numbers were written.
+    /// The list of imprints may be filtered, and still all are written.
     fn label(&self) -> &'static str {
         match self.what {
-            ExportKind::Sweep { drawing: false, .. } => "Export all imprints to: ",
+            ExportKind::Sweep {
+                drawing: false,
+                table: false,
+                ..
+            } => "Export all imprints to: ",
             _ => "Export to: ",
         }
     }
@@ -129,7 +137,13 @@ impl LinePrompt for ExportDialog {
 
     /// What a name can end in.
     fn behind(&self, _columns: u16) -> Cow<'_, str> {
-        format!("   ({})", self.what.endings().join(" ")).into()
+        let endings = self.what.endings();
+        if let (ExportKind::Sweep { table: true, .. }, [table, others @ ..]) =
+            (self.what, &endings[..])
+        {
+            return format!("   ({table} page; {} imprints)", others.join(" ")).into();
+        }
+        format!("   ({})", endings.join(" ")).into()
     }
 }
 
@@ -142,6 +156,7 @@ mod tests {
         let all = ExportKind::Sweep {
             poses: true,
             drawing: true,
+            table: false,
         };
         let name = |text: &str| ExportDialog::new(text, all).name();
         for good in ["a.csv", " a/b.jsonl ", "./c.npz", "poses.npy", "map.SVG"] {

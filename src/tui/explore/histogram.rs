@@ -32,10 +32,33 @@ pub static PAGE: ResultsPage = ResultsPage {
     context: Context::Histogram,
     sifted: false,
     drawing: None,
+    table: Some(table),
     draw,
     click: |_, _, _| None,
     update: choose_descriptor,
 };
+
+/// The intervals of a histogram that fits on a page. The axis and what has no value have a line each.
+fn histogram(results: &Results, page: Rect) -> Histogram {
+    let room = usize::from(page.height.saturating_sub(3));
+    let (atlas, values) = (&results.sweep().atlas, results.values());
+    Histogram::of(atlas, results.feature(), values, room.max(1))
+}
+
+/// The bars as CSV: each interval from its start to before its end, the last one to its end; then the poses without a value.
+fn table(results: &Results, page: Rect) -> String {
+    let (histogram, key) = (histogram(results, page), &results.feature().key);
+    let decimals = histogram.decimals();
+    let mut text = "descriptor,from,to,poses\n".to_owned();
+    for (bin, poses) in histogram.poses.iter().enumerate() {
+        let (from, to) = (histogram.from(bin), histogram.from(bin + 1));
+        text += &format!("{key},{from:.decimals$},{to:.decimals$},{poses}\n");
+    }
+    if histogram.without > 0 {
+        text += &format!("{key},,,{}\n", histogram.without);
+    }
+    text
+}
 
 /// Draws the page: the descriptor with its unit, its numbers, and a bar for each bin that there is a line for.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
@@ -53,9 +76,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     };
     let title = format!("{}: {}{unit}", feature.key, feature.descriptor.name);
     write::line(buffer, page, theme, [(title.as_str(), Role::Title)]);
-    // The axis and what has no value have a line each.
-    let room = usize::from(page.height.saturating_sub(3));
-    let histogram = Histogram::of(&result.atlas, feature, results.values(), room.max(1));
+    let histogram = histogram(results, page);
     let facts = format!(
         "mean {}  sd {}  min {}  max {}  no value: {}",
         number(statistic.mean),

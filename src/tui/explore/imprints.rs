@@ -42,6 +42,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     context: Context::Imprints,
     sifted: true,
     drawing: None,
+    table: None,
     draw,
     click,
     update,

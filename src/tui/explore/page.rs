@@ -3,11 +3,13 @@
 //! A page has no state of its own: [`Results`] holds the chosen descriptor, row and pose, so that all pages agree on
 //! them.
 
+use std::path::Path;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::explore::drawing::PageDrawing;
+use crate::tui::explore::drawing::{PageDrawing, drawn_format};
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
@@ -26,12 +28,27 @@ pub struct ResultsPage {
     pub sifted: bool,
     /// The same for a file: None for a page that is a table, and where there is nothing to draw.
     pub drawing: Option<fn(&Results) -> Option<PageDrawing>>,
+    /// Its numbers for a CSV file: None for the list of imprints, whose file has all of them, and for drawings.
+    pub table: Option<fn(&Results, Rect) -> String>,
     /// Draws it. Returns where the cursor is, None if the page has none.
     pub draw: fn(&Results, &Theme, &mut Buffer, Rect) -> Option<Position>,
     /// What a click at a position means.
     pub click: fn(&Results, Rect, Position) -> Option<Message>,
     /// Handles the messages that mean something else on each page: to scroll, to select a row, to move a cursor.
     pub update: fn(&mut Results, &Message, Rect),
+}
+
+impl ResultsPage {
+    /// Whether a file of that name holds what this page shows: a drawing on any page, which may be refused, or its table.
+    pub fn is_own_file(&self, name: &str) -> bool {
+        drawn_format(name).is_some() || (self.table.is_some() && is_csv(name))
+    }
+}
+
+/// Whether a name is that of a CSV file.
+pub(in crate::tui) fn is_csv(name: &str) -> bool {
+    let ending = Path::new(name).extension();
+    ending.is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
 }
 
 /// The update of a page whose rows are descriptors.

@@ -36,6 +36,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     context: Context::Scatter,
     sifted: true,
     drawing: Some(drawing),
+    table: None,
     draw,
     click,
     update,

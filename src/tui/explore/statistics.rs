@@ -29,6 +29,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     context: Context::Statistics,
     sifted: false,
     drawing: None,
+    table: Some(table),
     draw,
     click: |results, page, at| {
         let row = StatisticsTable::of(page, results).row(at)?;
@@ -36,6 +37,21 @@ pub static PAGE: ResultsPage = ResultsPage {
     },
     update,
 };
+
+/// The statistics of all descriptors as CSV, with the columns of the summary of a sweep.
+fn table(results: &Results, _page: Rect) -> String {
+    let keys = STATISTIC_COLUMNS.iter().map(|column| column.key);
+    let mut text = format!("descriptor,{}\n", keys.collect::<Vec<_>>().join(","));
+    for statistic in &results.sweep().statistics {
+        text += &statistic.feature.key;
+        for column in STATISTIC_COLUMNS {
+            let value = (column.value)(statistic);
+            text += &value.map_or_else(|| ",".to_owned(), |value| format!(",{value}"));
+        }
+        text.push('\n');
+    }
+    text
+}
 
 /// Scrolls the columns; rows are descriptors.
 fn update(results: &mut Results, message: &Message, page: Rect) {

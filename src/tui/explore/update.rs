@@ -4,8 +4,6 @@
 //! Messages that mean the same on all pages are handled here: the page, the descriptor, the order, the map's angle and
 //! zoom. Scrolling and selecting are left to the page's own row in [`crate::tui::explore::pages`].
 
-use ratatui::layout::Rect;
-
 use crate::formats::value::{counted, grouped};
 use crate::storage::{Existing, is_poses};
 use crate::touch::Plane;
@@ -13,7 +11,6 @@ use crate::tui::app::change::{change, compare_with, from_prompt, inform, refuse}
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
 use crate::tui::explore::drawing::drawn_format;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
@@ -24,8 +21,7 @@ use crate::tui::explore::page::ResultsPage;
 use crate::tui::explore::pages;
 use crate::tui::explore::prompts::mark_dialog;
 use crate::tui::explore::results::Results;
-use crate::tui::explore::view::ResultPanes;
-use crate::tui::explore::work::act;
+use crate::tui::explore::work::{act, is_own_file, page_area};
 use crate::tui::keys::action;
 use crate::tui::recognise;
 use crate::tui::recognise::message::RecogniseMessage;
@@ -80,8 +76,7 @@ pub(crate) fn in_results(
             if let Message::Explore(asked) = &message {
                 look(app, &mut results, asked);
             }
-            let area = app.panes().map(|panes| panes.area(results.slot()));
-            let page = area.map_or(Rect::default(), |area| ResultPanes::of(area).page);
+            let page = page_area(app, &results);
             (pages::row(results.page()).update)(&mut results, &message, page);
         }
     }
@@ -100,15 +95,15 @@ fn compare(app: &mut App, results: Box<Results>) {
     }
 }
 
-/// The prompt for a file. It proposes the page's drawing where it has one, otherwise the table of imprints.
+/// The prompt for a file. It proposes the page's drawing or table where it has one, otherwise the table of imprints.
 fn export_of(results: &Results) -> ExportDialog {
     // A path has other uses for a slash.
     let name = name_of(results.sweep().grid.source()).replace('/', "-");
     let row = pages::row(results.page());
-    let name = if row.drawing.is_some() {
-        format!("{name}-{}.svg", row.title)
-    } else {
-        format!("{name}.csv")
+    let name = match (row.drawing, row.table) {
+        (Some(_), _) => format!("{name}-{}.svg", row.title),
+        (_, Some(_)) => format!("{name}-{}.csv", row.title),
+        _ => format!("{name}.csv"),
     };
     ExportDialog::proposing(&name, ExportKind::of(results))
 }
@@ -249,7 +244,7 @@ pub(crate) fn in_export(
             }
             Ok(name) => match missing(app, &name) {
                 // The export of a sweep shows its progress, and opens this prompt again itself.
-                None if drawn_format(&name).is_some() => {
+                None if is_own_file(app, &name) => {
                     return from_prompt(app, Dialog::Export(dialog), |app| {
                         act(app, ExploreMessage::Write(name, Existing::Kept))
                     });

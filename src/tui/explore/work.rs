@@ -3,12 +3,14 @@
 //! ```text
 //! Open -> form of ranges -> Start -> Running -> Swept -> results        Stop: the results so far
 //! results -> name of a file -> Running -> Written                       Stop: no file
-//! results -> name of a drawing -> a request about files
+//! results -> name of a drawing or of the page's table -> a request about files
 //! ```
 //! Each piece of work has a number, and its events carry it. Events of work that is no longer waited for are dropped.
 
 use std::sync::Arc;
 use std::time::Duration;
+
+use ratatui::layout::Rect;
 
 use crate::formats::value::{counted, grouped};
 use crate::picture::Picture;
@@ -18,6 +20,7 @@ use crate::storage::{Existing, is_poses};
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
+use crate::tui::app::page::Page;
 use crate::tui::app::state::{App, Mode, RunState};
 use crate::tui::explore::angles::curve::AngleCurve;
 use crate::tui::explore::drawing::drawn_format;
@@ -27,6 +30,7 @@ use crate::tui::explore::pages;
 use crate::tui::explore::ranges::state::RangesForm;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::running::{Running, WorkKind};
+use crate::tui::explore::view::ResultPanes;
 use crate::tui::runtime::effect::{Effect, FileRequest, Work};
 
 /// Handles what a key, a command or an answered question asks for.
@@ -50,6 +54,12 @@ pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
                 }
             }
         }
+        ExploreMessage::Write(name, existing) if is_own_file(app, &name) => {
+            let results = app.results_below()?;
+            let table = pages::row(results.page()).table?;
+            let content = table(results, page_area(app, results)).into_bytes();
+            Some(Effect::File(FileRequest::Write(name, content, existing)))
+        }
         ExploreMessage::Write(name, existing) => {
             let found = Arc::clone(app.results_below()?.findings());
             let poses = is_poses(&name).then(|| found.sweep.grid.poses());
@@ -58,6 +68,18 @@ pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
         }
         _ => None,
     }
+}
+
+/// Where the pages of the results are on the screen; nothing if there is no room.
+pub(super) fn page_area(app: &App, results: &Results) -> Rect {
+    let area = app.panes().map(|panes| panes.area(results.slot()));
+    area.map_or(Rect::default(), |area| ResultPanes::of(area).page)
+}
+
+/// Whether a file of that name holds what the open page shows, rather than all imprints.
+pub(super) fn is_own_file(app: &App, name: &str) -> bool {
+    let results = app.results_below();
+    results.is_some_and(|results| pages::row(results.page()).is_own_file(name))
 }
 
 /// Opens the last results if they are of the shape on the matrix, otherwise the form.

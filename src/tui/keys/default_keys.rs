@@ -201,7 +201,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('m') => MARK, Char('\'') => JUMP]
             "" "mark the selection with a letter; go to a mark";
         [Char('x') => EXPORT]
-            "export" "write .csv .jsonl .npz imprints, .npy poses, .svg .png";
+            "export" "write all imprints, or this page's numbers or drawing";
         [Char('e') => RANGES] "ranges" "explore other ranges";
         [Char('?') => HELP] "help" "all keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]

@@ -464,13 +464,13 @@ mod tests {
             .expect("an imprint")
     }
 
-    fn found() -> Result<Box<Look>, String> {
-        Ok(Box::new(Look {
+    fn found() -> Box<Look> {
+        Box::new(Look {
             nearest: None,
             pose: None,
             poses: Vec::new(),
             refused: None,
-        }))
+        })
     }
 
     #[test]
@@ -482,10 +482,10 @@ mod tests {
         assert!(page.step_look(3).is_none(), "it is in progress");
         with_model(&mut page, ModelChoice::Shipped, 4);
         assert!(matches!(page.step_look(5), Some(LookStep::Begin(_))));
-        assert_eq!(page.take_look(2, found()), None);
+        assert_eq!(page.take_look(2, Ok(found())), None);
         assert!(page.look().is_none(), "that was another model");
         assert!(page.step_look(6).is_none(), "the new one is in progress");
-        assert_eq!(page.take_look(5, found()), None);
+        assert_eq!(page.take_look(5, Ok(found())), None);
         assert!(page.look().is_some());
     }
 
@@ -502,7 +502,7 @@ mod tests {
         assert!(page.step_look(3).is_none(), "it was stopped");
         // What a stopped search found is a part, also where the imprint is back.
         page.show(touch());
-        assert_eq!(page.take_look(2, found()), None);
+        assert_eq!(page.take_look(2, Ok(found())), None);
         assert!(page.look().is_none());
         assert!(matches!(page.step_look(3), Some(LookStep::Begin(_))));
     }

@@ -311,7 +311,7 @@ mod tests {
             let WorkerEvent::Live(7, LiveEvent::Arrived(batch)) = event else {
                 panic!("{event:?}");
             };
-            Some(batch.frames.first()?.values()[0].into())
+            Some(batch.frames.first()?.values()[0])
         };
         events.iter().map(number).collect()
     }
@@ -346,7 +346,7 @@ mod tests {
         let source = watched.open(&access).expect("it is there");
         let batches = watched.next_of(&source, 2);
         let firsts = batches.iter().filter_map(|batch| batch.frames.first());
-        let firsts: Vec<f64> = firsts.map(|frame| frame.values()[0].into()).collect();
+        let firsts: Vec<f64> = firsts.map(|frame| frame.values()[0]).collect();
         assert_eq!((firsts, watched.taken), (vec![3.0, 4.0], 5));
     }
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use serde_json::Value;
 use taxel::tui::app::message::Message;
 use taxel::tui::script::Session;
 
@@ -57,6 +58,58 @@ fn files_are_those_of_the_command_line() {
             assert!(read(&own) == read(&other), "{name}");
         }
     }
+}
+
+/// The tables of two pages, with the numbers of the command line's summary and of the screen.
+#[test]
+fn the_pages_of_statistics_and_the_histogram_write_their_own_table() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let mut session = session("fp<Enter>");
+    press(&mut session, SHORT);
+    press(&mut session, "2x");
+    let offered = "Export to: pentagon-statistics.csv   (.csv page; .jsonl .npz .npy imprints)";
+    shows(&session, &[offered]);
+    press(&mut session, "<Esc>");
+    let path = folder.path().join("s.csv");
+    export(&mut session, &path);
+    shows(&session, &["written: "]);
+    let statistics = std::fs::read_to_string(&path).expect("it is there");
+    let mut lines = statistics.lines();
+    let head = "descriptor,min,mean,max,sd,cv,ideal,sd_position,sd_angle";
+    assert_eq!(lines.next(), Some(head));
+    let summary = Command::new(env!("CARGO_BIN_EXE_taxel"))
+        .args("sweep pentagon --x0 5:5.9:0.1 --y0 5:5.9:0.1 --angle 0:50:10 --json".split(' '))
+        .env("TAXEL_CONFIG", "/dev/null")
+        .output()
+        .expect("it runs");
+    let summary: Value = serde_json::from_slice(&summary.stdout).expect("JSON");
+    let descriptors = summary["descriptors"].as_object().expect("an object");
+    assert_eq!(lines.clone().count(), descriptors.len());
+    for line in lines {
+        let mut fields = line.split(',');
+        let own = &descriptors[fields.next().expect("a key")];
+        for (field, column) in fields.zip(head.split(',').skip(1)) {
+            assert_eq!(field.parse().ok(), own[column].as_f64(), "{line}: {column}");
+        }
+    }
+    // Another descriptor of the histogram, and what is there is asked about.
+    press(&mut session, "3");
+    export(&mut session, &path);
+    shows(&session, &["already exists. Replace it?"]);
+    press(&mut session, "y");
+    shows(&session, &["written: "]);
+    let histogram = std::fs::read_to_string(&path).expect("it is there");
+    let mut lines = histogram.lines();
+    assert_eq!(lines.next(), Some("descriptor,from,to,poses"));
+    let poses = lines.map(|line| {
+        let (own, poses) = line.rsplit_once(',').expect("four fields");
+        assert!(own.starts_with("na,"), "{line}");
+        poses.parse::<u64>().expect("a number")
+    });
+    assert_eq!(poses.sum::<u64>(), 600, "{histogram}");
+    // All imprints have a name of another form.
+    export(&mut session, &folder.path().join("a.jsonl"));
+    shows(&session, &["written: "]);
 }
 
 #[test]

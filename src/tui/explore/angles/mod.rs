@@ -41,6 +41,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     context: Context::Angles,
     sifted: false,
     drawing: Some(drawing),
+    table: None,
     draw,
     click,
     update: choose_descriptor,
@@ -95,6 +96,15 @@ fn title(results: &Results) -> String {
     text
 }
 
+/// Why there is no curve, in a few words.
+fn without_curve(results: &Results) -> &'static str {
+    match results.angle_curve() {
+        Some(_) => "no pose has a value",
+        None if results.angles_failed() => "the imprints of each angle were not found",
+        None => "computing",
+    }
+}
+
 /// Draws the page. Returns where the mean at the chosen angle is.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let text = title(results);
@@ -105,12 +115,8 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     }
     let spread = spread(results);
     let Some(here) = nearest(results, &spread) else {
-        let text = match results.angle_curve() {
-            Some(_) => "no pose has a value",
-            None if results.angles_failed() => "the imprints of each angle were not found",
-            None => "computing",
-        };
-        write::line(buffer, write::row(page, 1), theme, [(text, Role::Quiet)]);
+        let text = (without_curve(results), Role::Quiet);
+        write::line(buffer, write::row(page, 1), theme, [text]);
         return None;
     };
     if page.height > 1 {

@@ -32,6 +32,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     context: Context::Map,
     sifted: false,
     drawing: Some(view::drawing),
+    table: None,
     draw: view::draw,
     click,
     update,
