@@ -78,7 +78,7 @@ pub(super) fn command() -> Command {
     let mask = option(
         "mask",
         "NAME|FILE",
-        "Imprint whose active taxels are dead, stuck on or off",
+        "Imprint whose active taxels are dead, stuck on or\noff; needs --noise",
     )
     .value_parser(flags::name_or_path())
     .requires("noise");

@@ -68,7 +68,7 @@ pub(super) fn command() -> Command {
     let axes = ["range_scale", "range_pitch", "range_threshold"];
     Command::new("separate")
         .about("Find the sensor that tells the shapes apart")
-        .override_usage("taxel model separate [OPTIONS] [MODEL|FILE.jsonl|NAME]...")
+        .override_usage("taxel model separate [OPTIONS] <--scale|--pitch|--threshold> [MODEL]...")
         .after_help(MODEL_SEPARATE_EXAMPLES)
         .args(shape_set::args(
             "MODEL|FILE.jsonl|NAME",
@@ -111,7 +111,7 @@ fn sizes() -> [Arg; 3] {
         flag(
             "range_scale",
             "scale",
-            "Multiply all lengths by this; default 1",
+            "Multiply all lengths by this; one of --scale,\n--pitch and --threshold is required",
         ),
         flag(
             "range_pitch",
