@@ -229,10 +229,12 @@ pub(crate) const MODEL_TRAIN_EXAMPLES: &str = "\
 A line of JSON is a shape as for 'taxel batch', but with a name and no pose:
   {\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}
   {\"name\":\"ring\",\"picture\":\"washer\"}
-By default, every shape is touched at 100 x 100 positions inside one cell and at
-every whole degree. The sensor is the smallest that holds all shapes, at least
-16 x 16; its size is printed. Poses that the sensor cuts off are refused, since
-a cut imprint depends on the rim. 'taxel merge' puts shards together.
+Of a stored shape only the taxels count, not its pitch and threshold: a taxel is
+one cell. By default, every shape is touched at 100 x 100 positions inside one
+cell and at every whole degree. The sensor is the smallest that holds all
+shapes, at least 16 x 16; its size is printed. Poses that the sensor cuts off
+are refused, since a cut imprint depends on the rim. 'taxel merge' puts shards
+together.
 
 Examples:
   taxel model train parts.jsonl --name parts
@@ -287,9 +289,11 @@ pub(crate) const MODEL_SEPARATE_EXAMPLES: &str = "\
 Trains the set at each scale, which multiplies all lengths, or, if lengths are
 in mm, at each pitch, and prints how many touches even the best classifier names
 wrong. Sizes at which the shapes do not fit on 64 x 64 taxels are left out, and
-standard error says which. --want scans from the smallest size upwards, then in
-tenths of the step before the first size that reaches the error. The error is
-not monotonic, so --want also reports how many larger sizes miss it again.
+standard error says which. With --pitch, a taxel of a stored shape is 1 mm,
+whatever its own pitch; its threshold does not count either. --want scans from
+the smallest size upwards, then in tenths of the step before the first size that
+reaches the error. The error is not monotonic, so --want also reports how many
+larger sizes miss it again.
 
 Examples:
   taxel model separate parts --scale 0.5:2:0.1 --positions 20
