@@ -228,6 +228,10 @@ fn what_the_recording_does_not_say_is_asked_for_and_never_cut() {
         let beyond = format!("{choice} --crop 3,0,3x1");
         refused("u2.npy", &beyond, "the crop reaches beyond");
     }
+    let negative = taxel(&format!("frames {} --crop -1,0,3x3", sample("u2.npy")), "");
+    assert_eq!(negative.status, Some(2));
+    let said = "expected the first column and row, then columns x rows";
+    assert!(negative.stderr.contains(said), "{}", negative.stderr);
     // A listing is about what is left.
     let list = &answered("u2.npy", "--crop 1,1,2x3 --json")[0]["channels"][0];
     let size = ["rows", "columns", "cells"].map(|key| list[key].as_u64());

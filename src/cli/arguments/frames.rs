@@ -156,7 +156,9 @@ pub(crate) fn processing() -> [Arg; 9] {
             "C,R,COLSxROWS",
             "Keep the part that begins in column C and row R",
         )
-        .value_parser(parse_crop),
+        .value_parser(parse_crop)
+        // So that a negative column is refused as a part, not as a flag.
+        .allow_hyphen_values(true),
         text("flip", "AXIS", "Reverse columns (x), rows (y) or both (xy)")
             .value_parser(["x", "y", "xy"])
             .hide_possible_values(true),
