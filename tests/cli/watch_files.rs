@@ -13,7 +13,7 @@ use taxel::storage::Existing;
 
 use super::array::{self, array};
 use super::watch::{lines, sample, started, stream};
-use super::{finish, program, taxel};
+use super::{finish, program, run_in, taxel};
 
 /// Why a command that must fail has failed.
 fn refused(line: &str, input: impl AsRef<[u8]>) -> String {
@@ -485,6 +485,29 @@ fn a_tare_that_does_not_fit_is_said_to_be_left_out() {
     }
 }
 
+/// On Linux a name is bytes, of which not all are UTF-8.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_recording_takes_any_name() {
+    use std::ffi::{OsStr, OsString};
+    use std::os::unix::ffi::OsStrExt;
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join(OsStr::from_bytes(b"a\xffb.NPY"));
+    let (source, target) = (sample("tekscan.asf"), path.as_os_str().to_owned());
+    let line = format!("watch {source} --once --at-least 5 --write");
+    let mut arguments: Vec<OsString> = line.split(' ').map(OsString::from).collect();
+    arguments.push(target);
+    let run = run_in("C.UTF-8", &arguments, b"");
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    assert!(path.is_file());
+    *arguments.last_mut().expect("a name") = "a.csv".into();
+    let run = run_in("C.UTF-8", &arguments, b"");
+    assert_eq!(run.status, Some(2));
+    let said = "expected a name that ends in .npy";
+    assert!(run.stderr.contains(said), "{}", run.stderr);
+}
+
 #[test]
 fn a_channel_whose_rows_and_columns_are_unknown_is_refused() {
     let topics = sample("topics.mcap");
@@ -551,7 +574,7 @@ fn a_recording_without_frames_is_refused_and_not_repeated() {
         let mut words: Vec<&str> = command.split(' ').collect();
         let empty = words.iter_mut().find(|word| **word == "''");
         *empty.expect("there") = "";
-        let run = super::run_in("C.UTF-8", &words, b"");
+        let run = run_in("C.UTF-8", &words, b"");
         assert_eq!(run.status, Some(2), "{run:?}");
         assert!(run.stderr.contains("expected a name or a path"), "{run:?}");
     }

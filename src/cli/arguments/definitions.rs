@@ -15,8 +15,8 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgGroup, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    anchor, force, jobs, json, memory, name, name_or_path, of_sensor, option, parse_name,
-    parse_npy, quiet, range, replace, resume, sensor, sensor_of_imprints, shard, switch, what,
+    anchor, force, jobs, json, memory, name, name_or_path, npy, of_sensor, option, parse_name,
+    quiet, range, replace, resume, sensor, sensor_of_imprints, shard, switch, what,
 };
 use crate::cli::arguments::help::{
     ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
@@ -210,7 +210,7 @@ fn sweep() -> Command {
     let sizes = parameters::figure_parameters()
         .filter(|&parameter| Axis::ALL.iter().all(|axis| axis.parameter() != parameter));
     let poses = option("poses", "FILE.npy", "Write which imprint each pose leaves")
-        .value_parser(parse_npy)
+        .value_parser(npy())
         .conflicts_with("shard");
     Command::new("sweep")
         .about("Find every imprint that a shape can leave")

@@ -4,7 +4,7 @@
 //! A parser here returns its reason as a text; clap puts the flag and the given text before it:
 //! `error: invalid value '7' for '--positions <N>': expected 1, 2, 4, …`.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fmt::Display;
 use std::num::{IntErrorKind, ParseIntError};
 use std::ops::{Bound, RangeBounds};
@@ -20,7 +20,6 @@ use crate::memory::MemorySize;
 use crate::parameter::Parameter;
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, RangeError, Ranges};
 use crate::sensor::SENSOR_PARAMETERS;
-use crate::storage::is_poses;
 use crate::sweep::{Shard, ShardError};
 
 /// A flag without a value, `--NAME`.
@@ -268,20 +267,26 @@ pub(super) fn parse_probability(text: &str) -> Result<f64, &'static str> {
         .ok_or("expected a number from 0 to 1")
 }
 
-/// A file of numbers or of a drawing, by its ending, in capitals or not.
-pub(super) fn parse_report(text: &str) -> Result<PathBuf, &'static str> {
-    let path = PathBuf::from(text);
-    let ending = path.extension().unwrap_or_default();
-    ["csv", "svg", "png"]
-        .iter()
-        .any(|known| ending.eq_ignore_ascii_case(known))
-        .then_some(path)
-        .ok_or("expected a name that ends in .csv, .svg or .png")
+/// A parser of a file of numbers or of a drawing, by its ending.
+pub(super) fn report() -> impl TypedValueParser<Value = PathBuf> {
+    let expected = "expected a name that ends in .csv, .svg or .png";
+    file_of(&["csv", "svg", "png"], expected)
 }
 
-/// A file that numpy reads: all poses of a sweep, or recorded frames.
-pub(super) fn parse_npy(text: &str) -> Result<PathBuf, &'static str> {
-    is_poses(text)
-        .then(|| PathBuf::from(text))
-        .ok_or("expected a name that ends in .npy")
+/// A parser of a file that numpy reads: all poses of a sweep, or recorded frames.
+pub(super) fn npy() -> impl TypedValueParser<Value = PathBuf> {
+    file_of(&["npy"], "expected a name that ends in .npy")
+}
+
+/// A parser of a file with one of these endings, in capitals or not. Its name need not be UTF-8.
+fn file_of(
+    endings: &'static [&'static str],
+    expected: &'static str,
+) -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(move |name| {
+        let path = PathBuf::from(name);
+        let is_known = |ending: &OsStr| endings.iter().any(|own| ending.eq_ignore_ascii_case(own));
+        let known = path.extension().is_some_and(is_known);
+        known.then_some(path).ok_or(expected)
+    })
 }

@@ -80,7 +80,7 @@ pub(crate) fn command() -> Command {
         "FILE.npy",
         "Record all frames, for numpy and 'taxel frames'",
     )
-    .value_parser(flags::parse_npy);
+    .value_parser(flags::npy());
     Command::new("watch")
         .about("Show or describe the frames of a sensor, live or played back")
         .after_help(WATCH_EXAMPLES)

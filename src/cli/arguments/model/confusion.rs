@@ -19,7 +19,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 
 use crate::cli::arguments::flags::{
-    self, EvaluationForm, json, option, parse_report, quiet, replace, switch, whole,
+    self, EvaluationForm, json, option, quiet, replace, report, switch, whole,
 };
 use crate::cli::arguments::help::MODEL_CONFUSION_EXAMPLES;
 use crate::cli::arguments::model::{number, seed, which_model};
@@ -167,7 +167,7 @@ fn of_classifiers() -> [Arg; 3] {
 /// `--export`, `--force`, `--json`, `--quiet` and `--csv`. Only a matrix of confusions can be exported.
 fn output() -> [Arg; 5] {
     let export = option("export", "FILE", "Write the matrix as .csv, .svg or .png")
-        .value_parser(parse_report)
+        .value_parser(report())
         .conflicts_with_all(["greedy", "pairs", "test"]);
     let csv = switch("csv", "Print comma-separated values")
         .conflicts_with_all(["json", "greedy", "pairs", "test"]);

@@ -13,8 +13,8 @@ use std::path::PathBuf;
 use clap::{Arg, ArgGroup, ArgMatches, Command};
 
 use crate::cli::arguments::flags::{
-    self, EvaluationForm, jobs, json, option, parse_probability, parse_range, parse_report, quiet,
-    range, replace, switch,
+    self, EvaluationForm, jobs, json, option, parse_probability, parse_range, quiet, range,
+    replace, report, switch,
 };
 use crate::cli::arguments::help::MODEL_SEPARATE_EXAMPLES;
 use crate::cli::arguments::model::shape_set::{self, SetArguments};
@@ -63,7 +63,7 @@ pub(super) fn command() -> Command {
         "FILE",
         "Write the numbers (.csv) or the curves\n(.svg, .png)",
     )
-    .value_parser(parse_report);
+    .value_parser(report());
     let csv = switch("csv", "Print comma-separated values").conflicts_with("json");
     let axes = ["range_scale", "range_pitch", "range_threshold"];
     Command::new("separate")
