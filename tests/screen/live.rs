@@ -587,8 +587,9 @@ fn a_sensor_larger_than_the_screen_is_seen_in_parts() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("tall.npy");
     // The contact is in the middle, and each row has its own value.
-    let value = |row: usize| if row == 30 { 900 } else { row };
-    let values: Vec<f64> = (0..60 * 21).map(|cell| value(cell / 21) as f64).collect();
+    let value = |row: u16| if row == 30 { 900 } else { row };
+    let values = (0..60 * 21).map(|cell| f64::from(value(cell / 21)));
+    let values: Vec<f64> = values.collect();
     std::fs::write(&path, array("(1, 60, 21)", false, &values)).expect("written");
     let mut page = sized(
         (80, 24),

@@ -163,7 +163,7 @@ fn help_is_everywhere() {
             "f?",
             "Radius x",
             "In a form",
-            "change the number by its last decimal",
+            "to the next 0.01 (from 10 on 0.1)",
             "On the matrix",
         ),
         (
