@@ -28,6 +28,10 @@ const RANGED: usize = 1000;
 
 /// The state of the page.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "any of them may be so at the same time"
+)]
 pub struct Live {
     /// What is watched.
     request: Arc<WatchRequest>,

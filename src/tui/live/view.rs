@@ -119,7 +119,7 @@ fn title(live: &Live, window: Option<[String; 2]>) -> Vec<TitlePiece> {
     pieces.extend(of_state(live));
     let window = window.map(|[text, short]| TitlePiece {
         short: Some(format!("  {short}")),
-        ..TitlePiece::new(3, text, Role::Text)
+        ..TitlePiece::new(3, &text, Role::Text)
     });
     pieces.extend(window);
     pieces
@@ -128,7 +128,7 @@ fn title(live: &Live, window: Option<[String; 2]>) -> Vec<TitlePiece> {
 /// Which frame is shown, and of which channel.
 fn of_frame(live: &Live) -> Vec<TitlePiece> {
     let mut pieces = Vec::new();
-    let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, text, role));
+    let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, &text, role));
     let status = live.status();
     let channel = status.channel.as_deref();
     if let Some(name) = channel.and_then(|own| own.name.as_deref())
@@ -153,7 +153,7 @@ fn of_frame(live: &Live) -> Vec<TitlePiece> {
 /// Whether it stays or follows the source, what is shown of it, and what is not as usual.
 fn of_state(live: &Live) -> Vec<TitlePiece> {
     let mut pieces = Vec::new();
-    let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, text, role));
+    let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, &text, role));
     match live.frozen() {
         Some(0) => say(1, "frozen".to_owned(), Role::Focus),
         Some(back) => {
@@ -197,7 +197,7 @@ struct TitlePiece {
 
 impl TitlePiece {
     /// A part after the name of the source.
-    fn new(rank: u8, text: String, role: Role) -> Self {
+    fn new(rank: u8, text: &str, role: Role) -> Self {
         Self {
             text: format!("  {text}"),
             short: None,
