@@ -245,6 +245,7 @@ impl Surroundings {
         let text = match request {
             ModelRequest::Train(asked) => model::train(&asked, shelf, charset)?,
             ModelRequest::Show(which, json) => model::show(&which, json, shelf, charset)?,
+            ModelRequest::Names => model::names(shelf)?,
             ModelRequest::List(json) => model::list(json, shelf, charset)?,
             ModelRequest::Delete(name) => charset.lines(&model::delete(&name, shelf)?),
             ModelRequest::Confusion(asked) => confusion::confusion(&asked, shelf, charset)?,
@@ -263,7 +264,7 @@ impl Surroundings {
     fn library(&self, chore: Chore) -> Result<(), CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
         let text = match chore {
-            Chore::Names => library::names(shelf)?,
+            Chore::Names(which) => library::names(shelf, which)?,
             Chore::List(json) => library::list(shelf, json, charset)?,
             Chore::Show(name, form) => library::show(shelf, name.as_str(), form, charset)?,
             Chore::Save(saving, what) => charset.lines(&library::save(shelf, saving, &what)?),

@@ -231,12 +231,16 @@ fn shells_take_the_completions() {
 
 /// Names of shapes where a command takes one; blanks and quotation marks are bash's.
 #[test]
-fn bash_completes_names_of_shapes() {
+fn bash_completes_names_of_shapes_and_models() {
     if !has("bash") {
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");
     in_library(folder.path(), &["save", "Mein Ring", "washer"]);
+    in_library(folder.path(), &["save", "gone", "washer"]);
+    in_library(folder.path(), &["delete", "gone"]);
+    fs::write(folder.path().join("parts.jsonl"), super::model::PARTS).expect("written");
+    with_models(folder.path(), "model show");
     let binary = Path::new(env!("CARGO_BIN_EXE_taxel"));
     let path = format!(
         "{}:{}",
@@ -246,7 +250,7 @@ fn bash_completes_names_of_shapes() {
     let completions = taxel("completions bash", "").stdout;
     let offered = |words: &[&str]| {
         let script = "source /dev/stdin; COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); \
-                      _taxel_shapes taxel \"${COMP_WORDS[-1]}\" \"${COMP_WORDS[-2]}\"; \
+                      _taxel_names taxel \"${COMP_WORDS[-1]}\" \"${COMP_WORDS[-2]}\"; \
                       printf '%s\\n' \"${COMPREPLY[@]}\"";
         let mut bash = Command::new("bash");
         bash.args(["--norc", "-c", script, "bash", "taxel"])
@@ -277,6 +281,27 @@ fn bash_completes_names_of_shapes() {
         (&["library", "save", "new", "oval"], "oval\\ ring\n"),
         (&["sweep", "--picture", "wash"], "washer\n"),
         (&["model", "train", "arrow", "wash"], "washer\n"),
+        // Flags and their values do not count as arguments.
+        (&["describe", "--pitch", "2", "wa"], "washer\n"),
+        (&["describe", "--pitch", "=", "2", "wa"], "washer\n"),
+        (&["--ascii", "describe", "wa"], "washer\n"),
+        (&["picture", "--x0", "3", "wa"], "washer\n"),
+        (&["export", "--force", "wa"], "washer\n"),
+        (&["model", "separate", "--scale", "1", "wa"], "washer\n"),
+        (
+            &["recognise", "washer", "--noise", "0.1", "--mask", "wa"],
+            "washer\n",
+        ),
+        (&["describe", "washer", "--pitch", "wa"], "\n"),
+        // A shape that comes with the program cannot be deleted.
+        (&["library", "delete", "wa"], "\n"),
+        (&["library", "restore", ""], "gone\n"),
+        (&["model", "show", "p"], "parts\n"),
+        (&["model", "confusion", "fig"], "figures\nfigures-30\n"),
+        (&["model", "delete", ""], "parts\n"),
+        (&["recognise", "washer", "--model", "pa"], "parts\n"),
+        (&["watch", "-", "--model", "=", "pa"], "parts\n"),
+        (&["model", "separate", "pa"], "parts\n"),
         // Files, which bash completes itself, and flags.
         (&["export", "washer", "wa"], "\n"),
         (&["picture", "no shape"], "\n"),
@@ -295,15 +320,19 @@ fn bash_completes_names_of_shapes() {
         listed.contains("oval ring\n") && !listed.contains("shipped"),
         "{listed}"
     );
-    for shell in ["zsh", "fish"] {
-        let script = taxel(&format!("completions {shell}"), "").stdout;
-        let name = if shell == "zsh" {
-            ":_taxel_shapes' \\\n"
-        } else {
-            "__fish_taxel_shapes)"
-        };
-        assert!(script.matches(name).count() >= 4, "{shell}: {script}");
+    let zsh = taxel("completions zsh", "").stdout;
+    for (kind, least) in [
+        ("shapes", 6),
+        ("own", 1),
+        ("deleted", 1),
+        ("models", 1),
+        ("sets", 5),
+    ] {
+        let ending = format!(":_taxel_{kind}' \\\n");
+        assert!(zsh.matches(&ending).count() >= least, "{kind}: {zsh}");
     }
+    let fish = taxel("completions fish", "").stdout;
+    assert!(fish.matches("(__fish_taxel_names ").count() >= 6, "{fish}");
 }
 
 /// What bash offers after a line.

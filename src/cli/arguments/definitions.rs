@@ -311,7 +311,12 @@ fn library() -> Command {
         Command::new(name).about(about).after_help(examples)
     };
     let names = switch("names", "Print only the names, one per line").conflicts_with("json");
-    let list = command("list", "List all shapes", LIST_EXAMPLES).args([names, json()]);
+    let own = switch("own", "Only those of your own shapes").requires("names");
+    let deleted = switch("deleted", "Only those in the trash")
+        .requires("names")
+        .conflicts_with("own");
+    let list =
+        command("list", "List all shapes", LIST_EXAMPLES).args([names, own, deleted, json()]);
     let show = command("show", "Show a shape and describe it", SHOW_EXAMPLES)
         .arg(name("Name of the shape"))
         .args(of_sensor(&[Parameter::Pitch]))

@@ -116,13 +116,24 @@ pub(crate) enum Swept {
     Picture(OsString, Given),
 }
 
+/// Which names are listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NameSet {
+    /// Those of all shapes, the user's own and those that come with the program.
+    All,
+    /// Those of the user's own shapes.
+    Own,
+    /// Those of deleted shapes, the one deleted last first.
+    Deleted,
+}
+
 /// A subcommand of `taxel library`.
 #[derive(Clone, Debug)]
 pub(crate) enum Chore {
     /// List all shapes; whether as JSON.
     List(bool),
-    /// Print their names.
-    Names,
+    /// Print the names of some.
+    Names(NameSet),
     /// Describe a shape.
     Show(Name, Form),
     /// Store a shape of the library or of a file under this name.
@@ -407,7 +418,9 @@ fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, CliError> 
     };
     let name = own.try_get_one::<Name>("name").ok().flatten().cloned();
     Ok(match (command, name) {
-        ("list", _) if own.get_flag("names") => Chore::Names,
+        ("list", _) if own.get_flag("own") => Chore::Names(NameSet::Own),
+        ("list", _) if own.get_flag("deleted") => Chore::Names(NameSet::Deleted),
+        ("list", _) if own.get_flag("names") => Chore::Names(NameSet::All),
         ("list", _) => Chore::List(own.get_flag("json")),
         ("show", Some(name)) => Chore::Show(name, form(own, settings)?),
         ("save", Some(name)) => {

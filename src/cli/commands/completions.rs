@@ -1,6 +1,8 @@
 //! `taxel completions`: writes a shell's completions for `taxel`, made from the definitions of the commands. Names of
-//! shapes come from `taxel library list --names` at the moment when they are asked for; where no name fits, shells
-//! offer files.
+//! shapes and models come from `taxel library list --names` and `taxel model list --names` at the moment when they are
+//! asked for; where no name fits, shells offer files.
+
+use std::collections::BTreeSet;
 
 use clap::Command;
 use clap::builder::PossibleValue;
@@ -12,7 +14,7 @@ use clap_complete::shells::{Bash, Fish, Zsh};
 pub(crate) enum Shell {
     /// Its script is the one of clap, wrapped: names are added where a command takes one.
     Bash,
-    /// Its script is changed line by line, see [`NAMES_OF_ZSH`].
+    /// Its script is changed line by line, see [`ARGUMENTS_OF_ZSH`].
     Zsh,
     /// Lines are added behind clap's script.
     Fish,
@@ -37,47 +39,59 @@ impl Shell {
     }
 }
 
-/// The names are those of the folder that `--library` on the line names, else of the user's library.
-/// For bash: what clap wrote, and names of shapes where a command takes one. A blank in a name is escaped, unless the
-/// word was begun with a quotation mark: that is not part of what bash replaces.
-const SHAPES_OF_BASH: &str = r#"
-_taxel_shapes() {
+/// For bash: what clap wrote, and names where a command or a flag takes one. `VALUES` stands for all flags with a value:
+/// that is no argument of a command. The names are those of the folder that `--library` on the line names, else of the
+/// user's library. A blank in a name is escaped, unless the word was begun with a quotation mark: that is not part of what
+/// bash replaces.
+const NAMES_OF_BASH: &str = r#"
+_taxel_names() {
     _taxel "$@"
-    local cur="${COMP_WORDS[COMP_CWORD]}" first=2 quote="" name at
+    local values=" VALUES " cur="${COMP_WORDS[COMP_CWORD]}" flag="" quote="" command kinds kind name word at
     local -a words=() library=()
-    for ((at = 0; at <= COMP_CWORD; at++)); do
-        if [[ "${COMP_WORDS[at]}" != --library ]]; then
-            words+=("${COMP_WORDS[at]}")
+    for ((at = 1; at < COMP_CWORD; at++)); do
+        word="${COMP_WORDS[at]}"
+        if [[ "$word" != -* || "$word" == - ]]; then
+            words+=("$word")
             continue
         fi
+        [[ "$values" == *" $word "* ]] || continue
         [[ "${COMP_WORDS[at + 1]}" == "=" ]] && ((at++))
-        ((++at < COMP_CWORD)) || return 0
-        name="${COMP_WORDS[at]//[\\\"\']/}"
-        library=(--library "${name/#\~/$HOME}")
+        if ((++at >= COMP_CWORD)); then
+            flag="$word"
+        elif [[ "$word" == --library ]]; then
+            name="${COMP_WORDS[at]//[\\\"\']/}"
+            library=(--library "${name/#\~/$HOME}")
+        fi
     done
-    local command="${words[1]}"
+    command="${words[0]}"
+    words=("${words[@]:1}")
     case "$command" in
         library | model)
-            command+=" ${words[2]}"
-            first=3
+            command+=" ${words[0]}"
+            words=("${words[@]:1}")
             ;;
     esac
-    case "$command" in
-        "library save" | "model train")
-            [[ "$3" == --* ]] && return 0
-            ;;
-        picture | describe | export | recognise | "library show" | "library delete")
-            ((${#words[@]} - 1 == first)) || [[ "$3" == --json ]] || return 0
-            ;;
-        sweep)
-            [[ "$3" == --picture ]] || return 0
-            ;;
+    case "$flag $command" in
+        "--model "*) kinds="models sets" ;;
+        "--picture "* | "--mask "*) kinds="shapes" ;;
+        --*) return 0 ;;
+        " library save" | " model train") kinds="shapes" ;;
+        " model separate") kinds="shapes models sets" ;;
         *)
-            return 0
+            ((${#words[@]} == 0)) || return 0
+            case "$command" in
+                picture | describe | export | recognise | "library show") kinds="shapes" ;;
+                "library delete") kinds="own" ;;
+                "library restore") kinds="deleted" ;;
+                "model show" | "model confusion" | "model touches") kinds="models sets" ;;
+                "model delete") kinds="models" ;;
+                *) return 0 ;;
+            esac
             ;;
     esac
-    ((${#words[@]} > first)) && [[ "$cur" != -* ]] || return 0
     case "$cur" in
+        -*) return 0 ;;
+        =) cur="" ;;
         \"* | \'*)
             quote="${cur:0:1}"
             cur="${cur:1}"
@@ -91,16 +105,26 @@ _taxel_shapes() {
         [[ "$name" == "$cur"* ]] || continue
         [[ -n "$quote" ]] || printf -v name %q "$name"
         COMPREPLY+=("$name")
-    done < <(taxel library list --names "${library[@]}" 2> /dev/null)
+    done < <(for kind in $kinds; do
+        case "$kind" in
+            shapes) taxel library list --names "${library[@]}" ;;
+            own) taxel library list --names --own "${library[@]}" ;;
+            deleted) taxel library list --names --deleted "${library[@]}" ;;
+            models) taxel model list --names "${library[@]}" ;;
+            sets) printf '%s\n' figures figures-30 shapes ;;
+        esac 2> /dev/null
+    done)
 }
 
-complete -F _taxel_shapes -o bashdefault -o default taxel
+complete -F _taxel_names -o bashdefault -o default taxel
 "#;
 
-/// For zsh: the function that offers names of shapes, or files.
-const SHAPES_OF_ZSH: &str = r#"(( $+functions[_taxel_shapes] )) ||
-_taxel_shapes() {
-    local -a shapes library line
+/// For zsh: the functions that offer names of one kind, or files.
+const NAMES_OF_ZSH: &str = r#"(( $+functions[_taxel_names] )) ||
+_taxel_names() {
+    local kind=$1
+    shift
+    local -a names library line
     line=(${(z)LBUFFER})
     local at=${line[(I)--library]} joined=${line[(r)--library=*]} folder=""
     if (( at && at < $#line )); then
@@ -110,23 +134,33 @@ _taxel_shapes() {
     fi
     folder=${(Q)folder}
     [[ -n $folder ]] && library=(--library "${folder/#\~/$HOME}")
-    shapes=(${(f)"$(_call_program shapes taxel library list --names ${(q)library} 2> /dev/null)"})
-    _alternative 'shapes:shape:compadd -a shapes' 'files:file:_files'
+    names=(${(f)"$(_call_program names taxel $@ --names ${(q)library} 2> /dev/null)"})
+    [[ $kind == set ]] && names+=(figures figures-30 shapes)
+    _alternative "names:$kind:compadd -a names" 'files:file:_files'
 }
+_taxel_shapes() { _taxel_names shape library list }
+_taxel_own() { _taxel_names shape library list --own }
+_taxel_deleted() { _taxel_names shape library list --deleted }
+_taxel_models() { _taxel_names model model list }
+_taxel_sets() { _taxel_names set model list }
 
 "#;
 
-/// Where clap's script for zsh takes any file: an argument that is a name of a shape begins and ends so.
-const NAMES_OF_ZSH: [(&str, &str); 4] = [
-    ("':what -- ", ":_default' \\"),
-    ("'*::set -- ", ":_default' \\"),
-    ("':name -- Name of the shape", ":_default' \\"),
-    ("'--picture=[", ":_default' \\"),
+/// For zsh: how an argument that is a name begins, and what it is a name of. Its help may have several lines.
+const ARGUMENTS_OF_ZSH: [(&str, &str); 8] = [
+    ("':what -- ", "shapes"),
+    ("'*::set -- ", "shapes"),
+    ("'--picture=[", "shapes"),
+    ("'--mask=[", "shapes"),
+    ("':name -- Name of the shape", "shapes"),
+    ("':name -- Name of the model", "models"),
+    ("':model -- ", "sets"),
+    ("'--model=[", "sets"),
 ];
 
 /// For fish, which escapes what it inserts.
-const SHAPES_OF_FISH: &str = r#"
-function __fish_taxel_shapes
+const NAMES_OF_FISH: &str = r#"
+function __fish_taxel_names
     set -l words (commandline -opc)
     set -l folder
     if set -l at (contains -i -- --library $words); and test $at -lt (count $words)
@@ -138,30 +172,66 @@ function __fish_taxel_shapes
     if test -n "$folder[1]"
         set library --library (string replace -r '^~' $HOME -- $folder[1])
     end
-    taxel library list --names $library 2> /dev/null
+    taxel $argv --names $library 2> /dev/null
 end
-complete -c taxel -n "__fish_taxel_using_subcommand picture describe export recognise" -a "(__fish_taxel_shapes)" -d shape
-complete -c taxel -n "__fish_taxel_using_subcommand library; and __fish_seen_subcommand_from show save delete" -a "(__fish_taxel_shapes)" -d shape
-complete -c taxel -n "__fish_taxel_using_subcommand model; and __fish_seen_subcommand_from train" -a "(__fish_taxel_shapes)" -d shape
-complete -c taxel -n "__fish_taxel_using_subcommand sweep" -l picture -r -a "(__fish_taxel_shapes)" -d shape
+function __fish_taxel_sets
+    __fish_taxel_names model list
+    printf '%s\n' figures figures-30 shapes
+end
+complete -c taxel -n "__fish_taxel_using_subcommand picture describe export recognise" -a "(__fish_taxel_names library list)" -d shape
+complete -c taxel -n "__fish_taxel_using_subcommand library; and __fish_seen_subcommand_from show save" -a "(__fish_taxel_names library list)" -d shape
+complete -c taxel -n "__fish_taxel_using_subcommand library; and __fish_seen_subcommand_from delete" -a "(__fish_taxel_names library list --own)" -d shape
+complete -c taxel -n "__fish_taxel_using_subcommand library; and __fish_seen_subcommand_from restore" -a "(__fish_taxel_names library list --deleted)" -d shape
+complete -c taxel -n "__fish_taxel_using_subcommand model; and __fish_seen_subcommand_from train separate" -a "(__fish_taxel_names library list)" -d shape
+complete -c taxel -n "__fish_taxel_using_subcommand model; and __fish_seen_subcommand_from show confusion touches separate" -a "(__fish_taxel_sets)" -d model
+complete -c taxel -n "__fish_taxel_using_subcommand model; and __fish_seen_subcommand_from delete" -a "(__fish_taxel_names model list)" -d model
+complete -c taxel -n "__fish_taxel_using_subcommand sweep" -l picture -r -a "(__fish_taxel_names library list)" -d shape
+complete -c taxel -n "__fish_taxel_using_subcommand recognise" -l mask -r -a "(__fish_taxel_names library list)" -d shape
+complete -c taxel -n "__fish_taxel_using_subcommand recognise frames watch" -l model -r -a "(__fish_taxel_sets)" -d model
 "#;
 
-/// The script for zsh, with names of shapes where clap has any file.
-fn shapes_of_zsh(script: &str) -> String {
+/// The script for zsh, with names where clap has any file.
+fn names_of_zsh(script: &str) -> String {
     let mut changed = String::new();
+    let (mut command, mut kind) = ("", None);
     for line in script.lines() {
         if line.starts_with("if [ \"$funcstack[1]\"") {
-            changed += SHAPES_OF_ZSH;
+            changed += NAMES_OF_ZSH;
         }
-        let is_shape = |(start, end): &(&str, &str)| line.starts_with(start) && line.ends_with(end);
-        if NAMES_OF_ZSH.iter().any(is_shape) {
-            changed += &line.replace(":_default' \\", ":_taxel_shapes' \\");
-        } else {
-            changed += line;
+        // A subcommand is a case of the script.
+        if let Some(name) = line
+            .strip_prefix('(')
+            .and_then(|line| line.strip_suffix(')'))
+        {
+            command = name;
+        }
+        if line.starts_with('\'') {
+            let begins = |argument: &&(&str, &str)| line.starts_with(argument.0);
+            kind = ARGUMENTS_OF_ZSH.iter().find(begins).map(|&(_, kind)| kind);
+        }
+        let kind = match (kind, command) {
+            (Some("shapes"), "delete") => Some("own"),
+            (Some("shapes"), "restore") => Some("deleted"),
+            (kind, _) => kind,
+        };
+        match (kind, line.strip_suffix(":_default' \\")) {
+            (Some(kind), Some(start)) => changed += &format!("{start}:_taxel_{kind}' \\"),
+            _ => changed += line,
         }
         changed.push('\n');
     }
     changed
+}
+
+/// The flags of a command and of its subcommands that take a value.
+fn flags_with_value(command: &Command) -> BTreeSet<String> {
+    let own = command
+        .get_arguments()
+        .filter(|argument| argument.get_action().takes_values());
+    let own = own.filter_map(|argument| argument.get_long());
+    let flags = own.map(|flag| format!("--{flag}"));
+    let inner = command.get_subcommands().flat_map(flags_with_value);
+    flags.chain(inner).collect()
 }
 
 /// The completions of all commands, as a script for the shell.
@@ -170,16 +240,21 @@ pub(crate) fn script(shell: Shell, mut all: Command) -> Vec<u8> {
     match shell {
         Shell::Bash => {
             generate(Bash, &mut all, name, &mut script);
-            script.extend(SHAPES_OF_BASH.as_bytes());
+            let values: Vec<String> = flags_with_value(&all).into_iter().collect();
+            script.extend(
+                NAMES_OF_BASH
+                    .replace("VALUES", &values.join(" "))
+                    .into_bytes(),
+            );
         }
         Shell::Zsh => {
             generate(Zsh, &mut all, name, &mut script);
-            script = shapes_of_zsh(&String::from_utf8_lossy(&script)).into_bytes();
+            script = names_of_zsh(&String::from_utf8_lossy(&script)).into_bytes();
         }
         Shell::Fish => {
             generate(Fish, &mut all, name, &mut script);
             script.extend(words_of_fish(&all).into_bytes());
-            script.extend(SHAPES_OF_FISH.as_bytes());
+            script.extend(NAMES_OF_FISH.as_bytes());
         }
     }
     script

@@ -16,7 +16,7 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
-use crate::cli::arguments::request::{Form, Saving};
+use crate::cli::arguments::request::{Form, NameSet, Saving};
 use crate::cli::commands::describe;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
@@ -134,10 +134,18 @@ fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
 ///
 /// # Errors
 /// If the folder cannot be listed.
-pub(crate) fn names(shelf: &Shelf) -> Result<String, CliError> {
-    let entries = shelf.library()?.list()?.into_iter();
-    let names = entries.filter(|entry| Name::new(&entry.name).is_ok());
-    Ok(names.map(|entry| entry.name + "\n").collect())
+pub(crate) fn names(shelf: &Shelf, which: NameSet) -> Result<String, CliError> {
+    let library = shelf.library()?;
+    let is_asked = |entry: &LibraryEntry| which == NameSet::All || entry.origin == ShapeOrigin::Own;
+    let names: Vec<String> = match which {
+        NameSet::Deleted => library.in_trash()?,
+        NameSet::All | NameSet::Own => {
+            let entries = library.list()?.into_iter().filter(is_asked);
+            entries.map(|entry| entry.name).collect()
+        }
+    };
+    let names = names.into_iter().filter(|name| Name::new(name).is_ok());
+    Ok(names.map(|name| name + "\n").collect())
 }
 
 /// Lists all shapes: a table, or an array of objects in JSON.

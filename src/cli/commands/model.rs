@@ -430,6 +430,12 @@ fn card_json(
     Ok(card)
 }
 
+/// The answer of `taxel model list --names`: for scripts and for what a shell completes. No file is read.
+pub(crate) fn names(shelf: &Shelf) -> Result<String, CliError> {
+    let names = folder(shelf)?.names()?.into_iter();
+    Ok(names.map(|name| format!("{name}\n")).collect())
+}
+
 /// Lists the models beside the library.
 /// A line each, by name; a model that cannot be read has its reason in place of the numbers:
 /// ```text

@@ -15,7 +15,7 @@ use std::ffi::OsString;
 
 use clap::{Arg, ArgMatches, Command};
 
-use crate::cli::arguments::flags::{self, json, option, whole};
+use crate::cli::arguments::flags::{self, json, option, switch, whole};
 use crate::cli::arguments::help::{
     MODEL_DELETE_EXAMPLES, MODEL_EXAMPLES, MODEL_LIST_EXAMPLES, MODEL_SHOW_EXAMPLES,
 };
@@ -44,6 +44,8 @@ pub(crate) enum ModelRequest {
     Show(OsString, bool),
     /// List the models beside the library; whether as JSON.
     List(bool),
+    /// Print the names of the models.
+    Names,
     /// Delete a model beside the library.
     Delete(Name),
     /// Evaluate a model: which shapes one touch confuses.
@@ -74,6 +76,7 @@ impl ModelRequest {
             "touches" => Self::Touches(touches::TouchesArguments::of(own)),
             "confusion" => Self::Confusion(Box::new(confusion::ConfusionArguments::of(own)?)),
             "separate" => Self::Separate(Box::new(separate::SeparateArguments::of(own)?)),
+            _ if own.get_flag("names") => Self::Names,
             _ => Self::List(own.get_flag("json")),
         })
     }
@@ -88,6 +91,7 @@ pub(super) fn command() -> Command {
     let list = Command::new("list")
         .about("List the models")
         .after_help(MODEL_LIST_EXAMPLES)
+        .arg(switch("names", "Print only the names, one per line").conflicts_with("json"))
         .arg(json());
     let delete = Command::new("delete")
         .about("Delete a model")
