@@ -1,5 +1,6 @@
 //! What the keys of the live page do, on a recording with a clock that stands still.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use taxel::frame::{Rule, RuleOrigin, SetRule};
@@ -376,14 +377,20 @@ fn a_frame_is_marked_and_unmarked() {
     then(&mut page, "<End>", &["frame 5", "marked"]);
 }
 
-#[test]
-fn a_script_records_each_frame_once() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let world = world().confined_to(folder.path().to_owned());
+/// The page after two frames, and three more that are recorded in a folder.
+fn recording_in(folder: &Path) -> Session {
+    let world = world().confined_to(folder.to_owned());
     let mut page = started(world, ":watch tests/scripts/touch.csv<Enter>");
     page.frames(2);
     then(&mut page, "r", &["recording in touch-1.npy"]);
     page.frames(3);
+    page
+}
+
+#[test]
+fn a_script_records_each_frame_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut page = recording_in(folder.path());
     shows(&page, &["frame 4", "recording  touch-1.npy, 3 frames"]);
     page.frames(1);
     shows(&page, &["frame 5", "recording  touch-1.npy, 4 frames"]);
@@ -408,11 +415,7 @@ fn a_script_records_each_frame_once() {
 #[test]
 fn a_recording_has_the_threshold_and_the_tare_of_its_end() {
     let folder = tempfile::tempdir().expect("a folder");
-    let world = world().confined_to(folder.path().to_owned());
-    let mut page = started(world, ":watch tests/scripts/touch.csv<Enter>");
-    page.frames(2);
-    then(&mut page, "r", &["recording in touch-1.npy"]);
-    page.frames(3);
+    let mut page = recording_in(folder.path());
     let beside = || {
         let text = std::fs::read_to_string(folder.path().join("touch-1.json"));
         let beside: serde_json::Value =
