@@ -154,7 +154,7 @@ impl FinishedFile {
         &self.path
     }
 
-    /// The same file, with what is to become of one that has its name by then.
+    /// The same file, with what happens to a file that has its name by then.
     #[must_use]
     pub fn with_existing(self, existing: Existing) -> Self {
         Self { existing, ..self }

@@ -38,7 +38,7 @@ struct RecordFile {
     failed: io::Result<()>,
 }
 
-/// Is told of the error that ends a record, on whatever thread writes it.
+/// Called with the error that ends a record, on the thread that writes it.
 pub(crate) type OnFailure = Arc<dyn Fn(&io::Error) + Send + Sync>;
 
 impl RecordFile {
