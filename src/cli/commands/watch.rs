@@ -74,8 +74,10 @@ struct Watcher<'a> {
     frame: Frame,
     /// Rows and columns of the last frame; None before the first.
     size: Option<(u16, u16)>,
-    /// How many frames were answered, and how many were not since crop, tare, mask or gain do not fit their size.
-    answered: (u64, u64),
+    /// How many frames were answered.
+    answered: u64,
+    /// How many were not, since crop, tare, mask or gain do not fit their size.
+    unfit: u64,
     /// Whether a frame may be left unanswered.
     live: bool,
     /// How many dropped frames have been reported.
@@ -129,7 +131,8 @@ pub(crate) fn watch(
         lines,
         frame: Frame::new(1, 1),
         size: None,
-        answered: (0, 0),
+        answered: 0,
+        unfit: 0,
         live: !asked.options.once && !matches!(source, FrameSource::File(_)),
         dropped: 0,
         reported: None,
@@ -477,9 +480,9 @@ impl Watcher<'_> {
         let tare = self.processing.tare.as_ref().map_or(0, Tare::frames);
         let processed = match self.processing.run(frame) {
             Ok(processed) => processed,
-            Err(error) if self.answered.0 > 0 && error.is_of_size() => {
-                self.answered.1 += 1;
-                if self.answered.1 == 1 {
+            Err(error) if self.answered > 0 && error.is_of_size() => {
+                self.unfit += 1;
+                if self.unfit == 1 {
                     let number = frame.number;
                     self.say(&format!("frame {number} is not answered: {error}"));
                 }
@@ -487,7 +490,7 @@ impl Watcher<'_> {
             }
             Err(error) => return Err(self.refused(&error.to_string())),
         };
-        self.answered.0 += 1;
+        self.answered += 1;
         let channel = self.channels.get(frame.channel);
         let answer = FrameAnswer {
             frame,
@@ -607,9 +610,8 @@ impl Watcher<'_> {
             let frames = counted(left_out, "frame");
             self.say(&format!("{frames} of another size not recorded"));
         }
-        let unfit = self.answered.1;
-        if unfit > 0 {
-            let frames = counted(unfit, "frame");
+        if self.unfit > 0 {
+            let frames = counted(self.unfit, "frame");
             self.say(&format!("{frames} of another size not answered"));
         }
         let recorded = self.recorder.take().map(FrameRecorder::finish);

@@ -41,7 +41,7 @@ pub struct Live {
     processing: Processing,
     /// The threshold, and whether the file, an option or a key set it.
     rule: Option<SetRule>,
-    /// Whether threshold or tare have changed since a recording was last told.
+    /// Whether threshold or tare have changed since they were last written into a recording.
     is_viewed_anew: bool,
     history: FrameHistory,
     /// The number in the history of the first frame since the source was watched again; 0 where it was not.
