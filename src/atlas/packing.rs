@@ -10,7 +10,6 @@ use std::hash::{BuildHasher, RandomState};
 use std::sync::OnceLock;
 
 use crate::imprint::Imprint;
-use crate::index::from_first;
 
 /// What the random numbers are made from: one for the whole run, since hashes of one sweep are compared with those of another.
 static SEED: OnceLock<u64> = OnceLock::new();
@@ -98,28 +97,29 @@ impl Layout {
         [across, down]: [i32; 2],
         turned: &mut [u64],
     ) -> u64 {
-        turned.fill(0);
-        let mut hash = 0;
-        for row in 0..usize::from(self.rows) {
-            let (word, shift) = self.slot(row);
-            let bits = key[word] >> shift & u64::MAX >> (u64::BITS - u32::from(self.columns));
-            if bits == 0 {
-                continue;
-            }
-            // Column `i` goes to `across − 1 − i`; reversed it is at `63 − i`.
-            let reversed = bits.reverse_bits();
-            let apart = across - 64;
-            let bits = if apart < 0 {
-                reversed.unbounded_shr(apart.unsigned_abs())
-            } else {
-                reversed.unbounded_shl(apart.unsigned_abs())
-            };
-            let image = from_first(down - 1).saturating_sub(row);
-            let (word, shift) = self.slot(image);
-            turned[word] |= bits << shift;
-            hash ^= self.hash(image, bits);
+        // Column `i` goes to `across − 1 − i`, row `j` to `down − 1 − j`, so the numbers of a bit and of its image have
+        // the same sum for all taxels: the image is the key read backwards, shifted as a whole.
+        let sum = (down - 1) * (1 << self.log_width) + across - 1;
+        let words = (sum + 1).div_euclid(64);
+        let left = (sum + 1).rem_euclid(64).unsigned_abs();
+        let backwards = |word: i32| {
+            let word = usize::try_from(word).ok().and_then(|word| key.get(word));
+            word.map_or(0, |word| word.reverse_bits())
+        };
+        let mut before = backwards(words);
+        for (place, turned) in (1..).zip(&mut *turned) {
+            let word = backwards(words - place);
+            *turned = before.unbounded_shr(64 - left) | word << left;
+            before = word;
         }
-        hash
+        let rows = 0..usize::from(self.rows);
+        rows.fold(0, |hash, row| hash ^ self.hash(row, self.row(turned, row)))
+    }
+
+    /// The taxels of a row.
+    fn row(&self, key: &[u64], row: usize) -> u64 {
+        let (word, shift) = self.slot(row);
+        key[word] >> shift & u64::MAX >> (u64::BITS - u32::from(self.columns))
     }
 
     /// What the taxels of a row add to a hash.
@@ -141,4 +141,53 @@ fn split_mix(state: &mut u64) -> u64 {
     mixed = (mixed ^ mixed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
     mixed ^ mixed >> 31
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_half_turn_of_a_key_is_that_of_the_imprint() {
+        for (columns, rows) in [
+            (1, 1),
+            (3, 64),
+            (8, 8),
+            (16, 16),
+            (20, 5),
+            (33, 7),
+            (64, 64),
+        ] {
+            let layout = Layout::new(columns, rows);
+            // An L, away from the sides where there is room.
+            let left = columns / 3;
+            let (top, right, bottom) = (rows / 3, columns - left / 2 - 1, rows - rows / 3 - 1);
+            let stem = (top..=bottom).map(|row| (left, row));
+            let foot = (left..=right).map(|column| (column, bottom));
+            let taxels: Vec<(u8, u8)> = stem.chain(foot).collect();
+            let imprint = |taxels: &[(u8, u8)]| {
+                let mut words = vec![0; usize::from(rows)];
+                for &(column, row) in taxels {
+                    words[usize::from(row)] |= 1 << column;
+                }
+                let mut imprint = Imprint::empty(columns, rows);
+                for (row, word) in words.into_iter().enumerate() {
+                    imprint.set_word(row, word);
+                }
+                imprint
+            };
+            let (key, _) = layout.key(&imprint(&taxels));
+            // The sums that keep all of them on the matrix.
+            for across in right + 1..=columns + left {
+                for down in bottom + 1..=rows + top {
+                    let image = |&(column, row): &(u8, u8)| (across - 1 - column, down - 1 - row);
+                    let images: Vec<(u8, u8)> = taxels.iter().map(image).collect();
+                    let mut turned = vec![0; layout.words()];
+                    let sums = [i32::from(across), i32::from(down)];
+                    let hash = layout.half_turned(&key, sums, &mut turned);
+                    assert_eq!((turned, hash), layout.key(&imprint(&images)), "{sums:?}");
+                }
+            }
+        }
+    }
 }
