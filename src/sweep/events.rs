@@ -16,7 +16,7 @@ pub(crate) struct Events<'a> {
     key: Vec<u64>,
     /// Its hash.
     hash: u64,
-    /// A bit per step, whether something happens there, and then the last event of it.
+    /// A bit per step, whether something happens there, and the last event of it, or none.
     marked: Vec<u64>,
     last: Vec<u32>,
     /// All events; those of a step are chained.
@@ -61,31 +61,16 @@ impl<'a> Events<'a> {
         self.list.clear();
     }
 
-    /// Taxels of a row that are active at the first step.
-    pub(crate) fn start(&mut self, row: usize, taxels: u64) {
+    /// A row of the sensor, whose taxels switch.
+    pub(crate) fn row(&mut self, row: usize) -> RowEvents<'_, 'a> {
         let (word, shift) = self.layout.slot(row);
-        self.key[word] ^= taxels << shift;
-        self.hash ^= self.layout.hash(row, taxels);
-    }
-
-    /// A taxel switches at a step, from 1 to the last.
-    pub(crate) fn turn_over(&mut self, row: usize, column: usize, step: u32) {
-        let step = wide(step);
-        let (word, shift) = self.layout.slot(row);
-        let (bits, bit) = (&mut self.marked[step / 64], 1 << (step % 64));
-        let before = if *bits & bit == 0 {
-            NONE
-        } else {
-            self.last[step]
-        };
-        *bits |= bit;
-        self.last[step] = narrow(self.list.len());
-        self.list.push(Event {
-            mask: 1 << (shift + column),
-            number: self.layout.numbers(row)[column],
+        RowEvents {
+            row,
             word: narrow(word),
-            before,
-        });
+            shift,
+            numbers: self.layout.numbers(row),
+            events: self,
+        }
     }
 
     /// Gives key, hash, first step and the step after the last of each run in turn, and forgets the marks.
@@ -98,7 +83,7 @@ impl<'a> Events<'a> {
                 let step = place * 64 + wide(bit);
                 run(&self.key, self.hash, from, step as u64);
                 from = step as u64;
-                let mut event = self.last[step];
+                let mut event = std::mem::replace(&mut self.last[step], NONE);
                 while let Some(turned) = self.list.get(wide(event)) {
                     self.key[wide(turned.word)] ^= turned.mask;
                     self.hash ^= turned.number;
@@ -107,5 +92,45 @@ impl<'a> Events<'a> {
             }
         }
         run(&self.key, self.hash, from, self.count);
+    }
+}
+
+/// The events of one row of the sensor.
+pub(crate) struct RowEvents<'e, 'a> {
+    row: usize,
+    /// The word of the key that it is in, and by how much it is shifted there.
+    word: u32,
+    shift: usize,
+    /// The hash of each of its taxels alone.
+    numbers: &'a [u64],
+    events: &'e mut Events<'a>,
+}
+
+impl RowEvents<'_, '_> {
+    /// The number of its taxels.
+    pub(crate) fn columns(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// Taxels that are active at the first step; a bit each.
+    pub(crate) fn start(&mut self, taxels: u64) {
+        self.events.key[wide(self.word)] ^= taxels << self.shift;
+        self.events.hash ^= self.events.layout.hash(self.row, taxels);
+    }
+
+    /// A taxel switches at a step, from 1 to the last.
+    #[inline]
+    pub(crate) fn turn_over(&mut self, column: usize, step: u32) {
+        let events = &mut *self.events;
+        let step = wide(step);
+        let event = narrow(events.list.len());
+        events.marked[step / 64] |= 1 << (step % 64);
+        let before = std::mem::replace(&mut events.last[step], event);
+        events.list.push(Event {
+            mask: 1 << (self.shift + column),
+            number: self.numbers[column],
+            word: self.word,
+            before,
+        });
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::geometry::{Real, nearest};
 use crate::index::from_first;
-use crate::sweep::events::Events;
+use crate::sweep::events::RowEvents;
 use crate::sweep::exact::Exact;
 use crate::sweep::span::{NEAR, Span, Spans};
 
@@ -34,7 +34,7 @@ pub(crate) struct FlipWriter<'s, 'e, 'a> {
     /// The number of the value of y0.
     pub(crate) y: u64,
     /// Where events go.
-    pub(crate) events: &'s mut Events<'e>,
+    pub(crate) events: RowEvents<'s, 'e>,
     /// Decides for taxels in doubt.
     pub(crate) exact: &'s mut Exact<'a>,
 }
@@ -58,14 +58,14 @@ impl FlipWriter<'_, '_, '_> {
         let right = self.end(span.to, true);
         if left < right {
             let ones = u64::MAX >> (64 - (right - left));
-            self.events.start(self.row, ones << left);
+            self.events.start(ones << left);
         }
     }
 
     /// Marks where the taxels of the row pass the end of a span: they leave it on its left and enter on its right. The
     /// result is the first taxel that does so after the first x0, or the number of columns.
     fn end(&mut self, at: f64, right: bool) -> usize {
-        let columns = usize::from(self.events.layout.columns());
+        let columns = self.events.columns();
         let start = at + self.steps.first;
         let near = NEAR * self.steps.per_cell;
         let last = f64::from(self.steps.count - 1) + near;
@@ -81,7 +81,7 @@ impl FlipWriter<'_, '_, '_> {
             if step > 0 {
                 first = first.or(Some(column));
                 if step < self.steps.count {
-                    self.events.turn_over(self.row, column, step.unsigned_abs());
+                    self.events.turn_over(column, step.unsigned_abs());
                 }
             }
             column += 1;
@@ -120,10 +120,9 @@ impl FlipWriter<'_, '_, '_> {
             per_cell,
             count,
         } = self.steps;
-        for column in 0..usize::from(self.events.layout.columns()) {
+        for column in 0..self.events.columns() {
             let place = |at: f64| (column as f64 - at - first) * per_cell;
             let mut taxel = Taxel {
-                row: self.row,
                 column,
                 active: false,
                 next: 0,
@@ -137,23 +136,23 @@ impl FlipWriter<'_, '_, '_> {
                     continue;
                 }
                 if from > taxel.next {
-                    taxel.set(taxel.next, false, self.events);
+                    taxel.set(taxel.next, false, &mut self.events);
                 }
                 let mut step = from;
                 while step <= to {
                     if span.sharp && sure.contains(&step) {
-                        taxel.set(step, true, self.events);
+                        taxel.set(step, true, &mut self.events);
                         step = sure.end.min(to + 1);
                     } else {
                         let active = self.active(column, step);
-                        taxel.set(step, active, self.events);
+                        taxel.set(step, active, &mut self.events);
                         step += 1;
                     }
                 }
                 taxel.next = to + 1;
             }
             if taxel.next < count {
-                taxel.set(taxel.next, false, self.events);
+                taxel.set(taxel.next, false, &mut self.events);
             }
         }
     }
@@ -161,8 +160,6 @@ impl FlipWriter<'_, '_, '_> {
 
 /// A taxel that moves along the range of x0.
 struct Taxel {
-    /// Its row.
-    row: usize,
     /// Its column.
     column: usize,
     /// Whether it is active, as far as is decided.
@@ -173,15 +170,15 @@ struct Taxel {
 
 impl Taxel {
     /// Sets whether it is active from a step on, which is not negative.
-    fn set(&mut self, step: i32, active: bool, events: &mut Events<'_>) {
+    fn set(&mut self, step: i32, active: bool, events: &mut RowEvents<'_, '_>) {
         if active == self.active {
             return;
         }
         self.active = active;
         if step == 0 {
-            events.start(self.row, 1 << self.column);
+            events.start(1 << self.column);
         } else {
-            events.turn_over(self.row, self.column, step.unsigned_abs());
+            events.turn_over(self.column, step.unsigned_abs());
         }
     }
 }

@@ -303,7 +303,7 @@ impl<'a> Group<'a> {
             steps,
             row,
             y,
-            events: &mut self.events,
+            events: self.events.row(row),
             exact: &mut self.exact,
         }
         .spans(spans);
