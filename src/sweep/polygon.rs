@@ -312,17 +312,24 @@ fn sort<T: Copy>(list: &mut [T], place: impl Fn(&T) -> f64) {
 /// Notes the levels that a quadratic takes between two places, each given with its value and slope.
 fn quadratic(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
     let ((start, first, slope), (end, last, final_slope)) = (from, to);
-    // The usual case: on one side of the threshold throughout, because the slope is at most 1.
-    if first.abs().min(last.abs()) > end - start + DOUBT && first * last > 0.0 {
-        return spans.turn(start, Level::of(first));
-    }
-    if slope * final_slope < 0.0 {
+    let turning = (slope * final_slope < 0.0).then(|| {
         let way = slope / (slope - final_slope) * (end - start);
-        let extreme = (start + way, first + slope * way * 0.5, 0.0);
-        monotone(from, extreme, spans);
-        monotone(extreme, to, spans);
-    } else {
-        monotone((start, first, slope), (end, last, final_slope), spans);
+        (start + way, first + slope * way * 0.5, 0.0)
+    });
+    // The usual case: on one side of the threshold throughout.
+    let extreme = turning.map_or(first, |(_, extreme, _)| extreme);
+    if Real::min(Real::min(first, last), extreme) > DOUBT {
+        return spans.turn(start, Level::Above);
+    }
+    if Real::max(Real::max(first, last), extreme) < -DOUBT {
+        return spans.turn(start, Level::Below);
+    }
+    match turning {
+        Some(extreme) => {
+            monotone(from, extreme, spans);
+            monotone(extreme, to, spans);
+        }
+        None => monotone(from, to, spans),
     }
 }
 

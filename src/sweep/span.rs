@@ -68,11 +68,16 @@ impl Spans {
     }
 
     /// Notes that the level is this one from `at` on. Places come in ascending order.
+    #[inline]
     pub(crate) fn turn(&mut self, at: f64, level: Level) {
+        if level != self.level.map_or(Level::Below, |(_, level)| level) {
+            self.change(at, level);
+        }
+    }
+
+    /// Notes that the level is another one from `at` on.
+    fn change(&mut self, at: f64, level: Level) {
         if let Some((from, old)) = self.level {
-            if old == level {
-                return;
-            }
             let doubtful = old == Level::Doubtful;
             // A doubtful interval narrower than `NEAR` between Below and Above, or the reverse, is one crossing.
             let passing = doubtful
