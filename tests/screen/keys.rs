@@ -664,6 +664,16 @@ fn esc_takes_a_count_back() {
     shows("0", &["a count begins with 1 to 9"]);
 }
 
+#[test]
+fn a_function_key_without_a_meaning_is_named() {
+    shows("<F5>", &["F5 does nothing here; ? lists the keys"]);
+    // In a line of text as well, where ? is a character.
+    shows(
+        "<Space>s<F12>",
+        &["F12 does nothing here; F1 lists the keys"],
+    );
+}
+
 /// On the page of recognition the keys that hold a shape are in force, not those of the page.
 #[test]
 fn help_lists_the_keys_of_a_held_shape() {

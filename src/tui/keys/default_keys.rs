@@ -14,10 +14,12 @@ use crate::tui::keys::key::{Arrow, Key};
 
 use Arrow::{Down, Left, Right, Up};
 use Key::{
-    BackTab, Backspace, Char, Ctrl, Delete, End, Enter, Esc, F1, Home, PageDown, PageUp,
-    ShiftArrow, Tab,
+    BackTab, Backspace, Char, Ctrl, Delete, End, Enter, Esc, Home, PageDown, PageUp, ShiftArrow,
+    Tab,
 };
 
+/// The first function key.
+const F1: Key = Key::Function(1);
 /// The left arrow, as most rows have it.
 const LEFT: Key = Key::Arrow(Left);
 /// The right arrow.

@@ -62,12 +62,12 @@ pub enum Key {
     Backspace,
     /// Delete to the right.
     Delete,
-    /// The first function key.
-    F1,
+    /// A function key, 1 to 12.
+    Function(u8),
 }
 
 /// Names in brackets; the first of a key is the one that is written.
-const NAMES: [(&str, Key); 23] = [
+const NAMES: [(&str, Key); 34] = [
     ("Left", Key::Arrow(Arrow::Left)),
     ("Right", Key::Arrow(Arrow::Right)),
     ("Up", Key::Arrow(Arrow::Up)),
@@ -87,7 +87,18 @@ const NAMES: [(&str, Key); 23] = [
     ("S-Tab", Key::BackTab),
     ("BS", Key::Backspace),
     ("Del", Key::Delete),
-    ("F1", Key::F1),
+    ("F1", Key::Function(1)),
+    ("F2", Key::Function(2)),
+    ("F3", Key::Function(3)),
+    ("F4", Key::Function(4)),
+    ("F5", Key::Function(5)),
+    ("F6", Key::Function(6)),
+    ("F7", Key::Function(7)),
+    ("F8", Key::Function(8)),
+    ("F9", Key::Function(9)),
+    ("F10", Key::Function(10)),
+    ("F11", Key::Function(11)),
+    ("F12", Key::Function(12)),
     ("Space", Key::Char(' ')),
     ("lt", Key::Char('<')),
     ("gt", Key::Char('>')),

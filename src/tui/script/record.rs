@@ -150,7 +150,7 @@ mod tests {
             mouse(MouseKind::Release, 9, 9),
             mouse(MouseKind::ScrollUp, 1, 1),
             mouse(MouseKind::Press, 5, 5),
-            Input::Key(Key::F1),
+            Input::Key(Key::Function(1)),
             mouse(MouseKind::Drag, 6, 6),
             mouse(MouseKind::Release, 6, 6),
             Input::Size(60, 20),

@@ -4,11 +4,11 @@
 //! a  é  字                           characters, in UTF-8
 //! CR  TAB  DEL or Ctrl-H            Enter, Tab, Backspace
 //! 1 to 26                           Ctrl with a letter
-//! ESC [ A   ESC O A                 arrows, Home, End, F1; ESC [ 1 ; 2 A with Shift, ESC [ a in rxvt
-//! ESC [ 3 ~                         Delete, Page Up, Page Down, Home, End, F1 by number
+//! ESC [ A   ESC O A                 arrows, Home, End, F1 to F4; ESC [ 1 ; 2 A with Shift, ESC [ a in rxvt
+//! ESC [ 3 ~                         Delete, Page Up, Page Down, Home, End, F1 to F12 by number
 //! ESC [ Z                           Shift-Tab
 //! ESC [ 27 u                        Esc, Enter, Tab and Backspace by their code
-//! ESC [ [ A                         F1 on the Linux console
+//! ESC [ [ A                         F1 to F5 on the Linux console
 //! ESC O M                           Enter of the number pad
 //! ESC [ < 0 ; x ; y M               mouse, as it is asked for; m at the end when the button is released
 //! ESC [ M button x y                mouse in the old form, which some terminals send all the same
@@ -186,16 +186,17 @@ impl InputReader {
             }
             InputState::Function => {
                 self.ground();
-                if byte == b'A' {
-                    self.key(Key::F1);
+                if let b'A'..=b'E' = byte {
+                    self.key(Key::Function(byte - b'A' + 1));
                 }
             }
             InputState::Single => {
                 self.ground();
-                if byte == b'M' {
-                    self.key(Key::Enter);
-                } else {
-                    self.letter(byte, false);
+                match byte {
+                    b'M' => self.key(Key::Enter),
+                    // With numbers before it, this is the place of the cursor, which an earlier program asked for.
+                    b'R' => self.key(Key::Function(3)),
+                    _ => self.letter(byte, false),
                 }
             }
             InputState::Sequence => self.in_sequence(byte),
@@ -341,9 +342,12 @@ impl InputReader {
                 4 | 8 => self.key(Key::End),
                 5 => self.key(Key::PageUp),
                 6 => self.key(Key::PageDown),
-                11 => self.key(Key::F1),
                 200 => self.state = InputState::Paste,
-                _ => {}
+                number => {
+                    if let Some(key) = function_key(number) {
+                        self.key(key);
+                    }
+                }
             },
             b'Z' => self.key(Key::BackTab),
             b'n' => {
@@ -374,7 +378,9 @@ impl InputReader {
             b'D' => Arrow::Left,
             b'H' => return self.key(Key::Home),
             b'F' => return self.key(Key::End),
-            b'P' => return self.key(Key::F1),
+            b'P' => return self.key(Key::Function(1)),
+            b'Q' => return self.key(Key::Function(2)),
+            b'S' => return self.key(Key::Function(4)),
             _ => return,
         };
         self.key(if shifted {
@@ -420,6 +426,15 @@ impl InputReader {
         let text = text.replace("\r\n", "\n").replace('\r', "\n");
         self.found.push(Input::Paste(text));
     }
+}
+
+/// The function key of a number before `~`. There are gaps, as between the groups of keys of the VT220.
+fn function_key(number: u16) -> Option<Key> {
+    let groups = [(11..=15, 10), (17..=21, 11), (23..=24, 12)];
+    let (_, before) = groups
+        .into_iter()
+        .find(|(group, _)| group.contains(&number))?;
+    u8::try_from(number - before).ok().map(Key::Function)
 }
 
 /// Up to three numbers between semicolons; 0 for one that is missing or malformed. What follows a colon is a part of a

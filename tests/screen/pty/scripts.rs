@@ -36,7 +36,10 @@ fn bytes(key: Key) -> Vec<u8> {
         Key::BackTab => b"\x1b[Z".to_vec(),
         Key::Backspace => b"\x7f".to_vec(),
         Key::Delete => b"\x1b[3~".to_vec(),
-        Key::F1 => b"\x1bOP".to_vec(),
+        Key::Function(number) => {
+            let code = number + 10 + u8::from(number > 5) + u8::from(number > 10);
+            format!("\x1b[{code}~").into_bytes()
+        }
     }
 }
 

@@ -38,9 +38,13 @@ fn keys_of_many_terminals() {
             "\x1bOP\x1b[11~\x1b[[A\x1b[1;2P\x1b[P",
             "<F1><F1><F1><F1><Del>",
         ),
+        (
+            "\x1bOQ\x1bOR\x1bOS\x1b[[B\x1b[[E\x1b[12~\x1b[15~\x1b[17~\x1b[21~\x1b[23~\x1b[24~\x1b[15;2~\x1b[1;5S",
+            "<F2><F3><F4><F2><F5><F2><F5><F6><F10><F11><F12><F5><F4>",
+        ),
         ("\x1bOM\x1b[27u\x1b[9;2u\x1b[13u", "<CR><Esc><S-Tab><CR>"),
-        // Function keys, keys let go, keys and bytes that nobody knows.
-        ("\x1b[[B\x1b[15~\x1bOQ\x1b[2~\x1b[1;1:3Aq\0\x1c\x1f", "q"),
+        // Keys let go, keys and bytes that nobody knows.
+        ("\x1b[[F\x1b[16~\x1b[25~\x1b[2~\x1b[1;1:3Aq\0\x1c\x1f", "q"),
         ("\x1b", "<Esc>"),
         ("\x1b\x1b", "<Esc>"),
         ("\x1b\x1b[A", "<Up>"),
