@@ -26,6 +26,7 @@ use std::ops::ControlFlow;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::lines::{TextLines, is_blank};
+use crate::formats::recording::moment;
 use crate::formats::recording::separator::Separator;
 #[cfg(feature = "cli")]
 use crate::formats::recording::side::side;
@@ -47,6 +48,7 @@ pub(super) fn read(
     input.rewind()?;
     let info = ChannelInfo {
         shape: Some(layout.shape),
+        start: layout.start.clone(),
         ..ChannelInfo::default()
     };
     if sink(RecordingEvent::Channel(&info)).is_break() {
@@ -141,9 +143,8 @@ fn frames(
             frame.number += 1;
         }
         let time = fields.fill(&slots, &mut frame, layout.separator, (line, number))?;
-        frame.time = time.zip(fields.time).map(|(time, (_, factor))| {
-            to_nanoseconds(since(*start.get_or_insert(time), time) * factor)
-        });
+        frame.time = time
+            .map(|(time, factor)| to_nanoseconds(since(*start.get_or_insert(time), time) * factor));
         if sink(RecordingEvent::Frame(&frame)).is_break() {
             break;
         }
@@ -162,9 +163,9 @@ impl FrameFields {
         is_frame && self.label.is_none() && self.time.is_none()
     }
 
-    /// Fills the values and the label of a frame from a line. Returns its time, in the unit of the table.
+    /// Fills the values and the label of a frame from a line. Returns its time, and what makes seconds of it.
     ///
-    /// Text in a field that is neither cell nor label nor time is not looked at.
+    /// Text in a field that is neither cell nor label nor time is not looked at; text in that of the time may be a moment.
     ///
     /// # Errors
     /// If the line has another number of fields, or something other than a number for a cell.
@@ -174,7 +175,7 @@ impl FrameFields {
         frame: &mut Frame,
         separator: Separator,
         (line, number): (&[u8], u64),
-    ) -> Result<Option<f64>, RecordingError> {
+    ) -> Result<Option<(f64, f64)>, RecordingError> {
         let (mut found, mut label, mut time) = (0, None, None);
         let values = frame.values_mut();
         for field in separator.fields_of(line, self.count) {
@@ -188,10 +189,14 @@ impl FrameFields {
                 (Some(slot), Field::NoCell) => values[*slot] = f64::NAN,
                 (Some(_), Field::Wrong) => return Err(text_row::wrong(number, found, field)),
                 (None, Field::Value(value)) if self.label == Some(index) => label = whole(value),
-                (None, Field::Value(value)) if self.time.is_some_and(|(own, _)| own == index) => {
-                    time = Some(value);
+                (None, value) => {
+                    let own = self.time.filter(|&(own, _)| own == index);
+                    time = time.or(own.and_then(|(_, factor)| match value {
+                        Field::Value(value) => Some((value, factor)),
+                        Field::Wrong => moment::read(field).map(|seconds| (seconds, 1.0)),
+                        Field::NoCell => None,
+                    }));
                 }
-                (None, _) => {}
             }
         }
         if found != self.count {

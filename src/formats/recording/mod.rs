@@ -32,6 +32,8 @@ pub(crate) mod number;
 
 mod lines;
 
+mod moment;
+
 mod side;
 
 mod text_row;

@@ -2,7 +2,7 @@
 //!
 //! A header names the cells, see [`cell_names`](super::cell_names). Without one, rows and columns have to be known
 //! beforehand, unless the table is in blocks of a row a line; numbers before or behind the cells are then recognised by how
-//! they grow from line to line ([`without_header`]), and texts such as dates and labels are passed over.
+//! they grow from line to line ([`without_header`]). A moment is the time where no number is; other texts are passed over.
 
 use std::io::BufRead;
 
@@ -10,6 +10,7 @@ use crate::formats::recording::cell_names::{FieldRole, NamedCells, cells, role, 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingNote};
 use crate::formats::recording::lines::{TextLines, is_blank, text};
+use crate::formats::recording::moment;
 use crate::formats::recording::separator::Separator;
 use crate::formats::recording::side::side;
 use crate::formats::recording::text_row;
@@ -30,6 +31,8 @@ pub(super) struct TableLayout {
     pub(super) lines: LineLayout,
     /// What was assumed, if anything.
     pub(super) note: Option<RecordingNote>,
+    /// The moment of the first frame as it is written, where lines have one.
+    pub(super) start: Option<String>,
 }
 
 /// What a line of a table holds.
@@ -102,7 +105,7 @@ pub(super) fn layout(
         let next = lines.line().to_owned();
         return of_numbers(lines, separator, (number, &[&first, &next]), options);
     }
-    with_header(&names, separator, number, options)
+    with_header(&names, separator, (number, lines.line()), options)
 }
 
 /// How many cells are named, if names are those of cells and nothing else, counted from 0; pandas writes an empty one before
@@ -192,7 +195,10 @@ fn of_numbers(
         (Some(shape), _) => {
             let found = without_header(shape, number, &compared)?;
             let found = found.among(&numeric, &fields, number)?;
-            (shape, LineLayout::Frame(found))
+            (
+                shape,
+                LineLayout::Frame(found.with_moment(separator, &fields)),
+            )
         }
         (None, Some(width)) if parted && block > 1 => ((block, width), LineLayout::Row { parted }),
         (None, _) => {
@@ -203,6 +209,7 @@ fn of_numbers(
     Ok(TableLayout {
         separator,
         shape,
+        start: lines.start(&fields),
         lines,
         note: None,
     })
@@ -220,7 +227,34 @@ fn lines_needed(shape: Option<(u16, u16)>, width: Option<u16>, values: usize) ->
     }
 }
 
+impl LineLayout {
+    /// The moment in the fields of the first frame, as it is written.
+    fn start(&self, fields: &[&[u8]]) -> Option<String> {
+        let Self::Frame(FrameFields { time, .. }) = self else {
+            return None;
+        };
+        let field = *fields.get((*time)?.0)?;
+        moment::read(field).is_some().then(|| text(field))
+    }
+}
+
 impl FrameFields {
+    /// These fields, whose first line has such `fields`, with a moment beside the cells as the time where no number is.
+    fn with_moment(mut self, separator: Separator, fields: &[&[u8]]) -> Self {
+        let is_moment =
+            |&field: &usize| fields.get(field).copied().and_then(moment::read).is_some();
+        let is_time = |field: usize| {
+            let own = fields.get(field);
+            own.is_some_and(|own| separator.is_numeric(own)) || is_moment(&field)
+        };
+        // Numbers alone have no colons.
+        if !self.time.is_some_and(|(field, _)| is_time(field)) {
+            let moment = (0..fields.len()).find(is_moment);
+            self.time = moment.map(|field| (field, 1.0)).or(self.time);
+        }
+        self
+    }
+
     /// These fields of numbers alone, as fields of lines that have texts, too: the numbers of line `number` are in those of
     /// its `fields` that `numeric` names.
     ///
@@ -247,14 +281,14 @@ impl FrameFields {
     }
 }
 
-/// The arrangement that the names in line `number` describe.
+/// The arrangement that the names in line `number` describe, above the first line of values.
 ///
 /// # Errors
 /// If the names are those of another number of rows and columns than was asked for.
 fn with_header(
     names: &[&str],
     separator: Separator,
-    number: u64,
+    (number, first): (u64, &[u8]),
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
     let roles = roles(names);
@@ -277,17 +311,21 @@ fn with_header(
         Some(FieldRole::Time(factor)) => Some((field, *factor)),
         _ => None,
     });
+    let fields: Vec<&[u8]> = separator.fields_of(first, names.len()).collect();
+    let found = FrameFields {
+        count: names.len(),
+        header: Some(number),
+        label: label.map(|(field, _)| field),
+        time,
+        cells,
+    };
+    let lines = LineLayout::Frame(found.with_moment(separator, &fields));
     Ok(TableLayout {
         separator,
         shape,
         note,
-        lines: LineLayout::Frame(FrameFields {
-            count: names.len(),
-            header: Some(number),
-            label: label.map(|(field, _)| field),
-            time,
-            cells,
-        }),
+        start: lines.start(&fields),
+        lines,
     })
 }
 

@@ -126,3 +126,47 @@ fn values_are_counted_where_names_do_not_say_rows_and_columns() {
     let expected = "line 1, column 14: found NaN, expected null where there is no cell";
     assert_eq!(error(&found), expected);
 }
+
+#[test]
+fn a_moment_beside_the_cells_is_the_time() {
+    let times = |text: &str, shape| {
+        let found = recorded(text.as_bytes(), shape);
+        assert!(found.error.is_none(), "{text}: {:?}", found.error);
+        let times: Vec<Option<f64>> = found.frames.iter().map(|frame| frame.time).collect();
+        (found.channels[0].start.clone(), times)
+    };
+    for (text, shape, start, second) in [
+        // Under any name, past midnight.
+        (
+            "when,note,r0c0,r0c1\n2024-05-01T23:59:59.5Z,a,1,2\n2024-05-02T00:00:00.25Z,b,3,4\n",
+            None,
+            "2024-05-01T23:59:59.5Z",
+            0.75,
+        ),
+        // A date alone is passed over, so is a unit that a moment does not need.
+        (
+            "date;time (ms);r0c0;r0c1\n2024-05-01;12:00:00,1;1;2\n2024-05-01;12:00:00,3;3;4\n",
+            None,
+            "12:00:00,1",
+            0.2,
+        ),
+        // Without names, with a number that counts.
+        (
+            "0,2024-05-01 12:00:00+02:00,1,2\n1,2024-05-01 12:00:01+02:00,3,4\n",
+            Some((1, 2)),
+            "2024-05-01 12:00:00+02:00",
+            1.0,
+        ),
+    ] {
+        let expected = (Some(start.to_owned()), vec![Some(0.0), Some(second)]);
+        assert_eq!(times(text, shape), expected, "{text}");
+    }
+    // Numbers go before it; what cannot be read is no time.
+    let numbers = "date,t,r0c0,r0c1\n2024-05-01 12:00:00,3,1,2\n2024-05-01 12:00:09,4.5,3,4\n";
+    assert_eq!(times(numbers, None), (None, vec![Some(0.0), Some(1.5)]));
+    let gap = "t,r0c0,r0c1\n12:00:00,1,2\nlater,3,4\n12:00:02,5,6\n";
+    let expected = vec![Some(0.0), None, Some(2.0)];
+    assert_eq!(times(gap, None), (Some("12:00:00".to_owned()), expected));
+    let german = "time,r0c0,r0c1\n01.05.2024 12:00:00,1,2\n01.05.2024 12:00:01,3,4\n";
+    assert_eq!(times(german, None), (None, vec![None, None]));
+}

@@ -1,0 +1,144 @@
+//! Moments as tables write them: a date of ISO 8601 and a clock, or a clock alone.
+//! ```text
+//! 2024-05-01T12:00:00.125Z      2024-05-01 12:00:00,125      12:00:00.125
+//! 2024/05/01 12:00:00+02:00     20:00:00
+//! ```
+//! Dates that begin with the day or the month are not read: nothing tells one from the other.
+
+use crate::formats::recording::separator::decimal;
+use crate::formats::recording::text_row::Field;
+
+/// The seconds from 1970, of a clock alone from midnight; None of what is no such moment. A minute's 61st second, which a
+/// leap second needs, is the first of the next one.
+pub(super) fn read(field: &[u8]) -> Option<f64> {
+    let text = str::from_utf8(field).ok()?.trim();
+    let (day, clock) = match text.split_once(['T', 't', ' ']) {
+        Some((date, clock)) => (iso_day(date)?, clock.trim_start()),
+        None => (0, text),
+    };
+    let (clock, offset) = match clock.rfind(['+', '-']) {
+        Some(sign) => (&clock[..sign], offset(&clock[sign..])?),
+        None => (clock.trim_end_matches(['Z', 'z']), 0),
+    };
+    let mut parts = clock.trim_end().splitn(3, ':');
+    let hours = two_digits(parts.next()?, 23)?;
+    let minutes = two_digits(parts.next()?, 59)?;
+    let seconds = parts.next()?;
+    let is_number = seconds.starts_with(|first: char| first.is_ascii_digit());
+    let Field::Value(seconds) = decimal(seconds.as_bytes()) else {
+        return None;
+    };
+    let minutes = f64::from(day) * 1440.0 + f64::from(60 * hours + minutes - offset);
+    (is_number && seconds < 61.0).then_some(60.0 * minutes + seconds)
+}
+
+/// The number of a day of the Gregorian calendar, from 1970 on; earlier ones are negative. The month counts from 1.
+pub(super) fn day(year: i32, month: i32, day: i32) -> i32 {
+    // Years that begin in March have the leap day at their end.
+    let (year, month) = if month < 3 {
+        (year - 1, month + 9)
+    } else {
+        (year, month - 3)
+    };
+    let days = year * 365 + year / 4 - year / 100 + year / 400 + (month * 153 + 2) / 5 + day;
+    days - 719_469
+}
+
+/// The day of `2024-05-01` or `2024/05/01`.
+fn iso_day(date: &str) -> Option<i32> {
+    let mut parts = date.splitn(3, ['-', '/']);
+    let year = parts.next().filter(|year| year.len() == 4)?;
+    let year = year
+        .bytes()
+        .all(|digit| digit.is_ascii_digit())
+        .then_some(year)?;
+    let month = two_digits(parts.next()?, 12).filter(|&month| month > 0)?;
+    let of_month = two_digits(parts.next()?, 31).filter(|&day| day > 0)?;
+    Some(day(year.parse().ok()?, month, of_month))
+}
+
+/// The minutes by which a clock is before that of Greenwich: `+02:00`, `-0330`, `+02`.
+fn offset(text: &str) -> Option<i32> {
+    let (sign, digits) = text.split_at_checked(1)?;
+    let (hours, minutes) = match digits.split_at_checked(2)? {
+        (hours, "") => (hours, "00"),
+        (hours, minutes) => (hours, minutes.strip_prefix(':').unwrap_or(minutes)),
+    };
+    let minutes = 60 * two_digits(hours, 23)? + two_digits(minutes, 59)?;
+    Some(if sign == "-" { -minutes } else { minutes })
+}
+
+/// A number of one or two digits, up to a largest one.
+fn two_digits(text: &str, most: i32) -> Option<i32> {
+    let is_number = matches!(text.len(), 1 | 2) && text.bytes().all(|digit| digit.is_ascii_digit());
+    let number = is_number.then(|| text.parse().ok()).flatten()?;
+    (number <= most).then_some(number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_are_read() {
+        for (text, seconds) in [
+            ("1970-01-01T00:00:00Z", 0.0),
+            ("2024-05-01T12:00:00.125Z", 1_714_564_800.125),
+            ("2024-05-01 12:00:00,125", 1_714_564_800.125),
+            ("2024/05/01 12:00:00", 1_714_564_800.0),
+            ("2024-05-01 14:00:00+02:00", 1_714_564_800.0),
+            ("2024-05-01t08:30:00-0330", 1_714_564_800.0),
+            ("2024-02-29T23:59:60Z", 1_709_251_200.0),
+            ("1969-12-31T23:59:59Z", -1.0),
+            ("12:00:00.5", 43_200.5),
+            ("9:05:07", 32_707.0),
+        ] {
+            assert_eq!(read(text.as_bytes()), Some(seconds), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_may_be_something_else_is_not_read() {
+        for text in [
+            "",
+            "12",
+            "12:00",
+            "2024-05-01",
+            "01.05.2024 12:00:00",
+            "05/01/2024 12:00:00",
+            "2024-13-01T00:00:00",
+            "2024-05-00T00:00:00",
+            "24:00:00",
+            "12:60:00",
+            "12:00:61",
+            "12:00:-1",
+            "12:00:nan",
+            "12:00:",
+            "12:00:00:00",
+            "12:00:00+",
+            "12:00:00+1",
+            "T12:00:00",
+            "12:00:00 PM",
+            "+2024-05-01T00:00:00",
+            "a:b:c",
+        ] {
+            assert_eq!(read(text.as_bytes()), None, "{text}");
+        }
+        assert_eq!(read(b"12:00:\xff"), None);
+    }
+
+    #[test]
+    fn days_follow_each_other() {
+        for (before, after) in [
+            ((2022, 8, 31), (2022, 9, 1)),
+            ((2021, 12, 31), (2022, 1, 1)),
+            ((2024, 2, 28), (2024, 2, 29)),
+            ((2023, 2, 28), (2023, 3, 1)),
+            ((1900, 2, 28), (1900, 3, 1)),
+            ((2000, 2, 29), (2000, 3, 1)),
+        ] {
+            let number = |(year, month, of_month)| day(year, month, of_month);
+            assert_eq!(number(before) + 1, number(after), "{before:?}");
+        }
+    }
+}
