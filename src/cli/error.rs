@@ -113,6 +113,12 @@ pub(crate) enum CliError {
         /// The name.
         name: Name,
     },
+    /// Nothing of a model of a built-in set is there to be deleted.
+    #[error("{name} is built in and cannot be deleted")]
+    BuiltInModel {
+        /// The name.
+        name: Name,
+    },
     /// The argument is neither the name of a set of shapes nor a file.
     #[error("{0}")]
     NoSet(String),

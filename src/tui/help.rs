@@ -199,7 +199,7 @@ impl Page for Help {
             (_, false) => Some(format!(
                 "more below: {}, {}",
                 key(&action::SCROLL_DOWN),
-                key(&action::PAGE_DOWN)
+                key(&action::SCREEN_DOWN)
             )),
         };
         let visible =

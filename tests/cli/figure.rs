@@ -116,7 +116,7 @@ fn wrong_usage_is_status_2() {
     misused("batch --pitch 2", "unexpected argument '--pitch' found\n");
     misused(
         "--columns 3 figure hexagon",
-        "the subcommand 'figure' cannot be used with '--columns', which is only for the screen\n",
+        "'--columns' must come after 'figure'; before it, it is a flag of the screen\n",
     );
 }
 

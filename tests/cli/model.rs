@@ -385,6 +385,11 @@ fn models_have_names_and_cards() {
         place.path("models/parts.npz")
     );
     refused(&run, 1, &there);
+    refused(
+        &place.run("model delete figures", ""),
+        1,
+        "figures is built in and cannot be deleted",
+    );
     assert_eq!(place.done("model delete parts"), "deleted: parts\n");
     refused(
         &place.run("model delete parts", ""),

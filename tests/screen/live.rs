@@ -96,6 +96,17 @@ fn the_threshold_goes_up_and_down_and_changes_its_unit() {
     shows(&watched(6, "+-"), &["threshold  4"]);
     shows(&watched(6, "+%"), &["threshold  6 % of the peak"]);
     shows(&watched(6, "+%+"), &["threshold  11 % of the peak"]);
+    // Back to the very same one, also from a peak below it.
+    let threshold = |keys: &str| {
+        let screen = watched(6, keys).screen();
+        let line = screen.lines().find(|line| line.contains("threshold"));
+        line.expect("it is shown").trim_end().to_owned()
+    };
+    assert_eq!(threshold("+%%"), threshold("+"));
+    let above = "+".repeat(150);
+    assert_eq!(threshold(&format!("{above}%%")), threshold(&above));
+    assert!(threshold(&format!("{above}%")).contains("100 %"));
+    assert_eq!(threshold("+%%%"), threshold("+%"));
 }
 
 #[test]

@@ -232,7 +232,7 @@ fn help_is_everywhere() {
 #[test]
 fn a_long_help_says_that_there_is_more() {
     let mut session = session("?");
-    shows(&session, &["lines 1-19 of", "more below"]);
+    shows(&session, &["lines 1-19 of", "more below: Down, PageDown"]);
     then(&mut session, "<Down>", &["lines 2-20 of", "more below"]);
     then(&mut session, "<30x:PageDown>", &["the end"]);
     then(&mut session, "<Up>", &["more below"]);

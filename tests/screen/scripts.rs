@@ -238,7 +238,7 @@ fn a_script_sets_the_scene() {
     }
     let script = format!(
         "Set leftover {PAIR}\nExpect /unsaved work from last time: pair, 2 taxels/\nKeys y\nExpect /brought back/\n\
-         Expect /NA 2 in all/"
+         Expect /NA 2 in all/\nKeys u\nExpect /undone: unsaved work brought back/"
     );
     // Another test of this binary that starts a program holds, until that runs, a copy of every open file: so for that
     // moment the work seems to be that of a running program, and is asked for the next time.

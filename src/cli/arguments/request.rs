@@ -207,9 +207,15 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
         });
     };
     if let Some(flag) = Given::of(&matches).first().or(of_screen(&matches)) {
-        let message = format!(
-            "the subcommand '{name}' cannot be used with '--{flag}', which is only for the screen"
-        );
+        let has_flag =
+            |own: &clap::Command| own.get_arguments().any(|own| own.get_long() == Some(&flag));
+        let message = if command.find_subcommand(name).is_some_and(has_flag) {
+            format!("'--{flag}' must come after '{name}'; before it, it is a flag of the screen")
+        } else {
+            format!(
+                "the subcommand '{name}' cannot be used with '--{flag}', which is only for the screen"
+            )
+        };
         return Err(command.error(ErrorKind::ArgumentConflict, message).into());
     }
     if definitions::WITHOUT_LIBRARY.contains(&name) && (library_named || own.contains_id("library"))

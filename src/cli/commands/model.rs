@@ -479,12 +479,18 @@ pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String
 /// The file is removed at once: unlike a shape of the library, a model can be trained again.
 ///
 /// # Errors
-/// [`CliError::NoModel`] if there is none of that name.
+/// [`CliError::NoModel`] if there is none of that name, [`CliError::BuiltInModel`] if it is one that taxel makes itself.
 pub(crate) fn delete(name: &Name, shelf: &Shelf) -> Result<String, CliError> {
     match folder(shelf)?.delete(name) {
-        Err(error) if error.is_missing() => Err(CliError::NoModel {
-            name: name.to_string(),
-        }),
+        Err(error) if error.is_missing() => {
+            let name = name.clone();
+            Err(if ModelChoice::from_name(name.clone()).is_read() {
+                let name = name.to_string();
+                CliError::NoModel { name }
+            } else {
+                CliError::BuiltInModel { name }
+            })
+        }
         deleted => Ok(format!("deleted: {}\n", deleted?)),
     }
 }

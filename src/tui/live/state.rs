@@ -41,6 +41,8 @@ pub struct Live {
     processing: Processing,
     /// The threshold, and whether the file, an option or a key set it.
     rule: Option<SetRule>,
+    /// The rule that `%` made last, and the one that it made it from.
+    converted: Option<(Rule, Rule)>,
     /// Whether threshold or tare have changed since they were last written into a recording.
     is_viewed_anew: bool,
     history: FrameHistory,
@@ -91,6 +93,7 @@ impl Live {
         let mut live = Self {
             processing: request.processing.clone(),
             rule: None,
+            converted: None,
             is_viewed_anew: false,
             history: FrameHistory::new(request.history_bytes),
             watched_from: 0,
@@ -543,14 +546,20 @@ impl Live {
     }
 
     /// A threshold in percent in place of one in the sensor's unit, or the other way round: one that gives about the same
-    /// imprint of the frame that is shown.
+    /// imprint of the frame that is shown. Twice in a row, it gives the former threshold, also if that was above all values.
     pub fn switch_unit(&mut self) {
         // Rules go by the tared values, whichever are shown.
         let largest = self.reading.as_ref().and_then(|reading| reading.tared_max);
         let largest = largest.filter(|&largest| largest > 0.0);
         let largest = largest.unwrap_or(self.range.tared_top());
         let rule = self.rule.map(|set| set.rule);
-        self.choose(&threshold::other_unit(rule, largest));
+        let former = self.converted.filter(|(made, _)| rule == Some(*made));
+        let other = match former {
+            Some((_, former)) => Ok(former),
+            None => threshold::other_unit(rule, largest),
+        };
+        self.choose(&other);
+        self.converted = other.ok().zip(rule);
     }
 
     /// Stays at the frame that is shown, or follows the source again. Returns whether it stays.

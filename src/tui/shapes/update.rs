@@ -6,7 +6,7 @@
 use crate::imprint::Imprint;
 use crate::picture::Picture;
 use crate::storage::{Expected, LibraryEntry, LoadedShape, ShapeOrigin};
-use crate::tui::app::change::{begin, change as change_to, compare_with, inform, refuse};
+use crate::tui::app::change::{begin, begin_unsaved, compare_with, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::StoredName;
@@ -140,8 +140,7 @@ fn on_change(app: &mut App, change: LibraryEvent) {
         }
         LibraryEvent::Found(left) => offer(app, "", &left),
         LibraryEvent::Recovered(shape) => {
-            begin(app, Document::empty(shape.sensor), None);
-            change_to(app, Document::of_shape(&shape));
+            begin_unsaved(app, Document::of_shape(&shape), "unsaved work brought back");
             let save = app.key_of(&action::SAVE);
             inform(app, format!("brought back; {save} saves it"));
         }
