@@ -236,7 +236,7 @@ pub(crate) fn refused() -> String {
         let output = strace::tampered(&(deed.command)(&state), call, "error=EINTR");
         let context = format!("{}, {call:?}: {output:?}", deed.name);
         assert_eq!(output.status.code(), Some(0), "{context}");
-        (deed.done)(&state, &output);
+        assert!((deed.done)(&state, &output), "{context}");
         others(deed, &state);
     });
     format!(
