@@ -66,6 +66,12 @@ pub enum RecorderError {
         /// The file.
         path: PathBuf,
     },
+    /// The file beside the array is not the description of a recording: it is nobody's to replace.
+    #[error("{} is not the description of a recording: record to another name", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
     /// The file is not named as an array.
     #[error("{}: expected a file that ends in .npy", path.display())]
     Ending {
@@ -190,7 +196,8 @@ impl FrameRecorder {
     /// and what is to be replaced stays until then.
     ///
     /// # Errors
-    /// If the name ends otherwise, if one of the two is there and is to be kept, or if they cannot be created.
+    /// If the name ends otherwise, if one of the two is there and is to be kept, if what is there under the second name is no
+    /// description, or if they cannot be created.
     pub fn create(
         path: &Path,
         existing: Existing,
@@ -199,6 +206,11 @@ impl FrameRecorder {
         if !is_array(path) {
             let path = path.to_owned();
             return Err(RecorderError::Ending { path });
+        }
+        let beside = path.with_extension("json");
+        let is_there = existing == Existing::Replaced && beside.symlink_metadata().is_ok();
+        if is_there && description_beside(path).is_none() {
+            return Err(RecorderError::Foreign { path: beside });
         }
         let mut metadata = metadata.clone();
         metadata.ended = Some(false);
@@ -661,6 +673,26 @@ mod tests {
         let added = recorder.add(&Frame::new(1, 1), None);
         assert!(matches!(added, Err(RecorderError::Exists { .. })));
         assert_eq!(std::fs::read_to_string(&beside).expect("read"), "mine");
+    }
+
+    #[test]
+    fn only_a_description_is_replaced_beside_an_array() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let beside = path.with_extension("json");
+        let record = || {
+            let metadata = RecordingMetadata::default();
+            let mut recorder = FrameRecorder::create(&path, Existing::Replaced, &metadata)?;
+            recorder.add(&Frame::new(1, 1), None)
+        };
+        std::fs::write(&beside, "{\"mine\":1}").expect("written");
+        assert!(matches!(record(), Err(RecorderError::Foreign { .. })));
+        let kept = std::fs::read_to_string(&beside).expect("read");
+        assert_eq!((kept.as_str(), path.exists()), ("{\"mine\":1}", false));
+        std::fs::remove_file(&beside).expect("removed");
+        for _ in 0..2 {
+            record().expect("its own");
+        }
     }
 
     #[test]
