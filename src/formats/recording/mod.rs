@@ -36,7 +36,7 @@ mod moment;
 
 mod side;
 
-mod text_row;
+pub(crate) mod text_row;
 
 mod tekscan;
 
@@ -46,7 +46,7 @@ mod emed;
 
 mod zebris;
 
-mod separator;
+pub(crate) mod separator;
 
 mod cell_names;
 

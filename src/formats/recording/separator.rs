@@ -10,7 +10,7 @@ use crate::formats::recording::text_row::{self, Field};
 
 /// What parts the fields of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Separator {
+pub(crate) enum Separator {
     /// This byte; between two of them is an empty field.
     Byte(u8),
     /// Any number of blanks; there are no empty fields.
@@ -73,7 +73,7 @@ impl Separator {
     }
 
     /// What a field says of its cell. With semicolons, a comma is the decimal sign.
-    pub(super) fn value(self, field: &[u8]) -> Field {
+    pub(crate) fn value(self, field: &[u8]) -> Field {
         let is_none = field.is_empty()
             || [&b"nan"[..], b"null", b"none", b"na"]
                 .iter()

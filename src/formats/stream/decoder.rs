@@ -12,6 +12,7 @@ use crate::formats::stream::event::{StreamCounts, StreamFormat, StreamOptions, S
 use crate::formats::stream::flexitac::FlexitacDecoder;
 use crate::formats::stream::lines::LinesDecoder;
 use crate::formats::stream::matsense::MatsenseDecoder;
+use crate::formats::stream::numbers;
 
 /// A line of 512 × 512 values is shorter.
 const LONGEST_LINE: usize = 8 << 20;
@@ -365,13 +366,8 @@ fn is_ros(line: &[u8]) -> bool {
 
 /// Whether a line holds numbers only, at least one.
 fn is_numbers(line: &[u8]) -> bool {
-    let Ok(line) = std::str::from_utf8(line) else {
-        return false;
-    };
-    let separators = [' ', '\t', ',', ';'];
-    let mut words = line.split(separators).filter(|word| !word.is_empty());
-    let is_number = |word: &str| word.parse::<f64>().is_ok();
-    words.next().is_some_and(is_number) && words.all(is_number)
+    let mut values = Vec::new();
+    numbers::read(line, &mut values, usize::MAX).is_some() && !values.is_empty()
 }
 
 #[cfg(test)]

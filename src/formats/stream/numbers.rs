@@ -1,24 +1,38 @@
 //! The numbers of a line, read as fast as a sensor may send them.
 
-use crate::formats::recording::number;
-use crate::frame::LARGEST_VALUE;
+use crate::formats::recording::separator::Separator;
+use crate::formats::recording::text_row::Field;
 
 /// More digits than these are left to the general reader.
 const FAST_DIGITS: usize = 9;
 
-/// Spaces, tabs, commas, semicolons, and the carriage return before a line's end.
-fn is_separator(byte: u8) -> bool {
-    matches!(byte, b' ' | b'\t' | b',' | b'\r' | b';')
-}
-
-/// Adds the numbers of a line, parted by spaces, tabs, commas or semicolons; `nan` stands for no cell. None if there is
-/// anything else, or more than `most`.
+/// Adds the numbers of a line, parted by blanks, or by commas or semicolons with or without blanks. With semicolons, a comma is
+/// the decimal sign. An empty field and `nan`, `null`, `none` or `na` stand for no cell; a separator at the end of the line
+/// counts for nothing. None if there is anything else, or more than `most`.
 pub(super) fn read(line: &[u8], values: &mut Vec<f64>, most: usize) -> Option<()> {
+    let mark = if line.contains(&b';') { b';' } else { b',' };
+    let is_separator = |byte: u8| byte == mark || matches!(byte, b' ' | b'\t' | b'\r');
+    let first = values.len();
     let mut at = 0;
-    let mut count = 0;
     loop {
-        while line.get(at).is_some_and(|&byte| is_separator(byte)) {
+        let mut marks = 0;
+        while let Some(&byte) = line.get(at).filter(|byte| is_separator(**byte)) {
+            marks += usize::from(byte == mark);
             at += 1;
+        }
+        let is_end = at == line.len();
+        let empty = match values.len() > first {
+            true => marks.saturating_sub(1),
+            false if is_end => 0,
+            false => marks,
+        };
+        let room = most - (values.len() - first);
+        if empty + usize::from(!is_end) > room {
+            return None;
+        }
+        values.extend(std::iter::repeat_n(f64::NAN, empty));
+        if is_end {
+            return Some(());
         }
         let start = at;
         let mut whole = 0_u32;
@@ -29,27 +43,18 @@ pub(super) fn read(line: &[u8], values: &mut Vec<f64>, most: usize) -> Option<()
             whole = whole * 10 + u32::from(digit);
             at += 1;
         }
-        let ended = line.get(at).is_none_or(|&byte| is_separator(byte));
-        if ended && at == start {
-            return Some(());
-        }
-        count += 1;
-        if count > most {
-            return None;
-        }
-        if ended {
+        if line.get(at).is_none_or(|&byte| is_separator(byte)) {
             values.push(f64::from(whole));
             continue;
         }
         while line.get(at).is_some_and(|&byte| !is_separator(byte)) {
             at += 1;
         }
-        let word = &line[start..at];
-        let value = match number::read(word) {
-            None if word.eq_ignore_ascii_case(b"nan") => f64::NAN,
-            value => value.filter(|value| value.abs() <= LARGEST_VALUE)?,
-        };
-        values.push(value);
+        values.push(match Separator::Byte(mark).value(&line[start..at]) {
+            Field::Value(value) => value,
+            Field::NoCell => f64::NAN,
+            Field::Wrong => return None,
+        });
     }
 }
 
@@ -60,8 +65,8 @@ mod tests {
     #[test]
     fn numbers_of_all_kinds_are_read() {
         let mut values = Vec::new();
-        let line = b" 12, 7\t-3.5 0 1234567890123 1e3,5;6\r";
-        assert_eq!(read(line, &mut values, 9), Some(()));
+        let line = b" 12, 7\t-3.5 0 1234567890123 1e3,5 6\r";
+        assert_eq!(read(line, &mut values, 8), Some(()));
         assert_eq!(
             values,
             [12.0, 7.0, -3.5, 0.0, 1_234_567_890_123.0, 1000.0, 5.0, 6.0]
@@ -73,5 +78,23 @@ mod tests {
         values.clear();
         assert_eq!(read(b"nan", &mut values, 1), Some(()));
         assert!(values[0].is_nan());
+    }
+
+    #[test]
+    fn a_comma_beside_semicolons_is_a_decimal_sign_and_an_empty_field_is_no_cell() {
+        for (line, expected) in [
+            ("0,5;1,5", "[0.5, 1.5]"),
+            ("1;2;", "[1.0, 2.0]"),
+            ("1,,2", "[1.0, NaN, 2.0]"),
+            (",1 , , 2,,", "[NaN, 1.0, NaN, 2.0, NaN]"),
+            ("1 null\tNA none", "[1.0, NaN, NaN, NaN]"),
+            (" , ,, ", "[]"),
+        ] {
+            let mut values = Vec::new();
+            assert_eq!(read(line.as_bytes(), &mut values, 5), Some(()), "{line}");
+            assert_eq!(format!("{values:?}"), expected, "{line}");
+        }
+        let mut values = vec![7.0];
+        assert_eq!(read(b"1,,2", &mut values, 2), None);
     }
 }
