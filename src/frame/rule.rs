@@ -39,6 +39,11 @@ fn checked(
 }
 
 impl Rule {
+    /// So many percent of a value. Multiplied first: 7 % of 100 is 7, but 0.07 · 100 is more.
+    pub(crate) fn share(percent: f64, value: f64) -> f64 {
+        percent * value / 100.0
+    }
+
     /// A fixed threshold, in the sensor's unit.
     ///
     /// # Errors
@@ -96,7 +101,7 @@ impl Rule {
             Self::Percent(percent) => {
                 let max = values.values().iter().copied().fold(f64::NAN, f64::max);
                 if max > 0.0 {
-                    from(values, percent / 100.0 * max)
+                    from(values, Self::share(percent, max))
                 } else {
                     Imprint::empty(values.columns(), values.rows())
                 }
@@ -187,6 +192,15 @@ mod tests {
         assert_eq!(imprint(Rule::at_least(10.0), &values), ".#.#");
         assert_eq!(imprint(Rule::percent(25.0), &values), ".#.#");
         assert_eq!(imprint(Rule::at_least(-1.0), &values), "##.#");
+    }
+
+    #[test]
+    fn whole_percents_of_whole_numbers_include_ties() {
+        for percent in 1_u32..=100 {
+            // This percentage of the peak is a whole number.
+            let values = matrix(&[&[f64::from(3 * percent), 300.0]]);
+            assert_eq!(imprint(Rule::percent(f64::from(percent)), &values), "##");
+        }
     }
 
     #[test]

@@ -615,3 +615,23 @@ fn cells_are_where_the_file_says_in_less_usual_tables() {
     let found = imprints_of("lines.jsonl", text.as_bytes(), "--at-least 3");
     assert_eq!(found[0], serde_json::json!(["..", "##"]));
 }
+
+#[test]
+fn a_frame_without_cells_is_no_peak() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("idle.jsonl");
+    let none = "{\"frame\":[[null,null]]}\n";
+    let write = |text: &str| std::fs::write(&path, text).expect("written");
+    let peak = |flags: &str| {
+        let run = taxel(&format!("frames {} --json {flags}", path.display()), "");
+        assert_eq!(run.status, Some(0), "{run:?}");
+        let answer: Value = serde_json::from_str(&run.stdout).expect("JSON");
+        answer
+    };
+    write(&format!("{none}{{\"frame\":[[-5,-4]]}}\n{none}"));
+    assert_eq!(peak("")["channels"][0]["peak"], 1);
+    assert_eq!(peak("--peak --at-least 0")["frame"], 1);
+    assert_eq!(peak("--peak --at-least 0 --tare 2")["frame"], 1);
+    write(none);
+    assert!(peak("")["channels"][0]["peak"].is_null());
+}

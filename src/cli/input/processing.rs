@@ -176,6 +176,7 @@ pub(crate) fn peak(
             && frame.channel == channel
         {
             match processing.run(frame) {
+                Ok(processed) if processed.cells == 0 => {}
                 Ok(processed) => drop(peak.add(frame.number, processed.tared_sum)),
                 Err(error) => {
                     failure = Some(error);

@@ -57,8 +57,11 @@ impl ListedChannel {
     /// Counts another frame, and compares the sum of its values.
     pub(crate) fn add(&mut self, frame: &Frame, values: &[f64]) {
         let present = values.iter().filter(|value| !value.is_nan());
-        self.cells = self.cells.max(present.clone().count());
-        self.peak.add(frame.number, present.sum());
+        let cells = present.clone().count();
+        self.cells = self.cells.max(cells);
+        if cells > 0 {
+            self.peak.add(frame.number, present.sum());
+        }
         self.frames += 1;
         self.values = self.info.values.unwrap_or(frame.values().len() as u64);
         self.first = self.first.or(frame.first);

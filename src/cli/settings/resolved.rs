@@ -74,7 +74,12 @@ impl Loaded {
         let limit = MAX_BYTES as u64;
         let read = open(&path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes));
         let there = match read {
-            Err(error) if error.kind() == ErrorKind::NotFound && may_be_missing => false,
+            Err(error)
+                if may_be_missing
+                    && matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) =>
+            {
+                false
+            }
             Err(error) => return Err(failure(format!("cannot read: {error}"))),
             Ok(_) => true,
         };

@@ -128,7 +128,7 @@ impl PointPlot {
         marks.push(path_of("points", self.specks(&place), Stroke::black(2.0)));
         let mut last = end.1 + TEXT * 2.0 + 6.0;
         let mut right = end.0.max(corner.0 + width(self.title.chars().count()));
-        for (index, (name, points, dashed)) in (0_u8..).zip(&self.curves) {
+        for (index, (name, points, dashed)) in (0_u32..).zip(&self.curves) {
             let line = Stroke {
                 dash: dashed.then_some([4.0, 3.0]),
                 ..Stroke::black(1.1)

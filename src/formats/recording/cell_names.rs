@@ -184,7 +184,8 @@ pub(crate) fn roles(names: &[&str]) -> Vec<Option<FieldRole>> {
 
 /// What a field's name says of the frame, if it is a usual one.
 pub(crate) fn role(name: &str) -> Option<FieldRole> {
-    let name = name.to_lowercase();
+    // Of the two letters mu, the sign for micro counts.
+    let name = name.to_lowercase().replace('μ', "µ");
     let words: Vec<&str> = name
         .split(|character: char| !character.is_alphabetic())
         .filter(|word| !word.is_empty())
@@ -196,12 +197,14 @@ pub(crate) fn role(name: &str) -> Option<FieldRole> {
         return None;
     }
     let has = |units: &[&str]| words.iter().any(|word| units.contains(word));
-    let factor = if has(&["ns", "nsec", "nanoseconds", "nanos"]) {
+    let factor = if has(&["ns", "nsec", "nsecs", "nanoseconds", "nanos"]) {
         1e-9
-    } else if has(&["us", "µs", "usec", "microseconds", "micros"]) {
+    } else if has(&["us", "µs", "usec", "usecs", "microseconds", "micros"]) {
         1e-6
-    } else if has(&["ms", "msec", "milliseconds", "millis"]) {
+    } else if has(&["ms", "msec", "msecs", "milliseconds", "millis"]) {
         1e-3
+    } else if has(&["min", "mins", "minutes"]) {
+        60.0
     } else {
         1.0
     };
@@ -214,6 +217,7 @@ pub(crate) fn role(name: &str) -> Option<FieldRole> {
         "s",
         "stamp",
         "clock",
+        "elapsed",
     ];
     let labels = [
         "frame", "index", "idx", "number", "no", "nr", "n", "id", "label", "seq", "sequence",
@@ -300,6 +304,11 @@ mod tests {
             ("t_ns", time(1e-9)),
             ("Time (ms)", time(1e-3)),
             ("timestamp", time(1.0)),
+            ("Time (\u{3bc}s)", time(1e-6)),
+            ("Time [msecs]", time(1e-3)),
+            ("time_min", time(60.0)),
+            ("Elapsed time (s)", time(1.0)),
+            ("min", None),
             ("Frame", Some(FieldRole::Label)),
             ("force", None),
             ("S00", None),

@@ -26,7 +26,7 @@ use std::ops::ControlFlow;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::lines::{TextLines, is_blank};
-use crate::formats::recording::moment;
+use crate::formats::recording::moment::{self, Midnights, Moment};
 use crate::formats::recording::separator::Separator;
 #[cfg(feature = "cli")]
 use crate::formats::recording::side::side;
@@ -122,7 +122,7 @@ fn frames(
     }
     let (rows, columns) = layout.shape;
     let mut frame = Frame::new(columns, rows);
-    let mut start = None;
+    let (mut start, mut midnights) = (None, Midnights::default());
     // Lines of commas since the last frame.
     let mut without_cells = 0_u64;
     while lines.advance()? {
@@ -143,6 +143,10 @@ fn frames(
             frame.number += 1;
         }
         let time = fields.fill(&slots, &mut frame, layout.separator, (line, number))?;
+        let time = time.map(|time| match time {
+            FrameTime::Number(number, factor) => (number, factor),
+            FrameTime::Moment(moment) => (midnights.seconds(moment), 1.0),
+        });
         frame.time = time
             .map(|(time, factor)| to_nanoseconds(since(*start.get_or_insert(time), time) * factor));
         if sink(RecordingEvent::Frame(&frame)).is_break() {
@@ -151,6 +155,14 @@ fn frames(
         frame.number += 1;
     }
     Ok(())
+}
+
+/// The time of a frame, as its line has it.
+enum FrameTime {
+    /// A number, and what makes seconds of it.
+    Number(f64, f64),
+    /// A date, a clock or both.
+    Moment(Moment),
 }
 
 impl FrameFields {
@@ -163,7 +175,7 @@ impl FrameFields {
         is_frame && self.label.is_none() && self.time.is_none()
     }
 
-    /// Fills the values and the label of a frame from a line. Returns its time, and what makes seconds of it.
+    /// Fills the values and the label of a frame from a line. Returns its time.
     ///
     /// Text in a field that is neither cell nor label nor time is not looked at; text in that of the time may be a moment.
     ///
@@ -175,7 +187,7 @@ impl FrameFields {
         frame: &mut Frame,
         separator: Separator,
         (line, number): (&[u8], u64),
-    ) -> Result<Option<(f64, f64)>, RecordingError> {
+    ) -> Result<Option<FrameTime>, RecordingError> {
         let (mut found, mut label, mut time) = (0, None, None);
         let values = frame.values_mut();
         for field in separator.fields_of(line, self.count) {
@@ -192,8 +204,8 @@ impl FrameFields {
                 (None, value) => {
                     let own = self.time.filter(|&(own, _)| own == index);
                     time = time.or(own.and_then(|(_, factor)| match value {
-                        Field::Value(value) => Some((value, factor)),
-                        Field::Wrong => moment::read(field).map(|seconds| (seconds, 1.0)),
+                        Field::Value(value) => Some(FrameTime::Number(value, factor)),
+                        Field::Wrong => moment::read(field).map(FrameTime::Moment),
                         Field::NoCell => None,
                     }));
                 }

@@ -8,13 +8,21 @@
 use crate::formats::recording::separator::decimal;
 use crate::formats::recording::text_row::Field;
 
-/// The seconds from 1970, of a clock alone from midnight; None of what is no such moment. A minute's 61st second, which a
-/// leap second needs, is the first of the next one.
-pub(super) fn read(field: &[u8]) -> Option<f64> {
+/// A moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Moment {
+    /// The seconds from 1970; of a clock alone, from midnight.
+    pub(super) seconds: f64,
+    /// Whether it has a date.
+    pub(super) is_dated: bool,
+}
+
+/// Reads a moment; None of what is none. A minute's 61st second, which a leap second needs, is the first of the next one.
+pub(super) fn read(field: &[u8]) -> Option<Moment> {
     let text = str::from_utf8(field).ok()?.trim();
     let (day, clock) = match text.split_once(['T', 't', ' ']) {
-        Some((date, clock)) => (iso_day(date)?, clock.trim_start()),
-        None => (0, text),
+        Some((date, clock)) => (Some(iso_day(date)?), clock.trim_start()),
+        None => (None, text),
     };
     let (clock, offset) = match clock.rfind(['+', '-']) {
         Some(sign) => (&clock[..sign], offset(&clock[sign..])?),
@@ -28,8 +36,31 @@ pub(super) fn read(field: &[u8]) -> Option<f64> {
     let Field::Value(seconds) = decimal(seconds.as_bytes()) else {
         return None;
     };
-    let minutes = f64::from(day) * 1440.0 + f64::from(60 * hours + minutes - offset);
-    (is_number && seconds < 61.0).then_some(60.0 * minutes + seconds)
+    let minutes = f64::from(day.unwrap_or(0)) * 1440.0 + f64::from(60 * hours + minutes - offset);
+    (is_number && seconds < 61.0).then_some(Moment {
+        seconds: 60.0 * minutes + seconds,
+        is_dated: day.is_some(),
+    })
+}
+
+/// The days that clocks without a date have gone on: a clock that falls by more than half a day has passed midnight.
+#[derive(Debug, Default)]
+pub(super) struct Midnights {
+    days: u32,
+    last: Option<f64>,
+}
+
+impl Midnights {
+    /// The seconds of the next moment.
+    pub(super) fn seconds(&mut self, moment: Moment) -> f64 {
+        const DAY: f64 = 86_400.0;
+        if moment.is_dated {
+            return moment.seconds;
+        }
+        let last = self.last.replace(moment.seconds);
+        self.days += u32::from(last.is_some_and(|last| last - moment.seconds > DAY / 2.0));
+        f64::from(self.days) * DAY + moment.seconds
+    }
 }
 
 /// The number of a day of the Gregorian calendar, from 1970 on; earlier ones are negative. The month counts from 1.
@@ -54,7 +85,13 @@ fn iso_day(date: &str) -> Option<i32> {
         .then_some(year)?;
     let month = two_digits(parts.next()?, 12).filter(|&month| month > 0)?;
     let of_month = two_digits(parts.next()?, 31).filter(|&day| day > 0)?;
-    Some(day(year.parse().ok()?, month, of_month))
+    let year = year.parse().ok()?;
+    // Day 0 of a month is the last one of the month before.
+    let last = match month {
+        12 => 31,
+        _ => day(year, month + 1, 0) - day(year, month, 0),
+    };
+    (of_month <= last).then(|| day(year, month, of_month))
 }
 
 /// The minutes by which a clock is before that of Greenwich: `+02:00`, `-0330`, `+02`.
@@ -93,7 +130,9 @@ mod tests {
             ("12:00:00.5", 43_200.5),
             ("9:05:07", 32_707.0),
         ] {
-            assert_eq!(read(text.as_bytes()), Some(seconds), "{text}");
+            let is_dated = text.len() > 12;
+            let expected = Moment { seconds, is_dated };
+            assert_eq!(read(text.as_bytes()), Some(expected), "{text}");
         }
     }
 
@@ -108,6 +147,8 @@ mod tests {
             "05/01/2024 12:00:00",
             "2024-13-01T00:00:00",
             "2024-05-00T00:00:00",
+            "2024-04-31T00:00:00",
+            "2023-02-29T00:00:00",
             "24:00:00",
             "12:60:00",
             "12:00:61",

@@ -62,9 +62,10 @@ pub(super) struct FrameFields {
     pub(super) time: Option<(usize, f64)>,
 }
 
-/// Whether a line is a comment, wherever it stands.
+/// Whether a line is a comment, wherever it stands; or the line in which spreadsheet programs name their separator, `sep=;`.
 pub(super) fn is_comment(line: &[u8]) -> bool {
-    line.trim_ascii_start().starts_with(b"#")
+    let line = line.trim_ascii();
+    line.starts_with(b"#") || matches!(line, [b's', b'e', b'p', b'=', _])
 }
 
 /// Finds out how the table is arranged, from its first lines.

@@ -116,7 +116,8 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
             ));
         }
         let line = unpadded(lines.line());
-        if line.starts_with(b"ASCII_DATA") {
+        let rest = line.strip_prefix(b"ASCII_DATA");
+        if rest.is_some_and(|rest| rest.trim_ascii_start().starts_with(b"@@")) {
             break;
         }
         header.line(line, lines.number())?;

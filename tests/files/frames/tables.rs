@@ -128,6 +128,12 @@ fn values_are_counted_where_names_do_not_say_rows_and_columns() {
 }
 
 #[test]
+fn the_line_with_the_separator_of_a_spreadsheet_is_passed_over() {
+    let text = "sep=;\r\ntime;r0c0;r0c1\r\n0,5;1,5;2\r\n1;3;4\r\n";
+    assert_eq!(values(text, None), [[1.5, 2.0], [3.0, 4.0]]);
+}
+
+#[test]
 fn a_moment_beside_the_cells_is_the_time() {
     let times = |text: &str, shape| {
         let found = recorded(text.as_bytes(), shape);
@@ -164,6 +170,9 @@ fn a_moment_beside_the_cells_is_the_time() {
     // Numbers go before it; what cannot be read is no time.
     let numbers = "date,t,r0c0,r0c1\n2024-05-01 12:00:00,3,1,2\n2024-05-01 12:00:09,4.5,3,4\n";
     assert_eq!(times(numbers, None), (None, vec![Some(0.0), Some(1.5)]));
+    let midnight = "t,r0c0,r0c1\n23:59:59.5,1,2\n00:00:00.5,3,4\n00:00:00.25,5,6\n23:59:00,7,8\n00:01:00,9,1\n";
+    let expected = [0.0, 1.0, 0.75, 86_340.5, 86_460.5].map(Some).to_vec();
+    assert_eq!(times(midnight, None).1, expected);
     let gap = "t,r0c0,r0c1\n12:00:00,1,2\nlater,3,4\n12:00:02,5,6\n";
     let expected = vec![Some(0.0), None, Some(2.0)];
     assert_eq!(times(gap, None), (Some("12:00:00".to_owned()), expected));

@@ -65,7 +65,7 @@ fn numbered_pictures_of_zebris_are_frames_and_their_maximum_is_none() {
 #[test]
 fn the_last_unit_of_tekscan_counts_and_metres_are_a_length() {
     let text = "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nROW_SPACING 1.27e-003 meters\nCOL_SPACING 1.27 mm\n\
-                COMMENTS the pad\nUNITS kPa\nROWS 9\nUNITS raw\nASCII_DATA @@\nFrame 1\n1,2\n\n@@\n";
+                COMMENTS the pad\nASCII_DATA was chosen\nUNITS kPa\nROWS 9\nUNITS raw\nASCII_DATA @@\nFrame 1\n1,2\n\n@@\n";
     let found = recorded(text.as_bytes(), None);
     assert_eq!((error(&found), found.frames.len()), (None, 1));
     let info = &found.channels[0];
