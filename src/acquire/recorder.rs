@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 
 use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::formats::seconds::usual_step;
-use crate::frame::Frame;
+use crate::frame::{Frame, LARGEST_VALUE};
 use crate::index::index;
 use crate::storage::{Existing, FileError, FinishedFile, UnfinishedFile, persist_pair};
 
@@ -377,9 +377,16 @@ impl FrameRecorder {
         let time = time.unwrap_or(f64::NAN);
         self.buffer.extend(time.to_le_bytes());
         self.buffer.extend(frame.number.to_le_bytes());
-        let values = frame.values().iter();
-        self.buffer
-            .extend(values.flat_map(|value| value.to_le_bytes()));
+        // Readers refuse a value that counts as none but is infinite.
+        let written = |&value: &f64| {
+            if value.abs() <= LARGEST_VALUE {
+                value
+            } else {
+                f64::NAN
+            }
+        };
+        let values = frame.values().iter().map(written);
+        self.buffer.extend(values.flat_map(f64::to_le_bytes));
         self.records += 1;
         if self.buffer.len() >= BUFFER || self.written.elapsed() >= WRITTEN_OUT {
             return self.write_out();

@@ -158,6 +158,7 @@ pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
         .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
     let sensor = header.sensor.sensor(Sensor::default())?;
     let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
+    header.source.no_sensor("source")?;
     let source = header.source.source(&sensor, &no_name)?;
     let anchor = anchor(&header.anchor)?;
     let ranges = ranges([

@@ -10,7 +10,7 @@ pub const LONGEST: usize = 64;
 /// The most bytes of a name: file systems take 255, and `.json` and a number in the trash come to them.
 const MOST_BYTES: usize = 200;
 
-/// A name that can be a file's on every system: 1 to 64 visible letters, digits, spaces, `-`, `_`, `.`; not starting
+/// A name that a file can have on every Unix-like system: 1 to 64 visible letters, digits, spaces, `-`, `_`, `.`; not starting
 /// with `.` or a space, not ending with a space.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Name(String);

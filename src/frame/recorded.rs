@@ -93,6 +93,7 @@ impl Frame {
 
     /// Number of cells that have a value.
     pub fn cells(&self) -> usize {
-        self.values.iter().filter(|value| !value.is_nan()).count()
+        let is_value = |value: &&f64| value.abs() <= LARGEST_VALUE;
+        self.values.iter().filter(is_value).count()
     }
 }

@@ -7,7 +7,7 @@ use crate::frame::Frame;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum StreamFormat {
-    /// Numbers parted by spaces, tabs or commas: a frame a line, or a row a line and an empty line between frames.
+    /// Numbers parted by spaces, tabs, commas or semicolons: a frame a line, or a row a line and an empty line between frames.
     Lines,
     /// A JSON object a line, as of recordings.
     JsonLines,
