@@ -66,7 +66,7 @@ pub enum RecorderError {
         /// The file.
         path: PathBuf,
     },
-    /// The file beside the array is not the description of a recording: it is nobody's to replace.
+    /// The file beside the array is not the description of a recording, so it is not replaced.
     #[error("{} is not the description of a recording: record to another name", path.display())]
     Foreign {
         /// The file.
@@ -377,7 +377,7 @@ impl FrameRecorder {
         let time = time.unwrap_or(f64::NAN);
         self.buffer.extend(time.to_le_bytes());
         self.buffer.extend(frame.number.to_le_bytes());
-        // Readers refuse a value that counts as none but is infinite.
+        // Readers refuse infinite values; here they count as none.
         let written = |&value: &f64| {
             if value.abs() <= LARGEST_VALUE {
                 value

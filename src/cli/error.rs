@@ -113,7 +113,7 @@ pub(crate) enum CliError {
         /// The name.
         name: Name,
     },
-    /// Nothing of a model of a built-in set is there to be deleted.
+    /// A built-in model has no file to delete.
     #[error("{name} is built in and cannot be deleted")]
     BuiltInModel {
         /// The name.

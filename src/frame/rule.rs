@@ -39,7 +39,7 @@ fn checked(
 }
 
 impl Rule {
-    /// So many percent of a value. Multiplied first: 7 % of 100 is 7, but 0.07 · 100 is more.
+    /// A percentage of a value. It multiplies before it divides: 7 % of 100 is 7, but 7 / 100 · 100 is more in f64.
     pub(crate) fn share(percent: f64, value: f64) -> f64 {
         percent * value / 100.0
     }

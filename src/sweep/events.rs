@@ -61,7 +61,7 @@ impl<'a> Events<'a> {
         self.list.clear();
     }
 
-    /// A row of the sensor, whose taxels switch.
+    /// Gives access to the events of one row of the sensor.
     pub(crate) fn row(&mut self, row: usize) -> RowEvents<'_, 'a> {
         let (word, shift) = self.layout.slot(row);
         RowEvents {

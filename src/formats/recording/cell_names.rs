@@ -184,7 +184,7 @@ pub(crate) fn roles(names: &[&str]) -> Vec<Option<FieldRole>> {
 
 /// What a field's name says of the frame, if it is a usual one.
 pub(crate) fn role(name: &str) -> Option<FieldRole> {
-    // Of the two letters mu, the sign for micro counts.
+    // The Greek letter looks the same as the micro sign.
     let name = name.to_lowercase().replace('μ', "µ");
     let words: Vec<&str> = name
         .split(|character: char| !character.is_alphabetic())

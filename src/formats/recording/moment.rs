@@ -3,7 +3,7 @@
 //! 2024-05-01T12:00:00.125Z      2024-05-01 12:00:00,125      12:00:00.125
 //! 2024/05/01 12:00:00+02:00     20:00:00
 //! ```
-//! Dates that begin with the day or the month are not read: nothing tells one from the other.
+//! Dates that begin with the day or the month are not read, because 01.02. and 02/01 may be the same day.
 
 use crate::formats::recording::separator::decimal;
 use crate::formats::recording::text_row::Field;
@@ -17,7 +17,7 @@ pub(super) struct Moment {
     pub(super) is_dated: bool,
 }
 
-/// Reads a moment; None of what is none. A minute's 61st second, which a leap second needs, is the first of the next one.
+/// Reads a moment; None for anything else. Second 60, a leap second, counts as the first of the next minute.
 pub(super) fn read(field: &[u8]) -> Option<Moment> {
     let text = str::from_utf8(field).ok()?.trim();
     let (day, clock) = match text.split_once(['T', 't', ' ']) {
@@ -43,7 +43,7 @@ pub(super) fn read(field: &[u8]) -> Option<Moment> {
     })
 }
 
-/// The days that clocks without a date have gone on: a clock that falls by more than half a day has passed midnight.
+/// Counts midnights of clocks without a date: a clock that falls by more than half a day has passed one.
 #[derive(Debug, Default)]
 pub(super) struct Midnights {
     days: u32,
@@ -94,7 +94,7 @@ fn iso_day(date: &str) -> Option<i32> {
     (of_month <= last).then(|| day(year, month, of_month))
 }
 
-/// The minutes by which a clock is before that of Greenwich: `+02:00`, `-0330`, `+02`.
+/// The offset from UTC in minutes: `+02:00`, `-0330`, `+02`.
 fn offset(text: &str) -> Option<i32> {
     let (sign, digits) = text.split_at_checked(1)?;
     let (hours, minutes) = match digits.split_at_checked(2)? {

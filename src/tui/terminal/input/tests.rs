@@ -43,7 +43,7 @@ fn keys_of_many_terminals() {
             "<F2><F3><F4><F2><F5><F2><F5><F6><F10><F11><F12><F5><F4>",
         ),
         ("\x1bOM\x1b[27u\x1b[9;2u\x1b[13u", "<CR><Esc><S-Tab><CR>"),
-        // Keys let go, keys and bytes that nobody knows.
+        // Keys that are released; unknown keys and bytes.
         ("\x1b[[F\x1b[16~\x1b[25~\x1b[2~\x1b[1;1:3Aq\0\x1c\x1f", "q"),
         ("\x1b", "<Esc>"),
         ("\x1b\x1b", "<Esc>"),
