@@ -248,7 +248,7 @@ impl FrameFields {
             let own = fields.get(field);
             own.is_some_and(|own| separator.is_numeric(own)) || is_moment(&field)
         };
-        // Numbers alone have no colons.
+        // A column of that name may hold anything, such as a date without a clock.
         if !self.time.is_some_and(|(field, _)| is_time(field)) {
             let moment = (0..fields.len()).find(is_moment);
             self.time = moment.map(|field| (field, 1.0)).or(self.time);
