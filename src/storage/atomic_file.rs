@@ -7,12 +7,12 @@
 //! killed, the next writer removes what it left: see [`crate::storage::temporary`] for files from
 //! [`UnfinishedFile::new`]; the name given to [`UnfinishedFile::with_temporary`] is taken over by the next caller.
 
-use std::fs::{self, File};
+use std::fs::{self, File, Metadata};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use crate::storage::error::FileError;
-use crate::storage::temporary::TemporaryFile;
+use crate::storage::temporary::{OldFile, TemporaryFile};
 
 /// What happens to a file that is there already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,18 +66,8 @@ impl UnfinishedFile {
         create: impl FnOnce() -> io::Result<TemporaryFile>,
     ) -> Result<Self, FileError> {
         let refuse = |doing| move |error| FileError::new(doing, path, error);
-        let old = path.symlink_metadata().ok();
         // Reported before the work, not after it.
-        match (existing, &old) {
-            (_, Some(found)) if !found.file_type().is_file() => {
-                let error = "not a regular file, and only regular files are replaced";
-                return Err(refuse("replace it")(io::Error::other(error)));
-            }
-            (Existing::Kept, Some(_)) => {
-                return Err(refuse("create it")(ErrorKind::AlreadyExists.into()));
-            }
-            _ => {}
-        }
+        let old = replaced(path, existing)?;
         // The system reports a missing folder here, rather than a temporary file that could not be made.
         folder_of(path)
             .metadata()
@@ -171,6 +161,14 @@ impl FinishedFile {
         sync_folder(&folder)
     }
 
+    /// Whether it replaces a file.
+    ///
+    /// # Errors
+    /// If what is there is to be kept, or is no regular file.
+    fn is_replaced(&self) -> Result<bool, FileError> {
+        Ok(replaced(&self.path, self.existing)?.is_some())
+    }
+
     /// Gives the file its name. Returns the open file, for what is written into it from now on.
     ///
     /// # Errors
@@ -183,38 +181,74 @@ impl FinishedFile {
     }
 }
 
-/// Gives two files that belong together their names: both, or neither. Whenever the program dies, there is never one of
-/// these beside an older one of the other: what stands under the second name is removed first, and named last. Returns the
-/// first file, open, for what is written into it from now on.
+/// What there is of the file that is to be replaced; None if there is none.
 ///
 /// # Errors
-/// As for [`FinishedFile::persist`]. If the second file got no name, the first one has lost it again.
-pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, FileError> {
-    let refuse = |doing, error| FileError::new(doing, second.path(), error);
-    match second.existing {
-        Existing::Replaced => match fs::remove_file(second.path()) {
-            Err(error) if error.kind() == ErrorKind::NotFound => {}
-            removed => {
-                removed.map_err(|error| refuse("replace it", error))?;
-                sync_folder(folder_of(second.path()))?;
-            }
-        },
-        Existing::Kept if second.path().symlink_metadata().is_ok() => {
-            return Err(refuse("create it", ErrorKind::AlreadyExists.into()));
+/// If it is to be kept, or is no regular file.
+fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileError> {
+    let old = path.symlink_metadata().ok();
+    match (existing, &old) {
+        (_, Some(found)) if !found.file_type().is_file() => {
+            let error = "not a regular file, and only regular files are replaced";
+            Err(FileError::new("replace it", path, io::Error::other(error)))
         }
-        Existing::Kept => {}
+        (Existing::Kept, Some(_)) => {
+            let error = ErrorKind::AlreadyExists.into();
+            Err(FileError::new("create it", path, error))
+        }
+        _ => Ok(old),
     }
-    let (path, beside) = (first.path().to_owned(), second.path().to_owned());
-    let file = first.take_name()?;
+}
+
+/// Gives two files that belong together their names: both, or neither. Whenever the program dies, there is never one of
+/// these beside an older one of the other: what stands under the second name is moved away first, and the second is named
+/// last. Returns the first file, open, for what is written into it from now on.
+///
+/// # Errors
+/// As for [`FinishedFile::persist`]. If one of them got no name, what was there is there again; the message says what
+/// could not be brought back.
+pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, FileError> {
+    let (path, beside) = (first.path.clone(), second.path.clone());
+    let is_replaced = first.is_replaced()?;
+    // Where the file system has no links, it goes without.
+    let kept = is_replaced.then(|| OldFile::linked(folder_of(&path), &path));
+    let kept = kept.and_then(Result::ok);
+    let moved = if second.is_replaced()? {
+        Some(move_away(&beside)?)
+    } else {
+        None
+    };
+    let put_back = |old: Option<OldFile>| old.and_then(|old| old.put_back().err());
+    let file = match first.take_name() {
+        Ok(file) => file,
+        Err(error) => return Err(error.and(put_back(moved))),
+    };
     // Before the second gets its name: a power cut keeps their order, too.
     let synced = sync_folder(folder_of(&path));
-    second.take_name().inspect_err(|_| {
-        // Alone it would be taken for complete. If it cannot be removed either, no error says more than the first one.
-        let _ = fs::remove_file(&path);
-    })?;
+    if let Err(error) = second.take_name() {
+        // The new first file would be taken for complete alone.
+        let lost = if kept.is_some() {
+            put_back(kept)
+        } else {
+            let _ = fs::remove_file(&path);
+            is_replaced.then(|| format!("the former {} is lost", path.display()))
+        };
+        let _ = sync_folder(folder_of(&path));
+        return Err(error.and(lost).and(put_back(moved)));
+    }
     synced?;
     sync_folder(folder_of(&beside))?;
     Ok(file)
+}
+
+/// Moves a file that is to be replaced to a temporary name.
+fn move_away(path: &Path) -> Result<OldFile, FileError> {
+    let refuse = |error| FileError::new("replace it", path, error);
+    let moved = OldFile::moved(folder_of(path), path).map_err(refuse)?;
+    match sync(folder_of(path)) {
+        Ok(()) => Ok(moved),
+        Err(error) => Err(refuse(error).and(moved.put_back().err())),
+    }
 }
 
 /// Writes a file that replaces `path`: under a temporary name that only the holder of a lock uses, or without a lock
@@ -249,6 +283,10 @@ fn folder_of(path: &Path) -> &Path {
 /// # Errors
 /// What the system reports; [`FileError::is_in_place`] is true of it.
 pub(crate) fn sync_folder(folder: &Path) -> Result<(), FileError> {
+    sync(folder).map_err(|error| FileError::syncing(folder, error))
+}
+
+fn sync(folder: &Path) -> io::Result<()> {
     // Elsewhere a folder cannot be opened, and renaming is all that can be done.
     if !cfg!(unix) {
         return Ok(());
@@ -268,6 +306,6 @@ pub(crate) fn sync_folder(folder: &Path) -> Result<(), FileError> {
         {
             Ok(())
         }
-        synced => synced.map_err(|error| FileError::syncing(folder, error)),
+        synced => synced,
     }
 }

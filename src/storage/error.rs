@@ -42,6 +42,14 @@ impl FileError {
         }
     }
 
+    /// The same error; its message says this, too.
+    #[must_use]
+    pub(crate) fn and(self, note: Option<String>) -> Self {
+        let Some(note) = note else { return self };
+        let error = io::Error::new(self.error.kind(), format!("{}; {note}", self.error));
+        Self { error, ..self }
+    }
+
     /// Whether there is a file already, which was to be kept.
     pub fn exists(&self) -> bool {
         self.error.kind() == io::ErrorKind::AlreadyExists

@@ -349,6 +349,31 @@ mod tests {
     }
 
     #[test]
+    fn a_pair_that_gets_no_names_is_what_it_was() {
+        let (result, going) = (result(), AtomicBool::new(false));
+        for (first, second) in [("gone/a.csv", "a.npy"), ("a.csv", "gone/a.npy")] {
+            let folder = tempfile::tempdir().expect("a folder");
+            let (atlas, poses) = (folder.path().join(first), folder.path().join(second));
+            let elsewhere = folder.path().join("gone");
+            std::fs::create_dir(&elsewhere).expect("made");
+            for path in [&atlas, &poses] {
+                std::fs::write(path, "old").expect("written");
+            }
+            let file = AtlasFile::new(&atlas).expect("a format");
+            let first = file.prepare(&result, Existing::Replaced, &going);
+            let second = PoseFile::new(&poses, &result.grid, Existing::Replaced);
+            let second = second.expect("begun").finish().expect("written");
+            std::fs::remove_dir_all(&elsewhere).expect("removed");
+            let refused = persist_pair(first.expect("written"), second);
+            let refused = refused.expect_err("a folder is gone");
+            assert!(refused.is_missing(), "{refused}");
+            let left = if atlas.exists() { atlas } else { poses };
+            assert_eq!(std::fs::read_to_string(left).ok().as_deref(), Some("old"));
+            assert_eq!(files(folder.path()).len(), 1, "nothing else is there");
+        }
+    }
+
+    #[test]
     fn a_file_that_came_meanwhile_is_kept() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("poses.npy");

@@ -124,6 +124,71 @@ impl Seek for TemporaryFile {
     }
 }
 
+/// A file that is being replaced, under a temporary name. Dropped, it is gone.
+#[derive(Debug)]
+pub(crate) struct OldFile {
+    /// Its own name.
+    path: PathBuf,
+    temporary: TempPath,
+    /// Keeps other writers from removing it; without locks it goes without.
+    _lock: Option<File>,
+}
+
+impl OldFile {
+    /// Gives a regular file a temporary name in its folder, beside its own.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(crate) fn linked(folder: &Path, path: &Path) -> io::Result<Self> {
+        Self::named(folder, path, |temporary| fs::hard_link(path, temporary))
+    }
+
+    /// Gives a regular file a temporary name in its folder, in place of its own.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(crate) fn moved(folder: &Path, path: &Path) -> io::Result<Self> {
+        Self::named(folder, path, |temporary| {
+            match temporary.symlink_metadata() {
+                Ok(_) => Err(ErrorKind::AlreadyExists.into()),
+                Err(_) => fs::rename(path, temporary),
+            }
+        })
+    }
+
+    fn named(
+        folder: &Path,
+        path: &Path,
+        name: impl FnMut(&Path) -> io::Result<()>,
+    ) -> io::Result<Self> {
+        let lock = File::open(path).ok();
+        let locked = lock.inspect(|file| drop(file.try_lock()));
+        let named = builder()
+            .make_in(folder, name)
+            .map_err(|error| plain(&error))?;
+        Ok(Self {
+            path: path.to_owned(),
+            temporary: named.into_temp_path(),
+            _lock: locked,
+        })
+    }
+
+    /// Gives the file its own name again, in place of the file that has it.
+    ///
+    /// # Errors
+    /// Where it stays if the system refuses.
+    pub(crate) fn put_back(self) -> Result<(), String> {
+        self.temporary.persist(&self.path).map_err(|failed| {
+            let mut temporary = failed.path;
+            temporary.disable_cleanup(true);
+            let (path, temporary) = (self.path.display(), temporary.display());
+            format!(
+                "the former {path} is now {temporary}; move it before anything is written there"
+            )
+        })
+    }
+}
+
 /// Random names for temporary files.
 fn builder() -> Builder<'static, 'static> {
     let mut builder = Builder::new();

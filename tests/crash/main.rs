@@ -37,13 +37,14 @@ use std::time::Instant;
 /// What a campaign has seen, in one line.
 type Campaign = fn() -> String;
 
-const CAMPAIGNS: [(&str, Campaign); 11] = [
+const CAMPAIGNS: [(&str, Campaign); 12] = [
     ("killed_at_every_call", calls::killed),
     ("every_error_is_told", calls::refused),
     (
         "recordings_appear_with_their_description",
         recording::killed,
     ),
+    ("a_refused_recording_keeps_the_old_one", recording::refused),
     ("killed_at_random", random::killed),
     ("naive_writing_is_caught", random::naive),
     ("file_systems_that_lack_something", lacking::done_without),

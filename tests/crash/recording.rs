@@ -1,10 +1,12 @@
 //! A recording that replaces another one, killed at each call: array and description are always of the same recording,
 //! and the description of a killed one says so.
 
+use std::ffi::OsString;
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::array;
 use super::state::{each, program};
@@ -80,5 +82,43 @@ pub(crate) fn killed() -> String {
     format!(
         "{} kills: array and description of one recording, or no description",
         calls.len()
+    )
+}
+
+/// Each call refused: the old recording with its description, or the new one.
+pub(crate) fn refused() -> String {
+    if !strace::works() {
+        return "SKIPPED, strace is missing or may not trace".to_owned();
+    }
+    let folder = before();
+    let calls = strace::calls(&record(folder.path(), "new.txt"), folder.path());
+    let errors = ["ENOSPC", "EIO", "EACCES"];
+    let refused: Vec<_> = (calls.iter())
+        .flat_map(|call| errors.map(|error| (call, error)))
+        .collect();
+    let kept = AtomicUsize::new(0);
+    each(&refused, |(call, error)| {
+        let folder = before();
+        let command = record(folder.path(), "new.txt");
+        let output = strace::tampered(&command, call, &format!("error={error}"));
+        let context = format!("{call:?} {error}: {output:?}");
+        let (is_new, frames, _) = found(folder.path()).expect(&context);
+        match output.status.code() {
+            Some(0) => assert!(is_new && frames == 3, "{context}"),
+            Some(1) => assert!(is_new || frames == 1, "{context}"),
+            _ => panic!("{context}"),
+        }
+        kept.fetch_add(usize::from(!is_new), Ordering::Relaxed);
+        let entries = fs::read_dir(folder.path()).expect("read").flatten();
+        let names: Vec<_> = entries.map(|entry| entry.file_name()).collect();
+        let is_left = |name: &OsString| name.to_string_lossy().starts_with(".taxel-");
+        // What cannot be removed is left, for the next program that writes there.
+        let is_clean = call.name.starts_with("unlink") || !names.iter().any(is_left);
+        assert!(is_clean, "{names:?} {context}");
+    });
+    format!(
+        "{} calls refused: array and description of one recording, {} times the old one",
+        refused.len(),
+        kept.into_inner()
     )
 }
