@@ -30,7 +30,7 @@ pub struct UnfinishedFile {
     path: PathBuf,
     existing: Existing,
     /// Takes the content.
-    pub output: BufWriter<TemporaryFile>,
+    pub(super) output: BufWriter<TemporaryFile>,
 }
 
 impl UnfinishedFile {

@@ -29,7 +29,7 @@ const FRESH_WITHOUT_LOCKS: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// A file that lacks its name. Dropped, nothing is left of it.
 #[derive(Debug)]
-pub struct TemporaryFile {
+pub(crate) struct TemporaryFile {
     file: File,
     /// Its temporary name; None while it has none.
     path: Option<TempPath>,
