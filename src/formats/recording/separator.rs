@@ -92,13 +92,13 @@ impl Separator {
         !matches!(self.value(field), Field::Wrong)
     }
 
-    /// The numbers of a line; NaN for fields that are none.
-    pub(super) fn numbers(self, line: &[u8]) -> Vec<f64> {
+    /// The first numbers of a line, `most` of them; NaN for fields that are none.
+    pub(super) fn numbers(self, line: &[u8], most: usize) -> Vec<f64> {
         let value = |field| match self.value(field) {
             Field::Value(value) => value,
             _ => f64::NAN,
         };
-        self.fields(line).map(value).collect()
+        self.fields(line).take(most).map(value).collect()
     }
 }
 

@@ -15,10 +15,16 @@ use crate::formats::recording::separator::Separator;
 use crate::formats::recording::side::side;
 use crate::formats::recording::text_row;
 use crate::frame::MAX_FRAME_SIDE;
-use crate::parameter::number::counted;
+use crate::parameter::number::{counted, grouped};
 
 /// Lines that are compared to find what stands beside the cells where nothing names it.
 const COMPARED: u16 = 8;
+
+/// The most cells of a frame.
+const MOST_CELLS: usize = MAX_FRAME_SIDE as usize * MAX_FRAME_SIDE as usize;
+
+/// The most fields that may stand beside them. A line of more is refused before its fields take memory.
+const MOST_BESIDE: usize = 16;
 
 /// How a table is arranged.
 #[derive(Debug)]
@@ -82,9 +88,20 @@ pub(super) fn layout(
         return Err(RecordingError::Unknown);
     }
     let separator = Separator::of(&first);
+    let number = lines.number();
+    if separator
+        .fields(&first)
+        .nth(MOST_CELLS + MOST_BESIDE)
+        .is_some()
+    {
+        let message = format!(
+            "more than {} fields, expected at most {MAX_FRAME_SIDE} × {MAX_FRAME_SIDE} cells and {MOST_BESIDE} beside them",
+            grouped((MOST_CELLS + MOST_BESIDE) as u64)
+        );
+        return Err(RecordingError::in_line(number, message));
+    }
     let names: Vec<String> = separator.fields(&first).map(text).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let number = lines.number();
     let has_words = names
         .iter()
         .any(|name| !separator.is_numeric(name.as_bytes()));
@@ -121,7 +138,8 @@ fn count_from_0(names: &[&str]) -> Option<usize> {
 /// in the same fields. Otherwise it has the names of the fields, such as `label,0,1,2,3` above `cup,7,5,9,3`: its numbers
 /// count, from 0 or beside a word that is a usual name.
 fn is_like_next(names: &[&str], separator: Separator, next: &[u8]) -> bool {
-    let next: Vec<&[u8]> = separator.fields_of(next, names.len()).collect();
+    let next = separator.fields_of(next, names.len());
+    let next: Vec<&[u8]> = next.take(names.len() + 1).collect();
     let is_word = |field: &[u8]| !separator.is_numeric(field);
     let mut pairs = names.iter().zip(&next);
     let same = pairs.all(|(own, next)| is_word(own.as_bytes()) == is_word(next));
@@ -167,7 +185,7 @@ fn of_numbers(
     let numeric = (0..fields.len()).filter(|&field| separator.is_numeric(fields[field]));
     let numeric: Vec<usize> = numeric.collect();
     let numbers = |line: &[u8]| -> Vec<f64> {
-        let all = separator.numbers(line);
+        let all = separator.numbers(line, fields.len());
         let of_field = |&field: &usize| all.get(field).copied().unwrap_or(f64::NAN);
         numeric.iter().map(of_field).collect()
     };
@@ -298,7 +316,7 @@ fn with_header(
     if cells.len() != expected {
         return Err(text_row::count(number, cells.len(), expected));
     }
-    // A line may have millions of names.
+    // A line may have a quarter of a million names.
     let mut is_cell = vec![false; names.len()];
     for &cell in &cells {
         is_cell[cell] = true;
@@ -312,7 +330,8 @@ fn with_header(
         Some(FieldRole::Time(factor)) => Some((field, *factor)),
         _ => None,
     });
-    let fields: Vec<&[u8]> = separator.fields_of(first, names.len()).collect();
+    let fields = separator.fields_of(first, names.len());
+    let fields: Vec<&[u8]> = fields.take(names.len()).collect();
     let found = FrameFields {
         count: names.len(),
         header: Some(number),

@@ -179,3 +179,16 @@ fn a_moment_beside_the_cells_is_the_time() {
     let german = "time,r0c0,r0c1\n01.05.2024 12:00:00,1,2\n01.05.2024 12:00:01,3,4\n";
     assert_eq!(times(german, None), (None, vec![None, None]));
 }
+
+#[test]
+fn a_line_of_more_fields_than_a_frame_has_is_refused_before_they_are_collected() {
+    let line = |fields: usize| format!("{}\n", "0,".repeat(fields));
+    assert_eq!(values(&line(512 * 512), Some((512, 512))).len(), 1);
+    for fields in [512 * 512 + 17, 4 << 20] {
+        let found = recorded(line(fields).as_bytes(), None);
+        assert_eq!(
+            error(&found),
+            "line 1: more than 262,160 fields, expected at most 512 × 512 cells and 16 beside them"
+        );
+    }
+}
