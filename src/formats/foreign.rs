@@ -22,8 +22,8 @@ const MAGIC: [Magic; 19] = [
     (b"\x1f\x8b", 0, "a gzip archive"),
     (b"\x89HDF\r\n\x1a\n", 0, "an HDF5 file"),
     (b"MATLAB 5.0 MAT-file", 0, "a MATLAB file"),
-    (b"\xff\xfe", 0, "text in UTF-16"),
-    (b"\xfe\xff", 0, "text in UTF-16"),
+    (b"\xff\xfe", 0, "text in UTF-16 (save it as UTF-8)"),
+    (b"\xfe\xff", 0, "text in UTF-16 (save it as UTF-8)"),
 ];
 
 /// What a file is that no reader reads, with its article; None if it may be an imprint.

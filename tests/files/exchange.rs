@@ -231,7 +231,7 @@ fn files_of_other_kinds_are_refused_by_name() {
             b"PK\x03\x04\x14\0",
             "an archive, perhaps NPZ or a spreadsheet",
         ),
-        (b"\xff\xfe1\0,\x000\0", "text in UTF-16"),
+        (b"\xff\xfe1\0,\x000\0", "text in UTF-16 (save it as UTF-8)"),
     ] {
         let told = read_imprint(bytes).map_err(|error| error.to_string());
         let read = "expected rows of '#' and '.', a table (CSV), PBM, PGM of two shades or NPY";

@@ -6,6 +6,7 @@
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
+use crate::formats::foreign;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
 use crate::formats::recording::lines::is_blank;
@@ -55,6 +56,7 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
                 RecordingFormat::JsonLines
             }
         }
+        _ if is_parted_by_cr(text) || trimmed.starts_with(b"<") => return None,
         _ if line_with(b"ASCII_DATA") || line_with(b"DATA_TYPE ") => RecordingFormat::Tekscan,
         _ if xsensor::is_export(text) => RecordingFormat::Xsensor,
         _ if has(b"SensCountX=") => RecordingFormat::Zebris,
@@ -63,6 +65,23 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
         _ if is_table(row) => RecordingFormat::Csv,
         _ => return None,
     })
+}
+
+/// What is wrong with a file that is no recording.
+fn refused(start: &[u8]) -> RecordingError {
+    match foreign::kind(start) {
+        Some(kind) => RecordingError::Foreign { kind },
+        None if is_parted_by_cr(start) => RecordingError::Foreign {
+            kind: "text whose lines end in CR alone (save it with LF or CR LF)",
+        },
+        None => RecordingError::Unknown,
+    }
+}
+
+/// Whether the lines of a text end in CR alone, as they did long ago.
+fn is_parted_by_cr(text: &[u8]) -> bool {
+    let ends_before = text.iter().rev().skip(1).any(|&byte| byte == b'\r');
+    ends_before && !text.contains(&b'\n') && !text.contains(&0)
 }
 
 /// Whether a text is what `ros2 topic echo` prints.
@@ -91,9 +110,13 @@ fn is_table(line: &[u8]) -> bool {
 /// # Errors
 /// If it cannot be read.
 pub fn recognised_input(input: impl Read) -> io::Result<Option<RecordingFormat>> {
+    Ok(recognised(&start_of(input)?))
+}
+
+fn start_of(input: impl Read) -> io::Result<Vec<u8>> {
     let mut start = Vec::new();
     input.take(LOOKED_AT as u64).read_to_end(&mut start)?;
-    Ok(recognised(&start))
+    Ok(start)
 }
 
 /// Reads a recording from its beginning to its end, and reports what is found to `sink`, which may break off.
@@ -107,7 +130,8 @@ pub fn read(
     sink: &mut Sink<'_>,
 ) -> Result<RecordingFormat, RecordingError> {
     input.seek(SeekFrom::Start(0))?;
-    let format = recognised_input(&mut input)?.ok_or(RecordingError::Unknown)?;
+    let start = start_of(&mut input)?;
+    let format = recognised(&start).ok_or_else(|| refused(&start))?;
     read_as(format, &mut input, options, sink)?;
     Ok(format)
 }
@@ -144,5 +168,72 @@ pub(crate) fn read_as(
         RecordingFormat::Mcap => Err(RecordingError::damaged(
             "an MCAP file, which this build does not read: it was built without the feature mcap",
         )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Cursor, Write};
+    use std::ops::ControlFlow;
+
+    use super::*;
+
+    fn error_of(bytes: &[u8]) -> String {
+        let read = read(Cursor::new(bytes), ReadOptions::default(), &mut |_| {
+            ControlFlow::Continue(())
+        });
+        read.expect_err("no recording").to_string()
+    }
+
+    #[test]
+    fn a_file_of_another_kind_is_refused_by_name() {
+        let mut workbook = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        let options = zip::write::SimpleFileOptions::default()
+            .compression_method(zip::CompressionMethod::Stored);
+        workbook
+            .start_file("[Content_Types].xml", options)
+            .expect("begun");
+        workbook.write_all(b"<Types/>").expect("written");
+        let workbook = workbook.finish().expect("finished").into_inner();
+        let rows = "1,2\r3,4\r\r5,6\r7,8\r";
+        let utf_16 = |order: fn(u16) -> [u8; 2]| -> Vec<u8> {
+            format!("\u{feff}{rows}")
+                .encode_utf16()
+                .flat_map(order)
+                .collect()
+        };
+        for (bytes, kind) in [
+            (
+                rows.into(),
+                "text whose lines end in CR alone (save it with LF or CR LF)",
+            ),
+            (
+                utf_16(u16::to_le_bytes),
+                "text in UTF-16 (save it as UTF-8)",
+            ),
+            (
+                utf_16(u16::to_be_bytes),
+                "text in UTF-16 (save it as UTF-8)",
+            ),
+            (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec(), "a PNG image"),
+            (b"%PDF-1.4\n1 0 obj\n".to_vec(), "a PDF document"),
+            (
+                b"<?xml version=\"1.0\"?>\n".to_vec(),
+                "XML, perhaps an SVG drawing",
+            ),
+            (
+                workbook,
+                "a spreadsheet or another office document (save the sheet as CSV)",
+            ),
+        ] {
+            let told = error_of(&bytes);
+            assert!(
+                told.starts_with(&format!("{kind}, expected Tekscan")),
+                "{told}"
+            );
+        }
+        assert!(error_of(b"words").starts_with("not a recording"));
+        // A line of a growing file, up to its CR.
+        assert_eq!(recognised(b"1,2\r"), Some(RecordingFormat::Csv));
     }
 }

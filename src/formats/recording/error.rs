@@ -14,6 +14,12 @@ pub enum RecordingError {
     /// None of the formats that are known.
     #[error("not a recording of a known format: expected {FORMS}")]
     Unknown,
+    /// A file of another kind.
+    #[error("{kind}, expected {FORMS}")]
+    Foreign {
+        /// What it is, with its article: "a PNG image".
+        kind: &'static str,
+    },
     /// The file does not follow its format from here on. Lines and columns count from 1; a column is a field of the line.
     #[error("{}{message}", prefix(*line, *column))]
     Damaged {

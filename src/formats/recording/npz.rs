@@ -72,6 +72,16 @@ pub(super) fn read(
     sink: &mut Sink<'_>,
 ) -> Result<(), RecordingError> {
     let mut archive = ZipArchive::new(input).map_err(damaged)?;
+    // Of Excel and of LibreOffice.
+    let is_office = |name: &str| matches!(name, "[Content_Types].xml" | "content.xml");
+    if archive
+        .file_names()
+        .any(|name| name.is_ok_and(|name| is_office(&name)))
+    {
+        return Err(RecordingError::Foreign {
+            kind: "a spreadsheet or another office document (save the sheet as CSV)",
+        });
+    }
     let arrays = arrays(&mut archive)?;
     let channels: Vec<&ArchiveArray> = arrays
         .iter()
