@@ -5,8 +5,8 @@
 //! ```
 //! Frames are lists of rows, or lists of cells where rows and columns are known beforehand. `t` or `time` is in seconds
 //! and counts from the first one; `label` is a whole number; other keys are passed over. All frames have one size.
-//! Refused, with line and column: rows of different lengths, lists within cells, infinite values, two frames in one
-//! line.
+//! Refused, with line and column: rows of different lengths, lists within cells, infinite values, two frames, times
+//! or labels in one line.
 
 use std::fmt;
 use std::io::BufRead;
@@ -200,26 +200,43 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
-        let mut found = false;
+        let (mut frame, mut time, mut label) = (None, None, None);
         while let Some(key) = map.next_key::<std::borrow::Cow<'de, str>>()? {
             match &*key {
-                "frame" if found => return Err(A::Error::custom("\"frame\" is given twice")),
                 "frame" => {
-                    found = true;
+                    once(&mut frame, "frame")?;
                     map.next_value_seed(CellsSeed(&mut self.0.values, Some(self.1)))?;
                 }
-                "t" | "time" => {
+                key @ ("t" | "time") => {
+                    once(&mut time, if key == "t" { "t" } else { "time" })?;
                     let time: Option<f64> = map.next_value()?;
                     self.0.time = time.filter(|time| time.abs() <= LARGEST_VALUE);
                 }
-                "label" => self.0.label = map.next_value()?,
+                "label" => {
+                    once(&mut label, "label")?;
+                    self.0.label = map.next_value()?;
+                }
                 _ => drop(map.next_value::<IgnoredAny>()?),
             }
         }
-        if !found {
+        if frame.is_none() {
             return Err(A::Error::custom("no key \"frame\""));
         }
         Ok(())
+    }
+}
+
+/// Notes which key has given something.
+///
+/// # Errors
+/// If one has done so before.
+fn once<E: Error>(given: &mut Option<&'static str>, key: &'static str) -> Result<(), E> {
+    match given.replace(key) {
+        None => Ok(()),
+        Some(before) if before == key => Err(E::custom(format!("{key:?} is given twice"))),
+        Some(before) => Err(E::custom(format!(
+            "{before:?} and {key:?} are given, expected one of them"
+        ))),
     }
 }
 

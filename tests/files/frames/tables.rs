@@ -192,3 +192,26 @@ fn a_line_of_more_fields_than_a_frame_has_is_refused_before_they_are_collected()
         );
     }
 }
+
+#[test]
+fn a_line_of_json_gives_a_key_once() {
+    for (keys, message) in [
+        ("\"t\":1,\"t\":2", "\"t\" is given twice"),
+        ("\"time\":1,\"time\":1", "\"time\" is given twice"),
+        (
+            "\"t\":1,\"time\":2",
+            "\"t\" and \"time\" are given, expected one of them",
+        ),
+        ("\"label\":1,\"label\":2", "\"label\" is given twice"),
+        ("\"frame\":[[0]]", "\"frame\" is given twice"),
+    ] {
+        let found = recorded(format!("{{\"frame\":[[1]],{keys}}}\n").as_bytes(), None);
+        let told = error(&found);
+        assert!(
+            told.starts_with("line 1, column ") && told.ends_with(message),
+            "{told}"
+        );
+    }
+    let found = recorded(b"{\"frame\":[[1]],\"x\":1,\"x\":2}\n", None);
+    assert_eq!(found.frames.len(), 1);
+}
