@@ -136,7 +136,9 @@ impl StreamDecoder {
             (StreamFormat::Lines, _) => State::Lines(LinesDecoder::new(shape, from_start)),
             (StreamFormat::JsonLines, _) => State::Json(JsonDecoder::new(shape, self.start)),
             (StreamFormat::Ros2, _) => State::Ros(RosDecoder::new(shape, from_start)),
-            (StreamFormat::Flexitac, Some(shape)) => State::Flexitac(FlexitacDecoder::new(shape)),
+            (StreamFormat::Flexitac, Some(shape)) => {
+                State::Flexitac(FlexitacDecoder::new(shape, from_start))
+            }
             (StreamFormat::Matsense, Some(shape)) => {
                 State::Matsense(MatsenseDecoder::new(shape, from_start))
             }

@@ -2,7 +2,8 @@
 //!
 //! So a frame counts once the marker behind it has arrived, or if the input ends exactly at its last byte. Where a
 //! marker is not where it was due, the one is taken that is nearest to that place among those that the next marker
-//! confirms. Taking the first one instead would read frames from their middle.
+//! confirms. Taking the first one instead would read frames from their middle. A stream that is joined late may have two
+//! neighbouring cells that are `AA 55` in each frame: these are taken for the marker at worst until one of them changes.
 //! ```text
 //! AA 55  00 0C 07 03  AA 55  00 0D …        2 rows of 2 columns, 0 to 255
 //! ```
@@ -25,23 +26,38 @@ pub(super) struct FlexitacDecoder {
     columns: u16,
     /// What has come and is not decided: at most a few frames.
     bytes: Vec<u8>,
-    /// Whether the bytes begin with a marker that is taken for one.
-    in_step: bool,
-    /// Whether the frame in the bytes was shown already.
-    shown: bool,
+    /// Where they begin.
+    start: Start,
     /// The frame that is given.
     frame: Frame,
 }
 
+/// Where the bytes begin that are not decided.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Start {
+    /// Somewhere.
+    Anywhere,
+    /// With the first byte of the stream: a marker there is one.
+    Stream,
+    /// With a marker that is taken for one.
+    Marker {
+        /// Whether the frame behind it was shown already.
+        shown: bool,
+    },
+}
+
 impl FlexitacDecoder {
-    /// For frames of these rows and columns.
-    pub(super) fn new((rows, columns): (u16, u16)) -> Self {
+    /// For frames of these rows and columns. `from_start`: whether the first byte begins a frame.
+    pub(super) fn new((rows, columns): (u16, u16), from_start: bool) -> Self {
         Self {
             rows,
             columns,
             bytes: Vec::new(),
-            in_step: false,
-            shown: false,
+            start: if from_start {
+                Start::Stream
+            } else {
+                Start::Anywhere
+            },
             frame: Frame::new(columns, rows),
         }
     }
@@ -75,7 +91,7 @@ impl FlexitacDecoder {
         while self.step(true, counts, sink) {}
         if !self.bytes.is_empty() {
             self.withdraw(sink);
-            if self.in_step || counts.frames > 0 {
+            if matches!(self.start, Start::Marker { .. }) || counts.frames > 0 {
                 counts.drop_frames(1, &self.bytes);
             }
             self.bytes.clear();
@@ -85,24 +101,34 @@ impl FlexitacDecoder {
     /// Takes one frame off, or drops invalid bytes; false if more bytes are needed.
     fn step(&mut self, ended: bool, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) -> bool {
         let period = self.period();
-        if self.in_step {
+        if self.start == Start::Stream && self.bytes.len() >= MARKER.len() {
+            self.start = if self.has_marker(0) {
+                Start::Marker { shown: false }
+            } else {
+                Start::Anywhere
+            };
+        }
+        if let Start::Marker { shown } = self.start {
             let whole = self.bytes.len() == period;
             if self.has_marker(period) || whole && ended {
                 self.fill();
                 self.frame.number = counts.frames;
                 counts.frames += 1;
                 self.bytes.drain(..period);
-                self.shown = false;
-                self.in_step = !ended || !self.bytes.is_empty();
+                self.start = if ended && self.bytes.is_empty() {
+                    Start::Anywhere
+                } else {
+                    Start::Marker { shown: false }
+                };
                 sink(StreamEvent::Frame(&self.frame));
                 return true;
             }
             let waits = whole || self.bytes.len() == period + 1 && self.bytes[period] == MARKER[0];
             if !ended && (waits || self.bytes.len() < period) {
-                if whole && !self.shown {
+                if whole && !shown {
                     self.fill();
                     self.frame.number = counts.frames;
-                    self.shown = true;
+                    self.start = Start::Marker { shown: true };
                     sink(StreamEvent::Provisional(&self.frame));
                 }
                 return false;
@@ -114,7 +140,9 @@ impl FlexitacDecoder {
 
     /// Withdraws a frame that was shown and has proved invalid.
     fn withdraw(&mut self, sink: &mut StreamSink<'_>) {
-        if std::mem::take(&mut self.shown) {
+        if let Start::Marker { shown } = &mut self.start
+            && std::mem::take(shown)
+        {
             sink(StreamEvent::Withdrawn);
         }
     }
@@ -123,7 +151,8 @@ impl FlexitacDecoder {
     /// needed.
     fn search(&mut self, ended: bool, counts: &mut StreamCounts) -> bool {
         let period = self.period();
-        let due = if self.in_step { period } else { 0 };
+        let in_step = matches!(self.start, Start::Marker { .. });
+        let due = if in_step { period } else { 0 };
         let reach = due + period;
         // The last one looked at is confirmed within these.
         let needed = reach + period + MARKER.len();
@@ -133,7 +162,7 @@ impl FlexitacDecoder {
             return false;
         }
         let length = self.bytes.len();
-        let first = usize::from(self.in_step);
+        let first = usize::from(in_step);
         let confirmed = (first..=reach.min(length)).filter(|&at| {
             let next = at + period;
             self.has_marker(at) && (self.has_marker(next) || ended && next == length)
@@ -152,14 +181,18 @@ impl FlexitacDecoder {
             // Without a marker there is nothing to be nearest to.
             None => (reach.min(length), false),
         };
-        if self.in_step {
+        if in_step {
             let frames = (gone + period / 2) / period;
             counts.drop_frames(frames.max(1) as u64, &self.bytes);
         } else if !found && counts.frames > 0 {
             counts.drop_frames(1, &self.bytes);
         }
         self.bytes.drain(..gone);
-        self.in_step = found;
+        self.start = if found {
+            Start::Marker { shown: false }
+        } else {
+            Start::Anywhere
+        };
         true
     }
 

@@ -180,6 +180,31 @@ fn in_a_damaged_stream_37_of_37_frames_are_found_and_no_false_one() {
     }
 }
 
+/// Two cells that are a marker in all frames are told from the marker by where the stream begins, also if its first frame has
+/// lost a byte.
+#[test]
+fn a_stream_from_its_start_is_never_read_from_cells_that_look_like_a_marker() {
+    for false_marker in 0..14 {
+        let frame = |number: u8| {
+            let mut cells = vec![number; 16];
+            cells[false_marker..false_marker + 2].copy_from_slice(&[0xaa, 0x55]);
+            [vec![0xaa, 0x55], cells].concat()
+        };
+        for lost in [None].into_iter().chain((2..18).map(Some)) {
+            let mut stream: Vec<u8> = (1..=20).flat_map(frame).collect();
+            lost.map(|lost| stream.remove(lost));
+            let given = options(Some((4, 4))).with_format(StreamFormat::Flexitac);
+            let (found, counts) = decoded(given.from_start(), &stream, &mut Random::new(7));
+            let first = if lost.is_some() { 2 } else { 1 };
+            let wanted: Vec<Vec<f64>> = (first..=20)
+                .map(|number| frame(number)[2..].iter().copied().map(f64::from).collect())
+                .collect();
+            assert!(found == wanted, "{false_marker} {lost:?}: {found:?}");
+            assert_eq!(counts.dropped, u64::from(first) - 1);
+        }
+    }
+}
+
 /// A frame is shown at its last byte, and taken back if no marker follows.
 #[test]
 fn a_provisional_frame_is_confirmed_or_withdrawn() {
@@ -196,7 +221,7 @@ fn a_provisional_frame_is_confirmed_or_withdrawn() {
             _ => {}
         });
     }
-    assert_eq!(said, "f1 p4 f4 p7 w ");
+    assert_eq!(said, "p1 f1 p4 f4 p7 w ");
 }
 
 #[test]
