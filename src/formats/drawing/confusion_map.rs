@@ -3,7 +3,7 @@
 //! A cell holds a number of touches and its share of the row; the larger the share, the darker the cell. Whoever cannot
 //! tell the shades apart reads the numbers.
 
-use crate::formats::drawing::page::{ADVANCE, DrawingPage, MARGIN, TEXT};
+use crate::formats::drawing::page::{DrawingPage, MARGIN, TEXT, width};
 use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
 use crate::formats::drawing::svg;
 use crate::formats::value::decimal;
@@ -131,12 +131,6 @@ impl ConfusionMap {
             marks: layout.marks,
         }
     }
-}
-
-/// The width of a text of that many characters.
-#[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
-fn width(characters: usize) -> f64 {
-    TEXT * ADVANCE * characters as f64
 }
 
 /// The page while it is laid out.

@@ -1,8 +1,8 @@
 //! Curves over one axis, such as an error against a size. Both axes begin at 0.
 
 use crate::formats::drawing::axis::Ticks;
-use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT};
-use crate::formats::drawing::plane::{axes, label, path_of, width};
+use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, width};
+use crate::formats::drawing::plane::{axes, label, path_of};
 use crate::formats::drawing::scene::{Position, Segment, Stroke, TextAnchor, circle};
 use crate::formats::drawing::svg;
 

@@ -24,7 +24,7 @@ use crate::matrix::Matrix;
 /// The size of all text, in points.
 pub(super) const TEXT: f64 = 8.0;
 /// The width of a character of a typewriter face, as a share of its size.
-pub(super) const ADVANCE: f64 = 0.6;
+const ADVANCE: f64 = 0.6;
 /// The larger side of the plane, unless its cells would be too large.
 const PLANE: f64 = 288.0;
 /// The largest side of a cell, for small matrices.
@@ -118,7 +118,7 @@ impl DrawingPage {
         let (across, along) = (marks(columns), marks(rows));
         let title = subject.title.map_or(0.0, |_| ROW);
         let corner = (
-            MARGIN + TEXT * 2.0 + advance(along.width()) + 6.0,
+            MARGIN + TEXT * 2.0 + width(along.width()) + 6.0,
             MARGIN + title + TEXT * 3.0 + 4.0,
         );
         let mut layout = PageLayout {
@@ -148,9 +148,9 @@ impl DrawingPage {
     }
 }
 
-/// The width of a text.
+/// The width of a text of that many characters.
 #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
-fn advance(characters: usize) -> f64 {
+pub(super) fn width(characters: usize) -> f64 {
     TEXT * ADVANCE * characters as f64
 }
 
@@ -163,7 +163,7 @@ impl PageLayout<'_> {
     /// A horizontal text, whose end widens the page if it begins at `place`.
     fn text(&mut self, text: &str, place: Position, anchor: TextAnchor) {
         if anchor == TextAnchor::Start {
-            let end = place.0 + advance(text.chars().count());
+            let end = place.0 + width(text.chars().count());
             self.end.0 = self.end.0.max(end);
         }
         self.marks.push(Element::Text {

@@ -1,7 +1,7 @@
 //! The plane of a plot: its frame, its axes with their marks, and the elements that plots are made of.
 
 use crate::formats::drawing::axis::Ticks;
-use crate::formats::drawing::page::{ADVANCE, MARGIN, TEXT};
+use crate::formats::drawing::page::{MARGIN, TEXT};
 use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
 
 /// The lines at the marks of both axes.
@@ -42,12 +42,6 @@ pub(super) fn axes(
         upright: true,
     });
     marks
-}
-
-/// The width of a text of that many characters.
-#[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
-pub(super) fn width(characters: usize) -> f64 {
-    TEXT * ADVANCE * characters as f64
 }
 
 /// A line of the page, by the name of what it is.

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use crate::formats::drawing::axis::{Ticks, axis_ends};
-use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT};
-use crate::formats::drawing::plane::{axes, label, path_of, width};
+use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, width};
+use crate::formats::drawing::plane::{axes, label, path_of};
 use crate::formats::drawing::scene::{Position, Segment, Stroke, TextAnchor, circle};
 use crate::formats::drawing::svg;
 

@@ -3,8 +3,8 @@
 //! Borders tell the areas apart; greys only help the eye, and are lost without harm on a bad printer.
 
 use crate::formats::drawing::axis::Ticks;
-use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT};
-use crate::formats::drawing::plane::{label, path_of, width};
+use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, width};
+use crate::formats::drawing::plane::{label, path_of};
 use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
 use crate::formats::drawing::svg;
 use crate::formats::value::decimal;

@@ -87,10 +87,7 @@ fn is_parted_by_cr(text: &[u8]) -> bool {
 /// Whether a text is what `ros2 topic echo` prints.
 fn is_ros(text: &[u8]) -> bool {
     let first = text.split(|&byte| byte == b'\n').next().unwrap_or(b"");
-    text.starts_with(b"array(")
-        || text.starts_with(b"layout:")
-        || text.starts_with(b"data:")
-        || ros_text::is_csv(first)
+    ros_text::begins_message(first)
         || first.starts_with(b"[") && text.windows(4).any(|word| word == b"\n---")
 }
 

@@ -275,6 +275,12 @@ pub(crate) fn is_layout(line: &[u8]) -> bool {
     !strides.is_empty() && fits
 }
 
+/// Whether only `ros2 topic echo` prints such a first line of a message.
+pub(crate) fn begins_message(line: &[u8]) -> bool {
+    let starts = [&b"array("[..], b"layout:", b"data:"];
+    starts.iter().any(|start| line.starts_with(start)) || is_csv(line)
+}
+
 /// Whether only `--csv` prints such a line: it begins with a layout, or was cut off. A whole line without dimensions is a
 /// line of numbers like any other.
 pub(crate) fn is_csv(line: &[u8]) -> bool {

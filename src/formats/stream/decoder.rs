@@ -351,19 +351,10 @@ impl FormatSearch {
 fn form_of_line(line: &[u8], after_first: bool) -> Option<StreamFormat> {
     match line.trim_ascii() {
         [b'{', ..] => Some(StreamFormat::JsonLines),
-        line if is_ros(line) => Some(StreamFormat::Ros2),
+        line if line == b"---" || ros_text::begins_message(line) => Some(StreamFormat::Ros2),
         line if after_first && is_numbers(line) => Some(StreamFormat::Lines),
         _ => None,
     }
-}
-
-/// Whether only `ros2 topic echo` prints such a line.
-fn is_ros(line: &[u8]) -> bool {
-    line == b"---"
-        || line.starts_with(b"array(")
-        || line.starts_with(b"layout:")
-        || line.starts_with(b"data:")
-        || ros_text::is_csv(line)
 }
 
 /// Whether a line holds numbers only, at least one.
