@@ -13,9 +13,7 @@ use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, ShapeCount, first_of_most, share};
-use crate::recognition::noise::Noise;
-use crate::recognition::simulation::{Judgement, RecognitionRate};
-use crate::sensor::Sensor;
+use crate::recognition::simulation::{Judgement, NoisyTouches, RecognitionRate};
 
 /// A descriptor that says something about the shape, because it does not change when the imprint is moved.
 #[derive(Clone, Copy, Debug)]
@@ -170,14 +168,15 @@ impl GivenDescriptors {
     /// as wrong. None if `progress` stops it.
     ///
     /// ```
-    /// use taxel::recognition::{GivenDescriptors, GridSteps, Noise, Training, equal_figures};
+    /// use taxel::recognition::{GivenDescriptors, GridSteps, Noise, NoisyTouches, Training, equal_figures};
     ///
     /// let steps = GridSteps::new(4, 15)?;
     /// let model = Training::fitting(equal_figures(), steps)?.run()?;
     /// let given: GivenDescriptors = "na,p".parse()?;
     /// let rate = |noise: f64| {
     ///     let noise = Noise::new(noise).expect("below ½");
-    ///     given.rate(&model, model.sensor(), &noise, 100, 0, &|_| true).expect("not stopped")
+    ///     let touches = NoisyTouches::new(model.sensor(), noise, 100, 0);
+    ///     given.rate(&model, &touches, &|_| true).expect("not stopped")
     /// };
     /// assert!(rate(0.0).accuracy() > rate(0.02).accuracy());
     /// assert_eq!(rate(0.0).held_share(), 1.0);
@@ -186,10 +185,7 @@ impl GivenDescriptors {
     pub fn rate(
         &self,
         model: &Model,
-        sensor: &Sensor,
-        noise: &Noise,
-        per_shape: u64,
-        seed: u64,
+        touches: &NoisyTouches,
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Option<RecognitionRate> {
         let table = GivenTable::new(model);
@@ -209,7 +205,7 @@ impl GivenDescriptors {
                 Some((values, (shape, share(most, all))))
             })
             .collect();
-        let judge = |touch: &Imprint| {
+        let judge = |touch: &Imprint, _: &Imprint| {
             let description = ImprintSummary::of(touch).description;
             let named = names.get(&self.values(description.as_ref())).copied();
             Judgement {
@@ -217,7 +213,7 @@ impl GivenDescriptors {
                 named,
             }
         };
-        model.simulated(sensor, noise, per_shape, seed, progress, &judge)
+        model.simulated(touches, progress, &judge)
     }
 
     /// The values of these descriptors, in steps where they are rounded.

@@ -67,7 +67,7 @@ pub use noise::{Distances, Method, Noise, NoiseError, UnexplainedDifference};
 pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
 pub use sets::{CellPositions, GridSteps, GridStepsError, default_figures, equal_figures};
-pub use simulation::{MOST_TOUCHES, RecognitionRate, TouchesUntil, random_taxels};
+pub use simulation::{MOST_TOUCHES, NoisyTouches, RecognitionRate, TouchesUntil};
 pub use training::{LEAST_SIDE, Training, TrainingError};
 #[cfg(feature = "tui")]
 pub(crate) use {model::share, simulation::below};

@@ -143,10 +143,6 @@ pub struct TouchesUntil {
 /// A run that takes more touches is abandoned: shapes that leave the same imprints can never be told apart.
 pub const MOST_TOUCHES: u32 = 10_000;
 
-/// The task that draws dead taxels. Touches are drawn by the tasks 0, 1, 2 and so on, so that they are independent of the
-/// dead taxels of the same seed.
-const DEAD_TAXELS: u64 = u64::MAX;
-
 /// A generator for one of many tasks, so that no task waits for another.
 fn generator(seed: u64, task: u64) -> Pcg64 {
     Pcg64::seed_from_u64(seed ^ task.wrapping_mul(0x9e37_79b9_7f4a_7c15))
@@ -163,19 +159,57 @@ fn unit(random: &mut Pcg64) -> f64 {
     float(random.next_u64() >> 11) / float(1 << 53)
 }
 
-/// Returns that many different taxels of a sensor, drawn with a seed; all of them if there are no more.
-pub fn random_taxels(sensor: &Sensor, count: u32, seed: u64) -> Imprint {
-    let (columns, rows) = (sensor.columns(), sensor.rows());
+/// Draws that many different taxels of a matrix; all of them if there are no more.
+fn random_taxels((columns, rows): (u8, u8), count: u32, random: &mut Pcg64) -> Imprint {
     let mut taxels = Imprint::empty(columns, rows);
-    let mut random = generator(seed, DEAD_TAXELS);
     let cells = u32::from(columns) * u32::from(rows);
-    while taxels.count() < count.min(cells) {
-        let [column, row] = [columns, rows].map(|side| below(&mut random, side.into()));
-        if let (Ok(column), Ok(row)) = (u8::try_from(column), u8::try_from(row)) {
+    let mut missing = count.min(cells);
+    while missing > 0 {
+        let [column, row] = [columns, rows].map(|side| below(random, side.into()));
+        if let (Ok(column), Ok(row)) = (u8::try_from(column), u8::try_from(row))
+            && !taxels.get(column, row)
+        {
             taxels.set(column, row, true);
+            missing -= 1;
         }
     }
     taxels
+}
+
+/// Touches to simulate: the same number of each shape, each in a random place, with taxels that flip or are dead.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoisyTouches {
+    size: (u8, u8),
+    noise: Noise,
+    random_dead: u32,
+    per_shape: u64,
+    seed: u64,
+}
+
+impl NoisyTouches {
+    /// Draws `per_shape` touches of each shape on a sensor, of which only the columns and rows count. Taxels flip as `noise`
+    /// says, and its dead taxels always read as inactive.
+    pub fn new(sensor: &Sensor, noise: Noise, per_shape: u64, seed: u64) -> Self {
+        Self {
+            size: (sensor.columns(), sensor.rows()),
+            noise,
+            random_dead: 0,
+            per_shape,
+            seed,
+        }
+    }
+
+    /// That many taxels are dead, too: others in each touch, drawn at random and known to those who name the shape. So touches
+    /// are independent, and the standard error includes how much sensors with other dead taxels differ. The same seed draws
+    /// the same dead taxels whatever the noise.
+    #[must_use]
+    pub fn with_random_dead(self, count: u32) -> Self {
+        let random_dead = count;
+        Self {
+            random_dead,
+            ..self
+        }
+    }
 }
 
 /// Draws touches of one shape.
@@ -209,48 +243,66 @@ impl Draw {
 }
 
 impl Model {
-    /// Draws touches of each shape on a sensor, of which only the columns and rows count, flips taxels as `noise` says,
-    /// names the shape as `assumed` says, and counts. Dead taxels of `noise` always read as inactive; those of `assumed` are left out.
+    /// Draws touches of each shape, names the shape of each as `assumed` says, and counts. The dead taxels of `assumed` are
+    /// left out, and so are those that are drawn for each touch.
     ///
-    /// `per_shape` touches are drawn of each shape. `progress` is called with the number of touches done since the last
-    /// call, and stops it by returning `false`; then there is no result.
+    /// `progress` is called with the number of touches done since the last call, and stops it by returning `false`; then
+    /// there is no result.
+    ///
+    /// ```
+    /// use taxel::recognition::{GridSteps, Noise, NoisyTouches, Training, equal_figures};
+    ///
+    /// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
+    /// let noise = Noise::new(0.01)?;
+    /// let touches = NoisyTouches::new(model.sensor(), noise, 100, 0);
+    /// let rate = model.recognition_rate(&touches, &noise, &|_| true).expect("not stopped");
+    /// let touches = touches.with_random_dead(64);
+    /// let fewer = model.recognition_rate(&touches, &noise, &|_| true).expect("not stopped");
+    /// assert!(fewer.accuracy() < rate.accuracy());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn recognition_rate(
         &self,
-        sensor: &Sensor,
-        noise: &Noise,
+        touches: &NoisyTouches,
         assumed: &Noise,
-        per_shape: u64,
-        seed: u64,
         progress: &(dyn Fn(u64) -> bool + Sync),
     ) -> Option<RecognitionRate> {
-        let judge = |touch: &Imprint| {
-            let posterior = self.posterior_under(touch, assumed);
+        let judge = |touch: &Imprint, dead: &Imprint| {
+            let known = match assumed.dead() {
+                Some(known) => known.resized(dead.columns(), dead.rows()).union(dead),
+                None => *dead,
+            };
+            let posterior = self.posterior_under(touch, &assumed.without(known));
             Judgement {
                 is_held: self.keys().find(&ImprintKey::of(touch)).is_some(),
                 named: posterior.and_then(|own| first_of_most(own.into_iter().enumerate())),
             }
         };
-        self.simulated(sensor, noise, per_shape, seed, progress, &judge)
+        self.simulated(touches, progress, &judge)
     }
 
-    /// Draws touches as [`Self::recognition_rate`] does; `judge` names the shape of each.
+    /// Draws touches as [`Self::recognition_rate`] does; `judge` names the shape of each, and is given the dead taxels that
+    /// were drawn for it.
     pub(super) fn simulated(
         &self,
-        sensor: &Sensor,
-        noise: &Noise,
-        per_shape: u64,
-        seed: u64,
+        touches: &NoisyTouches,
         progress: &(dyn Fn(u64) -> bool + Sync),
-        judge: &(dyn Fn(&Imprint) -> Judgement + Sync),
+        judge: &(dyn Fn(&Imprint, &Imprint) -> Judgement + Sync),
     ) -> Option<RecognitionRate> {
         /// Touches that one thread draws and counts at a time.
         const CHUNK: u64 = 50;
         /// Chunks whose counts are held at a time: a billion touches would take gigabytes.
         const HELD: usize = 4096;
-        let (columns, rows) = (sensor.columns(), sensor.rows());
+        let &NoisyTouches {
+            size,
+            noise,
+            random_dead,
+            per_shape,
+            seed,
+        } = touches;
         let shifts = |key: usize| {
             let key = self.keys().get(key);
-            shift_count((key.width, key.height), (columns, rows))
+            shift_count((key.width, key.height), size)
         };
         let draws = Draw::all(self, shifts);
         let chunks = per_shape.div_ceil(CHUNK);
@@ -260,6 +312,8 @@ impl Model {
         let rate = |(shape, chunk): (usize, u64)| {
             let number = crate::index::index(chunk) * draws.len() + shape;
             let mut random = generator(seed, number as u64);
+            // From the last task down: independent of all touches, and the same for any noise.
+            let mut random_of_dead = generator(seed, !(number as u64));
             let mut rate = ShapeRate::default();
             for _ in 0..CHUNK.min(per_shape - chunk * CHUNK) {
                 if stopped.load(Ordering::Relaxed) {
@@ -268,8 +322,9 @@ impl Model {
                 let Some(key) = draws[shape].key(&mut random) else {
                     break;
                 };
-                let touch = self.touch_of(key, (columns, rows), noise, &mut random);
-                rate.count(shape, &judge(&touch));
+                let dead = random_taxels(size, random_dead, &mut random_of_dead);
+                let touch = self.touch_of(key, size, &noise, &mut random);
+                rate.count(shape, &judge(&touch.without(&dead), &dead));
                 if !progress(1) {
                     stopped.store(true, Ordering::Relaxed);
                 }
@@ -407,9 +462,10 @@ mod tests {
 
     #[test]
     fn more_taxels_than_there_are_is_all_of_them() {
-        let taxels = random_taxels(&Sensor::LARGEST, 5000, 0);
+        let mut random = generator(0, 0);
+        let taxels = random_taxels((64, 64), 5000, &mut random);
         assert_eq!(taxels.count(), 64 * 64);
-        assert_eq!(random_taxels(&Sensor::default(), 7, 1).count(), 7);
+        assert_eq!(random_taxels((16, 16), 7, &mut random).count(), 7);
     }
 
     #[test]
@@ -428,7 +484,8 @@ mod tests {
         let training = Training::new(shapes, sensor, Anchor::Centre, ranges);
         let model = training.expect("a set").run().expect("not stopped");
         let noise = Noise::new(0.0).expect("in range");
-        let rate = model.recognition_rate(&sensor, &noise, &noise, 2000, 0, &|_| true);
+        let touches = NoisyTouches::new(&sensor, noise, 2000, 0);
+        let rate = model.recognition_rate(&touches, &noise, &|_| true);
         let rate = rate.expect("not stopped");
         // The long one is always named, so nothing is left to chance but what is claimed.
         assert_eq!((rate.touches, rate.right), (4000, 2000));
@@ -443,13 +500,45 @@ mod tests {
             let mut random = generator(seed, 0);
             let side = || below(&mut random, 64);
             let numbers: Vec<u64> = std::iter::repeat_with(side).take(100).collect();
-            let dead = random_taxels(&Sensor::LARGEST, 50, seed);
+            let dead = random_taxels((64, 64), 50, &mut generator(seed, !0));
             let is_dead = |place: &&[u64]| {
                 let place = [place[0], place[1]].map(|side| u8::try_from(side).expect("below 64"));
                 dead.get(place[0], place[1])
             };
             assert!(numbers.chunks(2).filter(is_dead).count() < 10);
         }
+    }
+
+    /// On a matrix as large as the shapes, one taxel tells them apart. Where it is dead, the first is named.
+    #[test]
+    fn the_standard_error_includes_which_taxels_are_dead() {
+        let sensor = Sensor::new(5, 1).expect("in range");
+        let bar = |length| {
+            Figure::rectangle(length, 1.0)
+                .on(&sensor)
+                .expect("in range")
+        };
+        let shapes = [("long", 5.0), ("bitten", 4.0)];
+        let shapes = shapes.map(|(name, length)| NamedShape::new(name, bar(length)));
+        let range = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges::new(["0", "0", "0", "1", "1"].map(range));
+        let training = Training::new(shapes, sensor, Anchor::Corner, ranges);
+        let model = training.expect("a set").run().expect("not stopped");
+        let noise = Noise::new(0.0).expect("in range");
+        let rate = |seed| {
+            let touches = NoisyTouches::new(&sensor, noise, 200, seed).with_random_dead(2);
+            let rate = model.recognition_rate(&touches, &noise, &|_| true);
+            rate.expect("not stopped")
+        };
+        let rates: Vec<RecognitionRate> = (0..100).map(rate).collect();
+        let count = float(rates.len() as u64);
+        let mean = rates.iter().map(RecognitionRate::accuracy).sum::<f64>() / count;
+        let apart = rates.iter().map(|rate| (rate.accuracy() - mean).powi(2));
+        let found = (apart.sum::<f64>() / (count - 1.0)).sqrt();
+        let claimed = rates.iter().map(RecognitionRate::standard_error);
+        let claimed = claimed.sum::<f64>() / count;
+        assert!(claimed > 0.0);
+        assert!((found / claimed - 1.0).abs() < 0.3, "{found} {claimed}");
     }
 
     /// Two names of one shape are as probable after every touch.
@@ -472,7 +561,8 @@ mod tests {
         });
         assert_eq!(means, Some(vec![(None, None), (None, None)]));
         let noise = Noise::new(0.0).expect("in range");
-        let rate = model.recognition_rate(&sensor, &noise, &noise, 10, 0, &|_| true);
+        let touches = NoisyTouches::new(&sensor, noise, 10, 0);
+        let rate = model.recognition_rate(&touches, &noise, &|_| true);
         assert_eq!(rate.map(|rate| (rate.touches, rate.right)), Some((20, 10)));
         // One is always named right, the other never: the accuracy is ½ for every seed.
         let error = rate.map(|rate| (rate.accuracy(), rate.standard_error()));

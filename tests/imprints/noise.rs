@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 use taxel::prelude::*;
-use taxel::recognition::{AnswerState, Evidence, Method, Model, NamedShape, Noise};
+use taxel::recognition::{AnswerState, Evidence, Method, Model, NamedShape, Noise, NoisyTouches};
 
 use crate::recognition::{float, published, ranges, s1, s4, sensor, train};
 
@@ -332,7 +332,8 @@ fn names_are_right_as_often_as_published_and_as_claimed() {
     // S1 at one flipped taxel in a hundred on 16 × 16: 0.654, from 7,000 touches.
     let model = train(s1(), 32, published());
     let noise = Noise::new(0.01).expect("in range");
-    let rate = model.recognition_rate(&Sensor::default(), &noise, &noise, 1000, 7, &|_| true);
+    let touches = NoisyTouches::new(&Sensor::default(), noise, 1000, 7);
+    let rate = model.recognition_rate(&touches, &noise, &|_| true);
     let rate = rate.expect("not stopped");
     let apart = |found: f64, expected: f64, error: f64| (found - expected).abs() / error;
     println!("{rate:?}");
@@ -354,8 +355,8 @@ fn what_is_claimed_is_reached_at_every_noise() {
         let model = train(set, 32, published());
         for flip in [0.001, 0.01, 0.05] {
             let noise = Noise::new(flip).expect("in range");
-            let rate =
-                model.recognition_rate(&Sensor::default(), &noise, &noise, 150, 11, &|_| true);
+            let touches = NoisyTouches::new(&Sensor::default(), noise, 150, 11);
+            let rate = model.recognition_rate(&touches, &noise, &|_| true);
             let rate = rate.expect("not stopped");
             let apart = (rate.claimed() - rate.accuracy()).abs() / rate.standard_error();
             assert!(apart < 3.0, "{name} at {flip}: {rate:?}");

@@ -1,6 +1,6 @@
 //! What noise costs: `taxel model confusion --noise`, `--test half-step` and `taxel model touches`.
 //!
-//! Noise flips each taxel on its own with the same probability, and dead taxels are stuck, on or off. The tables:
+//! Noise flips each taxel on its own with the same probability. Dead taxels are inactive, others in each touch. The tables:
 //! ```text
 //!   noise  dead     right            held   claimed
 //!    0.05     0    89.3 % ± 2.5     0.0 %    90.9 %  ███████████████████████████
@@ -34,7 +34,7 @@ use crate::formats::value::counted;
 use crate::formats::{LinePlot, json};
 use crate::memory::MemoryGuard;
 use crate::recognition::{
-    GivenDescriptors, Model, Noise, RecognitionRate, TouchesUntil, TrainingError, random_taxels,
+    GivenDescriptors, Model, Noise, NoisyTouches, RecognitionRate, TouchesUntil, TrainingError,
 };
 use crate::sensor::Sensor;
 
@@ -42,15 +42,15 @@ use crate::sensor::Sensor;
 struct NoiseRow {
     /// The probability that a taxel flips, 0 to below ½.
     noise: f64,
-    /// How many taxels are stuck.
+    /// How many taxels are dead.
     dead: u32,
     /// The touches that were drawn, and those named right.
     rate: RecognitionRate,
 }
 
 /// How often noisy touches are named right, for each noise and each number of dead taxels.
-/// For a number of dead taxels the same ones are dead at every noise, so that rows can be compared. The classifier
-/// knows the noise and which taxels are dead.
+/// In each touch other taxels are dead, the same ones at every noise, so that rows can be compared. The classifier knows the
+/// noise and which taxels are dead.
 ///
 /// # Errors
 /// [`CliError::Stopped`] after a signal; of a noise out of range.
@@ -74,21 +74,13 @@ pub(crate) fn degradation(
     };
     let mut table = Vec::new();
     for &dead in &asked.dead {
-        let mask = random_taxels(&sensor, dead, asked.seed);
         for &value in &values {
-            let noise = Noise::new(value)?.without(mask);
+            let noise = Noise::new(value)?;
+            let touches = NoisyTouches::new(&sensor, noise, asked.touches, asked.seed);
+            let touches = touches.with_random_dead(dead);
             let rate = match &given {
-                None => model.recognition_rate(
-                    &sensor,
-                    &noise,
-                    &noise,
-                    asked.touches,
-                    asked.seed,
-                    &report,
-                ),
-                Some(given) => {
-                    given.rate(model, &sensor, &noise, asked.touches, asked.seed, &report)
-                }
+                None => model.recognition_rate(&touches, &noise, &report),
+                Some(given) => given.rate(model, &touches, &report),
             };
             let rate = rate.ok_or_else(|| signals.failure())?;
             table.push(NoiseRow {

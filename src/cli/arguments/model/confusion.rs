@@ -186,7 +186,7 @@ fn noisy() -> [Arg; 5] {
     let dead = option(
         "dead",
         "N,...",
-        "Also with N dead taxels, spread at random;\ndefault 0",
+        "Also with N dead taxels, others in each touch;\ndefault 0",
     )
     .value_delimiter(',')
     .value_parser(whole::<u32>(0..=4095))
