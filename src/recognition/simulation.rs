@@ -128,9 +128,9 @@ impl ShapeRate {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TouchesUntil {
-    /// The mean, over the runs that reached it; None if none did.
+    /// The mean; None if a run did not reach it, since nobody knows how many touches that run would take.
     pub mean: Option<f64>,
-    /// Its standard error; None for fewer than two runs.
+    /// Its standard error; None for fewer than two runs, too.
     pub standard_error: Option<f64>,
     /// Runs that reached it within [`MOST_TOUCHES`].
     pub reached: u64,
@@ -431,7 +431,7 @@ impl Model {
     }
 }
 
-/// Mean and standard error of runs.
+/// Mean and standard error of runs. Without those that were given up the mean would be too small.
 fn summary(runs: u64, lengths: &[Option<(u32, bool)>]) -> TouchesUntil {
     let own: Vec<f64> = lengths
         .iter()
@@ -439,10 +439,10 @@ fn summary(runs: u64, lengths: &[Option<(u32, bool)>]) -> TouchesUntil {
         .map(|(length, _)| f64::from(*length))
         .collect();
     let reached = own.len() as u64;
-    let mean = (reached > 0).then(|| own.iter().sum::<f64>() / float(reached));
-    let standard_error = mean.filter(|_| reached > 1).map(|mean| {
+    let mean = (reached == runs && runs > 0).then(|| own.iter().sum::<f64>() / float(runs));
+    let standard_error = mean.filter(|_| runs > 1).map(|mean| {
         let squares = own.iter().map(|length| (length - mean) * (length - mean));
-        (squares.sum::<f64>() / float(reached - 1) / float(reached)).sqrt()
+        (squares.sum::<f64>() / float(runs - 1) / float(runs)).sqrt()
     });
     TouchesUntil {
         mean,
@@ -539,6 +539,15 @@ mod tests {
         let claimed = claimed.sum::<f64>() / count;
         assert!(claimed > 0.0);
         assert!((found / claimed - 1.0).abs() < 0.3, "{found} {claimed}");
+    }
+
+    #[test]
+    fn a_run_that_was_given_up_leaves_no_mean() {
+        let known = summary(2, &[Some((2, true)), Some((4, true))]);
+        assert_eq!((known.mean, known.standard_error), (Some(3.0), Some(1.0)));
+        let unknown = summary(3, &[Some((2, true)), None, Some((4, true))]);
+        assert_eq!((unknown.mean, unknown.standard_error), (None, None));
+        assert_eq!((unknown.reached, unknown.runs), (2, 3));
     }
 
     /// Two names of one shape are as probable after every touch.

@@ -305,7 +305,8 @@ Examples:
 pub(crate) const MODEL_TOUCHES_EXAMPLES: &str = "\
 Touches each shape again and again in random poses and multiplies probabilities,
 until one shape is as probable as wanted. The mean number of touches comes with
-its standard error; the same seed gives the same numbers.
+its standard error; the same seed gives the same numbers. A run ends after
+10,000 touches, and then its shape has no mean.
 
 Examples:
   taxel model touches parts

@@ -30,11 +30,12 @@ use crate::cli::output::evaluation::{self, bar, percent, percent_fine};
 use crate::cli::output::plot;
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
-use crate::formats::value::counted;
+use crate::formats::value::{counted, grouped};
 use crate::formats::{LinePlot, json};
 use crate::memory::MemoryGuard;
 use crate::recognition::{
-    GivenDescriptors, Model, Noise, NoisyTouches, RecognitionRate, TouchesUntil, TrainingError,
+    GivenDescriptors, MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate, TouchesUntil,
+    TrainingError,
 };
 use crate::sensor::Sensor;
 
@@ -394,8 +395,7 @@ fn touches_json(
     json::ascii(&answer)
 }
 
-/// A line for each shape, the mean and its standard error, with the number of runs that did not get there; and one for
-/// all of them.
+/// A line for each shape, the mean and its standard error, or the number of runs that were given up; and one for all of them.
 fn touches_text(
     asked: &TouchesArguments,
     shapes: &[(&str, &TouchesUntil)],
@@ -412,7 +412,11 @@ fn touches_text(
     for (name, own) in shapes {
         let left = match own.runs - own.reached {
             0 => String::new(),
-            never => format!("  {} never", counted(never, "run")),
+            more => {
+                let (more, runs) = (grouped(more), counted(own.runs, "run"));
+                let most = grouped(MOST_TOUCHES);
+                format!("  {more} of {runs} took more than {most} touches")
+            }
         };
         let value = with_error(own.mean, own.standard_error);
         // Cannot fail: the text is kept in memory.
