@@ -24,5 +24,7 @@ pub use placed::Placed;
 pub use range::{DecimalRange, MAX_VALUES, RangeError};
 pub use reach::{GivenRanges, common_ranges, default_ranges, smallest_sensor};
 #[cfg(feature = "recognition")]
+pub(crate) use reach::{Reach, check_given};
+#[cfg(feature = "recognition")]
 pub(crate) use symmetry::exact_period;
 pub(crate) use symmetry::{AngleClasses, period};

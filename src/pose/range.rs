@@ -103,24 +103,6 @@ impl DecimalRange {
         Some(Self::from_units(start, 1, places, 1))
     }
 
-    /// The values from this range's first one on to below the next unit, in steps that divide a unit into `parts`: a
-    /// divisor of 100.
-    #[cfg(feature = "recognition")]
-    pub(crate) fn divided_unit(&self, parts: u8) -> Self {
-        const PLACES: u32 = 2;
-        let places = self.places.max(PLACES);
-        let start = self.start * 10_i64.pow(places - self.places);
-        let step = 10_i64.pow(places) / i64::from(parts);
-        Self::from_units(start, step, places, parts.into())
-    }
-
-    /// The smallest whole number that is not below the first value.
-    #[cfg(feature = "recognition")]
-    pub(crate) fn whole_start(&self) -> Self {
-        let start = -(-self.start).div_euclid(10_i64.pow(self.places));
-        Self::from_units(start, 1, 0, 1)
-    }
-
     /// The values with these indices as a range of their own; None if `indices` is empty or leaves the range.
     ///
     /// ```

@@ -5,7 +5,7 @@
 //! cut off when the shape reaches beyond the sensor there, by the rule of [`crate::touch::reaches_beyond`]. Units are
 //! cell sides, the frame is that of the plane. Convention of this project.
 //!
-//! Where x0 or y0 is not given, a sweep takes one cell of positions in hundredths. That is the cell that the shape lies
+//! Where x0 or y0 is not given, a sweep takes one cell of positions, in hundredths unless it is asked for others. That is the cell that the shape lies
 //! in (1.99 lies in `1:1.99:0.01`) if the sensor cuts nothing off there; otherwise it is one around the middle. Around
 //! the middle means: of the cells in which nothing is cut off, the one nearest the middle, from a whole number on if
 //! there is such a cell; if there is none, the middle of the sensor.
@@ -26,8 +26,11 @@ use crate::touch::DOUBTFUL;
 /// ([`default_ranges`]), the others that of [`Ranges::default`].
 pub type GivenRanges = PerAxis<Option<DecimalRange>>;
 
-/// Positions of a default range: one cell in hundredths.
+/// Hundredths of a cell. What divides it can be the step from one position of a cell to the next.
 const CELL: u32 = 100;
+
+/// The step of a default range, in hundredths.
+const FINE: u32 = 1;
 
 impl PoseGrid {
     /// Returns the smallest upright rectangle around the shape in every orientation of the grid, with its anchor at the
@@ -178,7 +181,7 @@ pub fn default_ranges(
     anchor: Anchor,
     given: &GivenRanges,
 ) -> Result<Ranges, GridError> {
-    check(given, sensor)?;
+    check_given(given, sensor)?;
     let reach = Reach::of(source, anchor, given)?;
     let (x, y) = own_position(source, anchor);
     let axes = [
@@ -187,11 +190,9 @@ pub fn default_ranges(
     ];
     let mut asked = axes.into_iter().filter(|(axis, ..)| given[*axis].is_none());
     let own = asked.all(|(axis, at, side)| {
-        let free = reach.free(axis, side);
+        let free = reach.free(axis, side, FINE);
         let start = hundredths((at + DOUBTFUL).floor() * 100.0);
-        free.contains(&start)
-            && start >= -limit(sensor)
-            && start + i64::from(CELL) - 1 <= limit(sensor)
+        free.contains(&start) && start >= -limit(sensor) && start + beyond(FINE) <= limit(sensor)
     });
     let mut ranges = filled(given);
     for (axis, at, side) in axes {
@@ -199,9 +200,9 @@ pub fn default_ranges(
             let start = if own {
                 hundredths((at + DOUBTFUL).floor() * 100.0)
             } else {
-                reach.middle(axis, side)
+                reach.middle(axis, side, FINE)
             };
-            ranges[axis] = cell_from(start, sensor);
+            ranges[axis] = cell_from(start, sensor, FINE);
         }
     }
     Ok(ranges)
@@ -221,8 +222,8 @@ pub fn common_ranges<'a>(
     anchor: Anchor,
     given: &GivenRanges,
 ) -> Result<Ranges, GridError> {
-    check(given, sensor)?;
-    Ok(Reach::of_all(sources, anchor, given)?.ranges(sensor, given))
+    check_given(given, sensor)?;
+    Ok(Reach::of_all(sources, anchor, given)?.ranges(sensor, given, FINE))
 }
 
 /// Returns the smallest square sensor, of at least `least` × `least` taxels, on which none of some shapes is cut off in
@@ -258,43 +259,21 @@ pub fn smallest_sensor<'a>(
 ) -> Result<Option<(Sensor, Ranges)>, GridError> {
     let sources: Vec<&Source> = sources.into_iter().collect();
     let reach = Reach::of_all(sources.iter().copied(), anchor, given)?;
-    for side in least.clamp(1, MAX_SIDE)..=MAX_SIDE {
-        let Ok(sensor) = Sensor::new(side, side) else {
-            continue;
-        };
-        let ranges = reach.ranges(&sensor, given);
-        let holds = |axis: Axis| {
-            let range = ranges[axis];
-            reach.within(axis, side, range.value(0)) && reach.within(axis, side, range.last())
-        };
-        // The rule of parameters, too: a size or a position may be too large for a sensor where the shape lies on it.
-        let allowed = |source: &Source| {
-            let set = |parameter: &Parameter| {
-                let placed = Axis::ALL.iter().any(|axis| axis.parameter() == *parameter);
-                let value = source.get(*parameter).filter(|_| !placed);
-                value.is_none_or(|value| sensor.check(*parameter, value).is_ok())
-            };
-            source.parameters().iter().all(set)
-        };
-        let positions = [Axis::X0, Axis::Y0].map(|axis| (axis.parameter(), ranges[axis]));
-        let in_range = positions.iter().all(|(parameter, range)| {
-            let ends = [range.value(0), range.last()];
-            ends.iter()
-                .all(|&value| sensor.check(*parameter, value).is_ok())
-        });
-        if holds(Axis::X0)
-            && holds(Axis::Y0)
-            && in_range
-            && sources.iter().all(|source| allowed(source))
-        {
-            return Ok(Some((sensor, ranges)));
-        }
-    }
-    Ok(None)
+    Ok(reach.smallest_sensor(&sources, given, least, FINE))
+}
+
+/// The rule of parameters: a size may be too large for a sensor on which the shape lies.
+fn is_allowed(source: &Source, sensor: &Sensor) -> bool {
+    let own = source.parameters();
+    own.iter().all(|parameter| {
+        let placed = Axis::ALL.iter().any(|axis| axis.parameter() == *parameter);
+        let value = source.get(*parameter).filter(|_| !placed);
+        value.is_none_or(|value| sensor.check(*parameter, value).is_ok())
+    })
 }
 
 /// Whether given ranges lie in those of their parameters.
-fn check(given: &GivenRanges, sensor: &Sensor) -> Result<(), GridError> {
+pub(crate) fn check_given(given: &GivenRanges, sensor: &Sensor) -> Result<(), GridError> {
     for (axis, range) in given.iter() {
         if let Some(range) = range {
             sensor.check(axis.parameter(), range.value(0))?;
@@ -305,11 +284,18 @@ fn check(given: &GivenRanges, sensor: &Sensor) -> Result<(), GridError> {
 }
 
 /// How far shapes reach from their anchor, for each pair of zooms: positions of a picture are zoomed with it.
-struct Reach(Vec<(Extent, [f64; 2])>);
+///
+/// A step is the distance from one position of a cell to the next in hundredths, a divisor of 100.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Reach(Vec<(Extent, [f64; 2])>);
 
 impl Reach {
     /// Of one shape, in the given angles and zooms.
-    fn of(source: &Source, anchor: Anchor, given: &GivenRanges) -> Result<Self, GridError> {
+    pub(crate) fn of(
+        source: &Source,
+        anchor: Anchor,
+        given: &GivenRanges,
+    ) -> Result<Self, GridError> {
         let mut ranges = filled(given);
         // Where it lies on which sensor does not matter, but a given position must be in range.
         for axis in [Axis::X0, Axis::Y0] {
@@ -339,24 +325,55 @@ impl Reach {
     }
 
     /// Of all of some shapes together.
-    fn of_all<'a>(
+    pub(crate) fn of_all<'a>(
         sources: impl IntoIterator<Item = &'a Source>,
         anchor: Anchor,
         given: &GivenRanges,
     ) -> Result<Self, GridError> {
-        let mut all = Vec::new();
+        let mut all = Self::default();
         for source in sources {
-            all.append(&mut Self::of(source, anchor, given)?.0);
+            all.add(Self::of(source, anchor, given)?);
         }
-        Ok(Self(all))
+        Ok(all)
     }
 
-    /// Given ranges, and one cell around the middle for a position that is not.
-    fn ranges(&self, sensor: &Sensor, given: &GivenRanges) -> Ranges {
+    /// Adds that of another shape.
+    pub(crate) fn add(&mut self, mut other: Self) {
+        self.0.append(&mut other.0);
+    }
+
+    /// The smallest square sensor of at least `least` × `least` taxels that cuts nothing off, and the ranges there, as
+    /// [`smallest_sensor`] gives them; `sources` are the shapes.
+    pub(crate) fn smallest_sensor(
+        &self,
+        sources: &[&Source],
+        given: &GivenRanges,
+        least: u8,
+        step: u32,
+    ) -> Option<(Sensor, Ranges)> {
+        let sides = least.clamp(1, MAX_SIDE)..=MAX_SIDE;
+        let sensors = sides.filter_map(|side| Sensor::new(side, side).ok());
+        // A given position may be too large for a small sensor.
+        let sensors = sensors.filter(|sensor| check_given(given, sensor).is_ok());
+        let mut fitting = sensors.filter_map(|sensor| {
+            let ranges = self.ranges(&sensor, given, step);
+            let holds = [Axis::X0, Axis::Y0].into_iter().all(|axis| {
+                let range = ranges[axis];
+                let mut ends = [range.value(0), range.last()].into_iter();
+                ends.all(|end| self.within(axis, sensor.side(), end))
+            });
+            let allowed = || sources.iter().all(|source| is_allowed(source, &sensor));
+            (holds && allowed()).then_some((sensor, ranges))
+        });
+        fitting.next()
+    }
+
+    /// Given ranges, which the sensor allows, and one cell around the middle for a position that is not given.
+    pub(crate) fn ranges(&self, sensor: &Sensor, given: &GivenRanges, step: u32) -> Ranges {
         let mut ranges = filled(given);
         for (axis, side) in [(Axis::X0, sensor.columns()), (Axis::Y0, sensor.rows())] {
             if given[axis].is_none() {
-                ranges[axis] = cell_from(self.middle(axis, side), sensor);
+                ranges[axis] = cell_from(self.middle(axis, side, step), sensor, step);
             }
         }
         ranges
@@ -391,18 +408,18 @@ impl Reach {
     }
 
     /// The hundredths from which one cell of positions lies within the limits.
-    fn free(&self, axis: Axis, side: u8) -> std::ops::RangeInclusive<i64> {
+    fn free(&self, axis: Axis, side: u8, step: u32) -> std::ops::RangeInclusive<i64> {
         let (low, high) = self.limits(axis, side);
         // A limit that is a hundredth but for its rounding is that hundredth.
         let from = hundredths((low * 100.0 - 1e-9).ceil());
         let to = hundredths((high * 100.0 + 1e-9).floor());
-        from..=to - i64::from(CELL) + 1
+        from..=to - beyond(step)
     }
 
     /// The hundredths from which the cell around the middle starts.
-    fn middle(&self, axis: Axis, side: u8) -> i64 {
+    fn middle(&self, axis: Axis, side: u8, step: u32) -> i64 {
         let (low, high) = self.limits(axis, side);
-        let free = self.free(axis, side);
+        let free = self.free(axis, side, step);
         // If two are equally near, the lower one.
         let middle = hundredths(((low + high) * 50.0 - f64::from(CELL) / 2.0 - 1e-9).ceil());
         if free.is_empty() {
@@ -440,11 +457,16 @@ fn filled(given: &GivenRanges) -> Ranges {
     Ranges::from_fn(|axis| given[axis].unwrap_or(default[axis]))
 }
 
+/// How far the last position of a cell lies beyond its first, in hundredths.
+fn beyond(step: u32) -> i64 {
+    i64::from(CELL - step)
+}
+
 /// One cell of positions from `start` on, in hundredths; all of them positions that the sensor allows.
-fn cell_from(start: i64, sensor: &Sensor) -> DecimalRange {
+fn cell_from(start: i64, sensor: &Sensor, step: u32) -> DecimalRange {
     let limit = limit(sensor);
-    let start = start.clamp(-limit, limit - i64::from(CELL) + 1);
-    DecimalRange::from_units(start, 1, 2, u64::from(CELL))
+    let start = start.clamp(-limit, limit - beyond(step));
+    DecimalRange::from_units(start, step.into(), 2, u64::from(CELL / step))
 }
 
 /// The largest position that a sensor allows, in hundredths.

@@ -2,12 +2,12 @@
 //! and of the threshold.
 //!
 //! A scale of 2 makes every length of every shape twice as long in cells, as a sensor with half the pitch does. Each
-//! shape is touched with its centre in one cell and at the angles asked for, on a sensor that cuts nothing off.
+//! shape is touched with its centre in one cell and at the angles asked for, on a sensor that cuts nothing off, as in a training.
 
 use crate::figure::Figure;
 use crate::parameter::Parameter;
 use crate::parameter::number::to_decimals;
-use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, smallest_sensor};
+use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach};
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, NamedShape, check_shapes, share};
 use crate::recognition::sets::CellPositions;
@@ -135,7 +135,7 @@ impl Separation {
         Ok(Self {
             shapes,
             positions: CellPositions::FINE,
-            angles: crate::pose::Ranges::default()[Axis::Angle],
+            angles: Ranges::default()[Axis::Angle],
         })
     }
 
@@ -165,36 +165,49 @@ impl Separation {
     /// [`TrainingError::Large`] for shapes that do not fit on the largest sensor, [`TrainingError::Grid`] for values out
     /// of range.
     pub fn training(&self, scale: f64, threshold: f64) -> Result<Training<'static>, TrainingError> {
+        let refused = |name: &str, error| TrainingError::Grid {
+            name: name.to_owned(),
+            error,
+        };
         let mut scaled = Vec::with_capacity(self.shapes.len());
-        let mut grids = Vec::with_capacity(self.shapes.len());
+        let mut zooms = Vec::with_capacity(self.shapes.len());
+        let mut reach = Reach::default();
         for shape in &self.shapes {
-            let refused = |error| TrainingError::Grid {
-                name: shape.name.clone(),
-                error,
-            };
-            let grid = self
-                .grid(&shape.source, scale, threshold)
-                .map_err(refused)?;
-            let grid = grid.ok_or(TrainingError::Large)?;
+            let refused = |error| refused(&shape.name, error);
+            let larger = self.scaled(&shape.source, scale).map_err(refused)?;
+            let (source, given) = larger.ok_or(TrainingError::Large)?;
+            reach.add(Reach::of(&source, Anchor::Centre, &given).map_err(refused)?);
             scaled.push(NamedShape {
-                source: grid.source().clone(),
+                source,
                 ..shape.clone()
             });
-            grids.push(grid);
+            zooms.push(given);
         }
+        let mut given = GivenRanges::default();
+        given[Axis::Angle] = Some(self.angles);
+        let sources: Vec<&Source> = scaled.iter().map(|shape| &shape.source).collect();
+        let fit = reach.smallest_sensor(&sources, &given, LEAST_SIDE, self.positions.step());
+        let (sensor, ranges) = fit.ok_or(TrainingError::Large)?;
+        let grid = |(shape, zooms): (&NamedShape, &GivenRanges)| {
+            let refused = |error| refused(&shape.name, error);
+            let sensor = sensor.with(Parameter::Threshold, threshold);
+            let sensor = sensor.map_err(|error| refused(error.into()))?;
+            let ranges = Ranges::from_fn(|axis| zooms[axis].unwrap_or(ranges[axis]));
+            let grid = PoseGrid::new(shape.source.clone(), sensor, Anchor::Centre, ranges);
+            grid.map_err(refused)
+        };
+        let grids = scaled.iter().zip(&zooms).map(grid);
+        let grids = grids.collect::<Result<_, _>>()?;
         Ok(Training::of_grids(scaled, grids))
     }
 
-    /// The poses of one shape; None if it is too large for any sensor.
-    ///
-    /// Every shape has its own sensor: the place of a touch does not matter, as long as nothing is cut off and the
-    /// positions are those of one cell that starts at a whole number.
-    fn grid(
+    /// A shape with every length multiplied, and its angles and zooms: a picture is zoomed. None if it is too large for any
+    /// sensor.
+    fn scaled(
         &self,
         source: &Source,
         scale: f64,
-        threshold: f64,
-    ) -> Result<Option<PoseGrid>, GridError> {
+    ) -> Result<Option<(Source, GivenRanges)>, GridError> {
         let mut given = GivenRanges::default();
         given[Axis::Angle] = Some(self.angles);
         let source = match source {
@@ -219,23 +232,7 @@ impl Separation {
                 source.clone()
             }
         };
-        let Some((fit, ranges)) = smallest_sensor([&source], Anchor::Centre, &given, LEAST_SIDE)?
-        else {
-            return Ok(None);
-        };
-        let (start, whole) = (ranges[Axis::X0].value(0), ranges[Axis::X0].whole_start());
-        let side = fit.side();
-        let side = if whole.value(0) == start {
-            side
-        } else if side < Sensor::LARGEST.side() {
-            side + 1
-        } else {
-            return Ok(None);
-        };
-        let sensor = Sensor::new(side, side)?.with(Parameter::Threshold, threshold)?;
-        let cell = self.positions.of_cell(&whole);
-        let ranges = ranges.with(Axis::X0, cell).with(Axis::Y0, cell);
-        PoseGrid::new(source, sensor, Anchor::Centre, ranges).map(Some)
+        Ok(Some((source, given)))
     }
 
     /// Returns the limit for one value and one threshold. `progress` is called as by [`Training::progress`].
@@ -253,7 +250,7 @@ impl Separation {
         Ok(point)
     }
 
-    /// Returns the same with the model that it was counted from, and the evaluation of that. The sensor of the model is that
+    /// Returns the same with the model that it was counted from, and the evaluation of that. The zooms of the model are those
     /// of its first shape only, so it stays in the crate.
     ///
     /// # Errors
@@ -267,8 +264,7 @@ impl Separation {
     ) -> Result<(SeparationPoint, Model, Evaluation), TrainingError> {
         let scale = axis.scale(value);
         let training = self.training(scale, threshold)?;
-        let sides = training.grids().iter().map(|grid| grid.sensor().side());
-        let side = sides.max().unwrap_or(LEAST_SIDE);
+        let side = training.grids()[0].sensor().side();
         let model = training.progress(progress).run()?;
         let limit = Evaluation::of(&model);
         let point = SeparationPoint {
@@ -412,6 +408,34 @@ mod tests {
                 (point.touches, point.right, point.certain, point.keys),
                 (limit.touches, limit.right, limit.certain, limit.keys),
                 "{scale} {threshold}"
+            );
+        }
+    }
+
+    /// 7.5 cells of reach leave room for one cell of positions on 16 × 16, from 7.5 on.
+    #[test]
+    fn the_size_that_is_given_is_a_training_of_the_set_itself() {
+        let figure = |figure: crate::figure::FigureBuilder| figure.on(&Sensor::LARGEST);
+        let shapes = vec![
+            NamedShape::new("disc", figure(Figure::ellipse(7.5, 7.5)).expect("in range")),
+            NamedShape::new("oval", figure(Figure::ellipse(7.5, 7.4)).expect("in range")),
+            NamedShape::new("small", figure(Figure::triangle(4.0)).expect("in range")),
+        ];
+        for positions in [1, 5, 20, 25] {
+            let steps = crate::recognition::GridSteps::new(positions, 10).expect("divisors");
+            let training = Training::fitting(shapes.clone(), steps).expect("they fit");
+            let side = training.grids()[0].sensor().side();
+            assert_eq!(side, 16);
+            let limit = Evaluation::of(&training.run().expect("not stopped"));
+            let separation = Separation::new(shapes.clone()).expect("a set");
+            let separation = separation.positions(CellPositions::new(positions).expect("divides"));
+            let separation = separation.angles("0:350:10".parse().expect("a range"));
+            let point = separation.at(SizeAxis::Scale, 1.0, 0.5, &|_| true);
+            let point = point.expect("it fits");
+            assert_eq!(
+                (point.side, point.right, point.certain, point.keys),
+                (side, limit.right, limit.certain, limit.keys),
+                "{positions} positions"
             );
         }
     }

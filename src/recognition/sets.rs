@@ -2,7 +2,7 @@
 
 use crate::figure::{Figure, FigureKind};
 use crate::parameter::Parameter;
-use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, Ranges, smallest_sensor};
+use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, Reach};
 use crate::recognition::model::NamedShape;
 use crate::recognition::training::{LEAST_SIDE, Training, TrainingError};
 use crate::sensor::Sensor;
@@ -80,9 +80,9 @@ impl CellPositions {
         self.0
     }
 
-    /// Returns the positions of the cell that begins where this range does.
-    pub(crate) fn of_cell(self, fine: &DecimalRange) -> DecimalRange {
-        fine.divided_unit(self.0)
+    /// Returns the hundredths from one to the next.
+    pub(crate) fn step(self) -> u32 {
+        100 / u32::from(self.0)
     }
 }
 
@@ -164,23 +164,15 @@ impl Training<'_> {
         let mut given = GivenRanges::default();
         given[Axis::Angle] = Some(steps.angles());
         let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();
-        let fit = smallest_sensor(sources, Anchor::Centre, &given, LEAST_SIDE);
-        let fit = fit.map_err(|error| TrainingError::Grid {
+        let reach = Reach::of_all(sources.iter().copied(), Anchor::Centre, &given);
+        let reach = reach.map_err(|error| TrainingError::Grid {
             name: "the set".to_owned(),
             error,
         })?;
-        let (sensor, fine) = fit.ok_or(TrainingError::Large)?;
-        Self::new(shapes, sensor, Anchor::Centre, coarser(&fine, steps))
+        let fit = reach.smallest_sensor(&sources, &given, LEAST_SIDE, steps.positions().step());
+        let (sensor, ranges) = fit.ok_or(TrainingError::Large)?;
+        Self::new(shapes, sensor, Anchor::Centre, ranges)
     }
-}
-
-/// The same cell of positions in other steps.
-fn coarser(fine: &Ranges, steps: GridSteps) -> Ranges {
-    let mut ranges = *fine;
-    for axis in [Axis::X0, Axis::Y0] {
-        ranges[axis] = steps.positions().of_cell(&fine[axis]);
-    }
-    ranges
 }
 
 #[cfg(test)]
@@ -229,15 +221,28 @@ mod tests {
                 Err(GridStepsError::Degrees { found: degrees })
             );
         }
-        let cell = |positions, fine: &str| {
+        let steps = GridSteps::new(1, 360).expect("divisors");
+        assert_eq!(steps.angles().to_string(), "0");
+    }
+
+    /// On 16 × 16, the centre of a disc of radius 7.7 can move by 0.6 cells, and that of one of radius 8 not at all.
+    #[test]
+    fn the_sensor_holds_the_positions_that_are_taken_and_no_others() {
+        let fit = |radius: f64, positions| {
+            let disc = Figure::ellipse(radius, radius).on(&Sensor::LARGEST);
+            let shapes = vec![NamedShape::new("disc", disc.expect("in range"))];
             let steps = GridSteps::new(positions, 360).expect("divisors");
-            assert_eq!(steps.angles().to_string(), "0");
-            let fine: DecimalRange = fine.parse().expect("a range");
-            steps.positions().of_cell(&fine).to_string()
+            let training = Training::fitting(shapes, steps).expect("it fits");
+            let grid = &training.grids()[0];
+            let range = grid.ranges()[Axis::X0].to_string();
+            (grid.sensor().side(), range)
         };
-        assert_eq!(cell(1, "7:7.99:0.01"), "7");
-        assert_eq!(cell(4, "-7.35:-6.36:0.01"), "-7.35:-6.6:0.25");
-        assert_eq!(cell(100, "7.005:8:0.001"), "7.005:7.995:0.01");
+        let found = |side, range: &str| (side, range.to_owned());
+        assert_eq!(fit(7.7, 100), found(17, "8:8.99:0.01"));
+        assert_eq!(fit(7.7, 2), found(16, "7.7:8.2:0.5"));
+        assert_eq!(fit(8.0, 2), found(17, "8:8.5:0.5"));
+        assert_eq!(fit(8.0, 1), found(16, "8"));
+        assert_eq!(fit(7.0, 1), found(16, "7"));
     }
 
     #[test]

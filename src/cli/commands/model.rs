@@ -33,9 +33,12 @@ use crate::cli::threads;
 use crate::formats::value::counted;
 use crate::formats::{Name, json};
 use crate::memory::MemoryGuard;
-use crate::pose::{Anchor, Axis, GivenRanges, GridError, Ranges, common_ranges, smallest_sensor};
-use crate::recognition::{Evaluation, LEAST_SIDE, Model, NamedShape, Training, TrainingError};
+use crate::pose::{Anchor, Axis, GridError, Ranges, Reach, check_given};
+use crate::recognition::{
+    CellPositions, Evaluation, LEAST_SIDE, Model, NamedShape, Training, TrainingError,
+};
 use crate::sensor::Sensor;
+use crate::source::Source;
 use crate::storage::{
     ArchiveFileError, ModelCache, ModelFolder, UnfinishedFile, load_model, load_whole_model,
     model_hash, save_model,
@@ -164,14 +167,7 @@ fn grid(
         Anchor::Centre
     };
     let anchor = asked.anchor.unwrap_or(usual);
-    let (sensor, mut ranges) = fitting(shapes, asked.sensor, anchor, &asked.ranges)?;
-    if let Some(positions) = asked.positions {
-        for axis in [Axis::X0, Axis::Y0] {
-            if asked.ranges[axis].is_none() {
-                ranges[axis] = positions.of_cell(&ranges[axis]);
-            }
-        }
-    }
+    let (sensor, ranges) = fitting(shapes, asked, anchor)?;
     let sensor = if let Some(sensor) = asked.sensor {
         sensor
     } else {
@@ -188,18 +184,21 @@ fn grid(
 /// shapes, training says which poses are cut off.
 fn fitting(
     shapes: &[NamedShape],
-    sensor: Option<Sensor>,
+    asked: &TrainArguments,
     anchor: Anchor,
-    given: &GivenRanges,
 ) -> Result<(Sensor, Ranges), CliError> {
-    let sources = || shapes.iter().map(|shape| &shape.source);
-    if sensor.is_none()
-        && let Some(fitting) = smallest_sensor(sources(), anchor, given, LEAST_SIDE)?
+    let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();
+    let step = asked.positions.unwrap_or(CellPositions::FINE).step();
+    let given = &asked.ranges;
+    check_given(given, &asked.sensor.unwrap_or(Sensor::LARGEST))?;
+    let reach = Reach::of_all(sources.iter().copied(), anchor, given)?;
+    if asked.sensor.is_none()
+        && let Some(fitting) = reach.smallest_sensor(&sources, given, LEAST_SIDE, step)
     {
         return Ok(fitting);
     }
-    let sensor = sensor.unwrap_or(Sensor::LARGEST);
-    Ok((sensor, common_ranges(sources(), &sensor, anchor, given)?))
+    let sensor = asked.sensor.unwrap_or(Sensor::LARGEST);
+    Ok((sensor, reach.ranges(&sensor, given, step)))
 }
 
 /// The folder of the models beside the library.
@@ -374,7 +373,7 @@ fn described(shape: &NamedShape) -> String {
             });
             format!("{} {}", kind.name(), sizes.collect::<Vec<_>>().join(", "))
         }
-        (None, crate::source::Source::Picture(picture)) => {
+        (None, Source::Picture(picture)) => {
             let taxels = counted(picture.imprint().count(), "taxel");
             format!("picture of {taxels}")
         }
