@@ -180,6 +180,9 @@ impl Total {
         // No vector is longer than its parts together: a file may say otherwise, and rounding may.
         let own = libm::hypot(x, y).min(1.0);
         let within = between.mean(poses).clamp(own, 1.0);
+        // Nor do lengths differ that are the same but for their rounding: its root would be a deviation.
+        let within = if 1.0 - within < ROUNDING { 1.0 } else { within };
+        let own = if within - own < ROUNDING { within } else { own };
         // Vectors that cancel up to the rounding of their parts point nowhere.
         if own < 1e-11 {
             return;
@@ -191,6 +194,10 @@ impl Total {
         statistic.sd_angle = Some(deviation(own / within));
     }
 }
+
+/// More than the mean length of vectors may be off. Their parts are the nearest multiples of 2⁻⁴⁰, and so is the length of
+/// the sum of an orientation.
+const ROUNDING: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// The statistics of all features. `counts` says how often each imprint of the table occurs.
 pub(crate) fn statistics(
@@ -220,4 +227,49 @@ pub(crate) fn statistics(
             total.statistic(feature, table.extremes(index), between, ideal(&feature.key))
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::atlas::sums::signed;
+
+    /// The deviations of directions: in all, from the position and from the angle. Each group is those of an orientation.
+    fn deviations(groups: &[&[f64]]) -> [f64; 3] {
+        let feature = features().iter().find(|feature| feature.circular);
+        let (mut sum, mut between) = (Sum::default(), Wide::default());
+        for group in groups {
+            let mut own = Sum::default();
+            for direction in *group {
+                let (sin, cos) = libm::sincos(direction.to_radians());
+                own.poses += 1;
+                own.x += i128::from(signed(cos));
+                own.y += i128::from(signed(sin));
+            }
+            sum.merge(&own);
+            between += Wide::rounded(own.length());
+        }
+        let squares = [0; 2];
+        let total = Total { sum, squares };
+        let found = total.statistic(feature.expect("there is one"), None, between, None);
+        let found = [found.sd, found.sd_position, found.sd_angle];
+        found.map(|sd| sd.expect("they do not cancel"))
+    }
+
+    #[test]
+    fn directions_that_do_not_differ_deviate_by_nothing() {
+        for first in 0..360 {
+            let (one, other) = (f64::from(first) + 0.3, f64::from(first) + 40.7);
+            assert_eq!(deviations(&[&[one; 7], &[one; 7]]), [0.0; 3]);
+            // Of two orientations with the same directions, all of the deviation comes from the position.
+            let [sd, position, angle] = deviations(&[&[one, other], &[one, other]]);
+            assert_eq!((sd, angle), (position, 0.0));
+            let [sd, position, angle] = deviations(&[&[one; 3], &[other; 3]]);
+            assert_eq!((sd, position), (angle, 0.0));
+            assert!((sd - 20.41).abs() < 0.1, "{sd}");
+        }
+        // Directions that differ by a thousandth of a degree do differ.
+        let [.., angle] = deviations(&[&[10.0], &[10.001]]);
+        assert!((angle / 0.0005 - 1.0).abs() < 0.01, "{angle}");
+    }
 }
