@@ -5,6 +5,7 @@
 //! lead to the end, the last value is the largest one below it. A single number is a range of one. Units are those of
 //! the parameter. Convention of this project.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
@@ -184,10 +185,11 @@ impl FromStr for DecimalRange {
     type Err = RangeError;
 
     fn from_str(text: &str) -> Result<Self, RangeError> {
-        let parts: Vec<&str> = text.split(':').map(str::trim).collect();
-        let (start, end, step) = match parts[..] {
-            [single] => (single, single, "1"),
-            [start, end, step] => (start, end, step),
+        let parts = text.split(':').map(|part| without_exponent(part.trim()));
+        let parts: Vec<Cow<'_, str>> = parts.collect();
+        let (start, end, step) = match &parts[..] {
+            [single] => (&**single, &**single, "1"),
+            [start, end, step] => (&**start, &**end, &**step),
             _ => {
                 return Err(RangeError::Form {
                     text: shortened(text.trim()),
@@ -225,6 +227,35 @@ impl FromStr for DecimalRange {
         }
         Ok(Self::from_units(first, by, narrow(places), count))
     }
+}
+
+/// The exponents that are written out, up or down. Beyond them any number has too many digits.
+const LARGEST_EXPONENT: i32 = 30;
+
+/// A number with an exponent as a plain decimal: `1e-3` as `0.001`. Other text stays as it is.
+fn without_exponent(text: &str) -> Cow<'_, str> {
+    let written_out = || {
+        let (number, exponent) = text.split_once(['e', 'E'])?;
+        let exponent: i32 = exponent.parse().ok()?;
+        if !is_decimal(number) {
+            return None;
+        }
+        let exponent = exponent.clamp(-LARGEST_EXPONENT, LARGEST_EXPONENT);
+        let shift = usize::try_from(exponent.unsigned_abs()).ok()?;
+        let (whole, fraction) = parts(number);
+        let zeros = "0".repeat(shift);
+        let sign = if number.starts_with('-') { "-" } else { "" };
+        Some(if exponent < 0 {
+            let digits = format!("{zeros}{whole}");
+            let (whole, moved) = digits.split_at(digits.len() - shift);
+            format!("{sign}{whole}.{moved}{fraction}")
+        } else {
+            let digits = format!("{fraction}{zeros}");
+            let (moved, fraction) = digits.split_at(shift);
+            format!("{sign}{whole}{moved}.{fraction}")
+        })
+    };
+    written_out().map_or(Cow::Borrowed(text), Cow::Owned)
 }
 
 /// The number of decimals that a number is written with, without trailing zeros.

@@ -44,9 +44,22 @@ fn ranges_are_exact_or_refused() {
         refused("1:2:x"),
         "\"x\" is not a decimal number, such as 0.25"
     );
+    for (exponent, plain) in [
+        ("1e-3", "0.001"),
+        ("-2.5E-1:5e-1:2.5e-2", "-0.25:0.5:0.025"),
+        ("1.25e1", "12.5"),
+        ("1.5e+2:.16e3:1e0", "150:160:1"),
+        ("0e99", "0"),
+    ] {
+        assert_eq!(range(exponent), range(plain), "{exponent}");
+    }
+    for text in ["1e99", "1e-99"] {
+        let message = refused(text);
+        assert!(message.contains("has too many digits"), "{text}: {message}");
+    }
     assert_eq!(
-        refused("1e5"),
-        "\"1e5\" is not a decimal number, such as 0.25"
+        refused("1e"),
+        "\"1e\" is not a decimal number, such as 0.25"
     );
     for odd in [
         "",
