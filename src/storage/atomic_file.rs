@@ -7,9 +7,10 @@
 //! killed, the next writer removes what it left: see [`crate::storage::temporary`] for files from
 //! [`UnfinishedFile::new`]; the name given to [`UnfinishedFile::with_temporary`] is taken over by the next caller.
 
-use std::fs::{self, File, Metadata};
+use std::fs::{self, File, Metadata, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use crate::storage::error::FileError;
 use crate::storage::temporary::{OldFile, TemporaryFile};
@@ -202,12 +203,14 @@ fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileErr
 
 /// Gives two files that belong together their names: both, or neither. Whenever the program dies, there is never one of
 /// these beside an older one of the other: what stands under the second name is moved away first, and the second is named
-/// last. Returns the first file, open, for what is written into it from now on.
+/// last. Of two programs that name such files in one folder at once, one waits for the other. Returns the first file, open,
+/// for what is written into it from now on.
 ///
 /// # Errors
 /// As for [`FinishedFile::persist`]. If one of them got no name, what was there is there again; the message says what
 /// could not be brought back.
 pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, FileError> {
+    let _turn = turn(folder_of(&first.path));
     let (path, beside) = (first.path.clone(), second.path.clone());
     let is_replaced = first.is_replaced()?;
     // Where the file system has no links, it goes without.
@@ -248,6 +251,25 @@ fn move_away(path: &Path) -> Result<OldFile, FileError> {
     match sync(folder_of(path)) {
         Ok(()) => Ok(moved),
         Err(error) => Err(refuse(error).and(moved.put_back().err())),
+    }
+}
+
+/// Waits until no other program names files that belong together in a folder, for two seconds at most; the others wait as
+/// long as the file that is returned is open. The folder itself is locked, so nothing is left in it. None on a system that
+/// cannot lock a folder: the files are named all the same.
+fn turn(folder: &Path) -> Option<File> {
+    const PATIENCE: Duration = Duration::from_secs(2);
+    const PAUSE: Duration = Duration::from_millis(2);
+    let folder = File::open(folder).ok()?;
+    let start = Instant::now();
+    loop {
+        match folder.try_lock() {
+            Ok(()) => return Some(folder),
+            Err(TryLockError::WouldBlock) if start.elapsed() < PATIENCE => {
+                std::thread::sleep(PAUSE)
+            }
+            Err(_) => return None,
+        }
     }
 }
 

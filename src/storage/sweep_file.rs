@@ -330,6 +330,31 @@ mod tests {
         assert!(std::fs::read_to_string(&atlas).is_ok_and(|text| text.starts_with("id,")));
     }
 
+    /// Programs that replace one pair at once take turns.
+    #[test]
+    fn a_pair_is_of_one_program_though_several_write_it_at_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let paths = [folder.path().join("a.csv"), folder.path().join("a.npy")];
+        let write = |number: u32| {
+            let [first, second] = paths.each_ref().map(|path| {
+                let mut file = UnfinishedFile::new(path, Existing::Replaced).expect("begun");
+                file.write(number.to_string().as_bytes()).expect("written");
+                file.finish().expect("synced")
+            });
+            persist_pair(first, second).expect("named");
+        };
+        for round in 0..20 {
+            std::thread::scope(|scope| {
+                for thread in 0..4 {
+                    let write = &write;
+                    scope.spawn(move || write(4 * round + thread));
+                }
+            });
+            let [first, second] = paths.each_ref().map(std::fs::read_to_string);
+            assert_eq!(first.expect("there"), second.expect("there"));
+        }
+    }
+
     #[test]
     fn a_pair_whose_second_file_gets_no_name_leaves_none() {
         let folder = tempfile::tempdir().expect("a folder");
