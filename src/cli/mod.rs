@@ -101,7 +101,11 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
         shelf,
         charset,
     };
-    surroundings.run(request)
+    let status = surroundings.run(request)?;
+    if let Some(complaint) = surroundings.shelf.complaint() {
+        note(&complaint, charset);
+    }
+    Ok(status)
 }
 
 /// What every command may use, whatever its arguments are.

@@ -93,7 +93,8 @@ fn open(path: &Path) -> Result<File, LibraryError> {
     File::open(path).map_err(refused)
 }
 
-/// The names of what is in a folder; empty if the folder does not exist.
+/// The names of what is in a folder; empty if the folder does not exist, be it that a file is where one above it would
+/// be.
 pub(crate) fn names(folder: &Path) -> Result<Vec<OsString>, FileError> {
     let refuse = |error| FileError::new("read the folder", folder, error);
     let files = loop {
@@ -101,12 +102,24 @@ pub(crate) fn names(folder: &Path) -> Result<Vec<OsString>, FileError> {
             // The standard library retries opening a file after a signal, but not opening a folder.
             Err(error) if error.kind() == ErrorKind::Interrupted => {}
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+            Err(error)
+                if error.kind() == ErrorKind::NotADirectory && file_above(folder).is_some() =>
+            {
+                return Ok(Vec::new());
+            }
             files => break files.map_err(refuse)?,
         }
     };
     files
         .map(|file| Ok(file.map_err(refuse)?.file_name()))
         .collect()
+}
+
+/// The file that is where a folder above `path` would be, if there is one.
+pub(crate) fn file_above(path: &Path) -> Option<&Path> {
+    let above = path.ancestors().skip(1);
+    let mut found = above.filter(|above| !above.as_os_str().is_empty() && above.exists());
+    found.next().filter(|above| !above.is_dir())
 }
 
 /// Makes a folder and those above it, and syncs them. A link to a folder counts as a folder.

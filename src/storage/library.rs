@@ -111,6 +111,12 @@ impl Library {
         self.waits.load(Ordering::Relaxed)
     }
 
+    /// The file that is where a folder above its own would be, if there is one: then only shapes that come with the
+    /// program can be loaded, and none can be saved.
+    pub fn file_above(&self) -> Option<&Path> {
+        folder::file_above(&self.folder)
+    }
+
     /// Its folder.
     pub fn folder(&self) -> &Path {
         &self.folder

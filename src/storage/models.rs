@@ -17,6 +17,7 @@ use crate::formats::{ArchiveError, Name, read_model, write_model};
 use crate::recognition::{Model, Training};
 use crate::storage::atomic_file::{Existing, UnfinishedFile};
 use crate::storage::first_error::FirstErrorWriter;
+use crate::storage::folder::file_above;
 use crate::storage::sweep_file::{ArchiveFileError, open_archive};
 use crate::sweep::Shard;
 
@@ -133,6 +134,7 @@ impl ModelFolder {
         let refused = |error| ArchiveFileError::new(&self.0, error);
         let entries = match fs::read_dir(&self.0) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+            Err(_) if file_above(&self.0).is_some() => return Ok(Vec::new()),
             entries => entries.map_err(refused)?,
         };
         let mut names = Vec::new();

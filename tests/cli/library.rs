@@ -297,3 +297,50 @@ fn wrong_usage_is_status_2() {
         "a value is required for '--library <DIR>'",
     );
 }
+
+/// Where the folder of the library lies below a file, shipped shapes can be read and none can be saved.
+#[test]
+fn a_library_below_a_file_has_the_shipped_shapes() {
+    let shelf = Shelf::new();
+    let file = shelf.file("file", "");
+    let below = format!("{file}/share/library");
+    let run = |line: &str| {
+        let mut arguments: Vec<&str> = line.split_whitespace().collect();
+        arguments.extend(["--library", &below]);
+        run_in("C.UTF-8", &arguments, b"")
+    };
+    let warning = format!(
+        "warning: {file}: a file, expected a folder for the library: only shipped shapes can be read\n"
+    );
+    for line in [
+        "describe washer",
+        "library show WASHER --json",
+        "library list",
+        "library check",
+        "sweep --picture washer --x0 2 --y0 2 --angle 0 --json",
+        "model list --json",
+    ] {
+        let run = run(line);
+        assert_eq!(
+            (run.status, run.stderr),
+            (Some(0), warning.clone()),
+            "{line}"
+        );
+        assert_eq!(run.stdout.is_empty(), line.starts_with("model"), "{line}");
+    }
+    refused(
+        &run("library show nothing"),
+        1,
+        "no shape is called \"nothing\"",
+    );
+    let saved = run("library save mine washer");
+    assert_eq!(saved.status, Some(1));
+    assert!(
+        saved.stderr.starts_with(&format!("error: {file}: ")),
+        "{}",
+        saved.stderr
+    );
+    // A file in place of the folder itself is an error.
+    let file = run_in("C.UTF-8", &["library", "list", "--library", &file], b"");
+    assert_eq!(file.status, Some(1), "{}", file.stderr);
+}

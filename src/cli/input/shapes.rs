@@ -68,6 +68,17 @@ impl Shelf {
         library.clone().ok_or(LibraryError::NoPlace)
     }
 
+    /// A warning that only the shapes that come with the program can be read, if the library was used and a file is where a
+    /// folder above its own would be.
+    pub(crate) fn complaint(&self) -> Option<String> {
+        let library = self.library.get()?.as_ref()?;
+        let file = library.file_above()?;
+        Some(format!(
+            "warning: {}: a file, expected a folder for the library: only shipped shapes can be read",
+            file.display()
+        ))
+    }
+
     /// The library that `--library` names, or None if it is not given: scripts use an empty library of their own then.
     pub(crate) fn named(&self) -> Result<Option<Library>, LibraryError> {
         self.asked.then(|| self.library()).transpose()
