@@ -222,10 +222,9 @@ impl Surroundings {
 
     /// Runs `taxel frames`. Answers that were made before an error are printed.
     fn frames(&self, asked: &FramesArguments, form: Form, kept: Kept) -> Result<(), CliError> {
+        let processing = input::processing::processing(&asked.processing)?;
         let model = asked.naming.load(&self.shelf)?;
-        let noise = asked
-            .naming
-            .noise_with(input::processing::mask(&asked.processing)?.as_ref());
+        let noise = asked.naming.noise_with(processing.view.mask.as_ref());
         let mut answers = BufWriter::new(io::stdout().lock());
         let output = FramesOutput {
             form,
@@ -238,7 +237,7 @@ impl Surroundings {
             answers: &mut answers,
             notes: &mut |text| note(text, self.charset),
         };
-        let done = frames::frames(asked, output);
+        let done = frames::frames(asked, processing, output);
         answers.flush().map_err(CliError::Write)?;
         done
     }

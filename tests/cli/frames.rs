@@ -516,6 +516,51 @@ fn a_plain_table_of_factors_is_a_gain() {
     );
 }
 
+/// A mask and a gain are read from standard input as from a file; two that read it are refused.
+#[test]
+fn a_mask_and_a_gain_may_come_from_standard_input() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("touch.jsonl");
+    std::fs::write(&path, "{\"frame\":[[5,5],[5,1]]}\n").expect("written");
+    let line = format!("frames {} --all --at-least 3 --json", path.display());
+    let imprint = |flags: &str, input: &str| {
+        let run = taxel(&format!("{line} {flags}"), input);
+        assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{flags}");
+        answers(&run)[0]["imprint"].clone()
+    };
+    assert_eq!(
+        imprint("--mask -", "#.\n..\n"),
+        serde_json::json!([".#", "#."])
+    );
+    assert_eq!(
+        imprint("--gain -", "1,1\n0,3\n"),
+        serde_json::json!(["##", ".#"])
+    );
+    let run = taxel(&format!("{line} --mask -"), "no imprint");
+    assert!(
+        run.stderr.starts_with("error: --mask standard input: "),
+        "{}",
+        run.stderr
+    );
+    let both = |one: &str, other: &str| {
+        format!(
+            "'{one}' and '{other}' both stand for standard input, which can be read only once\n"
+        )
+    };
+    misused(
+        &format!("{line} --mask - --gain -"),
+        &both("--mask -", "--gain -"),
+    );
+    for command in ["frames", "watch"] {
+        let line = format!("{command} - --all --at-least 3 --gain -");
+        let line = match command {
+            "watch" => line.replace("--all ", ""),
+            _ => line,
+        };
+        misused(&line, &both("-", "--gain -"));
+    }
+}
+
 #[test]
 fn a_gain_of_one_row_or_one_column_is_a_table() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::model::{COARSE, Place, keys};
-use super::{Run, refused};
+use super::{Run, misused, refused};
 
 /// A square of 4 × 4, which only one of the rectangles leaves.
 const SQUARE: &str = "......\n.####.\n.####.\n.####.\n.####.\n......\n";
@@ -265,20 +265,17 @@ fn lines_are_answered_in_their_order() {
 
 #[test]
 fn standard_input_is_read_once() {
-    let place = place();
-    let run = place.run("recognise - --model r --noise 0.01 --mask -", SQUARE);
-    refused(
-        &run,
-        1,
-        "standard input: cannot read: it can be read only once",
-    );
-    let line = "{\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}\n";
-    let run = place.run("model train - - --out two.npz", line);
-    refused(
-        &run,
-        1,
-        "standard input: cannot read: it can be read only once",
-    );
+    for (line, other) in [
+        ("recognise - --noise 0.01 --mask -", "--mask -"),
+        ("model train - - --out two.npz", "-"),
+    ] {
+        misused(
+            line,
+            &format!(
+                "'-' and '{other}' both stand for standard input, which can be read only once\n"
+            ),
+        );
+    }
 }
 
 #[test]

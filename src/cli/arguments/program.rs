@@ -42,13 +42,8 @@ pub(crate) struct Script {
 impl Script {
     /// Reads the arguments of [`script`]. Without a file and without `--keys` the script comes from standard input.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
-        let source = matches.get_one::<PathBuf>("file").map(|file| {
-            if file.as_os_str() == "-" {
-                InputSource::Standard
-            } else {
-                InputSource::File(file.clone())
-            }
-        });
+        let file = matches.get_one::<PathBuf>("file");
+        let source = file.map(|file| InputSource::of(file));
         let keys = matches.get_one::<String>("keys").cloned();
         let source = if keys.is_none() {
             source.or(Some(InputSource::Standard))

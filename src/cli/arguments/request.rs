@@ -223,6 +223,9 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
         let message = format!("'--library' does not belong to '{name}', which uses no library");
         return Err(misused(&mut command, name, &message));
     }
+    if let Some(message) = shared_input(deepest(own)) {
+        return Err(misused(&mut command, name, &message));
+    }
     let loaded = match (name, asked()) {
         // The output of these does not depend on settings.
         ("completions" | "man", _) | ("script", None) => Loaded::default(),
@@ -235,6 +238,33 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
         library_named,
         settings,
     })
+}
+
+/// The arguments of the innermost command, such as those of `model train`.
+fn deepest(matches: &ArgMatches) -> &ArgMatches {
+    matches
+        .subcommand()
+        .map_or(matches, |(_, own)| deepest(own))
+}
+
+/// That two arguments both read standard input, which can be read only once; None if at most one does.
+fn shared_input(matches: &ArgMatches) -> Option<String> {
+    let inputs = ["file", "what", "set", "source", "mask", "gain"];
+    let mut standard = inputs.into_iter().flat_map(|id| {
+        let given = matches.try_get_raw(id).ok().flatten();
+        let standard = given.into_iter().flatten().filter(|value| *value == "-");
+        standard.map(move |_| id)
+    });
+    let text = |id: &str| match id {
+        "mask" | "gain" => format!("--{id} -"),
+        _ => "-".to_owned(),
+    };
+    let (one, other) = (standard.next()?, standard.next()?);
+    Some(format!(
+        "'{}' and '{}' both stand for standard input, which can be read only once",
+        text(one),
+        text(other)
+    ))
 }
 
 /// Endings of files that hold frames. Those of `.txt` and `.json` may as well be imprints and shapes.

@@ -77,13 +77,14 @@ impl FramesOutput<'_> {
     }
 }
 
-/// Lists a recording, or answers the frames that are asked for.
+/// Lists a recording, or answers the frames that are asked for; `processing` is what the flags ask for.
 ///
 /// # Errors
 /// If the recording is damaged, after all whole frames before the damage were answered; or if channel, frame, threshold
 /// or size do not fit.
 pub(crate) fn frames(
     asked: &FramesArguments,
+    processing: Processing,
     mut output: FramesOutput<'_>,
 ) -> Result<(), CliError> {
     let mut options = ReadOptions::default();
@@ -91,7 +92,6 @@ pub(crate) fn frames(
         options = options.with_shape(rows, columns);
     }
     let mut recording = RecordingFile::open(&asked.file, options)?;
-    let processing = processing::processing(&asked.processing)?;
     let mut scan = Scan::of(&mut recording, &processing.view);
     for warning in recording
         .complaint()

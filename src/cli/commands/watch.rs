@@ -110,7 +110,7 @@ pub(crate) fn watch(
     };
     check(&source, asked)?;
     // What can be refused is refused before a recording begins.
-    let lines = line_writer(asked, shelf)?;
+    let lines = line_writer(asked, &processing, shelf)?;
     let recorder = asked.write.as_ref().map(|path| {
         source.refuse_as_target(path)?;
         FrameRecorder::create(path, asked.existing, &metadata)
@@ -224,9 +224,13 @@ pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
 
 /// Writes the answers; with a model it names each imprint before, so that neither its training nor its search holds up a
 /// recording. A model that is in a file is read at once.
-fn line_writer(asked: &WatchArguments, shelf: &Shelf) -> Result<LineWriter, CliError> {
+fn line_writer(
+    asked: &WatchArguments,
+    processing: &Processing,
+    shelf: &Shelf,
+) -> Result<LineWriter, CliError> {
     let naming = asked.naming.clone();
-    let noise = naming.noise_with(processing::mask(&asked.processing)?.as_ref());
+    let noise = naming.noise_with(processing.view.mask.as_ref());
     let shelf = shelf.clone();
     let read = naming.load_file(&shelf)?;
     LineWriter::start(move |lines| {

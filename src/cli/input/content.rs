@@ -3,7 +3,7 @@
 //! The format is recognised from the content, never from the file's name ([`read_content`]). At most [`MAX_BYTES`] are read.
 
 use std::io::{self, Read};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::formats::recording::{RecordingFormat, recognised};
@@ -21,6 +21,15 @@ pub(crate) enum InputSource {
 }
 
 impl InputSource {
+    /// What an argument names: `-` is standard input.
+    pub(crate) fn of(path: &Path) -> Self {
+        if path.as_os_str() == "-" {
+            Self::Standard
+        } else {
+            Self::File(path.to_owned())
+        }
+    }
+
     /// Its name for messages: the path, or `standard input`.
     pub(crate) fn name(&self) -> String {
         match self {

@@ -8,7 +8,6 @@ use crate::cli::input::recording::{RecordingFile, dead_cells};
 use crate::cli::output::recording_list::ListedChannel;
 use crate::formats::recording::{ChannelInfo, ReadOptions, RecordingError, RecordingEvent};
 use crate::frame::{Peak, Processing, SetRule, TareFrames, View};
-use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 
 /// How frames are looked at; without tare and rule, which need the recording.
@@ -23,17 +22,12 @@ pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliE
         flip_x: asked.flip_x,
         flip_y: asked.flip_y,
         quarter_turns: asked.quarter_turns,
-        mask: mask(asked)?,
+        mask: asked.mask.as_deref().map(dead_cells).transpose()?,
     };
     if let Some(path) = &asked.gain {
         processing.gain = Some(gain(path)?);
     }
     Ok(processing)
-}
-
-/// The dead cells; None if no mask is given.
-pub(crate) fn mask(asked: &ProcessingArguments) -> Result<Option<Imprint>, CliError> {
-    asked.mask.as_deref().map(dead_cells).transpose()
 }
 
 /// A table of factors, in any format that a recording of one frame may have.

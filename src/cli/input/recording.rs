@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::acquire::description_beside;
 use crate::cli::error::CliError;
 use crate::cli::input::content;
-use crate::cli::input::content::InputError;
+use crate::cli::input::content::{InputError, InputSource};
 use crate::cli::input::spool::SpooledInput;
 use crate::formats::recording::{
     ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, read,
@@ -42,14 +42,10 @@ impl RecordingFile {
     /// # Errors
     /// If it cannot be opened or read.
     pub(crate) fn open(path: &Path, options: ReadOptions) -> Result<Self, CliError> {
-        let is_standard = path.as_os_str() == "-";
-        let name = if is_standard {
-            "standard input".to_owned()
-        } else {
-            path.to_string_lossy().into_owned()
-        };
+        let source = InputSource::of(path);
+        let name = source.name();
         let opened = || {
-            if is_standard {
+            if source == InputSource::Standard {
                 return spooled(content::standard()?);
             }
             let file = File::open(path)?;
@@ -174,16 +170,24 @@ impl RecordingFile {
     }
 }
 
-/// Reads the imprint of a file, alone or in a stored shape.
+/// Reads the imprint of a file or, for `-`, of standard input, alone or in a stored shape.
 ///
 /// # Errors
-/// As for [`content::read_from`], with the name of the file.
+/// As for [`content::read_from`], with the flag and the name of the file.
 pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, CliError> {
-    let opened = File::open(path).map_err(InputError::Read);
-    match opened.and_then(content::read_from) {
+    let source = InputSource::of(path);
+    let content = match &source {
+        InputSource::Standard => content::standard()
+            .map_err(InputError::Read)
+            .and_then(content::read_from),
+        InputSource::File(path) => File::open(path)
+            .map_err(InputError::Read)
+            .and_then(content::read_from),
+    };
+    match content {
         Ok(content) => Ok(*content.imprint()),
         Err(error) => Err(CliError::Input {
-            name: path.to_string_lossy().into_owned(),
+            name: format!("--mask {}", source.name()),
             error,
         }),
     }
