@@ -40,7 +40,7 @@
 //! The rooms (top-level modules) in reading order. Each uses only rooms above it, and inside a room there are no
 //! cycles. A test reads the `use` lines and enforces this.
 //! ```text
-//!  quote        untrusted text, cut short for messages
+//!  quote        untrusted text, cut short for messages, and names that are nearly right
 //!  index        whole numbers as indices, checked
 //!  geometry     the area of polygons and ellipses in each cell of a grid           plane, f64
 //!  parameter    what can be set: one table of keys, units, ranges, defaults

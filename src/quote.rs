@@ -1,4 +1,5 @@
-//! Truncates untrusted text for messages. Text from files and arguments may be a megabyte long.
+//! Truncates untrusted text for messages, and finds the name that was meant. Text from files and arguments may be a
+//! megabyte long.
 
 /// Text to be quoted inside a message: at most 40 characters, then `…`.
 pub(crate) fn shortened(text: &str) -> String {
@@ -24,10 +25,67 @@ pub(crate) fn is_invisible(character: char) -> bool {
     )
 }
 
+/// The end of a message about a wrong name: which of `names` was probably meant, with the one most like it first; empty if
+/// none is much like it. Upper and lower case are the same here.
+#[cfg(feature = "json")]
+pub(crate) fn did_you_mean<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    let length = |text: &str| text.chars().count();
+    if length(wrong) > LONGEST_NAME {
+        return String::new();
+    }
+    let wrong = wrong.to_lowercase();
+    let slips = |name: &'a str| {
+        let slips = strsim::osa_distance(&wrong, &name.to_lowercase());
+        // One letter of three may be wrong.
+        (3 * slips <= length(&wrong).max(length(name))).then_some((slips, name))
+    };
+    let nearest = names.into_iter().filter_map(slips);
+    match nearest.min_by_key(|(slips, _)| *slips) {
+        Some((_, name)) => format!("; did you mean {name:?}?"),
+        None => String::new(),
+    }
+}
+
+/// The longest name, in characters, that is compared with others.
+#[cfg(feature = "json")]
+const LONGEST_NAME: usize = 64;
+
 /// The first `longest` characters of a text, with `…` behind them if there are more.
 fn cut(text: &str, longest: usize) -> String {
     match text.char_indices().nth(longest) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.to_owned(),
+    }
+}
+
+#[cfg(all(test, feature = "json"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_of_the_keys_finds_the_name_that_was_meant() {
+        let names = [
+            "na",
+            "nae",
+            "ce",
+            "roundness",
+            "side_ratio",
+            "gear",
+            "Gerät",
+        ];
+        for (wrong, meant) in [
+            ("nea", "nae"),
+            ("NAE", "nae"),
+            ("roundnes", "roundness"),
+            ("side-ratio", "side_ratio"),
+            ("gaer", "gear"),
+            ("GERÄD", "Gerät"),
+        ] {
+            let expected = format!("; did you mean {meant:?}?");
+            assert_eq!(did_you_mean(wrong, names), expected, "{wrong}");
+        }
+        for wrong in ["", "x", "weight", "no", &"na".repeat(50)] {
+            assert_eq!(did_you_mean(wrong, names), "", "{wrong}");
+        }
     }
 }

@@ -79,12 +79,20 @@ pub(crate) enum CliError {
     #[error("{}", shortened_message(&.0.to_string()))]
     Library(#[from] LibraryError),
     /// The argument is neither the name of a shape nor a file.
-    #[error("no stored shape and no file is called {name:?}{}", did_you_mean(near.as_deref()))]
+    #[error("no stored shape and no file is called {name:?}{near}")]
     Nowhere {
         /// The argument.
         name: String,
-        /// The name of a stored shape that is nearly the same.
-        near: Option<String>,
+        /// The name of a stored shape that is nearly the same, as the end of the message.
+        near: String,
+    },
+    /// There is no shape of that name, in the library or in its trash.
+    #[error("{}{near}", shortened_message(&error.to_string()))]
+    NoShape {
+        /// Which name it is, and where it is not.
+        error: LibraryError,
+        /// A name that is nearly the same, as the end of the message.
+        near: String,
     },
     /// A shape of a set that cannot be read.
     #[error("{place}: {error}")]
@@ -133,10 +141,12 @@ pub(crate) enum CliError {
         rows: u8,
     },
     /// There is no model of that name beside the library.
-    #[error("no model is called {name:?}; 'taxel model list' shows all")]
+    #[error("no model is called {name:?}; 'taxel model list' shows all{near}")]
     NoModel {
         /// The argument.
         name: String,
+        /// The name of a model that is nearly the same, as the end of the message.
+        near: String,
     },
     /// An invalid noise.
     #[error(transparent)]
@@ -150,10 +160,20 @@ pub(crate) enum CliError {
         imprint: (u8, u8),
     },
     /// A name that no shape of the model has.
-    #[error("--expect {name:?}: the model has no such shape")]
+    #[error("--expect: no shape of the model is called {name:?}{near}")]
     NotInModel {
         /// The name.
         name: String,
+        /// The name of a shape that is nearly the same, as the end of the message.
+        near: String,
+    },
+    /// `--expect` names another shape than the answer, or than some of the answers.
+    #[error("--expect: expected {expected:?}, found {found}")]
+    Unexpected {
+        /// The name.
+        expected: String,
+        /// What was answered, in words.
+        found: String,
     },
     /// A set that is too large to be drawn.
     #[error("{name}: {shapes} shapes, and a drawing shows at most 64; .csv takes all")]
@@ -357,7 +377,8 @@ impl CliError {
             Self::Script {
                 failure: runner::ScriptFailure::Ended { .. },
                 ..
-            } => 3,
+            }
+            | Self::Unexpected { .. } => 3,
             Self::Stopped { status } => *status,
             _ => 1,
         }
@@ -372,9 +393,4 @@ impl CliError {
             _ => Some(format!("error: {}\n", charset.line(&self.to_string()))),
         }
     }
-}
-
-/// The end of a message about a name that is nearly another one.
-fn did_you_mean(near: Option<&str>) -> String {
-    near.map_or(String::new(), |near| format!("; did you mean {near:?}?"))
 }

@@ -132,7 +132,7 @@ impl Surroundings {
                 return watch::watch(&asked, shelf, &mut |text| note(text, charset));
             }
             Request::Recognise(asked) => {
-                return recognise::recognise(&asked, shelf, charset, &mut io::stdout().lock());
+                recognise::recognise(&asked, shelf, charset, &mut io::stdout().lock())?;
             }
             Request::Figure(figure, sensor, form, kept) => {
                 self.touch(*figure, sensor, form, kept)?;

@@ -14,7 +14,7 @@ use crate::formats::json::plain;
 use crate::imprint::{Imprint, ImprintRows};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
-use crate::quote::shortened;
+use crate::quote::{did_you_mean, shortened};
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
 
@@ -36,7 +36,11 @@ pub enum RecordError {
         expected: String,
     },
     /// A figure of another name than the seven.
-    #[error("figure: {found:?} is unknown, expected one of {}", FigureKind::ALL.map(FigureKind::name).join(", "))]
+    #[error(
+        "figure: {found:?} is unknown, expected one of {}{}",
+        FigureKind::ALL.map(FigureKind::name).join(", "),
+        did_you_mean(found, FigureKind::ALL.map(FigureKind::name))
+    )]
     FigureKind {
         /// What was given.
         found: String,

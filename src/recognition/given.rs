@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::atlas::ImprintSummary;
 use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, ExactValue, Value};
 use crate::imprint::Imprint;
-use crate::quote::shortened;
+use crate::quote::{did_you_mean, shortened};
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, ShapeCount, first_of_most, share};
 use crate::recognition::simulation::{Judgement, NoisyTouches, RecognitionRate};
@@ -30,7 +30,11 @@ impl PartialEq for ShapeDescriptor {
 #[non_exhaustive]
 pub enum GivenError {
     /// An unknown name.
-    #[error("descriptor {found:?} is unknown, expected one of {}", ShapeDescriptor::keys().join(", "))]
+    #[error(
+        "descriptor {found:?} is unknown, expected one of {}{}",
+        ShapeDescriptor::keys().join(", "),
+        did_you_mean(found, ShapeDescriptor::keys())
+    )]
     Unknown {
         /// What was given.
         found: String,

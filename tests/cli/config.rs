@@ -32,7 +32,7 @@ fn what_is_unknown_or_unfit_is_refused_with_its_place() {
     for (text, expected) in [
         (
             "# a comment\n  colour = 'never'\n",
-            "2:3: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys",
+            "2:3: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys; did you mean \"color\"?",
         ),
         (
             "theme = 'blue'",
@@ -88,7 +88,10 @@ fn what_is_unknown_or_unfit_is_refused_with_its_place() {
         ),
         (
             "[keys.matrx]\nx = 'toggle'\n",
-            &format!("1:7: unknown key \"matrx\", expected one of {}", contexts()),
+            &format!(
+                "1:7: unknown key \"matrx\", expected one of {}; did you mean \"matrix\"?",
+                contexts()
+            ),
         ),
         (
             "[keys.matrix]\nx = 'togle'\n",

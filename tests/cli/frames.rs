@@ -186,7 +186,7 @@ fn of_several_channels_one_must_be_named() {
     refused(
         "xsensor.csv",
         "--peak --channel top",
-        "expected one of: left, right",
+        "expected one of left, right\n",
     );
     let right = answered("xsensor.csv", "--channel right --peak --at-least 18 --json");
     assert_eq!(
@@ -437,7 +437,7 @@ fn a_listing_is_of_the_channel_that_is_asked_for() {
     assert_eq!((none.status, none.stdout.as_str()), (Some(1), ""));
     assert!(
         none.stderr
-            .contains("no channel \"middle\", expected one of: left, right"),
+            .contains("no channel is called \"middle\", expected one of left, right\n"),
         "{}",
         none.stderr
     );

@@ -91,6 +91,15 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
     );
     shelf.refuses("library|show|my ring", "no shape is called \"my ring\"");
     shelf.refuses("library|delete|my ring", "no shape is called \"my ring\"");
+    // A slip of the keys, in the library and in its trash.
+    shelf.refuses(
+        "library|show|wahser",
+        "no shape is called \"wahser\"; did you mean \"washer\"?",
+    );
+    shelf.refuses(
+        "library|restore|mi ring",
+        "nothing called \"mi ring\" is in the trash; did you mean \"my ring\"?",
+    );
     assert_eq!(
         shelf.does("library|restore|MY RING", ""),
         "restored my ring\n"

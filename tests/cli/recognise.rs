@@ -149,20 +149,33 @@ fn the_exit_status_says_whether_the_answer_was_expected() {
         "model train --shape 'one=rectangle length=4 width=4' --shape 'two=rectangle length=4 width=4' \
          {COARSE} --name twins"
     ));
-    for (line, status) in [
-        ("square.txt --model r --expect d", 0),
-        ("square.txt --model r --expect a", 3),
-        ("bar.txt --model r --expect a", 0),
-        ("bar.txt --model r --expect a --reject 0.99", 3),
-        ("square.txt --model twins --expect one", 3),
-        ("square.txt --model twins --expect two --json", 3),
+    for (line, found) in [
+        ("square.txt --model r --expect d", None),
+        (
+            "square.txt --model r --expect a",
+            Some("\"a\", found \"d\" (certain)"),
+        ),
+        ("bar.txt --model r --expect a", None),
+        (
+            "bar.txt --model r --expect a --reject 0.99",
+            Some("\"a\", found no shape (rejected)"),
+        ),
+        (
+            "square.txt --model twins --expect one",
+            Some("\"one\", found \"one\" or \"two\" (tied)"),
+        ),
+        (
+            "square.txt --model twins --expect two --json",
+            Some("\"two\", found \"one\" or \"two\" (tied)"),
+        ),
     ] {
         let run = place.run(&format!("recognise {line}"), "");
-        assert_eq!(
-            (run.status, run.stderr.as_str()),
-            (Some(status), ""),
-            "{line}"
-        );
+        let (status, said) = match found {
+            Some(found) => (3, format!("error: --expect: expected {found}\n")),
+            None => (0, String::new()),
+        };
+        assert_eq!((run.status, run.stderr), (Some(status), said), "{line}");
+        assert!(!run.stdout.is_empty(), "{line}");
     }
     let tied = place.run("recognise square.txt --model twins", "");
     assert!(
@@ -182,11 +195,16 @@ fn the_exit_status_says_whether_the_answer_was_expected() {
     let run = |input: &str| place.run("recognise - --model r --expect d", input).status;
     assert_eq!(run(good), Some(0));
     assert_eq!(run(&[good, speck].concat()), Some(3));
+    let two = place.run("recognise - --model r --expect d", &[good, speck].concat());
+    assert_eq!(
+        two.stderr,
+        "error: --expect: expected \"d\", found another answer, or none, in 1 of 2 lines\n"
+    );
     assert_eq!(run(&[good, speck, "{}\n"].concat()), Some(1));
     refused(
         &place.run("recognise square.txt --model r --expect disc", ""),
         1,
-        "--expect \"disc\": the model has no such shape",
+        "--expect: no shape of the model is called \"disc\"",
     );
     refused(
         &place.run("recognise square.txt --model nobody", ""),

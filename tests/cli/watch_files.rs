@@ -307,7 +307,7 @@ fn a_channel_that_is_not_there_is_refused_and_one_of_a_stream_is_said() {
         );
         let line = format!("watch {path} --channel nope --write {}", file.display());
         let watched = refused(&line, "");
-        assert!(watched.contains("no channel \"nope\", expected one of"));
+        assert!(watched.contains("no channel is called \"nope\", expected one of "));
         assert_eq!(listed, watched, "{name}");
         assert!(!file.exists());
     }
@@ -315,7 +315,7 @@ fn a_channel_that_is_not_there_is_refused_and_one_of_a_stream_is_said() {
     assert!(!taxel(&line, "").stdout.is_empty());
     let run = taxel("watch - --channel nope", stream(0..3));
     assert_eq!((run.status, lines(&run.stdout).len()), (Some(0), 3));
-    let said = "standard input: no channel \"nope\": a stream has none, and all frames are taken\n";
+    let said = "standard input: no channel is called \"nope\": a stream has none, and all frames are taken\n";
     assert_eq!(run.stderr, said);
 }
 

@@ -157,7 +157,7 @@ fn what_does_not_hold_is_told_with_its_line() {
         ("Expect /(/", "line 1: pattern /(/"),
         (
             "ExpectStyle 0,0 pink",
-            "line 1: style \"pink\" is unknown, expected plain, reverse",
+            "line 1: style \"pink\" is unknown, expected one of plain, reverse",
         ),
         (
             "Signal KILL",
@@ -189,6 +189,16 @@ fn what_does_not_hold_is_told_with_its_line() {
     ] {
         let found = told(script);
         assert!(found.starts_with(message), "{script:?}: {found}");
+    }
+    for (script, meant) in [
+        ("Expct /x/", "Expect"),
+        ("Set colour 16", "color"),
+        ("ExpectStyle 0,0 blod", "bold"),
+        ("Signal TREM", "TERM"),
+    ] {
+        let found = told(script);
+        let end = format!("; did you mean \"{meant}\"?");
+        assert!(found.trim_end().ends_with(&end), "{script:?}: {found}");
     }
 }
 

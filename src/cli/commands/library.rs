@@ -187,7 +187,8 @@ pub(crate) fn show(
     form: Form,
     charset: Charset,
 ) -> Result<String, CliError> {
-    let shape = shelf.library()?.load(name)?.shape;
+    let loaded = shelf.library()?.load(name);
+    let shape = loaded.map_err(|error| shelf.refused(error))?.shape;
     Ok(describe::content(&Content::Shape(shape), form, charset))
 }
 
@@ -214,7 +215,8 @@ pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String
 /// # Errors
 /// If there is no such shape, or it is one that comes with the program.
 pub(crate) fn delete(shelf: &Shelf, name: &str) -> Result<String, CliError> {
-    let name = shelf.library()?.delete(name)?;
+    let deleted = shelf.library()?.delete(name);
+    let name = deleted.map_err(|error| shelf.refused(error))?;
     Ok(format!(
         "deleted {name}; taxel library restore NAME brings it back\n"
     ))
@@ -225,7 +227,8 @@ pub(crate) fn delete(shelf: &Shelf, name: &str) -> Result<String, CliError> {
 /// # Errors
 /// If there is none in the trash, or there is a shape of that name again.
 pub(crate) fn restore(shelf: &Shelf, name: &str) -> Result<String, CliError> {
-    let name = shelf.library()?.restore(name)?;
+    let restored = shelf.library()?.restore(name);
+    let name = restored.map_err(|error| shelf.refused(error))?;
     Ok(format!("restored {name}\n"))
 }
 

@@ -34,6 +34,7 @@ use crate::formats::value::counted;
 use crate::formats::{Name, json};
 use crate::memory::MemoryGuard;
 use crate::pose::{Anchor, Axis, GridError, Ranges, Reach, check_given};
+use crate::quote::did_you_mean;
 use crate::recognition::{
     CellPositions, Evaluation, LEAST_SIDE, Model, NamedShape, Training, TrainingError,
 };
@@ -484,8 +485,10 @@ pub(crate) fn delete(name: &Name, shelf: &Shelf) -> Result<String, CliError> {
         Err(error) if error.is_missing() => {
             let name = name.clone();
             Err(if ModelChoice::from_name(name.clone()).is_read() {
+                let stored = folder(shelf)?.names().unwrap_or_default();
+                let near = did_you_mean(name.as_str(), stored.iter().map(Name::as_str));
                 let name = name.to_string();
-                CliError::NoModel { name }
+                CliError::NoModel { name, near }
             } else {
                 CliError::BuiltInModel { name }
             })

@@ -11,7 +11,7 @@
 
 use std::ffi::OsStr;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
@@ -29,32 +29,29 @@ use crate::cli::output::pose::PoseReport;
 use crate::formats::framed::{FrameRows, RuleRecord};
 use crate::formats::json;
 use crate::formats::record::Text;
+use crate::formats::value::counted;
 use crate::imprint::Imprint;
-use crate::quote::shortened_message;
+use crate::quote::{did_you_mean, shortened_message};
 use crate::recognition::{Answer, AnswerState, Evidence, Model, Noise};
 
-/// The exit status if the answer is not the expected one.
-const UNEXPECTED: u8 = 3;
-
-/// Answers what is asked, on `output`, and returns the exit status: 0, or [`UNEXPECTED`] if `--expect` names another
-/// shape than one of the answers.
+/// Answers what is asked, on `output`.
 ///
 /// # Errors
-/// [`CliError::NoModel`] and [`CliError::NotInModel`] for names that do not exist; [`CliError::Mask`] for dead taxels
-/// of another size than the touch; and those of reading files. A line that is wrong is answered by its error instead.
+/// [`CliError::Unexpected`] at the end if `--expect` names another shape than one of the answers; [`CliError::NoSet`] and
+/// [`CliError::NotInModel`] for names that do not exist; [`CliError::Mask`] for dead taxels of another size than the
+/// touch; and those of reading files. A line that is wrong is answered by its error instead.
 pub(crate) fn recognise(
     asked: &RecogniseArguments,
     shelf: &Shelf,
     charset: Charset,
     output: &mut dyn Write,
-) -> Result<u8, CliError> {
+) -> Result<(), CliError> {
     let model = model::find(&asked.model, shelf)?;
     let recogniser = Recogniser::new(asked, &model, shelf)?;
-    let expected = match input(&asked.what, shelf)? {
-        Asked::Imprint(imprint) => recogniser.answer_imprint(&imprint, charset, output)?,
-        Asked::Lines(input) => recogniser.answer_lines(input, output)?,
-    };
-    Ok(if expected { 0 } else { UNEXPECTED })
+    match input(&asked.what, shelf)? {
+        Asked::Imprint(imprint) => recogniser.answer_imprint(&imprint, charset, output),
+        Asked::Lines(input) => recogniser.answer_lines(input, output),
+    }
 }
 
 /// A model, and how it is asked.
@@ -84,7 +81,12 @@ impl<'a> Recogniser<'a> {
         if let Some(name) = &asked.expect
             && model.shapes().iter().all(|shape| shape.name != *name)
         {
-            return Err(CliError::NotInModel { name: name.clone() });
+            let names = model.shapes().iter().map(|shape| shape.name.as_str());
+            let near = did_you_mean(name, names);
+            return Err(CliError::NotInModel {
+                name: name.clone(),
+                near,
+            });
         }
         Ok(Self {
             asked,
@@ -93,13 +95,16 @@ impl<'a> Recogniser<'a> {
         })
     }
 
-    /// Answers one imprint, as text or JSON. Returns whether the answer is the expected one.
+    /// Answers one imprint, as text or JSON.
+    ///
+    /// # Errors
+    /// [`CliError::Unexpected`] if the answer is not the expected one.
     fn answer_imprint(
         &self,
         imprint: &Imprint,
         charset: Charset,
         output: &mut dyn Write,
-    ) -> Result<bool, CliError> {
+    ) -> Result<(), CliError> {
         let touches = [*imprint];
         let answer = self.answer(&touches)?;
         let text = if self.asked.json {
@@ -124,24 +129,37 @@ impl<'a> Recogniser<'a> {
         };
         output.write_all(text.as_bytes()).map_err(CliError::Write)?;
         output.flush().map_err(CliError::Write)?;
-        Ok(self.expected(&answer))
+        if self.expected(&answer) {
+            return Ok(());
+        }
+        Err(self.unexpected(self.found(&answer)))
     }
 
-    /// Answers each line by a line of JSON. Returns whether all answers are the expected one.
-    fn answer_lines(&self, input: LineInput, output: &mut dyn Write) -> Result<bool, CliError> {
-        let all_expected = AtomicBool::new(true);
+    /// Answers each line by a line of JSON.
+    ///
+    /// # Errors
+    /// [`CliError::Unexpected`] if some answers are not the expected one.
+    fn answer_lines(&self, input: LineInput, output: &mut dyn Write) -> Result<(), CliError> {
+        let (all, others) = (AtomicU64::new(0), AtomicU64::new(0));
         let answer = |line: &[u8], text: &mut Vec<u8>| {
             let line = Line::read(line)?;
             let answer = self.answer(&line.touches);
             let answer = answer.map_err(|error| error.to_string())?;
+            all.fetch_add(1, Ordering::Relaxed);
             if !self.expected(&answer) {
-                all_expected.store(false, Ordering::Relaxed);
+                others.fetch_add(1, Ordering::Relaxed);
             }
             json::extend_ascii(text, &self.json(&line.touches, &answer, Some(&line)));
             Ok(())
         };
         lines::answer_all(self.asked.jobs, input, output, "touch", || answer)?;
-        Ok(all_expected.into_inner())
+        match others.into_inner() {
+            0 => Ok(()),
+            others => {
+                let all = counted(all.into_inner(), "line");
+                Err(self.unexpected(format!("another answer, or none, in {others} of {all}")))
+            }
+        }
     }
 
     fn evidence<'b>(&'b self, touches: &'b [Imprint]) -> Evidence<'b> {
@@ -210,6 +228,26 @@ impl<'a> Recogniser<'a> {
         };
         let named = answer.shape.map(|shape| &self.model.shapes()[shape].name);
         answer.state != AnswerState::Tied && named == Some(expected)
+    }
+
+    /// What an answer says, for the message about one that was not expected: `"ring" (likely)`.
+    fn found(&self, answer: &Answer) -> String {
+        let name = |shape: usize| format!("{:?}", self.model.shapes()[shape].name);
+        let named = match answer.shape {
+            _ if answer.state == AnswerState::Tied => {
+                let names = answer.tied.iter().map(|&shape| name(shape));
+                names.collect::<Vec<_>>().join(" or ")
+            }
+            Some(shape) => name(shape),
+            None => "no shape".to_owned(),
+        };
+        format!("{named} ({})", answer.state.name())
+    }
+
+    /// That `--expect` does not name what was found.
+    fn unexpected(&self, found: String) -> CliError {
+        let expected = self.asked.expect.clone().unwrap_or_default();
+        CliError::Unexpected { expected, found }
     }
 }
 

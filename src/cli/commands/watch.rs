@@ -40,6 +40,7 @@ use crate::formats::stream::StreamCounts;
 use crate::formats::value::counted;
 use crate::frame::{Frame, FrameError, Processing, SetRule, Tare, TareFrames};
 use crate::matrix::Matrix;
+use crate::quote::did_you_mean;
 use crate::tui::live::request::WatchRequest;
 
 /// Dropped frames are reported no more often than this.
@@ -217,8 +218,9 @@ fn channels(
 /// That a recording has no channel of that name, but others.
 pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
     format!(
-        "no channel {asked:?}, expected one of: {}",
-        names.join(", ")
+        "no channel is called {asked:?}, expected one of {}{}",
+        names.join(", "),
+        did_you_mean(asked, names.iter().copied())
     )
 }
 
@@ -394,7 +396,9 @@ impl Watcher<'_> {
         let asked = self.asked.processing.channel.as_deref();
         let is_first = !std::mem::replace(&mut self.begun, true);
         if let (true, Some(asked), true) = (is_first, asked, self.channels.is_empty()) {
-            let text = format!("no channel {asked:?}: a stream has none, and all frames are taken");
+            let text = format!(
+                "no channel is called {asked:?}: a stream has none, and all frames are taken"
+            );
             self.say(&text);
         }
         if is_first && !self.channels.is_empty() && self.asked.processing.channel.is_none() {

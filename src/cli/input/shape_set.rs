@@ -32,7 +32,12 @@ const MAX_SET: u64 = 64 << 20;
 /// [`CliError::Set`] with the place of a shape that cannot be read: `parts.jsonl, line 3`; those of files and the
 /// library.
 pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
-    let lookup = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
+    let refused = |error| shelf.refused(error);
+    let lookup = |name: &str| {
+        shelf
+            .imprint(name)
+            .map_err(|error| refused(error).to_string())
+    };
     let mut shapes = Vec::new();
     for what in &asked.what {
         if what == "-" {
@@ -51,7 +56,7 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
             lines(&mut file, &name, &lookup, &mut shapes)?;
         } else {
             let name = what.to_string_lossy();
-            let imprint = shelf.imprint(&name)?;
+            let imprint = shelf.imprint(&name).map_err(refused)?;
             shapes.push(NamedShape::new(name, Picture::at_home(imprint)));
         }
     }

@@ -17,10 +17,8 @@ use crate::formats::Content;
 use crate::formats::StoredShape;
 use crate::formats::name::folded;
 use crate::imprint::Imprint;
-use crate::storage::{Expected, Library, LibraryEntry, LibraryError};
-
-/// Names that are more alike than this, from 0 to 1, are taken for slips of the keys.
-const NEAR: f64 = 0.8;
+use crate::quote::did_you_mean;
+use crate::storage::{Expected, Library, LibraryError};
 
 /// The library, opened when it is first used: most commands never need it.
 #[derive(Clone, Debug)]
@@ -117,7 +115,8 @@ impl Shelf {
         let nowhere = match named {
             Some(Ok(loaded)) => return Ok(Located::Shape(loaded.shape)),
             Some(Err(LibraryError::Unknown { name })) => {
-                Some(CliError::Nowhere { name, near: None })
+                let near = String::new();
+                Some(CliError::Nowhere { name, near })
             }
             // What cannot be a name may be a path, and paths do not need a library.
             Some(Err(LibraryError::Name(_) | LibraryError::NoPlace)) | None => None,
@@ -140,14 +139,25 @@ impl Shelf {
         }
     }
 
-    /// The stored shape whose name is most like this one; None if none is much like it.
-    fn near(&self, name: &str) -> Option<String> {
-        let shapes = self.library().and_then(|library| library.list()).ok()?;
-        let own = folded(name);
-        let alike = |shape: &LibraryEntry| strsim::jaro(&own, &folded(&shape.name));
-        let alike = shapes.into_iter().map(|shape| (alike(&shape), shape.name));
-        let nearest = alike.max_by(|(one, _), (other, _)| one.total_cmp(other));
-        nearest.and_then(|(alike, name)| (alike > NEAR).then_some(name))
+    /// The end of a message about a name that no stored shape has: the name of one that is much like it, if there is one.
+    fn near(&self, name: &str) -> String {
+        let shapes = self.library().and_then(|library| library.list());
+        let shapes = shapes.unwrap_or_default();
+        did_you_mean(name, shapes.iter().map(|shape| shape.name.as_str()))
+    }
+
+    /// The message about an error of the library; a name that it has not got is compared with those that it has.
+    pub(crate) fn refused(&self, error: LibraryError) -> CliError {
+        let near = match &error {
+            LibraryError::Unknown { name } => self.near(name),
+            LibraryError::NotInTrash { name } => {
+                let trash = self.library().and_then(|library| library.in_trash());
+                let trash = trash.unwrap_or_default();
+                did_you_mean(name, trash.iter().map(String::as_str))
+            }
+            _ => return error.into(),
+        };
+        CliError::NoShape { error, near }
     }
 
     /// The imprint of a stored shape, for the lines of a batch. Each shape is read once.

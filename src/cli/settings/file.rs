@@ -19,7 +19,7 @@ use crate::cli::settings::sensors::{
 };
 use crate::formats::stream::StreamFormat;
 use crate::parameter::{Parameter, ParameterError};
-use crate::quote::shortened_message;
+use crate::quote::{did_you_mean, shortened_message};
 use crate::sensor::Sensor;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
@@ -96,7 +96,11 @@ pub enum Wrong {
     #[error("{0}")]
     Syntax(String),
     /// There is no such entry, or no such place for keys.
-    #[error("unknown key {found:?}, expected one of {}", expected.join(", "))]
+    #[error(
+        "unknown key {found:?}, expected one of {}{}",
+        expected.join(", "),
+        did_you_mean(found, expected.iter().copied())
+    )]
     Unknown {
         /// The key found.
         found: String,

@@ -11,7 +11,7 @@ use rand_pcg::Pcg64;
 use crate::formats::{Name, StoredShape};
 use crate::picture::Picture;
 use crate::pose::{Axis, DecimalRange, PoseGrid, Ranges};
-use crate::quote::shortened;
+use crate::quote::{did_you_mean, shortened};
 use crate::recognition::{
     Evaluation, GridSteps, Model, NamedShape, Training, TrainingError, below, default_figures,
     equal_figures,
@@ -92,8 +92,12 @@ pub(crate) fn unknown_set(name: &str, stored: &[Name]) -> String {
     };
     let stored = stored.iter().filter(|stored| !is_own(stored));
     let all: Vec<&str> = own.chain(stored.map(Name::as_str)).collect();
-    let (name, all) = (shortened(name), all.join(", "));
-    format!("no model or file {name:?}; there are {all}")
+    format!(
+        "no model or file {:?}; there are {}{}",
+        shortened(name),
+        all.join(", "),
+        did_you_mean(name, all.iter().copied())
+    )
 }
 
 impl ModelChoice {

@@ -15,7 +15,7 @@
 
 use regex_lite::{Regex, RegexBuilder};
 
-use crate::quote::shortened;
+use crate::quote::{did_you_mean, shortened};
 use crate::tui::keys::key::{Key, parse};
 use crate::tui::script::setting;
 use crate::tui::script::setting::ScriptSetting;
@@ -67,6 +67,31 @@ pub enum ScriptCommand {
     /// Read and draw the next frames of it. This many must be there.
     Frames(usize),
 }
+
+/// The first words of all commands.
+const COMMANDS: [&str; 21] = [
+    "Size",
+    "Set",
+    "Seed",
+    "Resize",
+    "Keys",
+    "Type",
+    "Paste",
+    "Click",
+    "Drag",
+    "Scroll",
+    "Screen",
+    "State",
+    "Expect",
+    "ExpectNot",
+    "ExpectAt",
+    "ExpectStyle",
+    "Signal",
+    "Source",
+    "Frames",
+    "Wait",
+    "Quit",
+];
 
 /// The styles that can be expected, and their letters in printed screens.
 const STYLES: [(&str, char); 4] = [
@@ -164,9 +189,10 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
         }
         "Signal" if SIGNALS.contains(&rest) => Ok(ScriptCommand::Signal(rest.to_owned())),
         "Signal" => Err(format!(
-            "signal {:?} is unknown, expected one of {}",
+            "signal {:?} is unknown, expected one of {}{}",
             shortened(rest),
-            SIGNALS.join(", ")
+            SIGNALS.join(", "),
+            did_you_mean(rest, SIGNALS)
         )),
         "Source" if rest.is_empty() => Err("expected the name of a file with frames".to_owned()),
         "Source" => Ok(ScriptCommand::Source(rest.to_owned())),
@@ -174,9 +200,10 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
         "Wait" => nothing(ScriptCommand::Wait),
         "Quit" => nothing(ScriptCommand::Quit),
         _ => Err(format!(
-            "{:?} is unknown, expected one of Size, Set, Seed, Resize, Keys, Type, Paste, Click, Drag, Scroll, Screen, \
-             State, Expect, ExpectNot, ExpectAt, ExpectStyle, Signal, Source, Frames, Wait, Quit",
-            shortened(word)
+            "{:?} is unknown, expected one of {}{}",
+            shortened(word),
+            COMMANDS.join(", "),
+            did_you_mean(word, COMMANDS)
         )),
     }
 }
@@ -231,8 +258,13 @@ fn scroll(text: &str) -> Result<ScriptCommand, String> {
 fn style(name: &str) -> Result<char, String> {
     let style = STYLES.iter().find(|(style, _)| *style == name);
     style.map(|(_, letter)| *letter).ok_or_else(|| {
-        let names = STYLES.map(|(style, _)| style).join(", ");
-        format!("style {:?} is unknown, expected {names}", shortened(name))
+        let names = STYLES.map(|(style, _)| style);
+        format!(
+            "style {:?} is unknown, expected one of {}{}",
+            shortened(name),
+            names.join(", "),
+            did_you_mean(name, names)
+        )
     })
 }
 

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 
 use crate::formats::{StoredShape, json};
 use crate::parameter::{Parameter, ParameterError};
-use crate::quote::shortened;
+use crate::quote::{did_you_mean, shortened};
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::tui::app::state::Options;
 use crate::tui::widget::theme::{ColorDepth, Palette};
@@ -45,6 +45,21 @@ pub enum ScriptSetting {
     Leftover(Box<StoredShape>),
 }
 
+/// What can be set.
+const NAMES: [&str; 11] = [
+    "ascii",
+    "color",
+    "theme",
+    "mouse",
+    "columns",
+    "rows",
+    "threshold",
+    "pitch",
+    "library",
+    "shape",
+    "leftover",
+];
+
 /// The words for on and off.
 const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
 
@@ -73,9 +88,10 @@ pub fn read(text: &str) -> Result<ScriptSetting, String> {
         _ => match Parameter::from_flag(name).filter(|own| SENSOR_PARAMETERS.contains(own)) {
             Some(parameter) => number(parameter, value).map_err(|error| error.to_string()),
             None => Err(format!(
-                "{:?} cannot be set, expected one of ascii, color, theme, mouse, columns, rows, \
-                 threshold, pitch, library, shape, leftover",
-                shortened(name)
+                "{:?} cannot be set, expected one of {}{}",
+                shortened(name),
+                NAMES.join(", "),
+                did_you_mean(name, NAMES)
             )),
         },
     }
