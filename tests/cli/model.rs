@@ -560,6 +560,16 @@ fn damaged_models_are_refused() {
     let run = place.run("model show atlas.npz", "");
     assert_eq!(run.status, Some(1));
     assert!(run.stderr.contains("taxel-model/1"), "{}", run.stderr);
+    for (one, other, message) in [
+        ("atlas", "m", "m.npz: is a model, but atlas.npz is an atlas"),
+        ("m", "atlas", "atlas.npz: is an atlas, but m.npz is a model"),
+    ] {
+        refused(
+            &place.run(&format!("merge {one}.npz {other}.npz --out all.npz"), ""),
+            1,
+            &format!("{message}; give the shards of one sweep or of one training"),
+        );
+    }
 }
 
 #[test]
@@ -761,11 +771,12 @@ fn files_that_cannot_be_used_are_refused_before_any_work() {
     let run = place.run(merge, "");
     refused(&run, 1, "model.csv: a model is written as .npz");
     assert_eq!(place.read("model.csv"), b"kept");
-    // An atlas has other keys than a model; the message names its format.
+    // An atlas has other keys than a model.
     place.done("sweep rectangle --length 3 --width 2 --angle 0 --atlas atlas.npz --quiet");
     let run = place.run("merge atlas.npz part-2.npz --out all.npz --quiet", "");
     assert_eq!(run.status, Some(1));
-    assert!(run.stderr.contains("format"), "{}", run.stderr);
+    let kinds = "part-2.npz: is a model, but atlas.npz is an atlas";
+    assert!(run.stderr.contains(kinds), "{}", run.stderr);
     misused(
         "model confusion figures --test half-step --csv",
         "the argument '--test <half-step>' cannot be used with '--csv'",

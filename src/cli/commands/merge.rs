@@ -88,6 +88,26 @@ fn check_no_shard(files: &[PathBuf], wanted: &Wanted) -> Result<(), CliError> {
     Ok(())
 }
 
+/// Refuses an atlas beside a model.
+fn check_one_kind(parts: &[Part]) -> Result<(), CliError> {
+    let noun = |part: &Part| match part.format.as_str() {
+        MODEL_FORMAT => "a model",
+        _ => "an atlas",
+    };
+    let Some((first, others)) = parts.split_first() else {
+        return Ok(());
+    };
+    match others.iter().find(|part| noun(part) != noun(first)) {
+        Some(other) => Err(other.refused(&format_args!(
+            "is {}, but {} is {}; give the shards of one sweep or of one training",
+            noun(other),
+            first.path.display(),
+            noun(first),
+        ))),
+        None => Ok(()),
+    }
+}
+
 /// Merges the shards in `files`, writes the atlas or the model, and returns the summary to print.
 ///
 /// # Errors
@@ -107,6 +127,7 @@ pub(crate) fn merge(
     let is_model = parts
         .first()
         .is_some_and(|part| part.format == MODEL_FORMAT);
+    check_one_kind(&parts)?;
     if is_model {
         check_model_file(wanted)?;
     }
