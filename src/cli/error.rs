@@ -11,6 +11,8 @@ use crate::cli::input::content::InputError;
 use crate::cli::output::charset::Charset;
 use crate::formats::Name;
 use crate::formats::recording::RecordingError;
+use crate::parameter::ParameterError;
+use crate::parameter::number::short;
 use crate::pose::GridError;
 use crate::quote::shortened_message;
 use crate::recognition::{NoiseError, TrainingError};
@@ -257,7 +259,7 @@ pub(crate) enum CliError {
     #[error("{0}")]
     Memory(String),
     /// The ranges do not make a grid for the shape.
-    #[error(transparent)]
+    #[error("{}", with_flag(.0))]
     Grid(#[from] GridError),
     /// A recording is damaged, or no recording.
     #[error("{name}: {}", shortened_message(&.error.to_string()))]
@@ -345,6 +347,17 @@ fn advice(error: &RecorderError) -> &'static str {
     match error {
         RecorderError::Exists { .. } => "; --force replaces it",
         _ => "",
+    }
+}
+
+/// The message about ranges; a number out of range is named by its flag, as in [`CliError::Range`].
+fn with_flag(error: &GridError) -> String {
+    match error {
+        GridError::Parameter(error @ ParameterError::Range { value, .. }) => {
+            let flag = error.parameter().flag();
+            format!("--{flag} {} {}", short(*value), error.complaint())
+        }
+        error => error.to_string(),
     }
 }
 

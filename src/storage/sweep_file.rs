@@ -166,7 +166,10 @@ pub fn open_archive(path: &Path) -> Result<File, ArchiveFileError> {
             Err(io::Error::other("not a regular file"))
         }
     });
-    opened.map_err(|error| ArchiveFileError::new(path, error))
+    opened.map_err(|error| {
+        let error = io::Error::new(error.kind(), format!("cannot read: {error}"));
+        ArchiveFileError::new(path, error)
+    })
 }
 
 /// Whether a file of that name can hold the atlas number of every pose: it ends in `.npy`, in capitals or not.

@@ -516,6 +516,31 @@ fn a_plain_table_of_factors_is_a_gain() {
     );
 }
 
+#[test]
+fn a_threshold_out_of_range_names_what_is_allowed() {
+    for (flags, message) in [
+        (
+            "--percent 200",
+            "error: --percent 200 is out of range (allowed: above 0, up to 100)\n",
+        ),
+        (
+            "--low 5 --high 3",
+            "error: --low 5 is out of range (allowed: at most the upper threshold)\n",
+        ),
+    ] {
+        refused("tekscan.asf", &format!("--all {flags}"), message);
+    }
+    for text in ["x", "nan"] {
+        let noise = format!("frames touch.csv --all --at-least 1 --model figures --noise {text}");
+        let message = format!("invalid value '{text}' for '--noise <E>': not a number\n");
+        misused(&noise, &message);
+    }
+    misused(
+        "recognise washer --reject 0,5",
+        "invalid value '0,5' for '--reject <P>': not a number; write 0.5\n",
+    );
+}
+
 /// A mask and a gain are read from standard input as from a file; two that read it are refused.
 #[test]
 fn a_mask_and_a_gain_may_come_from_standard_input() {

@@ -717,7 +717,7 @@ fn a_built_in_set_is_meant_before_a_file_of_its_name() {
     let text = place.done("recognise washer");
     assert!(!text.is_empty());
     let run = place.run("recognise washer --model ./figures", "");
-    refused(&run, 1, "./figures: not a regular file");
+    refused(&run, 1, "./figures: cannot read: not a regular file");
     let train = format!("model train --shape a=hexagon {COARSE} --name");
     for name in ["figures", "Figures-30", "shapes"] {
         let run = place.run(&format!("{train} {name}"), "");

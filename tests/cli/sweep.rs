@@ -437,7 +437,7 @@ fn what_is_no_sweep_is_refused() {
     refused(
         &taxel("sweep hexagon --x0 1:20:1", ""),
         1,
-        "x0: 20 is above 16 (allowed: -16 to 16)",
+        "--x0 20 is above 16 (allowed: -16 to 16)",
     );
     refused(
         &taxel(
@@ -487,6 +487,19 @@ fn what_is_no_sweep_is_refused() {
         let run = taxel(line, "");
         assert_eq!((run.status, run.stdout.as_str()), (Some(2), ""), "{line}");
         assert!(run.stderr.contains(expected), "{line}: {}", run.stderr);
+    }
+    for (line, message) in [
+        (
+            "sweep hexagon --x0 99",
+            "--x0 99 is above 16 (allowed: -16 to 16)",
+        ),
+        (
+            "merge missing.npz --out all.npz",
+            "missing.npz: cannot read: No such file or directory (os error 2)",
+        ),
+    ] {
+        let stderr = format!("error: {message}\n");
+        assert_eq!(taxel(line, "").stderr, stderr, "{line}");
     }
     let run = taxel("sweep hexagon --angle 0 --quiet --atlas /nowhere/a.csv", "");
     assert_eq!(run.status, Some(1));

@@ -17,7 +17,7 @@ use clap::{Arg, ArgAction, ArgMatches};
 use crate::cli::arguments::parameters;
 use crate::formats::{Name, NameError};
 use crate::memory::MemorySize;
-use crate::parameter::Parameter;
+use crate::parameter::{Parameter, number};
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, RangeError, Ranges};
 use crate::sensor::SENSOR_PARAMETERS;
 use crate::sweep::{Shard, ShardError};
@@ -260,11 +260,17 @@ impl EvaluationForm {
 }
 
 /// A number from 0 to 1.
-pub(super) fn parse_probability(text: &str) -> Result<f64, &'static str> {
-    let number = text.trim().parse().ok();
-    number
-        .filter(|number| (0.0..=1.0).contains(number))
-        .ok_or("expected a number from 0 to 1")
+pub(super) fn parse_probability(text: &str) -> Result<f64, String> {
+    let number = parse_number(text)?;
+    (0.0..=1.0)
+        .contains(&number)
+        .then_some(number)
+        .ok_or_else(|| "expected a number from 0 to 1".to_owned())
+}
+
+/// A finite number, with a point as the decimal sign.
+pub(super) fn parse_number(text: &str) -> Result<f64, String> {
+    number::read(text).ok_or_else(|| number::complaint(text))
 }
 
 /// A parser of a file of numbers or of a drawing, by its ending.

@@ -13,14 +13,13 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
-use crate::cli::arguments::flags::{name_or_path, option, switch, whole};
+use crate::cli::arguments::flags::{name_or_path, option, parse_number, switch, whole};
 use crate::cli::arguments::help::FRAMES_EXAMPLES;
 use crate::cli::arguments::recognise::parse_noise;
 use crate::cli::commands::naming::NamingArguments;
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::SensorSettings;
 use crate::frame::{Crop, FrameError, Rule, RuleOrigin, SetRule};
-use crate::parameter::number;
 use crate::recognition::Noise;
 
 /// Which frames are answered.
@@ -140,12 +139,12 @@ pub(crate) fn processing() -> [Arg; 9] {
     };
     [
         side(
-            "frame_rows",
-            "rows",
-            "Rows, if the recording does not state them",
+            "frame_columns",
+            "columns",
+            "Columns, if the recording does not state them",
         )
-        .requires("frame_columns"),
-        side("frame_columns", "columns", "Columns, likewise").requires("frame_rows"),
+        .requires("frame_rows"),
+        side("frame_rows", "rows", "Rows, likewise").requires("frame_columns"),
         text(
             "channel",
             "NAME",
@@ -257,11 +256,6 @@ pub(crate) fn rules() -> [Arg; 6] {
         least,
     ]
     .map(|arg| arg.help_heading("Threshold"))
-}
-
-/// A finite number, with a point as the decimal sign.
-fn parse_number(text: &str) -> Result<f64, String> {
-    number::read(text).ok_or_else(|| number::complaint(text))
 }
 
 /// Reads `12,12,16x16`.
@@ -384,14 +378,19 @@ impl ProcessingArguments {
 /// The rule of the flags; None if there is none.
 ///
 /// # Errors
-/// [`CliError::Range`] for a value that the rule does not allow: `expected a number above 0, up to 100`.
+/// [`CliError::Range`] for a value that the rule does not allow: `is out of range (allowed: above 0, up to 100)`.
 fn rule(matches: &ArgMatches) -> Result<Option<Rule>, CliError> {
     let value = |id: &str| matches.get_one::<f64>(id).copied();
     let out_of_range = |flag: &str, value: f64| {
         let (flag, text) = (flag.to_owned(), value.to_string());
         move |error: FrameError| {
             let complaint = match error {
-                FrameError::Rule { expected, .. } => format!("is not allowed: expected {expected}"),
+                FrameError::Rule { expected, .. } => {
+                    let allowed = expected
+                        .trim_start_matches("a number")
+                        .trim_matches([',', ' ']);
+                    format!("is out of range (allowed: {allowed})")
+                }
                 error => format!("is not allowed: {error}"),
             };
             CliError::Range {

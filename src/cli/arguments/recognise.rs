@@ -101,10 +101,7 @@ pub(super) fn command() -> Command {
 
 /// The probability that a taxel flips: 0 or more, below 0.5.
 pub(crate) fn parse_noise(text: &str) -> Result<Noise, String> {
-    let number = text
-        .trim()
-        .parse()
-        .map_err(|_| "expected a number".to_owned())?;
+    let number = flags::parse_number(text)?;
     Noise::new(number).map_err(|error: NoiseError| error.to_string())
 }
 

@@ -22,7 +22,6 @@ use crate::cli::commands::naming::NamingArguments;
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::SensorSettings;
 use crate::formats::stream::StreamFormat;
-use crate::parameter::number;
 use crate::storage::Existing;
 
 /// What `taxel watch` is to do.
@@ -94,7 +93,7 @@ pub(crate) fn command() -> Command {
 
 /// A factor above 0: 2 plays twice as fast, 0.5 at half the speed.
 fn parse_speed(text: &str) -> Result<f64, String> {
-    let speed = number::read(text).ok_or_else(|| number::complaint(text))?;
+    let speed = flags::parse_number(text)?;
     (speed > 0.0 && speed <= 1e6)
         .then_some(speed)
         .ok_or_else(|| "expected a number above 0, up to 1000000".to_owned())

@@ -485,7 +485,7 @@ pub(crate) fn delete(name: &Name, shelf: &Shelf) -> Result<String, CliError> {
         Err(error) if error.is_missing() => {
             let name = name.clone();
             Err(if ModelChoice::from_name(name.clone()).is_read() {
-                let stored = folder(shelf)?.names().unwrap_or_default();
+                let stored = folder(shelf)?.names()?;
                 let near = did_you_mean(name.as_str(), stored.iter().map(Name::as_str));
                 let name = name.to_string();
                 CliError::NoModel { name, near }

@@ -129,10 +129,13 @@ impl<'a> Recogniser<'a> {
         };
         output.write_all(text.as_bytes()).map_err(CliError::Write)?;
         output.flush().map_err(CliError::Write)?;
-        if self.expected(&answer) {
-            return Ok(());
+        match &self.asked.expect {
+            Some(expected) if !self.is_expected(&answer) => Err(CliError::Unexpected {
+                expected: expected.clone(),
+                found: self.found(&answer),
+            }),
+            _ => Ok(()),
         }
-        Err(self.unexpected(self.found(&answer)))
     }
 
     /// Answers each line by a line of JSON.
@@ -146,19 +149,22 @@ impl<'a> Recogniser<'a> {
             let answer = self.answer(&line.touches);
             let answer = answer.map_err(|error| error.to_string())?;
             all.fetch_add(1, Ordering::Relaxed);
-            if !self.expected(&answer) {
+            if !self.is_expected(&answer) {
                 others.fetch_add(1, Ordering::Relaxed);
             }
             json::extend_ascii(text, &self.json(&line.touches, &answer, Some(&line)));
             Ok(())
         };
         lines::answer_all(self.asked.jobs, input, output, "touch", || answer)?;
-        match others.into_inner() {
-            0 => Ok(()),
-            others => {
+        match (&self.asked.expect, others.into_inner()) {
+            (Some(expected), others @ 1..) => {
                 let all = counted(all.into_inner(), "line");
-                Err(self.unexpected(format!("another answer, or none, in {others} of {all}")))
+                Err(CliError::Unexpected {
+                    expected: expected.clone(),
+                    found: format!("another answer, or none, in {others} of {all}"),
+                })
             }
+            _ => Ok(()),
         }
     }
 
@@ -222,7 +228,7 @@ impl<'a> Recogniser<'a> {
     }
 
     /// Whether the answer is the expected one; yes if none is.
-    fn expected(&self, answer: &Answer) -> bool {
+    fn is_expected(&self, answer: &Answer) -> bool {
         let Some(expected) = &self.asked.expect else {
             return true;
         };
@@ -242,12 +248,6 @@ impl<'a> Recogniser<'a> {
             None => "no shape".to_owned(),
         };
         format!("{named} ({})", answer.state.name())
-    }
-
-    /// That `--expect` does not name what was found.
-    fn unexpected(&self, found: String) -> CliError {
-        let expected = self.asked.expect.clone().unwrap_or_default();
-        CliError::Unexpected { expected, found }
     }
 }
 

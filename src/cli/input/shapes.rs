@@ -141,9 +141,10 @@ impl Shelf {
 
     /// The end of a message about a name that no stored shape has: the name of one that is much like it, if there is one.
     fn near(&self, name: &str) -> String {
-        let shapes = self.library().and_then(|library| library.list());
-        let shapes = shapes.unwrap_or_default();
-        did_you_mean(name, shapes.iter().map(|shape| shape.name.as_str()))
+        match self.library().and_then(|library| library.list()) {
+            Ok(shapes) => did_you_mean(name, shapes.iter().map(|shape| shape.name.as_str())),
+            Err(_) => String::new(),
+        }
     }
 
     /// The message about an error of the library; a name that it has not got is compared with those that it has.
@@ -151,9 +152,10 @@ impl Shelf {
         let near = match &error {
             LibraryError::Unknown { name } => self.near(name),
             LibraryError::NotInTrash { name } => {
-                let trash = self.library().and_then(|library| library.in_trash());
-                let trash = trash.unwrap_or_default();
-                did_you_mean(name, trash.iter().map(String::as_str))
+                match self.library().and_then(|library| library.in_trash()) {
+                    Ok(trash) => did_you_mean(name, trash.iter().map(String::as_str)),
+                    Err(_) => String::new(),
+                }
             }
             _ => return error.into(),
         };

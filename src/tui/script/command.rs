@@ -187,13 +187,7 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
             let (at, name) = two(rest)?;
             Ok(ScriptCommand::ExpectStyle(position(at)?, style(name)?))
         }
-        "Signal" if SIGNALS.contains(&rest) => Ok(ScriptCommand::Signal(rest.to_owned())),
-        "Signal" => Err(format!(
-            "signal {:?} is unknown, expected one of {}{}",
-            shortened(rest),
-            SIGNALS.join(", "),
-            did_you_mean(rest, SIGNALS)
-        )),
+        "Signal" => signal(rest),
         "Source" if rest.is_empty() => Err("expected the name of a file with frames".to_owned()),
         "Source" => Ok(ScriptCommand::Source(rest.to_owned())),
         "Frames" => frames(rest).map(ScriptCommand::Frames),
@@ -206,6 +200,19 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
             did_you_mean(word, COMMANDS)
         )),
     }
+}
+
+/// The name of a signal.
+fn signal(name: &str) -> Result<ScriptCommand, String> {
+    if SIGNALS.contains(&name) {
+        return Ok(ScriptCommand::Signal(name.to_owned()));
+    }
+    Err(format!(
+        "signal {:?} is unknown, expected one of {}{}",
+        shortened(name),
+        SIGNALS.join(", "),
+        did_you_mean(name, SIGNALS)
+    ))
 }
 
 /// A number of frames.
