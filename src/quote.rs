@@ -60,7 +60,7 @@ fn cut(text: &str, longest: usize) -> String {
 
 #[cfg(all(test, feature = "json"))]
 mod tests {
-    use super::did_you_mean;
+    use crate::quote::did_you_mean;
 
     #[test]
     fn a_slip_of_the_keys_finds_the_name_that_was_meant() {

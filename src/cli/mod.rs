@@ -172,7 +172,9 @@ impl Surroundings {
             Request::Script(asked) => script::run(&asked, &self.settings, shelf, charset)?,
             Request::Completions(shell) => write(&completions::script(shell, definitions::all()))?,
             Request::Man(None) => write(&man::main_page()?)?,
-            Request::Man(Some(folder)) => man::write(&folder)?,
+            Request::Man(Some(folder)) => {
+                print(&(charset.line(&man::write(&folder)?).into_owned() + "\n"))?;
+            }
         }
         Ok(0)
     }

@@ -381,6 +381,8 @@ fn pages_of_the_manual_tell_what_the_help_tells() {
     let pages = folder.path().join("share/man1");
     let run = taxel(&format!("man {}", pages.display()), "");
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    let said = format!("written: {} pages in {}\n", COMMANDS.len(), pages.display());
+    assert_eq!(run.stdout, said);
     assert_eq!(
         taxel("man", "").stdout,
         fs::read_to_string(pages.join("taxel.1")).expect("a page")

@@ -34,7 +34,8 @@ pub(crate) fn names(folder: &Path) -> Vec<String> {
 
 fn json(line: &str) -> Value {
     let run = taxel(line, "");
-    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{line}");
+    let notes = run.stderr.lines().all(|note| note.starts_with("written: "));
+    assert!(run.status == Some(0) && notes, "{line}: {}", run.stderr);
     serde_json::from_str(&run.stdout).expect("a line of JSON")
 }
 
@@ -333,6 +334,7 @@ fn what_a_merge_costs_is_bounded_and_printed() {
         "{}",
         run.stderr
     );
+    assert_eq!(lines[2..], [format!("written: {}", path("m.npz"))]);
     let run = merge(&format!("--atlas {one} --force"));
     let expected = format!("error: {one}: is one of the shards; write to another file\n");
     assert_eq!((run.status, run.stderr), (Some(1), expected));

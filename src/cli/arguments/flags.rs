@@ -176,7 +176,7 @@ pub(super) fn replace() -> Arg {
 
 /// `--quiet`.
 pub(super) fn quiet() -> Arg {
-    switch("quiet", "Show no progress")
+    switch("quiet", "Show no progress and no notes")
 }
 
 /// `--force`, for commands that store a shape.

@@ -9,7 +9,7 @@ use serde_json::json;
 
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::confusion::{ConfusionArguments, Evaluated};
-use crate::cli::commands::export::{ending, put};
+use crate::cli::commands::export::{ending, put, written};
 use crate::cli::commands::model;
 use crate::cli::commands::noise;
 use crate::cli::error::CliError;
@@ -35,7 +35,7 @@ pub(crate) fn confusion(
         drop(UnfinishedFile::new(path, asked.existing)?);
     }
     let as_json = asked.form == EvaluationForm::Json;
-    match &asked.of {
+    let text = match &asked.of {
         Evaluated::Imprints => shown(asked, &Evaluation::of(&model), None, charset),
         Evaluated::Given(given) => {
             let given = given.clone().rounded(asked.roundings.clone());
@@ -50,7 +50,11 @@ pub(crate) fn confusion(
         Evaluated::AllClassifiers => all_classifiers(&model, asked, charset),
         Evaluated::Noise(noise) => noise::degradation(&model, noise, asked, charset),
         Evaluated::HalfStep => noise::half_step(&model, asked, charset),
+    }?;
+    if let Some(path) = asked.export.as_ref().filter(|_| !asked.quiet) {
+        crate::cli::note(&written(path), charset);
     }
+    Ok(text)
 }
 
 /// The descriptors that [`greedy`] chooses one by one, and what each step reaches.

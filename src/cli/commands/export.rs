@@ -190,7 +190,7 @@ impl Begun {
         match self {
             Self::Content(content) => Ok(Exported::Content(content)),
             Self::File(file) => {
-                let said = format!("written: {}", file.path().display());
+                let said = written(file.path());
                 file.persist()?;
                 Ok(Exported::Said(said))
             }
@@ -205,6 +205,11 @@ pub(crate) enum Exported {
     Content(Vec<u8>),
     /// A note that says where the file is.
     Said(String),
+}
+
+/// The note that a file was written.
+pub(crate) fn written(path: &Path) -> String {
+    format!("written: {}", path.display())
 }
 
 /// The ending of a file's name in small letters; empty without one.

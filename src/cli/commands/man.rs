@@ -16,6 +16,7 @@ use crate::cli::arguments::definitions;
 use crate::cli::arguments::help::{ENVIRONMENT, FILES};
 use crate::cli::commands::export;
 use crate::cli::error::CliError;
+use crate::formats::value::counted;
 use crate::storage::Existing;
 
 /// The page of the program itself.
@@ -26,22 +27,25 @@ pub(crate) fn main_page() -> Result<Vec<u8>, CliError> {
     page(&built()).map_err(CliError::Write)
 }
 
-/// Writes the pages of all commands into a folder, which is created if necessary.
+/// Writes the pages of all commands into a folder, which is created if necessary. Returns what is printed.
 ///
 /// # Errors
 /// If the folder cannot be created or a file cannot be written.
-pub(crate) fn write(folder: &Path) -> Result<(), CliError> {
+pub(crate) fn write(folder: &Path) -> Result<String, CliError> {
     fs::create_dir_all(folder).map_err(|error| CliError::File {
         name: folder.display().to_string(),
         error,
     })?;
-    for command in all(&built()) {
+    let built = built();
+    let commands = all(&built);
+    for command in &commands {
         let file = folder.join(format!("{}.1", name(command)));
         let page = page(command).map_err(CliError::Write)?;
         // Pages of an earlier version are replaced.
         export::put(&file, &page, Existing::Replaced)?;
     }
-    Ok(())
+    let pages = counted(commands.len() as u64, "page");
+    Ok(format!("written: {pages} in {}", folder.display()))
 }
 
 /// The commands with everything that clap adds to them, except its `help`, which needs no page.

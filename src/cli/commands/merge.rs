@@ -167,6 +167,7 @@ pub(crate) fn merge(
         let imprints = counted(imprints as u64, "imprint");
         say(&format!("merged: {imprints}, {peak} of memory"));
     }
+    wanted.note_written(charset);
     Ok(summary)
 }
 

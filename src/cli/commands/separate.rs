@@ -11,7 +11,7 @@ use std::sync::atomic::Ordering;
 
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::separate::SeparateArguments;
-use crate::cli::commands::export::{ending, put};
+use crate::cli::commands::export::{ending, put, written};
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shape_set;
@@ -83,6 +83,9 @@ pub(crate) fn separate(
             _ => csv(asked.axis, &curves).into_bytes(),
         };
         put(path, &content, asked.existing)?;
+        if !asked.quiet {
+            crate::cli::note(&written(path), charset);
+        }
     }
     Ok(match asked.form {
         EvaluationForm::Json => separation::json_text(asked.axis, &curves, asked.wanted),

@@ -16,6 +16,7 @@ use std::time::Instant;
 
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
 use crate::cli::arguments::parameters::ShardFile;
+use crate::cli::commands::export::written;
 use crate::cli::commands::resume::{self, KEPT};
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
@@ -42,10 +43,21 @@ pub(crate) struct Wanted {
     pub(crate) there: ShardFile,
     /// Whether the summary is one line of JSON.
     pub(crate) json: bool,
-    /// Whether to show no progress.
+    /// Whether to show no progress and no notes.
     pub(crate) quiet: bool,
     /// `--memory`: the most that it may use.
     pub(crate) memory: Option<MemorySize>,
+}
+
+impl Wanted {
+    /// Says which files were written, each in a line on standard error.
+    pub(super) fn note_written(&self, charset: Charset) {
+        let atlas = self.atlas.as_ref().map(AtlasFile::path);
+        let files = atlas.into_iter().chain(self.poses.as_deref());
+        for path in files.filter(|_| !self.quiet) {
+            crate::cli::note(&written(path), charset);
+        }
+    }
 }
 
 /// Returns the grid to sweep, and what to say about it beforehand: the ranges of x0 and y0 that were not given, and how
@@ -152,7 +164,9 @@ pub(crate) fn sweep(
     if !result.complete() {
         return Err(signals.failure());
     }
-    leave(&result, start, wanted, poses, charset, &signals)
+    let summary = leave(&result, start, wanted, poses, charset, &signals)?;
+    wanted.note_written(charset);
+    Ok(summary)
 }
 
 /// Writes the atlas, gives the files their names, and returns the summary to print.
