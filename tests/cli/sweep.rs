@@ -480,7 +480,11 @@ fn what_is_no_sweep_is_refused() {
             "sweep hexagon --poses p.npy --shard 1/2",
             "cannot be used with",
         ),
-        ("sweep", "required arguments were not provided"),
+        (
+            "sweep",
+            "required arguments were not provided:\n  <KIND|--picture <NAME|FILE>>\n\n\
+             Usage: taxel sweep <KIND|--picture <NAME|FILE>>\n",
+        ),
         (
             "merge --atlas a.csv",
             "required arguments were not provided",

@@ -67,7 +67,28 @@ pub(crate) fn all() -> Command {
     let program = WITHOUT_LIBRARY.into_iter().fold(program, |program, name| {
         program.mut_subcommand(name, |command| command.arg(folder().hide(true)))
     });
-    with_negative_numbers(program)
+    in_order(with_negative_numbers(program))
+}
+
+/// Flags that several commands have, in the order in which the help of each lists them, behind those of its own.
+const SHARED: [&str; 18] = [
+    "out", "name", "atlas", "poses", "write", "export", "svg", "format", "force", "shard",
+    "resume", "jobs", "memory", "json", "csv", "quiet", "config", "ascii",
+];
+
+/// Lists the flags of [`SHARED`] in one order in the help of a command and of its subcommands. Those below a heading of
+/// their own keep their place there.
+fn in_order(command: Command) -> Command {
+    command
+        .mut_args(|arg| {
+            let flag = arg.get_long().filter(|_| arg.get_help_heading().is_none());
+            match flag.and_then(|flag| SHARED.iter().position(|shared| *shared == flag)) {
+                // Behind those that have only their place in the command, before --help and --version.
+                Some(position) => arg.display_order(500 + position),
+                None => arg,
+            }
+        })
+        .mut_subcommands(in_order)
 }
 
 /// Lets every argument of a command and of its subcommands take `-1`, so that its own parser says what it expects.
@@ -197,14 +218,12 @@ fn batch() -> Command {
 fn sweep() -> Command {
     let kind = Arg::new("kind")
         .value_name("KIND")
-        .required_unless_present("picture")
-        .conflicts_with("picture")
         .value_parser(parameters::one_of(
             FigureKind::ALL.map(FigureKind::name),
             FigureKind::from_name,
         ))
         .hide_possible_values(true)
-        .help("Kind of figure, as in 'taxel figure'");
+        .help("Kind of figure, as in 'taxel figure'; or --picture");
     let picture =
         option("picture", "NAME|FILE", "Sweep a stored shape instead").value_parser(name_or_path());
     let sizes = parameters::figure_parameters()
@@ -217,6 +236,11 @@ fn sweep() -> Command {
         .after_help(SWEEP_EXAMPLES)
         .arg(kind)
         .arg(picture)
+        .group(
+            ArgGroup::new("shape")
+                .args(["kind", "picture"])
+                .required(true),
+        )
         .args(sizes.map(|parameter| parameters::arg(parameter).help_heading("Figure")))
         .args(Axis::ALL.map(|axis| match axis {
             Axis::X0 | Axis::Y0 => range(axis, "one cell that suits the shape"),

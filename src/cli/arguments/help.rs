@@ -17,7 +17,8 @@ describes it. Without a command, opens the screen, where all of this is live.";
 
 /// Below the flags of `taxel --help`: units, exit status and an example of most commands.
 pub(crate) const EXAMPLES: &str = "\
-All lengths are in sides of a sensory cell; x runs to the right, y down.
+Lengths are in cells: 1 is the side of a sensory cell. x runs to the right, y
+down.
 Exit status: 0 success, 1 wrong input, 2 wrong command line, 3 not the expected
 answer, 128 + n ended by signal n.
 

@@ -69,8 +69,8 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     };
     let unit = match feature.descriptor.dimension {
         Dimension::Count => "",
-        Dimension::Length => ", cell sides",
-        Dimension::Area => ", cells",
+        Dimension::Length => ", cells",
+        Dimension::Area => ", taxels",
         Dimension::Direction => ", degrees",
         _ => ", ratio",
     };

@@ -12,8 +12,8 @@ pub(crate) fn descriptors() -> String {
     let row = |descriptor: &taxel::description::Descriptor| {
         let unit = match descriptor.dimension {
             Dimension::Count => "taxels",
-            Dimension::Length => "cell sides",
-            Dimension::Area => "cells",
+            Dimension::Length => "cells",
+            Dimension::Area => "taxels",
             Dimension::Direction => "degrees",
             _ => "",
         };

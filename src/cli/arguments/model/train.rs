@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    self, anchor, jobs, json, memory, option, parse_name, quiet, range, replace, resume,
-    sensor_of_imprints, shard, switch,
+    self, anchor, jobs, json, memory, of_sensor, option, parse_name, quiet, range, replace, resume,
+    shard, switch,
 };
 use crate::cli::arguments::help::MODEL_TRAIN_EXAMPLES;
 use crate::cli::arguments::model::shape_set::{self, SetArguments};
@@ -94,11 +94,8 @@ pub(super) fn command() -> Command {
         }))
         .arg(shape_set::positions())
         .arg(anchor)
-        .args(sensor_of_imprints())
-        .mut_arg(Parameter::Columns.row().key, |_| {
-            fitting(Parameter::Columns)
-        })
-        .mut_arg(Parameter::Rows.row().key, |_| fitting(Parameter::Rows))
+        .args([Parameter::Columns, Parameter::Rows].map(fitting))
+        .args(of_sensor(&[Parameter::Threshold]))
         .args([
             allow_cut,
             jobs(),
