@@ -32,7 +32,7 @@ pub(crate) mod number;
 
 mod lines;
 
-mod moment;
+pub(crate) mod moment;
 
 mod side;
 

@@ -10,11 +10,11 @@ use crate::formats::recording::text_row::Field;
 
 /// A moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Moment {
+pub(crate) struct Moment {
     /// The seconds from 1970; of a clock alone, from midnight.
-    pub(super) seconds: f64,
+    pub(crate) seconds: f64,
     /// Whether it has a date.
-    pub(super) is_dated: bool,
+    pub(crate) is_dated: bool,
 }
 
 /// Reads a moment; None for anything else. Second 60, a leap second, counts as the first of the next minute.
@@ -43,16 +43,46 @@ pub(super) fn read(field: &[u8]) -> Option<Moment> {
     })
 }
 
+/// The moment at the beginning of a line of numbers, and the numbers behind it; None without one, or without a number. A comma
+/// may part cells or begin the fraction of a second: where nothing tells which, as in `12:00:00,125 7 3`, it is no moment.
+pub(crate) fn leading(line: &[u8]) -> Option<(Moment, &[u8])> {
+    let mark = if line.contains(&b';') { b';' } else { b',' };
+    let line = line.trim_ascii_start();
+    let end_of = |from: usize| {
+        let is_end = |&byte: &u8| byte == mark || byte.is_ascii_whitespace();
+        let end = line[from..].iter().position(is_end);
+        end.map(|end| from + end)
+    };
+    let first = end_of(0)?;
+    let is_clock = line[..first].contains(&b':');
+    if !is_clock && !line[..first].contains(&b'-') && !line[..first].contains(&b'/') {
+        return None;
+    }
+    // A date, a blank and a clock.
+    let end = if is_clock { first } else { end_of(first + 1)? };
+    let moment = read(&line[..end])?;
+    let rest = line[end..].trim_ascii_start();
+    let Some(cells) = rest.strip_prefix(&[mark]) else {
+        return Some((moment, rest)).filter(|_| !rest.is_empty());
+    };
+    let digits = cells
+        .iter()
+        .take_while(|digit| digit.is_ascii_digit())
+        .count();
+    let may_be_fraction = mark == b',' && digits > 0 && !cells[digits..].contains(&b',');
+    (!may_be_fraction && !cells.trim_ascii().is_empty()).then_some((moment, cells))
+}
+
 /// Counts midnights of clocks without a date: a clock that falls by more than half a day has passed one.
 #[derive(Debug, Default)]
-pub(super) struct Midnights {
+pub(crate) struct Midnights {
     days: u32,
     last: Option<f64>,
 }
 
 impl Midnights {
     /// The seconds of the next moment.
-    pub(super) fn seconds(&mut self, moment: Moment) -> f64 {
+    pub(crate) fn seconds(&mut self, moment: Moment) -> f64 {
         const DAY: f64 = 86_400.0;
         if moment.is_dated {
             return moment.seconds;
@@ -115,6 +145,36 @@ fn two_digits(text: &str, most: i32) -> Option<i32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_of_numbers_may_begin_with_a_moment() {
+        for (line, seconds, rest) in [
+            ("2024-05-01T12:00:00.5Z,1,2", 1_714_564_800.5, "1,2"),
+            ("2024-05-01 12:00:00,1,2,3", 1_714_564_800.0, "1,2,3"),
+            (" 2024/05/01 12:00:00 1 2", 1_714_564_800.0, "1 2"),
+            ("12:00:00,25;1,5;2", 43_200.25, "1,5;2"),
+            ("12:00:00, 1 2 3", 43_200.0, " 1 2 3"),
+            ("12:00:00.25\t-1", 43_200.25, "-1"),
+            ("12:00:00,,2", 43_200.0, ",2"),
+        ] {
+            let found = leading(line.as_bytes());
+            let found = found.map(|(moment, rest)| (moment.seconds, rest));
+            assert_eq!(found, Some((seconds, rest.as_bytes())), "{line}");
+        }
+        for line in [
+            "12:00:00,125 7 3",
+            "12:00:00,125",
+            "12:00:00",
+            "12:00:00,",
+            "2024-05-01,1,2",
+            "01/02/2024 12:00:00,1,2",
+            "-1 12:00:00 5",
+            "1 2 3",
+            "",
+        ] {
+            assert_eq!(leading(line.as_bytes()), None, "{line}");
+        }
+    }
 
     #[test]
     fn moments_are_read() {

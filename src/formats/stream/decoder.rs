@@ -6,7 +6,7 @@
 //! size: the frames are the same however the stream is cut. What is dropped is counted in [`StreamCounts`], with a
 //! sample of it.
 
-use crate::formats::recording::ros_text;
+use crate::formats::recording::{moment, ros_text};
 use crate::formats::stream::documents::{JsonDecoder, RosDecoder};
 use crate::formats::stream::event::{StreamCounts, StreamFormat, StreamOptions, StreamSink};
 use crate::formats::stream::flexitac::FlexitacDecoder;
@@ -357,8 +357,9 @@ fn form_of_line(line: &[u8], after_first: bool) -> Option<StreamFormat> {
     }
 }
 
-/// Whether a line holds numbers only, at least one.
+/// Whether a line holds numbers only, at least one; a moment may stand before them.
 fn is_numbers(line: &[u8]) -> bool {
+    let line = moment::leading(line).map_or(line, |(_, numbers)| numbers);
     let mut values = Vec::new();
     numbers::read(line, &mut values, usize::MAX).is_some() && !values.is_empty()
 }

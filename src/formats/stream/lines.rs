@@ -6,6 +6,8 @@
 //!
 //! 0 12            or a row a line; an empty line ends the frame, and tells its rows and columns
 //! 7 3
+//!
+//! 2024-05-01 12:00:00.25,0,12,7,3     a moment at the beginning of a frame's first line is its time
 //! ```
 //! Of a stream from its beginning, such as a file, the first block may be a frame, or the end of one: its rows and columns
 //! are those of all frames unless the next two blocks agree on more rows. It is provisional until then.
@@ -13,6 +15,8 @@
 //! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are never
 //! joined. Where frames are known to be a line each, each line that is none is a frame that is lost.
 
+use crate::formats::recording::moment::{self, Midnights};
+use crate::formats::seconds::since;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
 use crate::formats::stream::size::FrameSize;
@@ -41,6 +45,12 @@ pub(super) struct LinesDecoder {
     values: Vec<f64>,
     /// How many rows that is.
     rows: u16,
+    /// The moment at the beginning of its first line, in seconds.
+    time: Option<f64>,
+    /// That of the first frame, from which times count.
+    start: Option<f64>,
+    /// The midnights that clocks have passed.
+    midnights: Midnights,
     /// Whether a row of it is wrong.
     broken: bool,
     /// What that row looks like.
@@ -62,6 +72,8 @@ struct HeldBlock {
     size: (u16, u16),
     /// Its values, row by row.
     values: Vec<f64>,
+    /// Its moment.
+    time: Option<f64>,
     /// What it looks like.
     sample: Vec<u8>,
 }
@@ -79,6 +91,9 @@ impl LinesDecoder {
             begun: from_start,
             values: Vec::new(),
             rows: 0,
+            time: None,
+            start: None,
+            midnights: Midnights::default(),
             broken: false,
             broken_row: Vec::new(),
             parted: false,
@@ -102,6 +117,10 @@ impl LinesDecoder {
             self.boundary(counts, sink);
             return;
         }
+        let (moment, line) = match moment::leading(line) {
+            Some((moment, numbers)) => (Some(self.midnights.seconds(moment)), numbers),
+            None => (None, line),
+        };
         let before = self.values.len();
         let room = MOST.saturating_sub(before);
         let read = numbers::read(line, &mut self.values, room);
@@ -116,6 +135,7 @@ impl LinesDecoder {
                 || self.size.named() == Some((1, width(count))))
         {
             self.values.drain(..before);
+            self.time = moment;
             self.give_line(counts, sink);
             return;
         }
@@ -133,6 +153,9 @@ impl LinesDecoder {
             _ if self.rows > 0 => before / usize::from(self.rows),
             _ => count,
         };
+        if self.rows == 0 {
+            self.time = moment;
+        }
         self.rows = self.rows.saturating_add(1);
         if self.broken || read.is_none() || count != expected || self.rows > MAX_FRAME_SIDE {
             self.values.truncate(before);
@@ -225,6 +248,7 @@ impl LinesDecoder {
         held.push(HeldBlock {
             size: own,
             values: self.values.clone(),
+            time: self.time,
             sample: self.broken_row.clone(),
         });
         let sizes: Vec<(u16, u16)> = held.iter().map(|block| block.size).collect();
@@ -251,6 +275,7 @@ impl LinesDecoder {
         for block in held {
             self.rows = block.size.0;
             self.values = block.values;
+            self.time = block.time;
             self.broken_row = block.sample;
             self.block(block.size, counts, sink);
         }
@@ -270,6 +295,8 @@ impl LinesDecoder {
     fn fill(&mut self, (rows, columns): (u16, u16), counts: &StreamCounts) {
         self.frame.reset(columns, rows);
         self.frame.number = counts.frames;
+        let time = self.time;
+        self.frame.time = time.map(|time| since(*self.start.get_or_insert(time), time));
         self.frame.values_mut().copy_from_slice(&self.values);
     }
 
@@ -402,6 +429,34 @@ mod tests {
         let (rows, torn) = ("1 2 3\n4 5 6\n\n", "1 2 3\n4 5\n4\n\n");
         let stream = [rows, torn, rows, "1 2 3 4 5 6\n\n", torn, rows, torn];
         assert_eq!(decoded(&stream.concat(), shape), (vec![(2, 3, 1.0); 4], 3));
+    }
+
+    #[test]
+    fn a_moment_before_a_frame_is_its_time() {
+        let times = |text: &str, shape| {
+            let mut decoder = LinesDecoder::new(shape, true);
+            let (mut times, mut counts) = (Vec::new(), StreamCounts::default());
+            let mut sink = |event: StreamEvent<'_>| {
+                if let StreamEvent::Frame(frame) = event {
+                    times.push((frame.time, frame.values()[0]));
+                }
+            };
+            for line in text.lines() {
+                decoder.line(line.as_bytes(), &mut counts, &mut sink);
+            }
+            decoder.finish(b"", &mut counts, &mut sink);
+            (times, counts.dropped)
+        };
+        let lines = "2024-05-01 23:59:59.75,1,2,3,4\n5,6,7,8\n2024-05-02T00:00:00.5,9,1,1,1\n";
+        let found = vec![(Some(0.0), 1.0), (None, 5.0), (Some(0.75), 9.0)];
+        assert_eq!(times(lines, Some((2, 2))), (found, 0));
+        // Rows, each with its moment: the first one counts. Midnight passes.
+        let rows = "23:59:59 1 2\n23:59:59.1 3 4\n\n00:00:00 5 6\n00:00:00.1 7 8\n\n";
+        let found = vec![(Some(0.0), 1.0), (Some(1.0), 5.0)];
+        assert_eq!(times(rows, None), (found, 0));
+        // The comma may be a decimal sign.
+        let unclear = "12:00:00,125 1 2 3 4\n";
+        assert_eq!(times(unclear, Some((2, 2))), (Vec::new(), 1));
     }
 
     #[test]
