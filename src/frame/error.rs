@@ -36,8 +36,8 @@ pub enum FrameError {
     Rule {
         /// Which value.
         what: &'static str,
-        /// What it should be.
-        expected: &'static str,
+        /// What is allowed.
+        allowed: &'static str,
     },
     /// A tare of more frames than there are.
     Tare {
@@ -91,7 +91,7 @@ impl fmt::Display for FrameError {
                 expected.0,
                 expected.1
             ),
-            Self::Rule { what, expected } => write!(f, "{what}: expected {expected}"),
+            Self::Rule { what, allowed } => write!(f, "{what}: out of range (allowed: {allowed})"),
             Self::Tare { frames, wanted } => {
                 write!(f, "frames for the tare: found {frames}, expected {wanted}")
             }

@@ -31,11 +31,11 @@ fn checked(
     what: &'static str,
     value: f64,
     fits: bool,
-    expected: &'static str,
+    allowed: &'static str,
 ) -> Result<f64, FrameError> {
     let fits = fits && value.abs() <= LARGEST_VALUE;
     fits.then_some(value)
-        .ok_or(FrameError::Rule { what, expected })
+        .ok_or(FrameError::Rule { what, allowed })
 }
 
 impl Rule {
@@ -49,7 +49,7 @@ impl Rule {
     /// # Errors
     /// If it is not finite, or beyond ±1e300.
     pub fn at_least(threshold: f64) -> Result<Self, FrameError> {
-        let value = checked("threshold", threshold, true, "a number, -1e300 to 1e300")?;
+        let value = checked("threshold", threshold, true, "-1e300 to 1e300")?;
         Ok(Self::AtLeast(value))
     }
 
@@ -59,8 +59,8 @@ impl Rule {
     /// If it is not above 0 and at most 100.
     pub fn percent(percent: f64) -> Result<Self, FrameError> {
         let fits = percent > 0.0 && percent <= 100.0;
-        let expected = "a number above 0, up to 100";
-        Ok(Self::Percent(checked("percent", percent, fits, expected)?))
+        let allowed = "above 0, up to 100";
+        Ok(Self::Percent(checked("percent", percent, fits, allowed)?))
     }
 
     /// Two thresholds, in the sensor's unit.
@@ -68,9 +68,9 @@ impl Rule {
     /// # Errors
     /// If one is not finite, or `low` is above `high`.
     pub fn hysteresis(low: f64, high: f64) -> Result<Self, FrameError> {
-        let high = checked("upper threshold", high, true, "a number, -1e300 to 1e300")?;
-        let expected = "at most the upper threshold";
-        let low = checked("lower threshold", low, low <= high, expected)?;
+        let high = checked("upper threshold", high, true, "-1e300 to 1e300")?;
+        let allowed = "at most the upper threshold";
+        let low = checked("lower threshold", low, low <= high, allowed)?;
         Ok(Self::Hysteresis { low, high })
     }
 
@@ -80,8 +80,8 @@ impl Rule {
     /// If the number is not above 0 and at most 1000.
     pub fn noise(deviations: f64) -> Result<Self, FrameError> {
         let fits = deviations > 0.0 && deviations <= 1000.0;
-        let expected = "a number above 0, up to 1000";
-        Ok(Self::Noise(checked("noise", deviations, fits, expected)?))
+        let allowed = "above 0, up to 1000";
+        Ok(Self::Noise(checked("noise", deviations, fits, allowed)?))
     }
 
     /// The imprint of values after tare and gain. A margin of noise is measured before the gain, so it is multiplied by

@@ -385,10 +385,7 @@ fn rule(matches: &ArgMatches) -> Result<Option<Rule>, CliError> {
         let (flag, text) = (flag.to_owned(), value.to_string());
         move |error: FrameError| {
             let complaint = match error {
-                FrameError::Rule { expected, .. } => {
-                    let allowed = expected
-                        .trim_start_matches("a number")
-                        .trim_matches([',', ' ']);
+                FrameError::Rule { allowed, .. } => {
                     format!("is out of range (allowed: {allowed})")
                 }
                 error => format!("is not allowed: {error}"),
