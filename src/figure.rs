@@ -5,8 +5,11 @@
 //! rotation; their centre is that of the circumscribed circle.
 //! Source: Purcaru and Niculescu; the sense of rotation and the form of the hole are conventions of this project.
 
+use std::fmt;
+use std::str::FromStr;
+
 use crate::geometry::{Ellipse, Extent, Pen, Point, Real, Side, Solid, Turn};
-use crate::parameter::{Parameter, ParameterError};
+use crate::parameter::{Parameter, ParameterError, UnknownName};
 use crate::sensor::Sensor;
 
 /// The note shown for a thickness that leaves no room for a hole.
@@ -88,6 +91,20 @@ impl FigureKind {
             Self::Heptagon => Some(7),
             Self::Octagon => Some(8),
         }
+    }
+}
+
+impl fmt::Display for FigureKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for FigureKind {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        UnknownName::unless_found("figure", name, &Self::ALL, Self::name)
     }
 }
 
@@ -472,9 +489,9 @@ impl Figure {
     }
 }
 
-impl std::fmt::Display for Figure {
+impl fmt::Display for Figure {
     /// A summary in one line.
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.kind_and_sizes())?;
         let (x0, y0) = (Parameter::X0.format(self.x0), Parameter::Y0.format(self.y0));
         write!(

@@ -9,8 +9,11 @@
 //! the carry of an addition fills the whole run at once.
 
 use std::borrow::Cow;
+use std::fmt;
+use std::str::FromStr;
 
 use crate::imprint::{Bounds, Imprint};
+use crate::parameter::UnknownName;
 
 /// What a region is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -28,6 +31,20 @@ impl RegionKind {
             Self::Exterior => "exterior",
             Self::Hole => "hole",
         }
+    }
+}
+
+impl fmt::Display for RegionKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for RegionKind {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        UnknownName::unless_found("region", name, &[Self::Exterior, Self::Hole], Self::name)
     }
 }
 

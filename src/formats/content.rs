@@ -7,6 +7,7 @@ use crate::imprint::Imprint;
 /// What a file holds.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
+#[non_exhaustive]
 pub enum Content {
     /// An imprint: a matrix without a sensor or a name.
     Imprint(Imprint),
@@ -26,6 +27,7 @@ impl Content {
 
 /// Why bytes are neither.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ContentError {
     /// They are not an imprint in any known format.
     #[error(transparent)]

@@ -14,6 +14,7 @@
 //! ```
 
 use std::fmt;
+use std::str::FromStr;
 
 use crate::formats::array::ArrayError;
 use crate::formats::pbm::PbmError;
@@ -21,6 +22,7 @@ use crate::formats::table::TableError;
 use crate::formats::text::TextError;
 use crate::formats::{array, foreign, pbm, table, text};
 use crate::imprint::Imprint;
+use crate::parameter::UnknownName;
 
 /// No file of an imprint is larger; a larger one is refused unread. 1 MiB.
 pub const MAX_BYTES: usize = 1 << 20;
@@ -74,6 +76,20 @@ impl ImprintFormat {
             Self::Csv => table::write(imprint).into_bytes(),
             Self::Npy => array::write(imprint),
         }
+    }
+}
+
+impl fmt::Display for ImprintFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for ImprintFormat {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        UnknownName::unless_found("format", name, Self::ALL, Self::name)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Names of shapes: the same rules on every file system, so that a library can move.
 
 use std::fmt;
+use std::str::FromStr;
 
 use crate::quote::is_invisible;
 
@@ -12,7 +13,7 @@ const MOST_BYTES: usize = 200;
 
 /// A name that a file can have on every Unix-like system: 1 to 64 visible letters, digits, spaces, `-`, `_`, `.`; not starting
 /// with `.` or a space, not ending with a space.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Name(String);
 
 /// The error for text that is not a name.
@@ -115,5 +116,19 @@ pub fn folded(text: &str) -> String {
 impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
+    }
+}
+
+impl AsRef<str> for Name {
+    fn as_ref(&self) -> &str {
+        &self.0
+    }
+}
+
+impl FromStr for Name {
+    type Err = NameError;
+
+    fn from_str(text: &str) -> Result<Self, NameError> {
+        Self::new(text)
     }
 }

@@ -16,6 +16,7 @@ pub struct SetRule {
 
 /// Where a rule is from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RuleOrigin {
     /// An argument of the command.
     #[default]

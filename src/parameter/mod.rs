@@ -14,6 +14,9 @@ mod table;
 
 mod error;
 
+mod unknown_name;
+
 pub use error::ParameterError;
 pub use range::Range;
 pub use table::{PARAMETERS, Parameter, ParameterRow, Unit};
+pub use unknown_name::UnknownName;

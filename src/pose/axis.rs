@@ -1,8 +1,10 @@
 //! The axes of a pose, and one value for each of them: ranges, indices, poses.
 
+use std::fmt;
 use std::ops::{Index, IndexMut};
+use std::str::FromStr;
 
-use crate::parameter::Parameter;
+use crate::parameter::{Parameter, UnknownName};
 use crate::pose::range::DecimalRange;
 use crate::source::Source;
 
@@ -62,6 +64,20 @@ impl Axis {
     /// Whether only pictures have it.
     pub const fn is_zoom(self) -> bool {
         matches!(self, Self::ZoomX | Self::ZoomY)
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Axis {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        UnknownName::unless_found("axis", name, &Self::ALL, Self::name)
     }
 }
 
@@ -174,5 +190,19 @@ impl Anchor {
     /// ```
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|anchor| anchor.name() == name)
+    }
+}
+
+impl fmt::Display for Anchor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Anchor {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        UnknownName::unless_found("anchor", name, &Self::ALL, Self::name)
     }
 }

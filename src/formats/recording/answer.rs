@@ -15,6 +15,7 @@ use crate::frame::{Frame, Processed, Rule, SetRule};
 /// Serialises as `{"frame":65,"label":66,"time":6.5,"channel":null,"sum":…,"max":…,"rule":{…},"imprint":[…],"na":…,
 /// "regions":[…]}`; rule, imprint and NA are null without a rule. With a tare, the answer says what it was made of.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct FrameAnswer<'a> {
     /// The frame, for its number, label and time.
     pub frame: &'a Frame,
@@ -26,6 +27,19 @@ pub struct FrameAnswer<'a> {
     pub rule: Option<SetRule>,
     /// The number of frames that its tare was made of; 0 without one.
     pub tare: u64,
+}
+
+impl<'a> FrameAnswer<'a> {
+    /// The answer for a frame and what has become of it, without a channel, a rule or a tare.
+    pub fn new(frame: &'a Frame, processed: Processed<'a>) -> Self {
+        Self {
+            frame,
+            channel: None,
+            processed,
+            rule: None,
+            tare: 0,
+        }
+    }
 }
 
 impl Serialize for FrameAnswer<'_> {

@@ -35,6 +35,7 @@ pub struct FrameMark {
 
 /// How the frames of a recording are looked at while it is written, which may change meanwhile.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct RecordedView {
     /// The rule of the imprints that are shown.
     pub rule: Option<SetRule>,
@@ -46,6 +47,7 @@ pub struct RecordedView {
 
 /// What `touch.json` says.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct RecordingMetadata {
     /// The source's name.
     pub source: String,

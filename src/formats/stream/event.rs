@@ -1,7 +1,11 @@
 //! What a stream may be, what is known of it beforehand, and what its decoder reports.
 
+use std::fmt;
+use std::str::FromStr;
+
 use crate::formats::value::grouped;
 use crate::frame::Frame;
+use crate::parameter::UnknownName;
 
 /// The formats of streams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -39,6 +43,21 @@ impl StreamFormat {
     pub fn from_name(name: &str) -> Option<Self> {
         let found = Self::NAMES.iter().find(|(own, _)| *own == name);
         found.map(|(_, format)| *format)
+    }
+}
+
+impl fmt::Display for StreamFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for StreamFormat {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        let all = Self::NAMES.map(|(_, format)| format);
+        UnknownName::unless_found("format", name, &all, Self::name)
     }
 }
 

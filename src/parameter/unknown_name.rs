@@ -1,0 +1,61 @@
+//! The error for a text that is none of the names of something.
+
+use std::fmt;
+
+use crate::quote::shortened;
+
+/// The error for a text that is none of some names.
+///
+/// ```
+/// use taxel::figure::FigureKind;
+/// let error = "hexagn".parse::<FigureKind>().unwrap_err();
+/// let expected = "ellipse, rectangle, triangle, pentagon, hexagon, heptagon, octagon";
+/// assert_eq!(error.to_string(), format!("figure \"hexagn\" is unknown, expected one of {expected}"));
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct UnknownName {
+    /// What has such names: "figure".
+    pub what: &'static str,
+    /// The text, shortened.
+    pub found: String,
+    /// The names.
+    pub expected: Vec<&'static str>,
+}
+
+impl UnknownName {
+    /// Finds the one of a name.
+    ///
+    /// # Errors
+    /// If none of them is called that.
+    pub(crate) fn unless_found<T: Copy>(
+        what: &'static str,
+        found: &str,
+        all: &[T],
+        name: impl Fn(T) -> &'static str,
+    ) -> Result<T, Self> {
+        let one = all.iter().find(|&&one| name(one) == found);
+        one.copied().ok_or_else(|| Self {
+            what,
+            found: shortened(found),
+            expected: all.iter().map(|&one| name(one)).collect(),
+        })
+    }
+}
+
+impl fmt::Display for UnknownName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            what,
+            found,
+            expected,
+        } = self;
+        write!(
+            f,
+            "{what} {found:?} is unknown, expected one of {}",
+            expected.join(", ")
+        )
+    }
+}
+
+impl std::error::Error for UnknownName {}
