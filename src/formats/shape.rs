@@ -106,11 +106,12 @@ impl StoredShape {
         if text.len() > MAX_BYTES {
             return Err(ShapeError::Large);
         }
-        let file: File<'_> = serde_json::from_slice(text).map_err(|error| ShapeError::Json {
-            line: error.line(),
-            column: error.column().max(1),
-            message: message(&error),
-        })?;
+        let file: ShapeFile<'_> =
+            serde_json::from_slice(text).map_err(|error| ShapeError::Json {
+                line: error.line(),
+                column: error.column().max(1),
+                message: message(&error),
+            })?;
         if !file.format {
             return Err(ShapeError::Missing("format"));
         }
@@ -181,7 +182,7 @@ impl<'de> Deserialize<'de> for SensorRecord {
 
 /// A file's keys.
 #[derive(Default)]
-struct File<'a> {
+struct ShapeFile<'a> {
     /// Whether it says that it is one of [`FORMAT`].
     format: bool,
     /// Its name.
@@ -194,16 +195,16 @@ struct File<'a> {
     source: Option<Record<'a>>,
 }
 
-impl<'de: 'a, 'a> Deserialize<'de> for File<'a> {
+impl<'de: 'a, 'a> Deserialize<'de> for ShapeFile<'a> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct FileVisitor;
-        impl<'de> Visitor<'de> for FileVisitor {
-            type Value = File<'de>;
+        struct ShapeVisitor;
+        impl<'de> Visitor<'de> for ShapeVisitor {
+            type Value = ShapeFile<'de>;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a stored shape")
             }
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-                let mut file = File::default();
+                let mut file = ShapeFile::default();
                 let mut seen: Vec<String> = Vec::new();
                 while let Some(key) = map.next_key::<String>()? {
                     if seen.contains(&key) {
@@ -238,6 +239,6 @@ impl<'de: 'a, 'a> Deserialize<'de> for File<'a> {
                 Ok(file)
             }
         }
-        deserializer.deserialize_map(FileVisitor)
+        deserializer.deserialize_map(ShapeVisitor)
     }
 }
