@@ -89,7 +89,26 @@ pub enum RecorderError {
 /// No description is longer.
 const LARGEST_DESCRIPTION: u64 = 1 << 22;
 
-/// Writes frames to a file.
+/// Writes frames to a file, until [`Self::finish`] ends the recording and says what went wrong.
+///
+/// Dropped without that, it writes out the frames that wait, as far as the system lets it, and the description does not say
+/// that the recording was ended.
+///
+/// ```
+/// use taxel::acquire::{FrameRecorder, description_beside};
+/// use taxel::formats::recording::RecordingMetadata;
+/// use taxel::frame::Frame;
+/// use taxel::storage::Existing;
+/// # let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("touch.npy");
+/// let mut metadata = RecordingMetadata::default();
+/// metadata.unit = Some("kPa".to_owned());
+/// let mut recorder = FrameRecorder::create(&path, Existing::Kept, &metadata)?;
+/// recorder.add(&Frame::new(16, 16), Some(0.0))?;
+/// assert_eq!(recorder.finish()?, 1);
+/// assert_eq!(description_beside(&path).unwrap()?.ended, Some(true));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct FrameRecorder {
     path: PathBuf,
@@ -502,8 +521,18 @@ impl FrameRecorder {
         let described = self
             .write_description()
             .or_else(|error| self.overwrite_description().map_err(|_| error));
+        // What could not be written is not tried again.
+        self.buffer.clear();
         written.and(synced).and(described)?;
         Ok(self.records)
+    }
+}
+
+impl Drop for FrameRecorder {
+    fn drop(&mut self) {
+        if matches!(self.names, Names::Given) && !self.buffer.is_empty() {
+            let _ = self.write_out();
+        }
     }
 }
 
@@ -663,6 +692,31 @@ mod tests {
             let beside = description_beside(&path).expect("there").expect("read");
             assert_eq!(beside.marks, marks);
         }
+    }
+
+    #[test]
+    fn a_recorder_that_is_dropped_leaves_its_frames_but_no_end() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let metadata = RecordingMetadata::default();
+        let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
+        let mut recorder = recorder.expect("begun");
+        for _ in 0..3 {
+            recorder.add(&Frame::new(1, 1), None).expect("recorded");
+        }
+        drop(recorder);
+        let bytes = std::fs::read(&path).expect("there");
+        assert_eq!(
+            bytes[..],
+            [header(Some((1, 1)), 3), bytes[256..].to_vec()].concat()
+        );
+        assert_eq!(bytes.len(), 256 + 3 * 24);
+        let beside = description_beside(&path).expect("there").expect("read");
+        assert_eq!(beside.ended, Some(false));
+        // Before its first frame, none of it is there.
+        let path = folder.path().join("b.npy");
+        drop(FrameRecorder::create(&path, Existing::Kept, &metadata));
+        assert_eq!(std::fs::read_dir(folder.path()).expect("read").count(), 2);
     }
 
     #[test]
