@@ -293,13 +293,7 @@ impl Model {
         const CHUNK: u64 = 50;
         /// Chunks whose counts are held at a time: a billion touches would take gigabytes.
         const HELD: usize = 4096;
-        let &NoisyTouches {
-            size,
-            noise,
-            random_dead,
-            per_shape,
-            seed,
-        } = touches;
+        let (size, per_shape) = (touches.size, touches.per_shape);
         let shifts = |key: usize| {
             let key = self.keys().get(key);
             shift_count((key.width, key.height), size)
@@ -311,9 +305,9 @@ impl Model {
         let stopped = AtomicBool::new(false);
         let rate = |(shape, chunk): (usize, u64)| {
             let number = crate::index::index(chunk) * draws.len() + shape;
-            let mut random = generator(seed, number as u64);
+            let mut random = generator(touches.seed, number as u64);
             // From the last task down: independent of all touches, and the same for any noise.
-            let mut random_of_dead = generator(seed, !(number as u64));
+            let mut random_of_dead = generator(touches.seed, !(number as u64));
             let mut rate = ShapeRate::default();
             for _ in 0..CHUNK.min(per_shape - chunk * CHUNK) {
                 if stopped.load(Ordering::Relaxed) {
@@ -322,9 +316,9 @@ impl Model {
                 let Some(key) = draws[shape].key(&mut random) else {
                     break;
                 };
-                let dead = random_taxels(size, random_dead, &mut random_of_dead);
-                let touch = self.touch_of(key, size, &noise, &mut random);
-                rate.count(shape, &judge(&touch.without(&dead), &dead));
+                let dead = random_taxels(size, touches.random_dead, &mut random_of_dead);
+                let touch = self.touch_of(key, touches, &mut random).without(&dead);
+                rate.count(shape, &judge(&touch, &dead));
                 if !progress(1) {
                     stopped.store(true, Ordering::Relaxed);
                 }
@@ -349,13 +343,8 @@ impl Model {
     }
 
     /// A key in a random place, with random flips.
-    fn touch_of(
-        &self,
-        key: usize,
-        (columns, rows): (u8, u8),
-        noise: &Noise,
-        random: &mut Pcg64,
-    ) -> Imprint {
+    fn touch_of(&self, key: usize, touches: &NoisyTouches, random: &mut Pcg64) -> Imprint {
+        let ((columns, rows), noise) = (touches.size, &touches.noise);
         let key = self.keys().get(key);
         let mut touch = Imprint::empty(columns, rows);
         let column = below(random, u64::from(columns - key.width) + 1);
