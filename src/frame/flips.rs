@@ -50,7 +50,7 @@ pub struct FlipReport {
     pub flips: u64,
     /// The probability that a taxel flips; None without three frames, or if it seems to be ½ or more.
     pub noise: Option<f64>,
-    /// The standard error of that, assuming independent flips.
+    /// The standard error of that, if flips are independent of each other.
     pub standard_error: Option<f64>,
     /// Taxels that are stuck on.
     pub stuck_on: Imprint,
@@ -165,13 +165,24 @@ impl FlipCounter {
 
 /// The flip probability e at which the given share of repeated states differs, and its standard error: that of the share
 /// times the slope of e over it.
+///
+/// A share p of `repeated` independent states would have the variance p (1 − p) / repeated. But each frame is the first, the
+/// middle and the last of three, so states that are one or two frames apart are correlated. Let z be 1 − p where a state is
+/// repeated and differs, −p where it is repeated and does not, and 0 elsewhere. With a = e (1 − e) = p / (1 + 2p), which is
+/// the probability of the first, z has the variance a (1 − p), and its covariances with the next z and the one after that
+/// are a² (3 − 4p) and a p² (1 − 4a). These count twice. `related` is the sum over a; the variance of the share is p / repeated
+/// times that.
 #[expect(clippy::cast_precision_loss, reason = "an estimate")]
 fn noise(flips: u64, repeated: u64) -> Option<(f64, f64)> {
     if repeated == 0 {
         return None;
     }
     let share = flips as f64 / repeated as f64;
-    let of_share = (flips.max(1) as f64).sqrt() / repeated as f64;
+    let related = {
+        let a = share / (1.0 + 2.0 * share);
+        1.0 - share + 2.0 * a * (3.0 - 4.0 * share) + 2.0 * share * share * (1.0 - 4.0 * a)
+    };
+    let of_share = (flips.max(1) as f64 * related).sqrt() / repeated as f64;
     let growth = 1.0 + 2.0 * share;
     // e (1 - e)
     let product = share / growth;
@@ -194,14 +205,35 @@ mod tests {
     }
 
     #[test]
-    fn the_error_of_the_noise_is_that_of_the_flips_times_the_slope() {
-        for flips in [10_000, 100_000, 400_000] {
-            let repeated = 1_000_000;
-            let (noise_at, error) = noise(flips, repeated).expect("below a half");
-            let (later, _) = noise(flips + 100, repeated).expect("below a half");
-            let slope = (later - noise_at) / 1e-4;
-            let of_share = f64::from(u32::try_from(flips).expect("small")).sqrt() / 1e6;
-            assert!((error / (slope * of_share) - 1.0).abs() < 1e-3, "{flips}");
+    fn the_error_of_the_noise_is_how_far_recordings_differ() {
+        let mut state = 3;
+        let cells = Imprint::from_rows(["########"; 8].iter().copied()).expect("rows");
+        for percent in [2, 10, 20, 30] {
+            let mut recording = || {
+                let mut counter = FlipCounter::new(cells);
+                for _ in 0..40 {
+                    let mut imprint = Imprint::empty(8, 8);
+                    for row in 0..8 {
+                        for column in 0..8 {
+                            imprint.set(column, row, next(&mut state) % 100 < percent);
+                        }
+                    }
+                    counter.add(&imprint);
+                }
+                let report = counter.finish();
+                let found = (report.noise, report.standard_error);
+                (found.0.expect("below a half"), found.1.expect("as well"))
+            };
+            let found: Vec<(f64, f64)> = (0..400).map(|_| recording()).collect();
+            let mean = found.iter().map(|own| own.0).sum::<f64>() / 400.0;
+            let apart = found.iter().map(|own| (own.0 - mean).powi(2));
+            let apart = (apart.sum::<f64>() / 399.0).sqrt();
+            let error = found.iter().map(|own| own.1).sum::<f64>() / 400.0;
+            // The deviation of 400 recordings is known to 3.5 %.
+            assert!(
+                (apart / error - 1.0).abs() < 0.11,
+                "{percent} %: {apart}, {error}"
+            );
         }
     }
 
