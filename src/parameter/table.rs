@@ -288,7 +288,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
         key: "zoom_x",
         label: "Zoom x",
         short: "zoom x",
-        meaning: "scale along x, of the picture and of x0",
+        meaning: "scale along x, of the picture and of its corner x0",
         ..ZOOM
     },
     ParameterRow {
@@ -296,7 +296,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
         key: "zoom_y",
         label: "Zoom y",
         short: "zoom y",
-        meaning: "scale along y, of the picture and of y0",
+        meaning: "scale along y, of the picture and of its corner y0",
         ..ZOOM
     },
     ParameterRow {

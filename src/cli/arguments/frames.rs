@@ -94,7 +94,10 @@ pub(crate) fn command() -> Command {
     let label = option("label", "L", "The frame that the recording itself labels L")
         .allow_hyphen_values(true)
         .value_parser(whole::<i64>(..));
-    let peak = switch("peak", "The frame with the greatest sum of values");
+    let peak = switch(
+        "peak",
+        "The frame with the greatest sum, after tare and gain",
+    );
     let every = switch("all", "All frames, one after the other");
     let flips = switch(
         "noise-report",
