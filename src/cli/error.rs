@@ -20,6 +20,9 @@ use crate::storage::{ArchiveFileError, FileError, LibraryError};
 use crate::sweep::MergeError;
 use crate::tui::script::runner;
 
+/// The most shapes of a table of pairs, which takes a gigabyte then.
+pub(crate) const MOST_PAIRED: usize = 4096;
+
 /// Why a command failed, or was not done completely.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CliError {
@@ -182,6 +185,12 @@ pub(crate) enum CliError {
     TooManyShapes {
         /// The file.
         name: String,
+        /// How many.
+        shapes: usize,
+    },
+    /// A set that is too large for a table of all pairs.
+    #[error("--pairs: the model has {shapes} shapes (allowed: up to {MOST_PAIRED})")]
+    TooManyPairs {
         /// How many.
         shapes: usize,
     },

@@ -8,6 +8,8 @@
 pub struct ConfusionMatrix {
     /// For each shape the names that its touches are given, in the order of the set, with the number of touches.
     rows: Vec<Vec<(usize, u128)>>,
+    /// The sum of each column.
+    named: Vec<u128>,
 }
 
 impl ConfusionMatrix {
@@ -15,11 +17,13 @@ impl ConfusionMatrix {
     pub(super) fn new(shapes: usize) -> Self {
         Self {
             rows: vec![Vec::new(); shapes],
+            named: vec![0; shapes],
         }
     }
 
     /// Adds touches of one shape that are named as another one, or as itself.
     pub(super) fn add(&mut self, touched: usize, named: usize, touches: u128) {
+        self.named[named] += touches;
         let row = &mut self.rows[touched];
         match row.binary_search_by_key(&named, |&(name, _)| name) {
             Ok(index) => row[index].1 += touches,
@@ -45,10 +49,9 @@ impl ConfusionMatrix {
         row.map(|&(_, touches)| touches).sum()
     }
 
-    /// Returns how many touches are named as a shape.
+    /// Returns how many touches are named as a shape; 0 if there is no such shape.
     pub fn touches_named(&self, shape: usize) -> u128 {
-        let shapes = 0..self.shapes();
-        shapes.map(|touched| self.get(touched, shape)).sum()
+        self.named.get(shape).into_iter().sum()
     }
 
     /// Iterates over the cells above 0, row by row: the shape that is touched, the one that is named, the touches.

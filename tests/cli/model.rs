@@ -690,6 +690,24 @@ fn ascii_is_kept_to() {
     }
 }
 
+/// A table of 20,000 shapes would take 12 GB and more.
+#[test]
+fn a_table_of_pairs_has_a_bound() {
+    let place = Place::new();
+    let line = |number: u32| {
+        format!("{{\"name\":\"{number}\",\"figure\":\"rectangle\",\"length\":2,\"width\":1}}\n")
+    };
+    let lines: String = (0..4097).map(line).collect();
+    fs::write(place.path("many.jsonl"), lines).expect("written");
+    place.done("model train many.jsonl --positions 1 --angle 0 --out many.npz --quiet");
+    let run = place.run("model confusion many.npz --pairs", "");
+    refused(
+        &run,
+        1,
+        "--pairs: the model has 4097 shapes (allowed: up to 4096)",
+    );
+}
+
 #[test]
 fn shapes_that_are_never_told_apart_have_no_number_of_touches() {
     let place = Place::new();

@@ -12,7 +12,7 @@ use crate::cli::arguments::model::confusion::{ConfusionArguments, Evaluated};
 use crate::cli::commands::export::{ending, put, written};
 use crate::cli::commands::model;
 use crate::cli::commands::noise;
-use crate::cli::error::CliError;
+use crate::cli::error::{CliError, MOST_PAIRED};
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
@@ -46,7 +46,7 @@ pub(crate) fn confusion(
             shown(asked, &reached.evaluation, Some(&reached), charset)
         }
         Evaluated::Greedy => Ok(chosen(&model, asked, charset)),
-        Evaluated::Pairs => Ok(pairs(&model, as_json, charset)),
+        Evaluated::Pairs => pairs(&model, as_json, charset),
         Evaluated::AllClassifiers => all_classifiers(&model, asked, charset),
         Evaluated::Noise(noise) => noise::degradation(&model, noise, asked, charset),
         Evaluated::HalfStep => noise::half_step(&model, asked, charset),
@@ -76,14 +76,21 @@ fn chosen(model: &Model, asked: &ConfusionArguments, charset: Charset) -> String
 }
 
 /// The error of the best classifier for each pair of shapes, as if there were no others.
-fn pairs(model: &Model, as_json: bool, charset: Charset) -> String {
+///
+/// # Errors
+/// [`CliError::TooManyPairs`] of a model whose table would take gigabytes.
+fn pairs(model: &Model, as_json: bool, charset: Charset) -> Result<String, CliError> {
+    let shapes = model.shapes().len();
+    if shapes > MOST_PAIRED {
+        return Err(CliError::TooManyPairs { shapes });
+    }
     let errors = model.pair_errors();
     let names = model.shapes().iter().map(|shape| shape.name.clone());
     let labels: Vec<String> = names.collect();
     if !as_json {
-        return evaluation::pairs(&labels, &errors, charset);
+        return Ok(evaluation::pairs(&labels, &errors, charset));
     }
-    json::ascii(&json!({"labels": labels, "errors": errors})) + "\n"
+    Ok(json::ascii(&json!({"labels": labels, "errors": errors})) + "\n")
 }
 
 /// The errors of all other classifiers beside the limit. Writes them to a file of commas too, if one is asked for.
