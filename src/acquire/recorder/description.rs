@@ -1,0 +1,119 @@
+//! The description beside an array, `touch.json` of `touch.npy`.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use crate::acquire::recorder::error::{RecorderError, refused};
+use crate::formats::recording::RecordingMetadata;
+use crate::storage::{Existing, FinishedFile, UnfinishedFile};
+
+/// No description is longer.
+const LARGEST_DESCRIPTION: u64 = 1 << 22;
+
+/// What the description is to say. To write it takes as long as the disk does, and needs no recorder, to
+/// which frames can be added meanwhile:
+/// ```text
+/// set_view -> DescriptionDraft -> prepare -> take_description -> name_description
+/// ```
+#[derive(Debug)]
+pub(crate) struct DescriptionDraft {
+    /// The array.
+    pub(super) path: PathBuf,
+    pub(super) metadata: RecordingMetadata,
+}
+
+impl DescriptionDraft {
+    /// Writes it, on disk but without its name. What lies under that name does not matter yet: the array may get its own
+    /// meanwhile, and the description before this one with it.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(crate) fn prepare(&self) -> Result<FinishedFile, RecorderError> {
+        prepared(&self.path, Existing::Replaced, &self.metadata)
+    }
+}
+
+/// Gives a description its name.
+///
+/// # Errors
+/// What the system reports.
+pub(crate) fn name_description(file: FinishedFile) -> Result<(), RecorderError> {
+    file.persist().map_err(refused)
+}
+
+/// The description, on disk but without its name.
+///
+/// # Errors
+/// What the system reports.
+pub(super) fn prepared(
+    array: &Path,
+    existing: Existing,
+    metadata: &RecordingMetadata,
+) -> Result<FinishedFile, RecorderError> {
+    let path = array.with_extension("json");
+    let json = metadata.text().map_err(|error| RecorderError::Io {
+        path: path.clone(),
+        error: error.into(),
+    })?;
+    let prepare = || {
+        let mut file = UnfinishedFile::new(&path, existing)?;
+        file.write(&json)?;
+        file.finish()
+    };
+    prepare().map_err(refused)
+}
+
+/// Writes the description over the old one, where a full disk has no room for both.
+///
+/// # Errors
+/// What the system reports.
+pub(super) fn overwrite(array: &Path, metadata: &RecordingMetadata) -> io::Result<()> {
+    let text = metadata.text()?;
+    let path = array.with_extension("json");
+    let mut file = File::options().write(true).open(path)?;
+    let old = file.seek(SeekFrom::End(0))?;
+    let missing = (text.len() as u64).saturating_sub(old);
+    // Blanks change nothing. The text is replaced only if there is room for them.
+    if let Err(error) = io::copy(&mut io::repeat(b' ').take(missing), &mut file) {
+        file.set_len(old)?;
+        return Err(error);
+    }
+    file.seek(SeekFrom::Start(0))?;
+    file.write_all(&text)?;
+    file.set_len(text.len() as u64)?;
+    file.sync_all()
+}
+
+/// Whether a path ends as the file of an array does.
+pub(super) fn is_array(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"))
+}
+
+/// The description beside an array, `touch.json` of `touch.npy`. None where there is none, or what is there is something
+/// else.
+///
+/// # Errors
+/// What is wrong with it, or why it cannot be read, headed by its path.
+pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, String>> {
+    if !is_array(path) {
+        return None;
+    }
+    let beside = path.with_extension("json");
+    let content = || {
+        let mut bytes = Vec::new();
+        // To open a pipe would wait for its writer.
+        if beside.metadata()?.is_file() {
+            let file = File::open(&beside)?;
+            file.take(LARGEST_DESCRIPTION).read_to_end(&mut bytes)?;
+        }
+        Ok::<_, io::Error>(bytes)
+    };
+    let read = match content() {
+        Ok(bytes) => RecordingMetadata::read(&bytes)?,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
+        Err(error) => Err(format!("cannot read: {error}")),
+    };
+    Some(read.map_err(|error| format!("{}: {error}", beside.display())))
+}

@@ -1,0 +1,431 @@
+//! Writes frames to a file that numpy and taxel can open at any moment, even after the program was killed.
+//!
+//! Beside `touch.npy`, an array of records, lies `touch.json`, which says where the frames are from and how they were
+//! looked at. The two get their names together, so there is never one of these beside an older one of the other.
+//! `touch.json` says whether the recording was ended; that of a killed program does not.
+//!
+//! No file appears or is replaced until the first frame arrives. A disk that is full ends a recording after its last
+//! whole record, and the description says why.
+
+mod error;
+
+mod syncer;
+
+mod record_array;
+
+mod description;
+
+use std::collections::VecDeque;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use description::{DescriptionDraft, is_array, overwrite, prepared};
+use error::refused;
+use record_array::{RecordArray, empty};
+
+pub use description::description_beside;
+#[cfg(feature = "tui")]
+pub(crate) use description::name_description;
+pub use error::RecorderError;
+
+use crate::formats::recording::{RecordedView, RecordingMetadata};
+use crate::formats::seconds::usual_step;
+use crate::frame::Frame;
+use crate::storage::{Existing, FinishedFile, UnfinishedFile, persist_pair};
+
+/// The step is that of the last frames, this many at most.
+const MOST_STEPS: usize = 4096;
+
+/// Writes frames to a file, until [`Self::finish`] ends the recording and says what went wrong.
+///
+/// Dropped without that, it writes out the frames that wait, as far as the system lets it, and the description does not say
+/// that the recording was ended.
+///
+/// ```
+/// use taxel::acquire::{FrameRecorder, description_beside};
+/// use taxel::formats::recording::RecordingMetadata;
+/// use taxel::frame::Frame;
+/// use taxel::storage::Existing;
+/// # let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("touch.npy");
+/// let mut metadata = RecordingMetadata::default();
+/// metadata.unit = Some("kPa".to_owned());
+/// let mut recorder = FrameRecorder::create(&path, Existing::Kept, &metadata)?;
+/// recorder.add(&Frame::new(16, 16), Some(0.0))?;
+/// assert_eq!(recorder.finish()?, 1);
+/// assert_eq!(description_beside(&path).unwrap()?.ended, Some(true));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct FrameRecorder {
+    path: PathBuf,
+    /// What happens to files that are there when they get their names.
+    existing: Existing,
+    metadata: RecordingMetadata,
+    names: Names,
+    array: RecordArray,
+    /// Frames of another size than the first one.
+    left_out: u64,
+    /// What went wrong first.
+    reason: Option<String>,
+    /// The time of the last frame.
+    last_time: Option<f64>,
+    /// The times between the last frames.
+    steps: VecDeque<f64>,
+}
+
+/// Whether array and description have their names.
+#[derive(Debug)]
+enum Names {
+    /// They get them with the first frame.
+    Waiting(FinishedFile, FinishedFile),
+    /// They have them.
+    Given,
+    /// They did not get them. What lies there is not of this recording, and stays as it is.
+    Refused,
+}
+
+impl FrameRecorder {
+    /// Creates the file, whose name ends in `.npy`, and `.json` beside it: both, or none. They appear with the first frame,
+    /// and what is to be replaced stays until then.
+    ///
+    /// # Errors
+    /// If the name ends otherwise, if one of the two is there and is to be kept, if what is there under the second name is no
+    /// description, or if they cannot be created.
+    pub fn create(
+        path: &Path,
+        existing: Existing,
+        metadata: &RecordingMetadata,
+    ) -> Result<Self, RecorderError> {
+        if !is_array(path) {
+            let path = path.to_owned();
+            return Err(RecorderError::Ending { path });
+        }
+        let beside = path.with_extension("json");
+        let is_there = existing == Existing::Replaced && beside.symlink_metadata().is_ok();
+        if is_there && description_beside(path).is_none() {
+            return Err(RecorderError::Foreign { path: beside });
+        }
+        let mut metadata = metadata.clone();
+        metadata.ended = Some(false);
+        let array = || {
+            let mut array = UnfinishedFile::new(path, existing)?;
+            array.write(&empty())?;
+            Ok((array.handle()?, array.finish()?))
+        };
+        let (file, array) = array().map_err(refused)?;
+        let description = prepared(path, existing, &metadata)?;
+        Ok(Self {
+            path: path.to_owned(),
+            existing,
+            metadata,
+            names: Names::Waiting(array, description),
+            left_out: 0,
+            reason: None,
+            last_time: None,
+            steps: VecDeque::with_capacity(MOST_STEPS),
+            array: RecordArray::new(file),
+        })
+    }
+
+    /// Writes the description beside the file anew.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub fn describe(&mut self, metadata: &RecordingMetadata) -> Result<(), RecorderError> {
+        self.metadata.clone_from(metadata);
+        self.metadata.ended = Some(false);
+        let written = self.write_description();
+        self.noted(written)
+    }
+
+    /// Replaces threshold, tare and marks in the description.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub fn change_view(&mut self, view: RecordedView) -> Result<(), RecorderError> {
+        self.set_view(view);
+        let written = self.write_description();
+        self.noted(written)
+    }
+
+    /// The same for a caller who writes the description itself: see [`DescriptionDraft`].
+    pub(crate) fn set_view(&mut self, view: RecordedView) -> DescriptionDraft {
+        let RecordedView { rule, tare, marks } = view;
+        (self.metadata.rule, self.metadata.tare, self.metadata.marks) = (rule, tare, marks);
+        self.draft()
+    }
+
+    /// Keeps the reason of the first failure for the description.
+    fn noted<T>(&mut self, result: Result<T, RecorderError>) -> Result<T, RecorderError> {
+        if let Err(error) = &result {
+            self.note_failure(error);
+        }
+        result
+    }
+
+    /// Keeps the reason of a failure for the description, if it is the first.
+    pub(crate) fn note_failure(&mut self, error: &RecorderError) {
+        self.reason.get_or_insert_with(|| match error {
+            RecorderError::Io { error, .. } => error.to_string(),
+            error => error.to_string(),
+        });
+    }
+
+    fn draft(&self) -> DescriptionDraft {
+        DescriptionDraft {
+            path: self.path.clone(),
+            metadata: self.metadata.clone(),
+        }
+    }
+
+    /// Takes a description that is on the disk, to give it its name together with the array. Returns it if the array has its
+    /// name already: it is to be given its own at once.
+    pub(crate) fn take_description(&mut self, file: FinishedFile) -> Option<FinishedFile> {
+        match &mut self.names {
+            Names::Waiting(_, description) => *description = file.with_existing(self.existing),
+            Names::Given => return Some(file),
+            Names::Refused => {}
+        }
+        None
+    }
+
+    fn write_description(&mut self) -> Result<(), RecorderError> {
+        let file = self.draft().prepare()?;
+        self.take_description(file).map_or(Ok(()), name_description)
+    }
+
+    /// Number of frames that were recorded.
+    pub fn frames(&self) -> u64 {
+        self.array.records()
+    }
+
+    /// Number of frames that were not, since they are of another size than the first one: an array has one size.
+    pub fn left_out(&self) -> u64 {
+        self.left_out
+    }
+
+    /// Rows and columns of the frames that are recorded; None before the first one.
+    pub fn size(&self) -> Option<(u16, u16)> {
+        self.array.size()
+    }
+
+    /// Records a frame, with its time in seconds; one of another size than the first is left out and counted.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn add(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), RecorderError> {
+        let added = self.take(frame, time);
+        self.noted(added)
+    }
+
+    fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), RecorderError> {
+        let found = (frame.rows(), frame.columns());
+        if self.array.size().is_none() {
+            let begun = self.array.begin(found);
+            begun.map_err(|error| self.refused(error))?;
+        }
+        self.names = match std::mem::replace(&mut self.names, Names::Refused) {
+            Names::Waiting(array, description) => {
+                self.array
+                    .move_to(persist_pair(array, description).map_err(refused)?);
+                Names::Given
+            }
+            names => names,
+        };
+        if self.array.size() != Some(found) {
+            self.left_out += 1;
+            return Ok(());
+        }
+        if let Some(time) = time {
+            if self.steps.len() == MOST_STEPS {
+                self.steps.pop_front();
+            }
+            let last = self.last_time.replace(time);
+            self.steps.extend(last.map(|last| time - last));
+        }
+        let added = self.array.add(frame, time);
+        added.map_err(|error| self.refused(error))
+    }
+
+    /// Writes out what waits for too long; to be called now and then.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub fn tick(&mut self) -> Result<(), RecorderError> {
+        let written = self.array.tick();
+        let written = written.map_err(|error| self.refused(error));
+        self.noted(written)
+    }
+
+    /// Writes out everything that waits, and waits until it is synced; for a source that pauses, perhaps for ever.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub fn flush(&mut self) -> Result<(), RecorderError> {
+        if !matches!(self.names, Names::Given) {
+            return Ok(());
+        }
+        let written = self.array.write_out().and_then(|()| self.array.sync());
+        let written = written.map_err(|error| self.refused(error));
+        self.noted(written)
+    }
+
+    fn refused(&self, error: io::Error) -> RecorderError {
+        let path = self.path.clone();
+        RecorderError::Io { path, error }
+    }
+
+    /// Writes out everything, and syncs the file. Without a frame nothing appears, and what was to be replaced is there as
+    /// before.
+    ///
+    /// # Errors
+    /// What the system reports. What is in the file then is whole all the same, and the description says why it ends there.
+    pub fn finish(mut self) -> Result<u64, RecorderError> {
+        if !matches!(self.names, Names::Given) {
+            return Ok(0);
+        }
+        let written = self.array.write_out();
+        let written = written.map_err(|error| self.refused(error));
+        let written = self.noted(written);
+        let synced = self.array.end();
+        let synced = synced.map_err(|error| self.refused(error));
+        let synced = self.noted(synced);
+        if let Some(step) = usual_step(self.steps.make_contiguous())
+            && self.metadata.seconds_per_frame.is_none()
+        {
+            self.metadata.seconds_per_frame = Some(step);
+        }
+        self.metadata.ended = Some(true);
+        self.metadata.ended_by = self.reason.take();
+        let described = self
+            .write_description()
+            .or_else(|error| overwrite(&self.path, &self.metadata).map_err(|_| error));
+        // What could not be written is not tried again.
+        self.array.give_up();
+        written.and(synced).and(described)?;
+        Ok(self.array.records())
+    }
+}
+
+impl Drop for FrameRecorder {
+    fn drop(&mut self) {
+        if matches!(self.names, Names::Given) && !self.array.is_written_out() {
+            let _ = self.array.write_out();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::acquire::recorder::record_array::header;
+    use crate::formats::recording::FrameMark;
+
+    /// The recording gets its names with the first frame, at any time while a description of it is being written.
+    #[test]
+    fn a_description_is_written_while_the_first_frame_comes() {
+        for comes_first in [true, false] {
+            let folder = tempfile::tempdir().expect("a folder");
+            let path = folder.path().join("a.npy");
+            let metadata = RecordingMetadata::default();
+            let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
+            let mut recorder = recorder.expect("begun");
+            let marks = vec![FrameMark {
+                number: 7,
+                time: None,
+            }];
+            let draft = recorder.set_view(RecordedView {
+                marks: marks.clone(),
+                ..RecordedView::default()
+            });
+            let add = |recorder: &mut FrameRecorder| {
+                recorder.add(&Frame::new(1, 1), None).expect("recorded");
+            };
+            let prepare = || draft.prepare().expect("on the disk");
+            let file = if comes_first {
+                add(&mut recorder);
+                prepare()
+            } else {
+                let file = prepare();
+                add(&mut recorder);
+                file
+            };
+            let file = recorder.take_description(file).expect("to be named");
+            name_description(file).expect("named");
+            let beside = description_beside(&path).expect("there").expect("read");
+            assert_eq!(beside.marks, marks);
+        }
+    }
+
+    #[test]
+    fn a_recorder_that_is_dropped_leaves_its_frames_but_no_end() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let metadata = RecordingMetadata::default();
+        let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
+        let mut recorder = recorder.expect("begun");
+        for _ in 0..3 {
+            recorder.add(&Frame::new(1, 1), None).expect("recorded");
+        }
+        drop(recorder);
+        let bytes = std::fs::read(&path).expect("there");
+        assert_eq!(
+            bytes[..],
+            [header(Some((1, 1)), 3), bytes[256..].to_vec()].concat()
+        );
+        assert_eq!(bytes.len(), 256 + 3 * 24);
+        let beside = description_beside(&path).expect("there").expect("read");
+        assert_eq!(beside.ended, Some(false));
+        // Before its first frame, none of it is there.
+        let path = folder.path().join("b.npy");
+        drop(FrameRecorder::create(&path, Existing::Kept, &metadata));
+        assert_eq!(std::fs::read_dir(folder.path()).expect("read").count(), 2);
+    }
+
+    #[test]
+    fn what_others_have_put_there_is_not_replaced_by_a_later_description() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let metadata = RecordingMetadata::default();
+        let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
+        let mut recorder = recorder.expect("begun");
+        let beside = path.with_extension("json");
+        std::fs::write(&beside, "mine").expect("written");
+        let file = recorder.set_view(RecordedView::default()).prepare();
+        let named = recorder.take_description(file.expect("on the disk"));
+        assert!(named.is_none(), "it waits for the first frame");
+        let added = recorder.add(&Frame::new(1, 1), None);
+        assert!(matches!(added, Err(RecorderError::Exists { .. })));
+        assert_eq!(std::fs::read_to_string(&beside).expect("read"), "mine");
+    }
+
+    #[test]
+    fn only_a_description_is_replaced_beside_an_array() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let beside = path.with_extension("json");
+        let record = || {
+            let metadata = RecordingMetadata::default();
+            let mut recorder = FrameRecorder::create(&path, Existing::Replaced, &metadata)?;
+            recorder.add(&Frame::new(1, 1), None)
+        };
+        std::fs::write(&beside, "{\"mine\":1}").expect("written");
+        assert!(matches!(record(), Err(RecorderError::Foreign { .. })));
+        let kept = std::fs::read_to_string(&beside).expect("read");
+        assert_eq!((kept.as_str(), path.exists()), ("{\"mine\":1}", false));
+        std::fs::remove_file(&beside).expect("removed");
+        for _ in 0..2 {
+            record().expect("its own");
+        }
+    }
+
+    #[test]
+    fn a_recording_is_named_as_an_array() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("touch.json");
+        let metadata = RecordingMetadata::default();
+        let refused = FrameRecorder::create(&path, Existing::Replaced, &metadata);
+        assert!(matches!(refused, Err(RecorderError::Ending { .. })));
+    }
+}

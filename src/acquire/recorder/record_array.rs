@@ -1,0 +1,215 @@
+//! An array of records that grows: a file that numpy and taxel can open at any moment, even after the program was killed.
+//!
+//! A record has a time in seconds (NaN where it is not known), a number, and values. The header has room to spare and
+//! counts the records that are in the file already: they are written first, the count after them, at least twice a second,
+//! so a killed program loses less than half a second. A thread syncs the file each second: a power cut loses hardly more.
+//! It may leave a count beyond the records; then taxel reads the whole records, and numpy refuses the file. Values are
+//! f64, as every format of frame is read: nothing is rounded.
+
+use std::fs::File;
+use std::io::{self, Seek, SeekFrom, Write};
+use std::time::{Duration, Instant};
+
+use crate::acquire::recorder::syncer::Syncer;
+use crate::frame::{Frame, LARGEST_VALUE};
+use crate::index::index;
+
+/// Bytes of the header's text: with the ten before it, 256. The longest has about 150.
+const HEADER_TEXT: u16 = 246;
+
+/// Bytes before the first record.
+const HEADER: u64 = 256;
+
+/// Bytes of time and number before the values of a record.
+const RECORD_HEAD: u64 = 16;
+
+/// Records are written out after this time at the latest.
+const WRITTEN_OUT: Duration = Duration::from_millis(400);
+
+/// Bytes that wait at most; with this many, records are written out at once.
+const BUFFER: usize = 1 << 18;
+
+/// An array in a file, and the records that wait to be written into it.
+#[derive(Debug)]
+pub(super) struct RecordArray {
+    file: File,
+    /// Rows and columns of the frames; None before the first one.
+    size: Option<(u16, u16)>,
+    buffer: Vec<u8>,
+    /// Records in the file and in the buffer.
+    records: u64,
+    /// Records in the file.
+    in_file: u64,
+    written: Instant,
+    syncer: Syncer,
+}
+
+impl RecordArray {
+    /// An array without records, in a file that holds [`empty`].
+    pub(super) fn new(file: File) -> Self {
+        Self {
+            size: None,
+            buffer: Vec::new(),
+            records: 0,
+            in_file: 0,
+            written: Instant::now(),
+            syncer: Syncer::new(&file),
+            file,
+        }
+    }
+
+    /// Writes into this file from now on. It has the same content.
+    pub(super) fn move_to(&mut self, file: File) {
+        self.syncer = Syncer::new(&file);
+        self.file = file;
+    }
+
+    /// Rows and columns of the frames; None before the first one.
+    pub(super) fn size(&self) -> Option<(u16, u16)> {
+        self.size
+    }
+
+    /// Notes the size of the first frame, which is that of all.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(super) fn begin(&mut self, size: (u16, u16)) -> io::Result<()> {
+        self.size = Some(size);
+        self.count()
+    }
+
+    /// The number of records.
+    pub(super) fn records(&self) -> u64 {
+        self.records
+    }
+
+    /// Whether nothing waits to be written out.
+    pub(super) fn is_written_out(&self) -> bool {
+        self.buffer.is_empty()
+    }
+
+    /// Gives up what waits to be written out.
+    pub(super) fn give_up(&mut self) {
+        self.buffer.clear();
+    }
+
+    /// Adds a frame of the size of all frames, with its time in seconds.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(super) fn add(&mut self, frame: &Frame, time: Option<f64>) -> io::Result<()> {
+        let time = time.unwrap_or(f64::NAN);
+        self.buffer.extend(time.to_le_bytes());
+        self.buffer.extend(frame.number.to_le_bytes());
+        // Readers refuse infinite values; here they count as none.
+        let written = |&value: &f64| {
+            if value.abs() <= LARGEST_VALUE {
+                value
+            } else {
+                f64::NAN
+            }
+        };
+        let values = frame.values().iter().map(written);
+        self.buffer.extend(values.flat_map(f64::to_le_bytes));
+        self.records += 1;
+        if self.buffer.len() >= BUFFER {
+            return self.write_out();
+        }
+        self.tick()
+    }
+
+    /// Writes out what waits for too long.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(super) fn tick(&mut self) -> io::Result<()> {
+        if self.buffer.is_empty() || self.written.elapsed() < WRITTEN_OUT {
+            return Ok(());
+        }
+        self.write_out()
+    }
+
+    /// Writes out all records, then their count. What the disk has no room for stays in the buffer.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(super) fn write_out(&mut self) -> io::Result<()> {
+        let size = self.record_bytes();
+        let start = HEADER + self.in_file * size;
+        let written = self
+            .file
+            .seek(SeekFrom::Start(start))
+            .and_then(|_| self.file.write_all(&self.buffer));
+        if let Err(error) = written {
+            // The first error is the one that is reported.
+            let _ = self.keep_whole(start, size);
+            return Err(error);
+        }
+        self.buffer.clear();
+        self.in_file = self.records;
+        self.written = Instant::now();
+        self.count()?;
+        self.syncer.tick()
+    }
+
+    /// Waits until everything that was written out is on the disk.
+    ///
+    /// # Errors
+    /// What the system reports, or has reported to the thread that syncs.
+    pub(super) fn end(&mut self) -> io::Result<()> {
+        let earlier = self.syncer.end();
+        earlier.and(self.file.sync_all())
+    }
+
+    /// The same, but the thread goes on: more records may come.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub(super) fn sync(&self) -> io::Result<()> {
+        self.file.sync_data()
+    }
+
+    /// Cuts off a torn record behind `start`, and counts the whole ones.
+    fn keep_whole(&mut self, start: u64, size: u64) -> io::Result<()> {
+        let end = self.file.metadata()?.len();
+        let whole = end.saturating_sub(start) / size;
+        let whole = whole.min(self.records - self.in_file);
+        self.file.set_len(start + whole * size)?;
+        let bytes = index(whole * size);
+        self.buffer.drain(..bytes.min(self.buffer.len()));
+        self.in_file += whole;
+        self.count()
+    }
+
+    /// Bytes of a record.
+    fn record_bytes(&self) -> u64 {
+        let (rows, columns) = self.size.unwrap_or((1, 1));
+        RECORD_HEAD + 8 * u64::from(rows) * u64::from(columns)
+    }
+
+    /// Writes the header with the number of records in the file, in one piece.
+    fn count(&mut self) -> io::Result<()> {
+        let header = header(self.size, self.in_file);
+        self.file.seek(SeekFrom::Start(0))?;
+        self.file.write_all(&header)
+    }
+}
+
+/// What a file holds before the first frame comes: no records of one cell, which numpy opens too.
+pub(super) fn empty() -> Vec<u8> {
+    header(None, 0)
+}
+
+/// The header of an array of records.
+pub(super) fn header(size: Option<(u16, u16)>, records: u64) -> Vec<u8> {
+    let (rows, columns) = size.unwrap_or((1, 1));
+    let text = format!(
+        "{{'descr': [('time', '<f8'), ('number', '<u8'), ('values', '<f8', ({rows}, {columns}))], \
+         'fortran_order': False, 'shape': ({records},), }}"
+    );
+    let mut header = b"\x93NUMPY\x01\x00".to_vec();
+    header.extend(HEADER_TEXT.to_le_bytes());
+    let width = usize::from(HEADER_TEXT) - 1;
+    header.extend(format!("{text:<width$}\n").bytes());
+    header
+}
