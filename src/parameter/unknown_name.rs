@@ -59,3 +59,33 @@ impl fmt::Display for UnknownName {
 }
 
 impl std::error::Error for UnknownName {}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Display;
+    use std::str::FromStr;
+
+    use super::UnknownName;
+    use crate::description::RegionKind;
+    use crate::figure::FigureKind;
+    use crate::formats::imprint_file::ImprintFormat;
+
+    fn are_read_as_written<T>(all: &[T])
+    where
+        T: Copy + Display + FromStr<Err = UnknownName> + PartialEq,
+    {
+        for one in all {
+            assert!(one.to_string().parse() == Ok(*one), "{one}");
+            let wrong = format!("{one}.").parse::<T>().err();
+            assert!(wrong.is_some_and(|error| error.expected.len() == all.len()));
+        }
+    }
+
+    #[test]
+    fn names_are_read_as_they_are_written() {
+        are_read_as_written(&FigureKind::ALL);
+        are_read_as_written(&[RegionKind::Exterior, RegionKind::Hole]);
+        are_read_as_written(ImprintFormat::ALL);
+        assert_eq!(format!("{:>8}", FigureKind::Hexagon), " hexagon");
+    }
+}
