@@ -121,6 +121,17 @@ impl LinesDecoder {
             Some((moment, numbers)) => (Some(self.midnights.seconds(moment)), numbers),
             None => (None, line),
         };
+        self.numbers(moment, line, counts, sink);
+    }
+
+    /// Decodes a line that is not empty, without its moment.
+    fn numbers(
+        &mut self,
+        moment: Option<f64>,
+        line: &[u8],
+        counts: &mut StreamCounts,
+        sink: &mut StreamSink<'_>,
+    ) {
         let before = self.values.len();
         let room = MOST.saturating_sub(before);
         let read = numbers::read(line, &mut self.values, room);
