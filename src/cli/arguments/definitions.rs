@@ -335,8 +335,8 @@ fn library() -> Command {
         Command::new(name).about(about).after_help(examples)
     };
     let names = switch("names", "Print only the names, one per line").conflicts_with("json");
-    let own = switch("own", "Only those of your own shapes").requires("names");
-    let deleted = switch("deleted", "Only those in the trash")
+    let own = switch("own", "With --names: only your own shapes").requires("names");
+    let deleted = switch("deleted", "With --names: only those in the trash")
         .requires("names")
         .conflicts_with("own");
     let list =

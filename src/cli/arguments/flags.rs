@@ -104,10 +104,14 @@ pub(super) fn ranges_of(matches: &ArgMatches) -> GivenRanges {
 
 /// `--anchor`, the point of a shape that the ranges of x0 and y0 place.
 pub(super) fn anchor() -> Arg {
-    option("anchor", "POINT", "What x0 and y0 place: corner or centre")
-        .value_parser(parameters::one_of(Anchor::NAMES, Anchor::from_name))
-        .hide_possible_values(true)
-        .help_heading("Grid")
+    option(
+        "anchor",
+        "POINT",
+        "What x0 and y0 set: corner (default) or centre",
+    )
+    .value_parser(parameters::one_of(Anchor::NAMES, Anchor::from_name))
+    .hide_possible_values(true)
+    .help_heading("Grid")
 }
 
 /// `--jobs`, the number of threads.

@@ -218,7 +218,8 @@ pub(crate) const MODEL_EXAMPLES: &str = "\
 A model holds every imprint that its shapes can leave, and in how many poses
 each shape leaves it. So counting finds the best answer to one touch: no method
 gets a smaller share of the touches wrong.
-MODEL is the name of a model beside the library, or a file.
+MODEL is the name of a model beside the library, of one that is built in
+(figures, figures-30, shapes), or a file.
 
 Examples:
   taxel model train parts.jsonl --name parts
@@ -276,6 +277,10 @@ filling, cg_cd, cg_cd_direction. CG-CD at full precision is more of a
 fingerprint than a measurement: --round cg_cd=0.01 shows what it is worth when
 measured.
 
+Classifiers: z measures the distance to the mean of each shape in standard
+deviations; diagonal, lda and qda fit Gaussians with diagonal, common and own
+covariance; knn asks the nearest touches, template the nearest imprints.
+
 Examples:
   taxel model confusion parts
   taxel model confusion parts --given na,p --json
@@ -323,6 +328,10 @@ may be cut off and is never 'certain'. With --noise, even an imprint that no
 shape leaves gets an answer: it is compared with every key in every place on the
 matrix. With --expect, the exit status is 3 if the answer is another one, tied,
 rejected or unknown.
+
+Built-in models: 'figures', the seven figures in their default sizes;
+'figures-30', the same at about 30 cells each; 'shapes', those that come with
+taxel. 'taxel model train' makes others.
 
 Examples:
   taxel recognise imprint.txt --pose

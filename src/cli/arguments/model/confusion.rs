@@ -109,7 +109,7 @@ pub(super) fn command() -> Command {
             option(
                 "round",
                 "KEY=STEP",
-                "Measure a descriptor in steps: cg_cd=0.01",
+                "Round a descriptor to steps: cg_cd=0.01",
             )
             .action(ArgAction::Append)
             .value_parser(parse_rounding)
@@ -132,7 +132,7 @@ fn questions() -> [Arg; 4] {
         option(
             "given",
             "KEY,...",
-            "Know only these descriptors: na,p",
+            "Use only these descriptors: na,p",
         )
         .value_parser(parse_given),
         switch("greedy", "Choose descriptors one by one until none helps"),
@@ -194,7 +194,7 @@ fn noisy() -> [Arg; 5] {
     let touches = option("touches", "N", "Noisy touches of each shape; default 1000")
         .value_parser(whole::<u64>(1..=1_000_000_000))
         .requires("noise");
-    let matrix = option("matrix", "CxR", "Size of the matrix; default the model's")
+    let matrix = option("matrix", "CxR", "Size of the sensor; default the model's")
         .value_parser(parse_matrix)
         .requires("noise");
     let test = option(

@@ -27,13 +27,19 @@ pub(crate) struct TouchesArguments {
 
 /// `taxel model touches`.
 pub(super) fn command() -> Command {
-    let until = option("until", "P", "How probable one shape must be (0 to 1)")
-        .value_parser(parse_probability)
-        .default_value("0.99");
+    let until = option(
+        "until",
+        "P",
+        "How probable one shape must be (0 to 1); default 0.99",
+    )
+    .value_parser(parse_probability)
+    .default_value("0.99")
+    .hide_default_value(true);
     // The length of each run is kept until the mean is known: 120 MB of the most.
-    let runs = option("runs", "N", "Runs of each shape")
+    let runs = option("runs", "N", "Runs of each shape; default 10000")
         .value_parser(whole::<u64>(1..=10_000_000))
-        .default_value("10000");
+        .default_value("10000")
+        .hide_default_value(true);
     Command::new("touches")
         .about("Simulate how many touches it takes to name a shape")
         .after_help(MODEL_TOUCHES_EXAMPLES)

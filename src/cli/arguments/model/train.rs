@@ -74,7 +74,7 @@ pub(super) fn command() -> Command {
     .value_parser(parse_name);
     let allow_cut = switch("allow-cut", "Also take poses that the sensor cuts off");
     let anchor = anchor().help(
-        "What x0 and y0 place: corner or centre; default\n\
+        "What x0 and y0 set: corner or centre; default\n\
          corner where one of them is given, else centre",
     );
     Command::new("train")
