@@ -6,7 +6,8 @@
 //!  0 · · a █ b ·    NA   40  52  +12                 █ in both, a b in one only | descriptors of the main regions
 //! ```
 //! On a wide screen A and B stand beside the view of their differences; elsewhere Tab shows one after the other. Where there
-//! is no room for the descriptors beside a view, they are a view of their own.
+//! is no room for the descriptors beside a view, they are a view of their own. What does not fit scrolls; arrows show where
+//! there is more.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -64,8 +65,28 @@ pub struct Comparison {
     table: Vec<TableRow>,
     /// The index of the view that is shown.
     view: usize,
-    /// The number of rows of the table that are hidden above.
-    top: usize,
+    /// How many rows of the views and of the table are hidden above, where so many have no room.
+    top: u16,
+    /// How many columns of the views are hidden on the left.
+    left: u16,
+}
+
+/// Where the views and the descriptors stand.
+struct ComparedPanes {
+    /// The views.
+    views: Vec<(ComparedView, Rect)>,
+    /// The descriptors, where they are visible.
+    table: Option<Rect>,
+}
+
+/// Which taxels a view shows.
+struct ComparedWindow {
+    /// Characters of a taxel.
+    cell: u16,
+    /// The first column, and how many there are.
+    columns: (u16, u16),
+    /// The first row, and how many.
+    rows: (u16, u16),
 }
 
 impl Comparison {
@@ -82,25 +103,95 @@ impl Comparison {
             table,
             view: 0,
             top: 0,
+            left: 0,
         }
     }
 
-    /// Shows the view that comes `by` further on, the first after the last, in a room of this many columns and rows.
-    pub fn next_view(&mut self, by: i8, room: (u16, u16)) {
-        let views = self.views(room.0);
+    /// Shows the view that comes `by` further on, the first after the last, in an area of this many columns.
+    pub fn next_view(&mut self, by: i8, columns: u16) {
+        let views = self.views(columns);
         self.view = around(self.view.min(views.len() - 1), by, views.len());
     }
 
-    /// Scrolls the descriptors down by some rows, in a room of this many columns and rows.
-    pub fn scroll(&mut self, lines: i16, room: (u16, u16)) {
-        let top = self.first_row(room.1.saturating_sub(HEADING));
-        self.top = top.saturating_add_signed(isize::from(lines));
-        self.top = self.first_row(room.1.saturating_sub(HEADING));
+    /// Scrolls to the right and down; negative goes back. Returns whether anything does not fit into the area.
+    pub fn scroll(&mut self, (columns, rows): (i16, i16), area: Rect) -> bool {
+        let (most_left, most_top) = self.hidden(area);
+        let moved =
+            |now: u16, by: i16, most: u16| now.min(most).saturating_add_signed(by).min(most);
+        self.left = moved(self.left, columns, most_left);
+        self.top = moved(self.top, rows, most_top);
+        (most_left, most_top) != (0, 0)
     }
 
-    /// The first visible row of the table below its heading, in this many lines.
-    fn first_row(&self, lines: u16) -> usize {
-        self.top.min(self.table.len().saturating_sub(lines.into()))
+    /// How many columns and rows of what is visible do not fit into the area.
+    fn hidden(&self, area: Rect) -> (u16, u16) {
+        let panes = self.panes(area);
+        let [first, _] = &*self.imprints;
+        let views = panes.views.iter().map(|&(_, area)| {
+            let window = self.window(area);
+            (
+                u16::from(first.columns()) - window.columns.1,
+                u16::from(first.rows()) - window.rows.1,
+            )
+        });
+        let table = panes.table.map(|area| (0, self.rows_beyond(area.height)));
+        let all = views.chain(table);
+        all.fold((0, 0), |most, one| (most.0.max(one.0), most.1.max(one.1)))
+    }
+
+    /// How many rows of the table do not fit below its heading in this many lines.
+    fn rows_beyond(&self, lines: u16) -> u16 {
+        narrow(self.table.len()).saturating_sub(lines)
+    }
+
+    /// Where the views and the descriptors stand in the area of the page.
+    fn panes(&self, area: Rect) -> ComparedPanes {
+        let body = write::below(area, HEADING);
+        let table = self.widths().iter().sum::<u16>() + 3 * GAP;
+        let views = self.views(body.width);
+        let view = views[self.view.min(views.len() - 1)];
+        if view == Descriptors {
+            let table = Some(body);
+            return ComparedPanes {
+                views: Vec::new(),
+                table,
+            };
+        }
+        let all = 3 * self.grid(2) + table <= body.width;
+        let shown = if all { GRIDS } else { &[view] };
+        // Taxels of two characters leave the room that the descriptors need, or those of one do.
+        let beside = if views == GRIDS { table } else { 0 };
+        let room = body.width.saturating_sub(beside).max(self.grid(1));
+        let room = room.min(body.width);
+        let mut x = body.x;
+        let views = shown.iter().map(|&view| {
+            let width = self.grid(2).min((body.x + room).saturating_sub(x));
+            let place = Rect { x, width, ..body };
+            x += width;
+            (view, place)
+        });
+        let views = views.collect();
+        ComparedPanes {
+            views,
+            table: (beside > 0).then(|| write::right_of(body, x)),
+        }
+    }
+
+    /// Which taxels a view shows in an area: two characters a taxel, or one where there is no room for two.
+    fn window(&self, area: Rect) -> ComparedWindow {
+        let [first, _] = &*self.imprints;
+        let (columns, rows) = (u16::from(first.columns()), u16::from(first.rows()));
+        let room = area.width.saturating_sub(RULER);
+        let cell = if columns * 2 <= room { 2 } else { 1 };
+        let part = |all: u16, room: u16, hidden: u16| {
+            let count = room.min(all);
+            (hidden.min(all - count), count)
+        };
+        ComparedWindow {
+            cell,
+            columns: part(columns, room / cell, self.left),
+            rows: part(rows, area.height.saturating_sub(2), self.top),
+        }
     }
 
     /// Columns of a view with one character a taxel, or with two.
@@ -132,49 +223,56 @@ impl Comparison {
         self.imprints[0].differing(&self.imprints[1]).count()
     }
 
-    /// Draws a view: a heading, the rulers, two characters a taxel, or one where there is no room for two. What does not
-    /// fit at all is cut, and the heading says so.
+    /// Draws a view: a heading, the rulers, the taxels. Arrows in the heading say where there are more.
     fn draw_view(&self, view: ComparedView, theme: &Theme, buffer: &mut Buffer, area: Rect) {
         let [first, second] = &*self.imprints;
-        let (columns, rows) = (first.columns(), first.rows());
-        let room = area.width.saturating_sub(RULER);
-        let cell = if u16::from(columns) * 2 <= room { 2 } else { 1 };
-        let (wide, high) = (
-            (room / cell).min(columns.into()),
-            area.height.saturating_sub(2).min(rows.into()),
-        );
-        let meanings = ["a: only A, b: only B", "a: A, b: B"];
-        let title = match view {
-            Difference => write::first_fitting(&meanings, area.width.saturating_sub(1).into()),
-            First => "A",
-            Second => "B",
+        let window = self.window(area);
+        let (cell, (left, wide), (top, high)) = (window.cell, window.columns, window.rows);
+        let more = [
+            top > 0,
+            top + high < first.rows().into(),
+            left > 0,
+            left + wide < first.columns().into(),
+        ];
+        let arrows = more.into_iter().zip(theme.more());
+        let arrows: String = arrows
+            .filter(|(any, _)| *any)
+            .map(|(_, sign)| sign)
+            .collect();
+        let meanings: &[&str] = match view {
+            Difference => &["a: only A, b: only B", "a: A, b: B"],
+            First => &["A"],
+            Second => &["B"],
             Descriptors => return,
         };
-        let cut = wide < columns.into() || high < rows.into();
-        let title = format!("{title}{}", if cut { " (cut)" } else { "" });
-        write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+        let titles = meanings
+            .iter()
+            .map(|meaning| format!("{meaning}  {arrows}"));
+        let titles: Vec<String> = titles.map(|title| title.trim_end().to_owned()).collect();
+        let titles: Vec<&str> = titles.iter().map(String::as_str).collect();
+        let title = write::first_fitting(&titles, area.width.saturating_sub(1).into());
+        write::line(buffer, area, theme, [(title, Role::Title)]);
         let every = if cell == 1 { 5 } else { 2 };
-        let numbers = (0..wide)
-            .step_by(every)
-            .map(|column| (column, column.to_string()));
+        let numbers = (left..left + wide).filter(|column| column.is_multiple_of(every));
+        let numbers = numbers.map(|column| (column - left, column.to_string()));
         // One that does not fit would touch the descriptors.
-        for (column, number) in
-            numbers.filter(|(column, number)| column * cell + narrow(number.len()) <= wide * cell)
+        for (place, number) in
+            numbers.filter(|(place, number)| place * cell + narrow(number.len()) <= wide * cell)
         {
-            let place = write::right_of(write::row(area, 1), area.x + RULER + column * cell);
+            let place = write::right_of(write::row(area, 1), area.x + RULER + place * cell);
             write::line(buffer, place, theme, [(number.as_str(), Role::Quiet)]);
         }
-        for row in 0..high {
-            let line = write::row(area, usize::from(row) + 2);
+        for row in top..top + high {
+            let line = write::row(area, usize::from(row - top) + 2);
             let ruler = format!("{row:>2}");
             write::line(buffer, line, theme, [(ruler.as_str(), Role::Quiet)]);
-            for column in 0..wide {
+            for column in left..left + wide {
                 let at = |imprint: &Imprint| {
                     let (column, row) = (u8::try_from(column), u8::try_from(row));
                     matches!((column, row), (Ok(column), Ok(row)) if imprint.get(column, row))
                 };
                 let (signs, role) = signs(theme, view, (at(first), at(second)));
-                let x = line.x + RULER + column * cell;
+                let x = line.x + RULER + (column - left) * cell;
                 for (offset, sign) in (0..cell).zip(signs) {
                     if let Some(target) = buffer.cell_mut(Position::new(x + offset, line.y)) {
                         target.set_char(sign).set_style(theme.style(role));
@@ -190,7 +288,7 @@ impl Comparison {
         let widths = self.widths();
         let whole = widths.iter().sum::<u16>() + 3 * GAP <= area.width;
         let columns = if whole { 4 } else { 3 };
-        let top = self.first_row(area.height);
+        let top = usize::from(self.top.min(self.rows_beyond(area.height)));
         let visible = usize::from(area.height).saturating_sub(1);
         let [above, below, ..] = theme.more();
         let more = [
@@ -323,27 +421,12 @@ impl Page for Comparison {
             (second.as_str(), Role::Text),
         ];
         write::line(buffer, area, theme, pieces);
-        let body = write::below(area, HEADING);
-        let table = self.widths().iter().sum::<u16>() + 3 * GAP;
-        let views = self.views(body.width);
-        let view = views[self.view.min(views.len() - 1)];
-        if view == Descriptors {
-            self.draw_table(theme, buffer, body);
-            return None;
+        let panes = self.panes(area);
+        for (view, place) in panes.views {
+            self.draw_view(view, theme, buffer, place);
         }
-        let all = 3 * self.grid(2) + table <= body.width;
-        let shown = if all { GRIDS } else { &[view] };
-        // Taxels of two characters leave the room that the descriptors need, or those of one do.
-        let beside = if views == GRIDS { table } else { 0 };
-        let room = body.width.saturating_sub(beside).max(self.grid(1));
-        let mut x = body.x;
-        for &view in shown {
-            let width = self.grid(2).min((body.x + room).saturating_sub(x));
-            self.draw_view(view, theme, buffer, Rect { x, width, ..body });
-            x += width;
-        }
-        if beside > 0 {
-            self.draw_table(theme, buffer, write::right_of(body, x));
+        if let Some(place) = panes.table {
+            self.draw_table(theme, buffer, place);
         }
         None
     }
@@ -355,6 +438,14 @@ impl Page for Comparison {
 
     fn scrolls(&self) -> bool {
         true
+    }
+
+    fn has_use_for(&self, message: &Message, area: Rect) -> bool {
+        let scrolls = matches!(
+            message,
+            Message::Scroll(_) | Message::ScrollTo(_) | Message::Choose(_)
+        );
+        !scrolls || self.hidden(area) != (0, 0)
     }
 }
 

@@ -179,7 +179,7 @@ impl Page for Help {
         true
     }
 
-    fn has_use_for(&self, message: &Message) -> bool {
+    fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
         self.search.is_some() || !matches!(message, Message::Match(_))
     }
 

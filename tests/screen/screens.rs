@@ -5,7 +5,7 @@ use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::Options;
 use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 
-use crate::session::{hides, on, press, shows, sized, world};
+use crate::session::{hides, on, press, shows, sized, then, world};
 
 /// No size is too small for any screen, and none panics.
 #[test]
@@ -356,4 +356,37 @@ fn no_descriptor_is_cut_on_a_small_screen() {
         press(&mut alone, "i");
         assert_eq!(alone.screen(), both.screen());
     }
+}
+
+#[test]
+fn what_is_compared_scrolls_where_it_does_not_fit() {
+    let whole = sized((80, 24), false, "f<Enter>=");
+    hides(&whole, &["scroll", "↓"]);
+    shows(
+        &sized((80, 24), false, "f<Enter>=<Down>"),
+        &["all of it is visible"],
+    );
+    let mut low = sized((40, 12), false, "f<Enter>=");
+    shows(
+        &low,
+        &["arrows scroll", "only B  ↓", " 0 · · ·", "\n 5 · · ·"],
+    );
+    hides(&low, &["\n 7 "]);
+    then(
+        &mut low,
+        "<Down><Down>",
+        &["only B  ↑↓", "\n 2 · · ·", "\n 7 · · ·"],
+    );
+    then(
+        &mut low,
+        "<End>",
+        &["only B  ↑\n", "\n10 · · ·", "\n15 · · ·"],
+    );
+    then(&mut low, "<PageUp>", &["only B  ↓\n", "\n 0 · · ·"]);
+    // The descriptors go the same way, and a large sensor to the side, too.
+    then(&mut low, "<Tab><Tab><Tab><End>", &["dir "]);
+    let mut wide = sized((40, 24), false, ":sensor --columns 64<Enter>f<Enter>=");
+    shows(&wide, &["only B  →", "   0    5    10"]);
+    then(&mut wide, "<3x:Right>", &["only B  ←→", "\n     5    10"]);
+    then(&mut wide, "<60x:Right>", &["only B  ←\n"]);
 }

@@ -148,7 +148,7 @@ impl Page for Question {
         None
     }
 
-    fn has_use_for(&self, message: &Message) -> bool {
+    fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
         self.saves_first || *message != Message::Save
     }
 

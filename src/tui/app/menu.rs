@@ -173,11 +173,13 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
 
 /// Whether the top page can do something with one of the keys of a row now.
 fn useful(app: &App, row: &Binding) -> bool {
-    let Some(page) = app.dialogs.last().map(Dialog::page) else {
+    let page = app.dialogs.last().map(Dialog::page);
+    let Some((page, panes)) = page.zip(app.panes()) else {
         return true;
     };
+    let area = panes.area(page.slot());
     let mut messages = row.keys.iter().filter_map(|(_, action)| action.message());
-    messages.any(|message| page.has_use_for(message))
+    messages.any(|message| page.has_use_for(message, area))
 }
 
 /// The rows of the menu of a page other than the matrix: those of the screen that it is a page of, or its own; of a form,

@@ -75,9 +75,9 @@ pub trait Page {
         false
     }
 
-    /// Whether it can do something with a message now. Hints leave out keys whose messages it has no use for;
-    /// pressing one shows why it does nothing.
-    fn has_use_for(&self, _message: &Message) -> bool {
+    /// Whether it can do something with a message now, in the area of its slot. Hints leave out keys whose messages it
+    /// has no use for; pressing one shows why it does nothing.
+    fn has_use_for(&self, _message: &Message, _area: Rect) -> bool {
         true
     }
 

@@ -7,15 +7,17 @@ use crate::formats::value::counted;
 use crate::tui::app::change::{compare_with, inform, refuse, settle};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Reading;
-use crate::tui::app::message::{FileEvent, Message};
+use crate::tui::app::message::{Endpoint, FileEvent, Message};
 use crate::tui::app::mouse;
+use crate::tui::app::page::Page;
 use crate::tui::app::state::{App, Mode, Notice, RunState};
 use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::compare::Comparison;
 use crate::tui::help::Help;
 use crate::tui::history::HistoryDialog;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
-use crate::tui::keys::key::Key;
+use crate::tui::keys::key::{Arrow, Key};
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::live::message::LiveMessage;
 
@@ -187,15 +189,7 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Question(question) => at_question(app, question, &message),
         Dialog::Help(help) => in_help(app, help, &message),
         Dialog::Search(dialog) => in_search(app, dialog, &message),
-        Dialog::Compare(mut page) => {
-            match message {
-                Message::Field(by) => page.next_view(by, room(app)),
-                Message::Scroll(lines) => page.scroll(lines, room(app)),
-                _ => {}
-            }
-            app.dialogs.push(Dialog::Compare(page));
-            None
-        }
+        Dialog::Compare(page) => in_comparison(app, page, &message),
         Dialog::History(list) => in_history(app, list, &message),
         Dialog::Ranges(form) => explore::work::in_ranges(app, form, message),
         Dialog::Running(running) => explore::work::in_running(app, running, &message),
@@ -209,6 +203,30 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Separate(page) => recognise::separate::update::in_separate(app, page, &message),
         Dialog::Live(page) => live::update::in_live(app, page, message),
     }
+}
+
+/// Shows another view of two imprints, or scrolls what does not fit.
+fn in_comparison(app: &mut App, mut page: Comparison, message: &Message) -> Option<Effect> {
+    let by = match *message {
+        Message::Scroll(lines) => Some((0, lines)),
+        Message::ScrollTo(Endpoint::First) => Some((0, i16::MIN)),
+        Message::ScrollTo(Endpoint::Last) => Some((0, i16::MAX)),
+        Message::Choose(Arrow::Left) => Some((-1, 0)),
+        Message::Choose(Arrow::Right) => Some((1, 0)),
+        _ => None,
+    };
+    if let Some(panes) = app.panes() {
+        let area = panes.area(page.slot());
+        if let Message::Field(by) = *message {
+            page.next_view(by, area.width);
+        } else if let Some(by) = by
+            && !page.scroll(by, area)
+        {
+            inform(app, "all of it is visible");
+        }
+    }
+    app.dialogs.push(Dialog::Compare(page));
+    None
 }
 
 /// Handles a message in help, which stays open unless it is closed while something was searched for.

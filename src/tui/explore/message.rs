@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::atlas::{SortKey, sorted};
-use crate::pose::PoseGrid;
+use crate::pose::{Axis, PoseGrid};
 use crate::source::Source;
 use crate::storage::Existing;
 use crate::sweep::SweepResult;
@@ -83,6 +83,16 @@ pub enum Zoom {
     X,
     /// Along y.
     Y,
+}
+
+impl Zoom {
+    /// The axis of the grid.
+    pub fn axis(self) -> Axis {
+        match self {
+            Self::X => Axis::ZoomX,
+            Self::Y => Axis::ZoomY,
+        }
+    }
 }
 
 /// What a key or a command asks for on the pages of Explore.

@@ -408,11 +408,7 @@ impl Results {
 
     /// Shows another zoom, up to the last one.
     pub fn zoom(&mut self, zoom: Zoom, by: i8) {
-        let axis = match zoom {
-            Zoom::X => Axis::ZoomX,
-            Zoom::Y => Axis::ZoomY,
-        };
-        self.move_along(axis, by.into());
+        self.move_along(zoom.axis(), by.into());
     }
 
     /// Moves the map's cursor along an axis by a number of poses, at most to its ends.

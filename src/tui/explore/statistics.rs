@@ -110,6 +110,11 @@ impl StatisticsTable {
         }
     }
 
+    /// Whether there are columns that do not fit.
+    pub fn hides_columns(&self) -> bool {
+        self.columns.1 < STATISTIC_COLUMNS.len()
+    }
+
     /// The row at a place of the screen.
     pub fn row(&self, place: Position) -> Option<usize> {
         let row = self.first + usize::from(place.y.checked_sub(self.rows.y)?);

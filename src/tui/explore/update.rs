@@ -5,6 +5,7 @@
 //! zoom. Scrolling and selecting are left to the page's own row in [`crate::tui::explore::pages`].
 
 use crate::formats::value::{counted, grouped};
+use crate::pose::Axis;
 use crate::storage::{Existing, is_poses};
 use crate::touch::Plane;
 use crate::tui::app::change::{change, compare_with, from_prompt, inform, refuse};
@@ -77,7 +78,14 @@ pub(crate) fn in_results(
                 look(app, &mut results, asked);
             }
             let page = page_area(app, &results);
+            let before = results.closer();
             (pages::row(results.page()).update)(&mut results, &message, page);
+            if let (Message::Zoom(by), ExplorePage::Map) = (&message, results.page())
+                && results.closer() == before
+            {
+                let end = ["this is the whole range", "every pose has its letter"];
+                inform(app, end[usize::from(*by > 0)]);
+            }
         }
     }
     app.dialogs.push(Dialog::Results(results));
@@ -120,10 +128,29 @@ fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
         ExploreMessage::Find => find(app, results),
         ExploreMessage::Follow => follow(app, results),
         ExploreMessage::Point(x0, y0) => results.point(x0, y0),
-        ExploreMessage::Angle(by) => results.turn(by),
-        ExploreMessage::Zoomed(zoom, by) => results.zoom(zoom, by),
+        ExploreMessage::Angle(by) => match only_one(app, results, Axis::Angle) {
+            Some(text) => refuse(app, text),
+            None => results.turn(by),
+        },
+        ExploreMessage::Zoomed(zoom, by) => match only_one(app, results, zoom.axis()) {
+            Some(text) => refuse(app, text),
+            None => results.zoom(zoom, by),
+        },
         _ => {}
     }
+}
+
+/// Why there is no other pose along an axis; None where there is one.
+fn only_one(app: &App, results: &Results, axis: Axis) -> Option<String> {
+    let grid = &results.sweep().grid;
+    let name = axis.parameter().row().short;
+    if !grid.axes().any(|own| own == axis) {
+        return Some(format!("a figure has no {name}"));
+    }
+    let here = pages::row(results.page()).context;
+    let ranges = app.keymap().label(here, &action::RANGES);
+    let is_only = grid.counts()[axis] == 1;
+    is_only.then(|| format!("only one {name} was swept; {ranges} explores other ranges"))
 }
 
 /// Selects the imprint on the matrix, or the same one at another place.

@@ -10,11 +10,14 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
+use crate::pose::Axis;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
+use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::pages;
 use crate::tui::explore::results::Results;
+use crate::tui::explore::statistics::StatisticsTable;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::number::narrow;
@@ -73,13 +76,23 @@ impl Page for Results {
         true
     }
 
-    /// An empty list has nothing to compare, to put onto the matrix or to go to.
-    fn has_use_for(&self, message: &Message) -> bool {
-        let of_selected = matches!(
-            message,
-            Message::Accept | Message::Compare | Message::Explore(ExploreMessage::Follow)
-        );
-        !of_selected || self.pose().is_some()
+    /// An empty list has nothing to compare, to put onto the matrix or to go to. Where all columns of the statistics
+    /// are visible, all poses of the map, or the only angle, there are no others.
+    fn has_use_for(&self, message: &Message, area: Rect) -> bool {
+        let page = || ResultPanes::of(area).page;
+        match (message, self.page()) {
+            (Message::Accept | Message::Compare | Message::Explore(ExploreMessage::Follow), _) => {
+                self.pose().is_some()
+            }
+            (Message::Explore(ExploreMessage::Columns(_)), ExplorePage::Statistics) => {
+                StatisticsTable::of(page(), self).hides_columns()
+            }
+            (Message::Explore(ExploreMessage::Angle(_)), _) => {
+                self.sweep().grid.counts()[Axis::Angle] > 1
+            }
+            (Message::Zoom(_), ExplorePage::Map) => MapPane::of(page(), self).closest > 0,
+            _ => true,
+        }
     }
 
     /// Its update keeps what was found.

@@ -152,6 +152,10 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Tab => NEXT, BackTab => PREVIOUS] "view" "differences, the first, the second";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL, Char('=') => CANCEL]
             "close" "back to where you were";
+        [LEFT => LEFT, RIGHT => RIGHT, UP => SCROLL_UP, DOWN => SCROLL_DOWN]
+            "scroll" "what does not fit on the screen";
+        [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten rows up, down";
+        [Home => FIRST, End => LAST] "" "the first, the last rows";
         [Char('?') => HELP] "help" "these keys";
     }
 

@@ -65,7 +65,7 @@ impl Page for ListDialog {
     }
 
     /// An empty list has nothing to choose from. One that is still being read may have.
-    fn has_use_for(&self, message: &Message) -> bool {
+    fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
         let of_rows = matches!(
             message,
             Message::Accept | Message::Scroll(_) | Message::ScrollTo(_)

@@ -13,7 +13,7 @@ use taxel::tui::app::worker_event::WorkerEvent;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
-use crate::session::{press, session, shows, started, then, world};
+use crate::session::{hides, press, session, shows, sized, started, then, world};
 
 /// Hundreds of seconds of work, on any machine.
 const LONG: &str = ":explore --x0 0:9.999:0.001 --y0 0:9.999:0.001<Enter>";
@@ -320,6 +320,34 @@ fn columns_of_statistics_end_with_the_last() {
     assert_ne!(session.screen(), last);
     press(&mut session, "<Right>");
     assert_eq!(session.screen(), last);
+}
+
+/// A key is among the hints where it can do something, and says elsewhere why it cannot.
+#[test]
+fn keys_of_explore_that_can_do_nothing_say_so() {
+    let swept = format!("fr<Enter>{SHORT}");
+    hides(&session(&format!("{swept}2")), &["columns"]);
+    let narrow = sized((60, 20), false, &format!("{swept}2"));
+    shows(&narrow, &["Left Right columns"]);
+    for key in ["z", "Z", "w", "W"] {
+        let text = format!(
+            "! a figure has no zoom {}",
+            if "zZ".contains(key) { "x" } else { "y" }
+        );
+        shows(&session(&format!("{swept}4{key}")), &[&text]);
+    }
+    let one = "lkey<Enter>p<Enter>:explore --x0 5:5.9:0.1 --y0 5 --angle 0<Enter>4";
+    hides(&session(one), &["angle  Enter", "zoom  "]);
+    shows(
+        &session(&format!("{one}z")),
+        &["! only one zoom x was swept; e explores other ranges"],
+    );
+    shows(
+        &session(&format!("{one}>")),
+        &["! only one angle was swept; e explores other ranges"],
+    );
+    shows(&session(&format!("{one}+")), &["every pose has its letter"]);
+    shows(&session(&format!("{one}-")), &["this is the whole range"]);
 }
 
 fn any_keys() -> impl Strategy<Value = Vec<&'static str>> {
