@@ -701,3 +701,33 @@ fn the_range_and_the_first_threshold_go_by_the_values_that_are_shown() {
     shows(&page, &["range      0 ░▒▓█ 50\n"]);
     then(&mut page, "+", &["threshold  5\n"]);
 }
+
+/// On a narrow panel a line says less, but no word and no number is cut.
+#[test]
+fn narrow_numbers_are_whole() {
+    let mut page = watched(3, "t+");
+    page.frames(3);
+    shows(
+        &page,
+        &[
+            "2, largest above; NA",
+            "3 frames, 0.3 s ago",
+            "16 × 16, 256 cells",
+        ],
+    );
+    then(
+        &mut page,
+        "#",
+        &[
+            "regions    2; NA 72 in all\n",
+            "tare       3 frames\n",
+            "size       16 × 16\n",
+        ],
+    );
+    hides(&page, &["…"]);
+    let mut narrow = sized((40, 12), false, ":watch tests/scripts/touch.csv<Enter>");
+    narrow.frames(3);
+    then(&mut narrow, "t+", &[]);
+    narrow.frames(3);
+    shows(&narrow, &["CG         9.04, 8.53\n", "regions    2\n"]);
+}

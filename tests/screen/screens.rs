@@ -358,6 +358,34 @@ fn no_descriptor_is_cut_on_a_small_screen() {
     }
 }
 
+/// Where not all descriptors have room, those that are there are whole, and it says how many are not.
+#[test]
+fn descriptors_without_room_are_counted() {
+    for ascii in [false, true] {
+        let panel = sized((30, 10), ascii, "f<Enter>i");
+        shows(
+            &panel,
+            &["P     23.3137\n", "4..12", "and 7 more on a larger screen"],
+        );
+        hides(&panel, &["…", "CD "]);
+        let smallest = sized((20, 6), ascii, "f<Enter>i");
+        shows(&smallest, &["NA 52 NAE 52 CE 20\n", "and 14 more\n"]);
+    }
+    hides(&sized((40, 12), false, "f<Enter>i"), &["more"]);
+}
+
+/// A form leaves the matrix enough room to show something of it, or takes that room.
+#[test]
+fn no_ruler_is_left_above_a_form() {
+    for keys in ["f", "S", "f<Enter>e"] {
+        hides(&sized((40, 12), false, keys), &["   0    5    10"]);
+    }
+    shows(
+        &sized((40, 16), false, "f"),
+        &["   0    5    10", " 4 ·····▄████▄"],
+    );
+}
+
 #[test]
 fn what_is_compared_scrolls_where_it_does_not_fit() {
     let whole = sized((80, 24), false, "f<Enter>=");

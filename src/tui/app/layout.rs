@@ -32,6 +32,9 @@ const WIDE_FORM: u16 = 40;
 /// It gets this width at least: then ranges stand under the fields.
 const NARROW_FORM: u16 = 32;
 
+/// Lines of a form over the foot of the matrix.
+const LOW_FORM: u16 = 8;
+
 /// Lines of a form above the descriptors.
 const LONGEST_FORM: u16 = 18;
 /// Lines that the descriptors below it need at least.
@@ -169,11 +172,16 @@ fn is_roomy(panel: Rect) -> bool {
     }
 }
 
-/// The area of a form: beside the matrix, or over its foot where there is too little room; and that of the descriptors,
+/// The area of a form: beside the matrix, over its foot where there is too little room, or over all of it; and that of the descriptors,
 /// where they fit beside the form or below it.
 fn form(body: Rect, beside: Rect) -> (Rect, Option<Rect>) {
     if beside.width < FORM {
-        let height = body.height.min(8);
+        // Where less than the ruler and two lines of the matrix would be left, it is hidden.
+        let height = if body.height < LOW_FORM + 3 {
+            body.height
+        } else {
+            LOW_FORM
+        };
         let y = body.bottom() - height;
         return (Rect { y, height, ..body }, None);
     }

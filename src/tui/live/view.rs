@@ -10,7 +10,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::description::Descriptor;
+use crate::description::{Descriptor, Value};
 use crate::formats::value::{self, counted, fitting, grouped, measured};
 use crate::frame::{Rule, RuleOrigin};
 use crate::imprint::Imprint;
@@ -237,6 +237,30 @@ struct PanelLine {
     label: &'static str,
     /// The number with its unit, or why there is none.
     text: String,
+    /// The same in fewer columns, longer ones first.
+    shorter: Vec<String>,
+}
+
+impl PanelLine {
+    /// A line that has no shorter form.
+    fn new(label: &'static str, text: String) -> Self {
+        Self {
+            label,
+            text,
+            shorter: Vec::new(),
+        }
+    }
+
+    /// A line with a shorter form that leaves out what the whole says after its first `mark`.
+    fn up_to(label: &'static str, text: String, mark: &str) -> Self {
+        let shorter = text.split_once(mark).map(|(head, _)| head.to_owned());
+        let shorter = shorter.into_iter().collect();
+        Self {
+            label,
+            text,
+            shorter,
+        }
+    }
 }
 
 /// All numbers, the most important ones first.
@@ -244,37 +268,28 @@ struct PanelLine {
 /// on taxels says.
 fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> Vec<PanelLine> {
     let mut lines = Vec::new();
-    let mut say = |label, text: String| lines.push(PanelLine { label, text });
     if let Some(reading) = live.reading() {
-        for key in SHOWN {
-            if let Some(descriptor) = Descriptor::from_key(key) {
-                // An imprint without active taxels has counts; where there is no imprint, there is nothing to count.
-                let of_nothing = reading.imprint.map(|_| descriptor.of_nothing);
-                let described = reading.description.as_ref().map(descriptor.measure);
-                let measured = described.or(of_nothing);
-                let text =
-                    measured.and_then(|measured| value::text(measured, descriptor.dimension));
-                let text = text.unwrap_or_else(|| theme.none().to_owned());
-                say(descriptor.symbol, text);
-            }
-        }
-        say("regions", regions(reading));
+        let shown = SHOWN.iter().filter_map(|key| Descriptor::from_key(key));
+        lines.extend(shown.map(|descriptor| described(reading, descriptor, theme)));
+        lines.push(regions(reading));
     }
     if let Some(naming) = live.naming() {
         let shown = live.reading().and_then(|reading| reading.imprint);
         for (label, text) in named(naming, shown.as_ref()) {
-            say(label, text.unwrap_or_else(|| theme.none().to_owned()));
+            let text = text.unwrap_or_else(|| theme.none().to_owned());
+            lines.push(PanelLine::new(label, text));
         }
     }
-    say("threshold", threshold(live, keymap));
-    say("tare", tare(live));
+    lines.push(threshold(live, keymap));
+    lines.push(PanelLine::up_to("tare", tare(live), ", "));
     if let Some(reading) = live.reading() {
         lines.extend(of_values(live, reading, theme, marks));
     }
-    let mut say = |label, text: String| lines.push(PanelLine { label, text });
     let rate = live.rate().map(|rate| format!("{}/s", fitting(rate, 5)));
-    say("rate", rate.unwrap_or_else(|| theme.none().to_owned()));
-    say("lost", lost(live));
+    let rate = rate.unwrap_or_else(|| theme.none().to_owned());
+    lines.push(PanelLine::new("rate", rate));
+    lines.push(PanelLine::up_to("lost", lost(live), ", the last: "));
+    let mut say = |label, text: String| lines.push(PanelLine::new(label, text));
     say("not drawn", grouped(live.not_drawn()));
     if let Some(text) = gaps(live) {
         say("gaps", text);
@@ -291,6 +306,27 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> 
     lines
 }
 
+/// A descriptor of the imprint, a point with fewer decimals where they have no room.
+/// An imprint without active taxels has counts; where there is no imprint, there is nothing to count.
+fn described(reading: &LiveReading, descriptor: &'static Descriptor, theme: &Theme) -> PanelLine {
+    let of_nothing = reading.imprint.map(|_| descriptor.of_nothing);
+    let described = reading.description.as_ref().map(descriptor.measure);
+    let measured = described.or(of_nothing);
+    let text = measured.and_then(|measured| value::text(measured, descriptor.dimension));
+    let mut line = PanelLine::new(
+        descriptor.symbol,
+        text.unwrap_or_else(|| theme.none().to_owned()),
+    );
+    if let Some(Value::Point(point)) = measured {
+        let shorter = [2, 1, 0].map(|decimals| {
+            let [x, y] = [point.x, point.y].map(|number| value::decimal(number, decimals));
+            format!("{x}, {y}")
+        });
+        line.shorter = shorter.to_vec();
+    }
+    line
+}
+
 /// What can be said of the values of a frame.
 fn of_values(
     live: &Live,
@@ -300,7 +336,7 @@ fn of_values(
 ) -> Vec<PanelLine> {
     let unit = live.unit();
     let mut lines = Vec::new();
-    let mut say = |label, text: String| lines.push(PanelLine { label, text });
+    let mut say = |label, text: String| lines.push(PanelLine::new(label, text));
     say("range", scale(theme, live.range(), &unit));
     if let Some(marks) = marks {
         say("marks", marks);
@@ -312,10 +348,12 @@ fn of_values(
     let peak = reading
         .max
         .map(|(largest, (column, row))| format!("{}{unit} at {column}, {row}", value(largest, 9)));
-    say("peak", peak.unwrap_or_else(|| theme.none().to_owned()));
+    let peak = peak.unwrap_or_else(|| theme.none().to_owned());
+    lines.push(PanelLine::up_to("peak", peak, " at "));
     let cells = counted(cells(&reading.values) as u64, "cell");
     let (columns, rows) = (reading.values.columns(), reading.values.rows());
-    say("size", format!("{columns} × {rows}, {cells}"));
+    let size = format!("{columns} × {rows}, {cells}");
+    lines.push(PanelLine::up_to("size", size, ", "));
     lines
 }
 
@@ -347,13 +385,16 @@ fn recording(live: &Live) -> Option<String> {
 
 /// How many regions there are. If there are several, the largest is described, and the active taxels of all are
 /// counted.
-fn regions(reading: &LiveReading) -> String {
-    match reading.regions {
-        0 | 1 => reading.regions.to_string(),
-        several => {
-            let all = reading.imprint.as_ref().map_or(0, Imprint::count);
-            format!("{several}, largest above; NA {all} in all")
-        }
+fn regions(reading: &LiveReading) -> PanelLine {
+    let count = reading.regions.to_string();
+    if reading.regions < 2 {
+        return PanelLine::new("regions", count);
+    }
+    let all = reading.imprint.as_ref().map_or(0, Imprint::count);
+    PanelLine {
+        label: "regions",
+        text: format!("{count}, largest above; NA {all} in all"),
+        shorter: vec![format!("{count}; NA {all} in all"), count],
     }
 }
 
@@ -408,10 +449,16 @@ fn named(naming: &Naming, shown: Option<&Imprint>) -> [(&'static str, Option<Str
 
 /// The rule of the imprint, and where it is from.
 /// "of the file" marks one that came with a recording; one set by a key has no remark.
-fn threshold(live: &Live, keymap: &Keymap) -> String {
+fn threshold(live: &Live, keymap: &Keymap) -> PanelLine {
+    let label = "threshold";
     let Some(set) = live.rule() else {
         let key = keymap.label(Context::Live, &action::THRESHOLD_UP);
-        return format!("none; {key} sets one");
+        let shorter = vec![format!("none ({key})"), "none".to_owned()];
+        return PanelLine {
+            label,
+            text: format!("none; {key} sets one"),
+            shorter,
+        };
     };
     let unit = live.unit();
     let text = match set.rule {
@@ -423,8 +470,10 @@ fn threshold(live: &Live, keymap: &Keymap) -> String {
         Rule::Noise(deviations) => format!("{} × noise", fitting(deviations, 5)),
     };
     match set.from {
-        RuleOrigin::File => format!("{text}, of the file"),
-        RuleOrigin::Flag | RuleOrigin::Settings | RuleOrigin::Key => text,
+        RuleOrigin::File => PanelLine::up_to(label, format!("{text}, of the file"), ", of"),
+        RuleOrigin::Flag | RuleOrigin::Settings | RuleOrigin::Key => {
+            PanelLine::up_to(label, text, " of the peak")
+        }
     }
 }
 
@@ -465,9 +514,14 @@ fn lost(live: &Live) -> String {
 
 /// Draws the lines from the top; those below the area are left out.
 fn draw_lines(lines: &[PanelLine], theme: &Theme, buffer: &mut Buffer, area: Rect) {
+    let room = usize::from(area.width).saturating_sub(LABEL);
     for (index, line) in lines.iter().enumerate() {
         let label = format!("{:LABEL$}", line.label);
-        let pieces = [(&*label, Role::Key), (&*line.text, Role::Text)];
+        let texts = std::iter::once(&line.text).chain(&line.shorter);
+        let texts: Vec<_> = texts.map(|text| theme.text(text)).collect();
+        let texts: Vec<&str> = texts.iter().map(|text| &**text).collect();
+        let text = write::first_fitting(&texts, room);
+        let pieces = [(&*label, Role::Key), (text, Role::Text)];
         write::line(buffer, write::row(area, index), theme, pieces);
     }
 }

@@ -7,7 +7,7 @@
 //! xg     5.5              centroid, x          otherwise the name of the descriptor
 //! ```
 //! The rows are those of [`DESCRIPTORS`]. A low pane shows them in several columns, each as wide as its values where room is
-//! scarce.
+//! scarce; where even so not all have room, the first ones are whole, and the last line says how many are missing.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -49,6 +49,21 @@ pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: R
         .collect();
     let below = write::below(area, 1);
     let (lines, columns) = columns(&cells, below);
+    let missing = cells.len().saturating_sub(lines * columns.len());
+    if missing > 0 {
+        let texts = [
+            format!("and {missing} more on a larger screen"),
+            format!("and {missing} more"),
+        ];
+        let texts = texts.each_ref().map(String::as_str);
+        let text = write::first_fitting(&texts, below.width.into());
+        write::line(
+            buffer,
+            write::row(below, lines),
+            theme,
+            [(text, Role::Quiet)],
+        );
+    }
     for (cells, column) in cells.chunks(lines).zip(columns) {
         for (index, cell) in cells.iter().enumerate() {
             let row = write::row(column.area, index);
@@ -66,7 +81,8 @@ struct PanelColumn {
 }
 
 /// How many lines the columns of the panel have, and where they are. They are equally wide where all values fit so; else
-/// each is as wide as its own need, with as many lines as there must be for all of them to fit.
+/// each is as wide as its own need, with as many lines as there must be for all of them to fit. Where there are too few
+/// lines for that, the last line stays free, and only the first columns are there.
 fn columns(cells: &[PanelCell], area: Rect) -> (usize, Vec<PanelColumn>) {
     let most = usize::from(area.height).max(1);
     let count = cells.len().div_ceil(most);
@@ -96,7 +112,14 @@ fn columns(cells: &[PanelCell], area: Rect) -> (usize, Vec<PanelColumn>) {
     };
     let mut all = (even..=most).map(|lines| (lines, own(lines)));
     let fitting = all.find(|(_, columns)| fits(columns));
-    let (lines, widths) = fitting.unwrap_or_else(|| (even, vec![(width, SYMBOL); count]));
+    let (lines, widths) = fitting.unwrap_or_else(|| {
+        let lines = most.saturating_sub(1).max(1);
+        let mut columns = own(lines);
+        while columns.len() > 1 && !fits(&columns) {
+            columns.pop();
+        }
+        (lines, columns)
+    });
     (lines, placed(area, &widths))
 }
 

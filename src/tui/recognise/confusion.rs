@@ -184,11 +184,15 @@ impl Page for Confusion {
         let title = format!("Confusion: {}", self.trained.choice);
         let error = percent(evaluation.error());
         let limit = format!("  error {} at best", error.trim_start());
-        let pieces = [(title.as_str(), Role::Title), (limit.as_str(), Role::Text)];
+        let shorter = limit.trim_end_matches(" at best");
+        let room = usize::from(area.width).saturating_sub(write::width(&title));
+        let limit = write::first_fitting(&[&limit, shorter], room);
+        let pieces = [(title.as_str(), Role::Title), (limit, Role::Text)];
         write::line(buffer, area, theme, pieces);
         let meanings = [
             "rows: the shape that touches; columns: its name; percent of the row",
             "rows: what touches; columns: its name; % of the row",
+            "row: what touches; column: its name; %",
         ];
         let meaning = write::first_fitting(&meanings, area.width.into());
         write::line(buffer, write::row(area, 1), theme, [(meaning, Role::Quiet)]);

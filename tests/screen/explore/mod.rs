@@ -350,6 +350,15 @@ fn keys_of_explore_that_can_do_nothing_say_so() {
     shows(&session(&format!("{one}-")), &["this is the whole range"]);
 }
 
+/// The form of ranges leaves no line empty while it hides a field.
+#[test]
+fn all_ranges_are_visible_on_a_small_screen() {
+    let form = sized((30, 10), false, "fr<Enter>e");
+    shows(&form, &["x0 ", "y0 ", "Angle ", "Anchor ", "poses"]);
+    shows(&sized((20, 6), false, "fr<Enter>e"), &["x0 "]);
+    shows(&sized((40, 12), false, "fr<Enter>e"), &["> top left\n"]);
+}
+
 fn any_keys() -> impl Strategy<Value = Vec<&'static str>> {
     let key = prop::sample::select(vec![
         "e",

@@ -23,10 +23,11 @@ pub struct RangeRows {
 
 impl RangeRows {
     /// The rows of a form in its pane: the fields and the anchor, the one that has the focus visible. A title stands
-    /// above them, and three lines below.
+    /// above them, and three lines below, or as many as the rows leave, but one at least.
     pub fn of(area: Rect, form: &RangesForm) -> Self {
         let rows = form.fields().len() + 1;
-        let room = usize::from(area.height.saturating_sub(4));
+        let room = usize::from(area.height.saturating_sub(1));
+        let room = room.saturating_sub(room.saturating_sub(rows).clamp(1, 3));
         let spacing = if room >= 2 * rows { 2 } else { 1 };
         let visible = (room / spacing).min(rows);
         let focus = form.focus().unwrap_or(rows - 1);

@@ -129,7 +129,7 @@ fn input(row: Rect) -> usize {
     }
 }
 
-/// The anchor between angle brackets.
+/// The anchor between angle brackets, and what it is as far as that has room.
 fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect) -> Position {
     let label = format!("{:LABEL$}", "Anchor");
     let (name, meaning) = match form.anchor() {
@@ -141,7 +141,9 @@ fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect)
     } else {
         Role::Text
     };
-    let meaning = if row.width >= WIDE { meaning } else { "" };
+    let short = meaning.split_once(',').map_or(meaning, |(head, _)| head);
+    let room = usize::from(row.width).saturating_sub(LABEL + 11);
+    let meaning = write::first_fitting(&[meaning, short, ""], room);
     let pieces = [
         (label.as_str(), Role::Text),
         ("< ", Role::Quiet),

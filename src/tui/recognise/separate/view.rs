@@ -107,6 +107,8 @@ impl Page for Separate {
             SizeAxis::Pitch => "  error against pitch",
             _ => "  error against size",
         };
+        let room = usize::from(area.width).saturating_sub(write::width(&title));
+        let what = write::first_fitting(&[what, ""], room);
         let pieces = [(title.as_str(), Role::Title), (what, Role::Text)];
         write::line(buffer, area, theme, pieces);
         let second = write::row(area, 1);
@@ -192,7 +194,14 @@ impl Separate {
         buffer: &mut Buffer,
     ) -> Option<Position> {
         let name = self.size_name();
-        let head = format!("{name:<8}    error   certain       keys  sensor");
+        let head = [
+            format!("{name:<8}"),
+            "    error".to_owned(),
+            "   certain".to_owned(),
+            "       keys".to_owned(),
+            "  sensor".to_owned(),
+        ];
+        let head = whole_columns(&head, panes.head.width);
         write::line(buffer, panes.head, theme, [(head.as_str(), Role::Title)]);
         let mut cursor = None;
         let rows = self.found().iter().enumerate().skip(panes.first);
@@ -204,7 +213,7 @@ impl Separate {
                 (_, true) => Role::Key,
                 _ => Role::Text,
             };
-            let text = row_text(size);
+            let text = whole_columns(&row_cells(size), place.width);
             write::line(buffer, place, theme, [(text.as_str(), role)]);
             if here {
                 cursor = Some(Position::new(place.x, place.y));
@@ -281,15 +290,26 @@ fn tried(smallest: &SmallestSize) -> String {
     }
 }
 
-/// A row of the table.
-fn row_text(size: &SizeFound) -> String {
+/// The cells of a row of the table, each with the gap before it.
+fn row_cells(size: &SizeFound) -> [String; 5] {
     let point = &size.point;
-    format!(
-        "{:<8}{}{} {:>10}  {side} × {side}",
-        short(point.value),
+    [
+        format!("{:<8}", short(point.value)),
         percent(point.error()),
         percent(point.certain_share()),
-        grouped(point.keys as u128),
-        side = point.side
-    )
+        format!("{:>11}", grouped(point.keys as u128)),
+        format!("  {side} × {side}", side = point.side),
+    ]
+}
+
+/// The first cells of a row, as many as have room: a number that is cut would look like another one.
+fn whole_columns(cells: &[String; 5], room: u16) -> String {
+    let mut text = String::new();
+    for cell in cells {
+        if write::width(&text) + write::width(cell) > usize::from(room) {
+            break;
+        }
+        text += cell;
+    }
+    text
 }
