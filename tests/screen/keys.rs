@@ -283,7 +283,7 @@ fn quitting_asks_where_work_would_be_lost() {
         !asked.app().ended()
             && asked
                 .screen()
-                .contains("not saved. Quit anyway? (y/n, s: save first)")
+                .contains("not saved. Quit anyway? (y: lose it, n: stay, s: save first)")
     );
     assert!(session("f<Enter>qy").app().ended());
     assert!(
@@ -301,27 +301,30 @@ fn quitting_asks_where_work_would_be_lost() {
     for left in ["<Space>nq", "<Space><Right><Space>lwasher<Enter>q"] {
         shows(
             left,
-            &["An earlier drawing is not saved. Quit anyway? (y/n)"],
+            &["An earlier drawing is not saved. Quit anyway? (y: lose it, n: stay)"],
         );
     }
     // Both may be, and saving one does not give up the other.
     let both = "<Space>n<Right><Space>q";
     shows(
         both,
-        &["The imprint and an earlier one are not saved. Quit anyway? (y/n, s: save first)"],
+        &[
+            "The imprint and an earlier one are not saved. Quit anyway? (y: lose them, n:\n",
+            "stay, s: save first)",
+        ],
     );
     let saved = session(&format!("{both}sa name<Enter>"));
     assert!(!saved.app().ended());
     let screen = saved.screen();
     assert!(
-        screen.contains("An earlier drawing is not saved. Quit anyway? (y/n)"),
+        screen.contains("An earlier drawing is not saved. Quit anyway? (y: lose it, n:\nstay)"),
         "{screen}"
     );
     assert!(session("<Space>qsa name<Enter>").app().ended());
     // What is empty cannot be saved.
     let emptied = session("<Space>saa<Enter><Space>q").screen();
     assert!(
-        emptied.contains("not saved. Quit anyway? (y/n)"),
+        emptied.contains("not saved. Quit anyway? (y: lose it, n: stay)"),
         "{emptied}"
     );
     for nothing_lost in ["<Space><Space>nq", "<Space>saa<Enter>nq", "<Space>nuuq"] {

@@ -196,7 +196,7 @@ fn help_is_everywhere() {
         ),
         (
             "<Space>q?",
-            "(y/n, s: save first)",
+            "(y: lose it, n: stay, s: save first)",
             "At a question",
             "cancel, without an answer",
             "On the matrix",

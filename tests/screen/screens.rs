@@ -139,7 +139,7 @@ fn questions_and_notices_are_read_to_their_end_on_narrow_screens() {
     for (keys, text) in [
         (
             "<Space>q",
-            "The imprint is not saved. Quit anyway? (y/n, s: save first)",
+            "The imprint is not saved. Quit anyway? (y: lose it, n: stay, s: save first)",
         ),
         (
             "g",

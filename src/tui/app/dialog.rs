@@ -120,6 +120,8 @@ pub struct Question {
     pub no: Option<Message>,
     /// Whether what is on the matrix may be saved first.
     pub saves_first: bool,
+    /// What yes and no mean, in a few words; None where the question says it.
+    pub meanings: Option<[&'static str; 2]>,
 }
 
 impl Question {
@@ -130,6 +132,7 @@ impl Question {
             yes,
             no: None,
             saves_first: false,
+            meanings: None,
         }
     }
 }
@@ -159,7 +162,10 @@ impl Page for Question {
         let save = save.map_or(String::new(), |key| format!(", {key}: save first"));
         let answers = match self.no {
             Some(_) => String::new(),
-            None => format!(" ({yes}/{no}{save})"),
+            None => match self.meanings {
+                Some([of_yes, of_no]) => format!(" ({yes}: {of_yes}, {no}: {of_no}{save})"),
+                None => format!(" ({yes}/{no}{save})"),
+            },
         };
         Some((format!("{}{answers}", self.text), Role::Error))
     }

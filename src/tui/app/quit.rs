@@ -10,13 +10,13 @@ use crate::tui::live::update::last_page;
 /// The imprint on the matrix can be saved from the question; an earlier drawing must be brought back first, so there
 /// is no key for it. What is being saved needs no question: the end waits for it, and says if it was in vain.
 pub(in crate::tui) fn quit(app: &mut App) {
-    let what = match (
+    let (what, lost) = match (
         app.unsaved() && !app.is_being_saved(),
         app.history.left_unsaved(),
     ) {
-        (true, true) => "The imprint and an earlier one are",
-        (true, false) => "The imprint is",
-        (false, true) => "An earlier drawing is",
+        (true, true) => ("The imprint and an earlier one are", "lose them"),
+        (true, false) => ("The imprint is", "lose it"),
+        (false, true) => ("An earlier drawing is", "lose it"),
         (false, false) => {
             app.run_state = RunState::Quit;
             return;
@@ -31,6 +31,7 @@ pub(in crate::tui) fn quit(app: &mut App) {
     let text = format!("{what} not saved{ends}. Quit anyway?");
     let question = Question {
         saves_first: can_save_first(app),
+        meanings: Some([lost, "stay"]),
         ..Question::new(text, Message::QuitNow)
     };
     app.dialogs.push(Dialog::Question(question));

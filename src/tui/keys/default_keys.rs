@@ -115,7 +115,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     /// Where a question has no "no" of its own, `n` only closes it. A key without a row leaves it open.
     Question {
         [Char('y') => ACCEPT] "yes" "yes";
-        [Char('n') => DECLINE] "no" "no";
+        [Char('n') => DECLINE] "no" "no; what was left unsaved last time: to the trash";
         [Char('s') => SAVE] "save first" "at the end: save first, then quit";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "not now" "cancel, without an answer";
         [Char('?') => HELP] "help" "these keys";

@@ -18,7 +18,7 @@ const STATES: [(&[u8], &str); 9] = [
     (b"f\t2", "rx 2.00"),
     (b"l", "filter:"),
     (b" ", "NA 1 in all"),
-    (b"f\rq", "(y/n, s: save first)"),
+    (b"f\rq", "(y: lose it, n: stay, s: save first)"),
     (b"?", "On the matrix"),
     // Running work: a sweep that takes minutes.
     (
