@@ -118,6 +118,11 @@ fn the_step_is_told_where_there_is_something_to_move() {
     shows("f<Enter>", &["NA 52 in all  step 0.01"]);
     shows("f<Enter>g+", &["NA 52 in all  held, step 0.1"]);
     shows("f<Enter>g++g", &["NA 52 in all  step 1"]);
+    // Nor need it be held for that.
+    shows("f<Enter>+", &["NA 52 in all  step 0.1"]);
+    shows("f<Enter>++-", &["NA 52 in all  step 0.1"]);
+    shows("f<Enter>+<S-Right>", &["at 4.10, 4.00"]);
+    shows("+", &["! nothing to move"]);
 }
 
 #[test]

@@ -73,12 +73,14 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('w') => WATCH] "" "Watch: the frames of a sensor, once one is watched";
         [ShiftArrow(Left) => NUDGE_LEFT, ShiftArrow(Right) => NUDGE_RIGHT,
             ShiftArrow(Up) => NUDGE_UP, ShiftArrow(Down) => NUDGE_DOWN]
-            "" "move the shape without holding it";
+            "" "move the shape by a step, without holding it";
         [Char('<') => TURN_LEFT, Char('>') => TURN_RIGHT]
             "turn" "turn the shape by 1 degree, left, right";
         [Char('(') => TURN_LEFT_10, Char(')') => TURN_RIGHT_10] "" "turn it by 10 degrees";
         [Char('z') => ZOOM_IN, Char('Z') => ZOOM_OUT]
             "" "zoom a picture in, out, by the current step";
+        [Char('+') => LARGER_STEP, Char('-') => SMALLER_STEP]
+            "step" "a larger, a smaller step: 0.01, 0.1, 1";
         [Char('C') => ZOOM_CENTRE] "" "zoom about the picture's centre, or about the origin";
         [Char('S') => SENSOR] "" "Sensor: columns, rows, threshold, pitch";
         [Char('i') => PANEL] "descriptors" "on a small screen: descriptors or matrix";
@@ -150,12 +152,12 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
 
     Compare {
         [Tab => NEXT, BackTab => PREVIOUS] "view" "differences, the first, the second";
-        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL, Char('=') => CANCEL]
-            "close" "back to where you were";
         [LEFT => LEFT, RIGHT => RIGHT, UP => SCROLL_UP, DOWN => SCROLL_DOWN]
             "scroll" "what does not fit on the screen";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten rows up, down";
         [Home => FIRST, End => LAST] "" "the first, the last rows";
+        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL, Char('=') => CANCEL]
+            "close" "back to where you were";
         [Char('?') => HELP] "help" "these keys";
     }
 

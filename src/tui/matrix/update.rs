@@ -11,8 +11,8 @@ use crate::picture::Picture;
 use crate::source::Source;
 use crate::storage::{Existing, Expected, ShapeOrigin};
 use crate::tui::app::change::{
-    begin, change, compare_with, hold, inform, let_go, nudge, put_back, refuse, replace, shift,
-    travel, turn, zoom,
+    begin, change, compare_with, hold, inform, let_go, movable, nudge, put_back, refuse, replace,
+    shift, travel, turn, zoom,
 };
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, Reading};
@@ -309,7 +309,9 @@ fn edit(app: &mut App, message: &Message) {
             let centre = ["the origin", "the picture's centre"][usize::from(app.zoom_centre)];
             inform(app, format!("zoom about {centre}"));
         }
-        Message::NudgeStep(direction) => app.step = app.step.other(direction),
+        Message::NudgeStep(direction) if movable(app).is_some() => {
+            app.step = app.step.other(direction);
+        }
         Message::Paste(_) => refuse(app, "pasted text goes into fields only"),
         _ => {}
     }
