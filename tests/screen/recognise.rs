@@ -20,7 +20,7 @@ use taxel::tui::runtime::World;
 use taxel::tui::runtime::effect::{Effect, Work};
 use taxel::tui::script::Session;
 
-use crate::session::{hides, models, press, started, untrained, world};
+use crate::session::{hides, models, press, session, sized, started, untrained, world};
 
 /// The longest time that work may take.
 const DEADLINE: Duration = Duration::from_secs(120);
@@ -125,6 +125,19 @@ fn the_pose_is_that_of_the_shape_that_the_touches_name() {
             "unknown: no shape of the model leaves all",
             "triangle centre",
         ],
+    );
+}
+
+#[test]
+fn the_pose_has_its_units() {
+    shows(
+        &session("f<Enter>r"),
+        &["centre 8.00 ± 0.09, 8.00 ± 0.09 cells"],
+    );
+    let narrow = sized((40, 12), false, "f<Enter>r");
+    shows(
+        &narrow,
+        &["best error 0.0 %, certain 100.0 %\n", "0.09 cells\n"],
     );
 }
 

@@ -12,7 +12,7 @@
 //!                             |                                            |
 //! where a touch is not known, | nearest: hexagon, 2 taxels differ          |
 //! what is most like it        | + surplus, - missing                       |
-//! where the shape lies        | centre 7.51 ± 0.08, 7.48 ± 0.11            |
+//! where the shape lies        | centre 7.51 ± 0.08, 7.48 ± 0.11 cells      |
 //!                             +--------------------------------------------+
 //! ```
 
@@ -189,11 +189,13 @@ impl Panel<'_> {
         );
         self.text(&steps, Role::Quiet);
         let certain = percent_of(evaluation.certain, evaluation.touches);
-        let limit = format!(
-            "best possible error {}, certain {certain}",
-            percent(evaluation.error()).trim_start()
-        );
-        self.text(&limit, Role::Quiet);
+        let error = percent(evaluation.error());
+        let limit = format!("error {}, certain {certain}", error.trim_start());
+        let [long, short] = ["best possible", "best"].map(|best| format!("{best} {limit}"));
+        // The shorter one is for a line; over two the other says more.
+        let limits = [&*long, &*short, &*long];
+        let limit = write::first_fitting(&limits, self.area.width.into());
+        self.text(limit, Role::Quiet);
         if let Some(unknown) = trained.unknown_between {
             let text = format!(
                 "between grid points, {} of poses are not in the model",
@@ -218,7 +220,7 @@ impl Panel<'_> {
         // The lines about the touch come first.
         let look = page.look().into_iter();
         let look: Vec<_> = look
-            .flat_map(|look| look_lines(page.present(), look, answer, trained))
+            .flat_map(|look| self.look_lines(page.present(), look, answer, trained))
             .collect();
         let kept = self.touches(page);
         let texts = look.iter().map(|(text, _)| text);
@@ -247,6 +249,42 @@ impl Panel<'_> {
         for (text, role) in look {
             self.text(&text, role);
         }
+    }
+
+    /// The nearest imprint, and the pose.
+    fn look_lines(
+        &self,
+        present: &Imprint,
+        look: &Look,
+        answer: &Answer,
+        trained: &TrainedModel,
+    ) -> Vec<(String, Role)> {
+        let mut lines = Vec::new();
+        match &look.nearest {
+            None => {
+                let text = "no imprint of the model fits the matrix".to_owned();
+                lines.push((text, Role::Text));
+            }
+            Some(nearest) if nearest.distance > 0 => {
+                let (name, differ) = (trained.name(nearest.shape), differ(nearest.distance));
+                lines.push((format!("nearest: {name}, {differ}"), Role::Text));
+                lines.push((legend(present, nearest), Role::Quiet));
+            }
+            Some(_) => {}
+        }
+        if let Some((shape, pose)) = &look.pose {
+            // Of shapes that are tied, the pose is that of the first.
+            let is_named = answer.state != AnswerState::Tied && answer.shape == Some(*shape);
+            let whose = if is_named { "" } else { trained.name(*shape) };
+            let [mut position, angle, poses] = pose_lines(trained, whose, pose);
+            // Where lines are scarce, a number counts more than the unit that takes one.
+            let is_scarce = self.gap_lines() == 0 && self.lines_of(&position) > 1;
+            if is_scarce {
+                position.truncate(position.trim_end_matches(" cells").len());
+            }
+            lines.extend([position, angle, poses].map(|line| (line, Role::Text)));
+        }
+        lines
     }
 
     /// A shape with its bar.
@@ -312,35 +350,6 @@ fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
     format!("{state}{what}{rim}")
 }
 
-/// The nearest imprint, and the pose.
-fn look_lines(
-    present: &Imprint,
-    look: &Look,
-    answer: &Answer,
-    trained: &TrainedModel,
-) -> Vec<(String, Role)> {
-    let mut lines = Vec::new();
-    match &look.nearest {
-        None => {
-            let text = "no imprint of the model fits the matrix".to_owned();
-            lines.push((text, Role::Text));
-        }
-        Some(nearest) if nearest.distance > 0 => {
-            let (name, differ) = (trained.name(nearest.shape), differ(nearest.distance));
-            lines.push((format!("nearest: {name}, {differ}"), Role::Text));
-            lines.push((legend(present, nearest), Role::Quiet));
-        }
-        Some(_) => {}
-    }
-    if let Some((shape, pose)) = &look.pose {
-        // Of shapes that are tied, the pose is that of the first.
-        let is_named = answer.state != AnswerState::Tied && answer.shape == Some(*shape);
-        let whose = if is_named { "" } else { trained.name(*shape) };
-        lines.extend(pose_lines(trained, whose, pose).map(|line| (line, Role::Text)));
-    }
-    lines
-}
-
 /// Which taxels differ from the nearest imprint, with the marks that they have on the matrix.
 fn legend(present: &Imprint, nearest: &Nearest) -> String {
     let differing = present.differing(&nearest.imprint);
@@ -369,7 +378,7 @@ fn pose_lines(trained: &TrainedModel, whose: &str, pose: &PoseEstimate) -> [Stri
     let [x, y] = pose.position;
     let [dx, dy] = pose.standard_deviation;
     let (dx, dy) = (spread_of(dx, 2), spread_of(dy, 2));
-    let position = format!("{whose} {what} {x:.2} ± {dx}, {y:.2} ± {dy}");
+    let position = format!("{whose} {what} {x:.2} ± {dx}, {y:.2} ± {dy} cells");
     let position = position.trim_start().to_owned();
     let poses = counted(pose.poses, "pose");
     let any = || ("any angle".to_owned(), poses.clone());
