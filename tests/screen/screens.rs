@@ -418,3 +418,16 @@ fn what_is_compared_scrolls_where_it_does_not_fit() {
     then(&mut wide, "<3x:Right>", &["only B  ←→", "\n     5    10"]);
     then(&mut wide, "<60x:Right>", &["only B  ←\n"]);
 }
+
+#[test]
+fn a_pitch_of_one_counts_as_none() {
+    shows(
+        "S",
+        &["Pitch     1.000     above 0, up to 1000 mm", "1: not set"],
+    );
+    shows(
+        &sized((30, 10), false, "S"),
+        &["Pitch     1.000     1: not set"],
+    );
+    hides("f<Enter>", &["mm"]);
+}

@@ -18,6 +18,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::figure::{FigureKind, NO_ROOM};
+use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::tui::app::message::Message;
@@ -179,8 +180,14 @@ fn draw_field(
     Position::new(row.x + narrow(LABEL + cursor), row.y)
 }
 
-/// What else there is to know about a field that may be empty, and whether that is about the value it has now.
+/// What else there is to know about a field, and whether that is about the value it has now: what an empty one means,
+/// and which pitch stands for none.
 fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<(&'static str, bool)> {
+    if field.parameter() == Parameter::Pitch {
+        let default = dialog.form().sensor().default_value(Parameter::Pitch);
+        let pitch = dialog.form().value(Parameter::Pitch);
+        return Some(("1: not set", pitch == Some(default)));
+    }
     if !field.optional() {
         return None;
     }

@@ -3,7 +3,7 @@
 //! ```text
 //! Load  filter: le   4 of 28                   clover               what for, filter, how many match | name
 //!   0 above, 1 below                           NA 97, pieces 1, …   rows out of sight                | facts
-//!   letter A                 16 × 16 shipped   drawn by hand        sign, name, size, origin         | source
+//!   letter A                 16 × 16 shipped   an imprint, no f…    sign, name, size, origin         | source
 //! > letter B                 16 × 16 shipped
 //!   my letter                16 × 16           ··██··               the selected row is reversed     | imprint
 //! ```
@@ -233,7 +233,7 @@ fn draw_preview(
                 .shape
                 .source
                 .as_ref()
-                .map_or("drawn by hand".to_owned(), ToString::to_string);
+                .map_or("an imprint, no figure".to_owned(), ToString::to_string);
             say(&facts, Role::Text);
             // At the same height for most of them.
             let end = say(&source, Role::Quiet).max(4);
