@@ -25,8 +25,8 @@ pub(crate) fn is_invisible(character: char) -> bool {
     )
 }
 
-/// The end of a message about a wrong name: which of `names` was probably meant, with the one most like it first; empty if
-/// none is much like it. Upper and lower case are the same here.
+/// The end of a message about a wrong name: which of `names` was probably meant; empty if none is much like it. Of equally
+/// near ones it is one of the same length, else the first. Upper and lower case are the same here.
 #[cfg(feature = "json")]
 pub(crate) fn did_you_mean<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let length = |text: &str| text.chars().count();
@@ -36,8 +36,9 @@ pub(crate) fn did_you_mean<'a>(wrong: &str, names: impl IntoIterator<Item = &'a 
     let wrong = wrong.to_lowercase();
     let slips = |name: &'a str| {
         let slips = strsim::osa_distance(&wrong, &name.to_lowercase());
+        let (typed, meant) = (length(&wrong), length(name));
         // One letter of three may be wrong.
-        (3 * slips <= length(&wrong).max(length(name))).then_some((slips, name))
+        (3 * slips <= typed.max(meant)).then_some(((slips, typed.abs_diff(meant)), name))
     };
     let nearest = names.into_iter().filter_map(slips);
     match nearest.min_by_key(|(slips, _)| *slips) {
