@@ -13,7 +13,7 @@ use crate::acquire::recorder::description_beside;
 use crate::acquire::stream::Consumer;
 use crate::formats::recording::{
     ChannelChoice, ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingFormat,
-    RecordingInput, RecordingMetadata, RecordingNote, read_as, recognised_input,
+    RecordingInput, RecordingMetadata, RecordingNote, format_of, read_as, recognised_input,
 };
 use crate::formats::stream::StreamCounts;
 use crate::frame::Frame;
@@ -154,10 +154,7 @@ pub(super) fn run(
         description,
         consumer: RefCell::new(consumer),
     };
-    let format = File::open(path).and_then(recognised_input);
-    let format = format
-        .map_err(AcquireError::opening)?
-        .ok_or(RecordingError::Unknown)?;
+    let format = format_of(File::open(path).map_err(AcquireError::opening)?)?;
     let is_paced = options.repeat || options.speed != AcquireOptions::default().speed;
     if options.once || is_paced || !format.is_appended_to() {
         player.play(path, format)

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use crate::acquire::event::{AcquireError, AcquireOptions};
 use crate::acquire::recorder::RecorderError;
-use crate::formats::recording::recognised_input;
+use crate::formats::recording::{RecordingError, format_of};
 
 /// Where frames come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,7 +46,8 @@ impl FrameSource {
         }
     }
 
-    /// Returns the file if it is played as a recording: of a known format, and no format of a stream was asked for.
+    /// Returns the file if it is played as a recording: of a known format, and no format of a stream was asked for. A file of
+    /// another kind, such as an image, is returned, too, and refused when it is played.
     ///
     /// # Errors
     /// If the file cannot be read.
@@ -54,8 +55,11 @@ impl FrameSource {
         let (Self::File(path), None) = (self, options.format) else {
             return Ok(None);
         };
-        let format = File::open(path).and_then(recognised_input)?;
-        Ok(format.map(|_| path.as_path()))
+        match format_of(File::open(path)?) {
+            Ok(_) | Err(RecordingError::Foreign { .. }) => Ok(Some(path)),
+            Err(RecordingError::Io(error)) => Err(error),
+            Err(_) => Ok(None),
+        }
     }
 
     /// Its name in messages.

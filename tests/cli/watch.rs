@@ -253,6 +253,20 @@ fn a_signal_before_the_first_frame_is_no_error() {
 }
 
 #[test]
+fn a_file_of_another_kind_is_no_stream() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.csv");
+    fs::write(&path, b"\xff\xfe1\0,\x002\0\n\0").expect("written");
+    let line = path.display().to_string();
+    for command in [format!("frames {line}"), format!("watch {line}")] {
+        let run = taxel(&command, "");
+        assert_eq!(run.status, Some(1), "{command}");
+        let told = "a.csv: text in UTF-16 (save it as UTF-8), expected Tekscan ASCII";
+        assert!(run.stderr.contains(told), "{command}: {}", run.stderr);
+    }
+}
+
+#[test]
 fn frames_of_another_size_do_not_end_it() {
     let wide = "1 2 3\n\n".repeat(5);
     let input = stream(0..3) + &wide + &stream(3..7);

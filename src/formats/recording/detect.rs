@@ -110,6 +110,16 @@ pub fn recognised_input(input: impl Read) -> io::Result<Option<RecordingFormat>>
     Ok(recognised(&start_of(input)?))
 }
 
+/// The format of what is read from its present place on.
+///
+/// # Errors
+/// If it is no recording: [`RecordingError::Foreign`] of a file of another kind, else [`RecordingError::Unknown`]; or if it
+/// cannot be read.
+pub(crate) fn format_of(input: impl Read) -> Result<RecordingFormat, RecordingError> {
+    let start = start_of(input)?;
+    recognised(&start).ok_or_else(|| refused(&start))
+}
+
 fn start_of(input: impl Read) -> io::Result<Vec<u8>> {
     let mut start = Vec::new();
     input.take(LOOKED_AT as u64).read_to_end(&mut start)?;
@@ -127,8 +137,7 @@ pub fn read(
     sink: &mut Sink<'_>,
 ) -> Result<RecordingFormat, RecordingError> {
     input.seek(SeekFrom::Start(0))?;
-    let start = start_of(&mut input)?;
-    let format = recognised(&start).ok_or_else(|| refused(&start))?;
+    let format = format_of(&mut input)?;
     read_as(format, &mut input, options, sink)?;
     Ok(format)
 }
