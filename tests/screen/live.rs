@@ -623,6 +623,7 @@ fn a_sensor_larger_than_the_screen_is_seen_in_parts() {
         &["no more taxels in this direction"],
     );
     assert_eq!(rows(&page), all[0]);
+    shows(&page, &["Shift-arrows other taxels"]);
     let held = "these taxels stay in sight; c shows the contact again";
     then(&mut page, "c<S-Up>", &[held]);
     assert_eq!(rows(&page), all[1]);
@@ -642,6 +643,9 @@ fn a_sensor_larger_than_the_screen_is_seen_in_parts() {
     then(&mut page, "i#", &[]);
     page.resize(40, 12);
     shows(&page, &["tall.npy  frame 0  at 0-19, 20-35"]);
+    // Where all are visible, there are none to go to.
+    hides(&watched(1, ""), &["other taxels"]);
+    shows(&watched(1, "<S-Down>"), &["all taxels are visible"]);
 }
 
 #[test]

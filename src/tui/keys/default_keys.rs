@@ -379,14 +379,14 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "scrub" "to an earlier, a later frame";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten frames back, forward";
         [Home => FIRST, End => LAST] "" "the oldest frame; follow the source";
+        [ShiftArrow(Left) => WINDOW_LEFT, ShiftArrow(Right) => WINDOW_RIGHT,
+            ShiftArrow(Up) => WINDOW_UP, ShiftArrow(Down) => WINDOW_DOWN]
+            "other taxels" "where not all taxels fit on the screen: see others";
+        [Char('c') => FOLLOW_CONTACT] "" "see those of the contact again";
         [Char('p') => PEAK_HOLD] "peak" "hold the peak of each cell, or release it";
         [Char('v') => NEXT_LAYER] "view" "raw values, tared values, the imprint";
         [Char('#') => NUMBERS] "" "values as numbers, or in shades";
         [Char('g') => OWN_RANGE] "" "shades over this frame's values, or a fixed range";
-        [ShiftArrow(Left) => WINDOW_LEFT, ShiftArrow(Right) => WINDOW_RIGHT,
-            ShiftArrow(Up) => WINDOW_UP, ShiftArrow(Down) => WINDOW_DOWN]
-            "" "where not all taxels fit on the screen: see others";
-        [Char('c') => FOLLOW_CONTACT] "" "see those of the contact again";
         [Char('i') => PANEL] "" "only the numbers, or the taxels, too";
         [Char('r') => RECORD] "record" "record all frames in a file, or stop recording";
         [Char('m') => MARK_FRAME] "" "mark this frame, or remove its mark";

@@ -236,7 +236,15 @@ fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
     let area = app.panes().map(|panes| panes.area(page.slot()));
     let next = area.and_then(|area| view::beyond(page, app.theme(), area, towards));
     if next.is_none() {
-        return inform(app, "no more taxels in this direction");
+        let hides = area.is_some_and(|area| view::hides_taxels(page, area));
+        return inform(
+            app,
+            if hides || page.reading().is_none() {
+                "no more taxels in this direction"
+            } else {
+                "all taxels are visible"
+            },
+        );
     }
     if page.looked_at().is_none() {
         let key = app.keymap().label(Context::Live, &action::FOLLOW_CONTACT);

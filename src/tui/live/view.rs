@@ -15,14 +15,15 @@ use crate::formats::value::{self, counted, fitting, grouped, measured};
 use crate::frame::{Rule, RuleOrigin};
 use crate::imprint::Imprint;
 use crate::recognition::AnswerState;
+use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::live::heat::{HeatMap, cells, scale};
-use crate::tui::live::layout::LivePanes;
-use crate::tui::live::message::SourceState;
+use crate::tui::live::layout::{HeatGrid, LivePanes};
+use crate::tui::live::message::{LiveMessage, SourceState};
 use crate::tui::live::naming::Naming;
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;
@@ -50,6 +51,10 @@ impl Page for Live {
 
     fn scrolls(&self) -> bool {
         true
+    }
+
+    fn has_use_for(&self, message: &Message, area: Rect) -> bool {
+        !matches!(message, Message::Live(LiveMessage::Window(_))) || hides_taxels(self, area)
     }
 
     fn draw(
@@ -97,6 +102,16 @@ fn panes(live: &Live, area: Rect) -> LivePanes {
     let reading = live.reading().filter(|_| !live.only_panel());
     let size = reading.map(|reading| (reading.values.columns(), reading.values.rows()));
     LivePanes::of(area, size, live.numbers())
+}
+
+/// Whether not all taxels are visible on a page of this area, although they are not hidden altogether.
+pub(super) fn hides_taxels(live: &Live, area: Rect) -> bool {
+    let Some(reading) = live.reading().filter(|_| !live.only_panel()) else {
+        return false;
+    };
+    let size = (reading.values.columns(), reading.values.rows());
+    let grid = HeatGrid::of(panes(live, area).map, size, live.numbers(), (0, 0));
+    (grid.columns.count, grid.rows.count) != size
 }
 
 /// The taxel to look at to see others in a direction, on a page of this area; None where there are none.
