@@ -17,7 +17,7 @@
 use rayon::prelude::*;
 
 use crate::atlas::feature::{Feature, features};
-use crate::atlas::sums::{Wide, mean, signed_mean};
+use crate::atlas::sums::{ONE, Wide, mean, signed_mean};
 use crate::atlas::values::{Row, RowSums, Sum, Table, columns, row_width};
 use crate::atlas::variance::VarianceParts;
 use crate::index::lower_word;
@@ -197,7 +197,7 @@ impl Total {
 
 /// More than the mean length of vectors may be off. Their parts are the nearest multiples of 2⁻⁴⁰, and so is the length of
 /// the sum of an orientation.
-const ROUNDING: f64 = 1.0 / (1_u64 << 40) as f64;
+const ROUNDING: f64 = 1.0 / ONE;
 
 /// The statistics of all features. `counts` says how often each imprint of the table occurs.
 pub(crate) fn statistics(

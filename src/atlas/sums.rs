@@ -10,7 +10,7 @@ use crate::geometry::Real;
 use crate::index::lower_word;
 
 /// One, as a fixed-point number.
-const ONE: f64 = 1_099_511_627_776.0;
+pub(crate) const ONE: f64 = 1_099_511_627_776.0;
 
 /// The nearest multiple of 2⁻⁴⁰ of a number in [0, 2²³), as a whole number; 0 of one that is less.
 #[expect(clippy::cast_possible_truncation, reason = "below 2^63")]
