@@ -5,10 +5,11 @@
 //! cut off when the shape reaches beyond the sensor there, by the rule of [`crate::touch::reaches_beyond`]. Units are
 //! cell sides, the frame is that of the plane. Convention of this project.
 //!
-//! Where x0 or y0 is not given, a sweep takes one cell of positions, in hundredths unless it is asked for others. That is the cell that the shape lies
-//! in (1.99 lies in `1:1.99:0.01`) if the sensor cuts nothing off there; otherwise it is one around the middle. Around
-//! the middle means: of the cells in which nothing is cut off, the one nearest the middle, from a whole number on if
-//! there is such a cell; if there is none, the middle of the sensor.
+//! Where x0 or y0 is not given, a sweep takes one cell of positions, in steps of a hundredth or of another share of a cell
+//! that is asked for. That is the cell that the shape lies in (1.99 lies in `1:1.99:0.01`) if the sensor cuts nothing off
+//! there; otherwise it is one around the middle. Around the middle means: of the cells in which nothing is cut off, the
+//! one nearest the middle, from a whole number on if there is such a cell; if there is none, the middle of the sensor.
+//! All positions are multiples of the step, so that large and small shapes are touched at the same places of a taxel.
 
 use std::ops::Range;
 
@@ -411,9 +412,9 @@ impl Reach {
     fn free(&self, axis: Axis, side: u8, step: u32) -> std::ops::RangeInclusive<i64> {
         let (low, high) = self.limits(axis, side);
         // A limit that is a hundredth but for its rounding is that hundredth.
-        let from = hundredths((low * 100.0 - 1e-9).ceil());
-        let to = hundredths((high * 100.0 + 1e-9).floor());
-        from..=to - beyond(step)
+        let from = (low * 100.0 - 1e-9) / f64::from(step);
+        let to = (high * 100.0 + 1e-9) / f64::from(step);
+        multiple(from.ceil(), step)..=multiple(to.floor(), step) - beyond(step)
     }
 
     /// The hundredths from which the cell around the middle starts.
@@ -421,7 +422,8 @@ impl Reach {
         let (low, high) = self.limits(axis, side);
         let free = self.free(axis, side, step);
         // If two are equally near, the lower one.
-        let middle = hundredths(((low + high) * 50.0 - f64::from(CELL) / 2.0 - 1e-9).ceil());
+        let middle = ((low + high) * 50.0 - f64::from(CELL) / 2.0 - 1e-9) / f64::from(step);
+        let middle = multiple(middle.ceil(), step);
         if free.is_empty() {
             return middle;
         }
@@ -455,6 +457,11 @@ fn own_position(source: &Source, anchor: Anchor) -> (f64, f64) {
 fn filled(given: &GivenRanges) -> Ranges {
     let default = Ranges::default();
     Ranges::from_fn(|axis| given[axis].unwrap_or(default[axis]))
+}
+
+/// A multiple of the step, in hundredths.
+fn multiple(count: f64, step: u32) -> i64 {
+    hundredths(count).saturating_mul(step.into())
 }
 
 /// How far the last position of a cell lies beyond its first, in hundredths.

@@ -225,7 +225,8 @@ mod tests {
         assert_eq!(steps.angles().to_string(), "0");
     }
 
-    /// On 16 × 16, the centre of a disc of radius 7.7 can move by 0.6 cells, and that of one of radius 8 not at all.
+    /// On 16 × 16, the centre of a disc of radius 7.5 can move by a whole cell, that of one of radius 7.7 by 0.6 cells, and
+    /// that of one of radius 8 not at all.
     #[test]
     fn the_sensor_holds_the_positions_that_are_taken_and_no_others() {
         let fit = |radius: f64, positions| {
@@ -239,10 +240,12 @@ mod tests {
         };
         let found = |side, range: &str| (side, range.to_owned());
         assert_eq!(fit(7.7, 100), found(17, "8:8.99:0.01"));
-        assert_eq!(fit(7.7, 2), found(16, "7.7:8.2:0.5"));
+        assert_eq!(fit(7.5, 5), found(16, "7.6:8.4:0.2"));
+        assert_eq!(fit(7.5, 2), found(16, "8:8.5:0.5"));
+        assert_eq!(fit(7.7, 2), found(17, "8:8.5:0.5"));
         assert_eq!(fit(8.0, 2), found(17, "8:8.5:0.5"));
         assert_eq!(fit(8.0, 1), found(16, "8"));
-        assert_eq!(fit(7.0, 1), found(16, "7"));
+        assert_eq!(fit(7.0, 1), found(16, "8"));
     }
 
     #[test]
