@@ -423,6 +423,28 @@ fn shapes_come_from_files_words_and_the_library() {
 }
 
 #[test]
+fn names_that_are_nearly_right_are_named() {
+    let place = Place::new();
+    for (line, message) in [
+        (
+            "model confusion figurs",
+            "no model or file \"figurs\"; there are figures, figures-30, shapes; did you mean \"figures\"?",
+        ),
+        (
+            "model train gaer --out m.npz",
+            "no shape is called \"gaer\"; did you mean \"gear\"?",
+        ),
+        (
+            "model train --shape 'disc=elipse' --out m.npz",
+            "--shape: figure: \"elipse\" is unknown, expected one of ellipse, rectangle, triangle, \
+             pentagon, hexagon, heptagon, octagon; did you mean \"ellipse\"?",
+        ),
+    ] {
+        refused(&place.run(line, ""), 1, message);
+    }
+}
+
+#[test]
 fn sets_that_make_no_sense_are_refused_in_one_sentence() {
     let place = Place::new();
     let train = |what: &str, input: &str| {
@@ -497,23 +519,6 @@ fn sets_that_make_no_sense_are_refused_in_one_sentence() {
         1,
         "no model or file \"nowhere\"; there are figures, figures-30, shapes",
     );
-    for (line, message) in [
-        (
-            "model confusion figurs",
-            "no model or file \"figurs\"; there are figures, figures-30, shapes; did you mean \"figures\"?",
-        ),
-        (
-            "model train gaer --out m.npz",
-            "no shape is called \"gaer\"; did you mean \"gear\"?",
-        ),
-        (
-            "model train --shape 'disc=elipse' --out m.npz",
-            "--shape: figure: \"elipse\" is unknown, expected one of ellipse, rectangle, triangle, \
-             pentagon, hexagon, heptagon, octagon; did you mean \"ellipse\"?",
-        ),
-    ] {
-        refused(&place.run(line, ""), 1, message);
-    }
     misused(
         "model train parts.jsonl",
         "the following required arguments",
