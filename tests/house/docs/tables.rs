@@ -11,9 +11,8 @@ use taxel::tui::prompt::commands::commands;
 pub(crate) fn descriptors() -> String {
     let row = |descriptor: &taxel::description::Descriptor| {
         let unit = match descriptor.dimension {
-            Dimension::Count => "taxels",
+            Dimension::Count | Dimension::Area => "taxels",
             Dimension::Length => "cells",
-            Dimension::Area => "taxels",
             Dimension::Direction => "degrees",
             _ => "",
         };
