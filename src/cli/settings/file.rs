@@ -8,7 +8,8 @@
 //! assert_eq!(config.sensor_entries()[0].line, 3);
 //! let error = Config::read("theme = 'light'\ncolour = 'never'\n").unwrap_err();
 //! assert_eq!(error.to_string(),
-//!     "2:1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys");
+//!     "2:1: unknown key \"colour\", expected one of theme, color, charset, mouse, library, sensor, source, frames, keys; \
+//!      did you mean \"color\"?");
 //! ```
 
 use toml::Spanned;
