@@ -3,7 +3,6 @@
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, RunState};
-use crate::tui::live::state::Live;
 use crate::tui::live::update::last_page;
 
 /// Quits, after a question if work would be lost.
@@ -24,7 +23,7 @@ pub(in crate::tui) fn quit(app: &mut App) {
     };
     // Its page may not be open.
     let page = last_page(app).filter(|page| !page.stopped());
-    let recording = page.and_then(Live::recording);
+    let recording = page.and_then(|page| page.recording().name());
     let ends = recording.map_or(String::new(), |name| {
         format!("; the recording in {name} ends")
     });

@@ -45,7 +45,7 @@ impl<'a> HeatMap<'a> {
             reading,
             layer: live.layer(),
             range: live.range(),
-            grid: HeatGrid::of(area, size, live.numbers(), looked_at(live, reading)),
+            grid: HeatGrid::of(area, size, live.display.numbers, looked_at(live, reading)),
         }
     }
 
@@ -291,7 +291,7 @@ impl<'a> HeatMap<'a> {
 
 /// The taxel that is to be visible.
 fn looked_at(live: &Live, reading: &LiveReading) -> (u8, u8) {
-    live.looked_at().unwrap_or_else(|| near(reading))
+    live.display.looked_at.unwrap_or_else(|| near(reading))
 }
 
 /// A taxel near which there is contact: the middle of the main region, or the largest value.

@@ -108,6 +108,23 @@ impl Naming {
     }
 }
 
+/// The next set of shapes to name imprints by: the one that was asked for, those that need no file, then none.
+pub(super) fn next_choice<'a>(
+    asked: Option<&'a ModelChoice>,
+    present: Option<&Naming>,
+) -> Option<&'a ModelChoice> {
+    let others = ModelChoice::BUILT_IN.iter();
+    let others = others.filter(|other| Some(*other) != asked);
+    let mut all = asked.into_iter().chain(others);
+    match present {
+        None => all.next(),
+        Some(naming) => {
+            let present = &naming.request.choice;
+            all.skip_while(|own| *own != present).nth(1)
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -19,6 +19,17 @@ pub enum HeatLayer {
 }
 
 impl HeatLayer {
+    /// The one that is shown next.
+    pub(super) fn next(self) -> Self {
+        match self {
+            Self::Raw => Self::Tared,
+            Self::Tared => Self::Imprint,
+            Self::Imprint => Self::Raw,
+        }
+    }
+}
+
+impl HeatLayer {
     /// Its name on the screen.
     pub fn name(self) -> &'static str {
         match self {

@@ -6,14 +6,16 @@ use std::sync::Arc;
 use crate::formats::recording::{ChannelInfo, FrameMark, RecordedView};
 use crate::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule, Tare};
 use crate::imprint::Imprint;
+use crate::tui::live::display::LiveDisplay;
 use crate::tui::live::history::{FrameHistory, is_same};
 use crate::tui::live::marks::FrameMarks;
 use crate::tui::live::message::{
     FeedStatus, FrameBatch, ProvisionalChange, SourceGaps, SourceState,
 };
-use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest};
+use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest, next_choice};
 use crate::tui::live::range::ShadeRange;
 use crate::tui::live::reading::{HeatLayer, LiveReading, hold};
+use crate::tui::live::recording_state::RecordingState;
 use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::live::tare::{LiveTare, TareMark};
@@ -28,10 +30,6 @@ const RANGED: usize = 1000;
 
 /// The state of the page.
 #[derive(Clone, Debug)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "any of them may be so at the same time"
-)]
 pub struct Live {
     /// What is watched.
     request: Arc<WatchRequest>,
@@ -57,12 +55,8 @@ pub struct Live {
     /// Whether no more frames are taken from the source.
     stopped: bool,
     layer: HeatLayer,
-    /// Whether values are numbers and not shades.
-    numbers: bool,
-    /// A taxel that stays in sight where not all are; None for one of the contact.
-    looked_at: Option<(u8, u8)>,
-    /// Whether the numbers beside the taxels have the whole page.
-    only_panel: bool,
+    /// How it is laid out.
+    pub display: LiveDisplay,
     /// Between which values shades are spread.
     range: ShadeRange,
     /// The largest value that each cell has had, while that is shown.
@@ -71,12 +65,7 @@ pub struct Live {
     tare: LiveTare,
     /// Frames that came between two pictures of the screen and were never seen.
     not_drawn: u64,
-    /// The name of the file that is written.
-    recording: Option<String>,
-    /// Why there is none although one was asked for.
-    not_recorded: Option<String>,
-    /// Why the recording that was asked for together with the source has failed.
-    write_failure: Option<String>,
+    recording: RecordingState,
     /// The frames that were marked.
     marks: FrameMarks,
     /// The model that names imprints, and its last answer.
@@ -103,16 +92,12 @@ impl Live {
             seen_gaps: SourceGaps::default(),
             stopped: false,
             layer: HeatLayer::Tared,
-            numbers: false,
-            looked_at: None,
-            only_panel: false,
+            display: LiveDisplay::default(),
             range: ShadeRange::default(),
             held: None,
             tare: LiveTare::new(&request),
             not_drawn: 0,
-            recording: None,
-            not_recorded: None,
-            write_failure: None,
+            recording: RecordingState::default(),
             marks: FrameMarks::default(),
             naming: None,
             reading: None,
@@ -197,31 +182,6 @@ impl Live {
         self.layer
     }
 
-    /// Whether values are shown as numbers.
-    pub fn numbers(&self) -> bool {
-        self.numbers
-    }
-
-    /// The taxel that stays in sight where not all are; None for one of the contact.
-    pub fn looked_at(&self) -> Option<(u8, u8)> {
-        self.looked_at
-    }
-
-    /// Has a taxel stay in sight, or one of the contact.
-    pub fn look_at(&mut self, taxel: Option<(u8, u8)>) {
-        self.looked_at = taxel;
-    }
-
-    /// Whether the numbers beside the taxels have the whole page.
-    pub fn only_panel(&self) -> bool {
-        self.only_panel
-    }
-
-    /// Gives the whole page to these numbers, or shows the taxels again.
-    pub fn switch_panel(&mut self) {
-        self.only_panel = !self.only_panel;
-    }
-
     /// Whether the largest value of each cell is shown.
     pub fn holds_peak(&self) -> bool {
         self.held.is_some()
@@ -254,20 +214,9 @@ impl Live {
         self.not_drawn + self.status.overflowed
     }
 
-    /// The file that is recorded in; None without one.
-    pub fn recording(&self) -> Option<&str> {
-        self.recording.as_deref()
-    }
-
-    /// Why nothing is recorded although it was asked for; None where it is, or was not asked for.
-    pub fn not_recorded(&self) -> Option<&str> {
-        self.not_recorded.as_deref()
-    }
-
-    /// Why the recording that was asked for together with the source has failed; None where it has not. Later recordings
-    /// do not change that.
-    pub fn write_failure(&self) -> Option<&str> {
-        self.write_failure.as_deref()
+    /// Whether frames are recorded.
+    pub fn recording(&self) -> &RecordingState {
+        &self.recording
     }
 
     /// Notes that the user has seen which frames are missing.
@@ -285,7 +234,7 @@ impl Live {
             SourceState::Waiting | SourceState::Live | SourceState::Ended => None,
         };
         let gaps = self.status.gaps.since(self.seen_gaps).sentence();
-        let troubles = self.not_recorded().into_iter().chain(source);
+        let troubles = self.recording.refusal().into_iter().chain(source);
         let troubles: Vec<&str> = troubles.chain(gaps.as_deref()).collect();
         (!troubles.is_empty()).then(|| troubles.join("; "))
     }
@@ -298,7 +247,7 @@ impl Live {
     /// Threshold, tare and marks if they have changed and are to be written into a recording; afterwards they count as
     /// written.
     pub fn take_changed_view(&mut self) -> Option<RecordedView> {
-        self.recording.as_ref()?;
+        self.recording.name()?;
         let is_changed = std::mem::take(&mut self.is_viewed_anew) | self.marks.take_change();
         is_changed.then(|| RecordedView {
             rule: self.rule,
@@ -352,18 +301,9 @@ impl Live {
     /// Names imprints by the next set of shapes: the one that was asked for, those that need no file, then none. It is a
     /// piece of work of this number.
     pub fn next_model(&mut self, number: u64) {
-        let asked = self.request.model.iter();
-        let others = ModelChoice::BUILT_IN.iter();
-        let others = others.filter(|other| Some(*other) != self.request.model.as_ref());
-        let mut all = asked.chain(others);
-        let next = match &self.naming {
-            None => all.next(),
-            Some(naming) => {
-                let present = &naming.request.choice;
-                all.skip_while(|own| *own != present).nth(1)
-            }
-        };
-        self.name_by(next.cloned(), number);
+        let asked = self.request.model.as_ref();
+        let next = next_choice(asked, self.naming.as_ref()).cloned();
+        self.name_by(next, number);
     }
 
     /// The imprint that is to be named now; None while an answer is on its way, or where nothing is active. Notes that it is.
@@ -608,18 +548,9 @@ impl Live {
 
     /// Shows the next of raw values, tared values and imprint.
     pub fn next_layer(&mut self) -> HeatLayer {
-        self.layer = match self.layer {
-            HeatLayer::Raw => HeatLayer::Tared,
-            HeatLayer::Tared => HeatLayer::Imprint,
-            HeatLayer::Imprint => HeatLayer::Raw,
-        };
+        self.layer = self.layer.next();
         self.read();
         self.layer
-    }
-
-    /// Shows numbers in place of shades, or the other way round.
-    pub fn switch_numbers(&mut self) {
-        self.numbers = !self.numbers;
     }
 
     /// Spreads shades over the values of the frame, or over a fixed range. Returns whether over those of the frame.
@@ -630,8 +561,7 @@ impl Live {
 
     /// Notes that a recording has begun, or ended.
     pub fn set_recording(&mut self, name: Option<String>) {
-        self.recording = name;
-        self.not_recorded = None;
+        self.recording.set(name);
         // Those of the one before.
         self.status.recorded = None;
         self.status.record_error = None;
@@ -640,19 +570,14 @@ impl Live {
     /// Notes that a recording has failed, or cannot be begun, and why.
     pub fn fail_recording(&mut self, reason: String) {
         let asked = self.request.write.as_ref();
-        if asked
-            .is_some_and(|(path, _)| self.recording.as_deref() == Some(&*path.to_string_lossy()))
-        {
-            self.write_failure = Some(reason.clone());
-        }
-        self.recording = None;
-        self.not_recorded = Some(reason);
+        let asked = asked.map(|(path, _)| path.to_string_lossy());
+        self.recording.fail(reason, asked.as_deref());
     }
 
     /// Notes that no more frames are taken.
     pub fn stop(&mut self) {
         self.stopped = true;
-        self.recording = None;
+        self.recording.stop();
     }
 
     /// Takes frames again, those of a piece of work of this number; history, threshold and tare stay. The source counts
@@ -661,8 +586,7 @@ impl Live {
         self.number = number;
         self.watched_from = self.history.next_number();
         self.stopped = false;
-        // No recording is asked for now.
-        self.not_recorded = None;
+        self.recording.restart();
         self.frozen = None;
         self.provisional = None;
         self.held = None;

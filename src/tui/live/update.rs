@@ -120,7 +120,7 @@ pub(in crate::tui) fn in_live(
         Message::Scroll(by) => page.scrub(by.into()),
         Message::ScrollTo(Endpoint::First) => page.to_oldest(),
         Message::ScrollTo(Endpoint::Last) => page.to_newest(),
-        Message::SwitchPage => page.switch_panel(),
+        Message::SwitchPage => page.display.only_panel ^= true,
         Message::Live(asked) => effect = adjust(app, &mut page, &asked),
         _ => {}
     }
@@ -199,13 +199,13 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         LiveMessage::NextLayer => {
             page.next_layer();
         }
-        LiveMessage::Numbers => page.switch_numbers(),
+        LiveMessage::Numbers => page.display.numbers ^= true,
         LiveMessage::OwnRange => {
             page.switch_range();
         }
         LiveMessage::Window(towards) => look_further(app, page, *towards),
         LiveMessage::FollowContact => {
-            page.look_at(None);
+            page.display.looked_at = None;
             inform(app, "the taxels of the contact");
         }
         LiveMessage::Record => return Some(record(page)),
@@ -229,7 +229,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
 
 /// Shows taxels further in a direction, where not all are visible. The first time says how to see the contact again.
 fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
-    if page.only_panel() {
+    if page.display.only_panel {
         let key = app.keymap().label(Context::Live, &action::PANEL);
         return inform(app, format!("the taxels are hidden; {key} shows them"));
     }
@@ -246,14 +246,14 @@ fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
             },
         );
     }
-    if page.looked_at().is_none() {
+    if page.display.looked_at.is_none() {
         let key = app.keymap().label(Context::Live, &action::FOLLOW_CONTACT);
         inform(
             app,
             format!("these taxels stay in sight; {key} shows the contact again"),
         );
     }
-    page.look_at(next);
+    page.display.looked_at = next;
 }
 
 /// Marks the frame that is shown, or takes its mark off.
@@ -283,7 +283,7 @@ pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
 /// The description of the recording says how its frames were looked at last. The frames are written as they come, without
 /// view, tare or threshold.
 fn record(page: &mut Live) -> Effect {
-    if page.recording().is_some() {
+    if page.recording().name().is_some() {
         page.set_recording(None);
         return Effect::Work(Work::StopRecording);
     }
@@ -345,7 +345,10 @@ pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
     let Some(page) = page(app).filter(|page| page.number() == number && !page.stopped()) else {
         return;
     };
-    let (trouble, failure) = (page.trouble(), page.not_recorded().map(str::to_owned));
+    let (trouble, failure) = (
+        page.trouble(),
+        page.recording().refusal().map(str::to_owned),
+    );
     let error = page.error().cloned();
     match event {
         LiveEvent::Waiting | LiveEvent::Recorded(..) | LiveEvent::NotFinished(_) => {}
@@ -358,7 +361,10 @@ pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
         LiveEvent::NotNamed(by, reason) => page.take_name(*by, Err(reason.clone())),
         LiveEvent::NotRecorded(reason) => page.fail_recording(reason.clone()),
     }
-    let now = (page.trouble(), page.not_recorded().map(str::to_owned));
+    let now = (
+        page.trouble(),
+        page.recording().refusal().map(str::to_owned),
+    );
     let is_wrong = page.error().is_some() && page.error() != error.as_ref();
     if is_open && (is_wrong || now.0.is_some() && now.0 != trouble) {
         // The page says it; an old notice, such as that of the beginning of a recording, is no longer true.

@@ -66,7 +66,7 @@ impl Page for Live {
     ) -> Option<Position> {
         let reading = self.reading();
         let panes = panes(self, area);
-        let shown = reading.filter(|_| !self.only_panel());
+        let shown = reading.filter(|_| !self.display.only_panel);
         let map = shown.map(|reading| HeatMap::of(self, reading, theme, panes.map));
         let title = title(self, map.as_ref().and_then(HeatMap::window));
         let title = fitting_title(title, panes.title.width.into(), theme);
@@ -99,24 +99,24 @@ impl Page for Live {
 
 /// The panes of the page.
 fn panes(live: &Live, area: Rect) -> LivePanes {
-    let reading = live.reading().filter(|_| !live.only_panel());
+    let reading = live.reading().filter(|_| !live.display.only_panel);
     let size = reading.map(|reading| (reading.values.columns(), reading.values.rows()));
-    LivePanes::of(area, size, live.numbers())
+    LivePanes::of(area, size, live.display.numbers)
 }
 
 /// Whether not all taxels are visible on a page of this area, although they are not hidden altogether.
 pub(super) fn hides_taxels(live: &Live, area: Rect) -> bool {
-    let Some(reading) = live.reading().filter(|_| !live.only_panel()) else {
+    let Some(reading) = live.reading().filter(|_| !live.display.only_panel) else {
         return false;
     };
     let size = (reading.values.columns(), reading.values.rows());
-    let grid = HeatGrid::of(panes(live, area).map, size, live.numbers(), (0, 0));
+    let grid = HeatGrid::of(panes(live, area).map, size, live.display.numbers, (0, 0));
     (grid.columns.count, grid.rows.count) != size
 }
 
 /// The taxel to look at to see others in a direction, on a page of this area; None where there are none.
 pub(super) fn beyond(live: &Live, theme: &Theme, area: Rect, towards: Arrow) -> Option<(u8, u8)> {
-    let reading = live.reading().filter(|_| !live.only_panel())?;
+    let reading = live.reading().filter(|_| !live.display.only_panel)?;
     let map = HeatMap::of(live, reading, theme, panes(live, area).map);
     map.beyond(towards, live)
 }
@@ -381,8 +381,11 @@ fn gaps(live: &Live) -> Option<String> {
 
 /// The file that is recorded in, and how much; or why there is none although it was asked for.
 fn recording(live: &Live) -> Option<String> {
-    let Some(name) = live.recording() else {
-        return live.not_recorded().map(|reason| format!("none: {reason}"));
+    let Some(name) = live.recording().name() else {
+        return live
+            .recording()
+            .refusal()
+            .map(|reason| format!("none: {reason}"));
     };
     let (frames, others) = match live.status().recorded {
         Some(recorded) => (recorded.frames, recorded.left_out),

@@ -27,7 +27,6 @@ use crate::tui::app::state::App;
 use crate::tui::app::view::view;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::action;
-use crate::tui::live::state::Live;
 use crate::tui::live::update::last_page;
 use crate::tui::runtime::World;
 use crate::tui::runtime::effect::TerminalEffect;
@@ -74,7 +73,7 @@ pub(in crate::tui) fn run(
             .handle(&mut event_loop.app, Message::Terminate);
     }
     // As in a pipeline: a script must see that the file is not whole.
-    let failure = last_page(&event_loop.app).and_then(Live::write_failure);
+    let failure = last_page(&event_loop.app).and_then(|page| page.recording().write_failure());
     let mut quit = Outcome::Quit;
     if let Some(reason) = failure {
         session::tell(&format!("error: {reason}\n"));
