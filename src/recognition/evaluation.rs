@@ -52,6 +52,8 @@ pub struct Evaluation {
     pub keys_of_one_shape: usize,
     /// Which shapes are named as which.
     pub confusion: ConfusionMatrix,
+    /// The sum of the weights of all shapes.
+    weights: u128,
 }
 
 impl Evaluation {
@@ -80,6 +82,7 @@ impl Evaluation {
             keys: 0,
             keys_of_one_shape: 0,
             confusion: ConfusionMatrix::new(shapes.len()),
+            weights: model.weights(),
         }
     }
 
@@ -107,7 +110,7 @@ impl Evaluation {
             // Of all touches, those of this shape with this key; per touch of the key and of the shape.
             let prior = u128::from(model.shapes()[shape].weight);
             let joint = share(touches, self.touches);
-            let ratio = share(touches, sum) / share(prior, model.weights());
+            let ratio = share(touches, sum) / share(prior, self.weights);
             self.information_bits += joint * libm::log2(ratio);
         }
     }
