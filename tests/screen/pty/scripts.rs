@@ -30,8 +30,8 @@ fn bytes(key: Key) -> Vec<u8> {
         Key::PageUp => b"\x1b[5~".to_vec(),
         Key::PageDown => b"\x1b[6~".to_vec(),
         Key::Enter => b"\r".to_vec(),
-        // Twice is once, and is known at once.
-        Key::Esc => b"\x1b\x1b".to_vec(),
+        // By its code: it is known at once, and is never joined with a key before or after it.
+        Key::Esc => b"\x1b[27u".to_vec(),
         Key::Tab => b"\t".to_vec(),
         Key::BackTab => b"\x1b[Z".to_vec(),
         Key::Backspace => b"\x7f".to_vec(),
