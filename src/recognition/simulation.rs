@@ -199,9 +199,9 @@ impl NoisyTouches {
         }
     }
 
-    /// That many taxels are dead, too: others in each touch, drawn at random and known to those who name the shape. So touches
-    /// are independent, and the standard error includes how much sensors with other dead taxels differ. The same seed draws
-    /// the same dead taxels whatever the noise.
+    /// The same with that many more dead taxels. They are drawn anew for each touch, and the classifier knows which they are.
+    /// So touches are independent, and the standard error includes how much sensors with different dead taxels differ. The
+    /// same seed draws the same dead taxels whatever the noise.
     #[must_use]
     pub fn with_random_dead(self, count: u32) -> Self {
         let random_dead = count;

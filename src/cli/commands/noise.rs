@@ -1,6 +1,7 @@
 //! What noise costs: `taxel model confusion --noise`, `--test half-step` and `taxel model touches`.
 //!
-//! Noise flips each taxel on its own with the same probability. Dead taxels are inactive, others in each touch. The tables:
+//! Noise flips each taxel on its own with the same probability. Dead taxels are inactive; they are drawn anew for each touch.
+//! The tables:
 //! ```text
 //!   noise  dead     right            held   claimed
 //!    0.05     0    89.3 % ± 2.5     0.0 %    90.9 %  ███████████████████████████
@@ -50,8 +51,8 @@ struct NoiseRow {
 }
 
 /// How often noisy touches are named right, for each noise and each number of dead taxels.
-/// In each touch other taxels are dead, the same ones at every noise, so that rows can be compared. The classifier knows the
-/// noise and which taxels are dead.
+/// The dead taxels are drawn anew for each touch, but are the same at every noise, so that rows can be compared. The
+/// classifier knows the noise and which taxels are dead.
 ///
 /// # Errors
 /// [`CliError::Stopped`] after a signal; of a noise out of range.

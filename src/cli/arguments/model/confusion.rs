@@ -186,7 +186,7 @@ fn noisy() -> [Arg; 5] {
     let dead = option(
         "dead",
         "N,...",
-        "Also with N dead taxels, others in each touch;\ndefault 0",
+        "Also with N dead taxels, drawn anew for each\ntouch; default 0",
     )
     .value_delimiter(',')
     .value_parser(whole::<u32>(0..=4095))
