@@ -180,7 +180,7 @@ impl Total {
         // No vector is longer than its parts together: a file may say otherwise, and rounding may.
         let own = libm::hypot(x, y).min(1.0);
         let within = between.mean(poses).clamp(own, 1.0);
-        // Nor do lengths differ that are the same but for their rounding: its root would be a deviation.
+        // Lengths that differ by no more than their rounding are equal: the root of the rounding would look like a deviation.
         let within = if 1.0 - within < ROUNDING { 1.0 } else { within };
         let own = if within - own < ROUNDING { within } else { own };
         // Vectors that cancel up to the rounding of their parts point nowhere.
@@ -195,7 +195,7 @@ impl Total {
     }
 }
 
-/// More than the mean length of vectors may be off. Their parts are the nearest multiples of 2⁻⁴⁰, and so is the length of
+/// The mean length of vectors is exact to less than this. Their parts are the nearest multiples of 2⁻⁴⁰, and so is the length of
 /// the sum of an orientation.
 const ROUNDING: f64 = 1.0 / ONE;
 

@@ -20,7 +20,7 @@ use crate::storage::{ArchiveFileError, FileError, LibraryError};
 use crate::sweep::MergeError;
 use crate::tui::script::runner;
 
-/// The most shapes of a table of pairs, which takes a gigabyte then.
+/// The most shapes of a table of pairs; as JSON it takes a gigabyte of memory for this many.
 pub(crate) const MOST_PAIRED: usize = 4096;
 
 /// Why a command failed, or was not done completely.

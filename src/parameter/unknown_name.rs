@@ -1,10 +1,10 @@
-//! The error for a text that is none of the names of something.
+//! The error for text that is not one of the expected names.
 
 use std::fmt;
 
 use crate::quote::shortened;
 
-/// The error for a text that is none of some names.
+/// The error for text that is not one of the expected names.
 ///
 /// ```
 /// use taxel::figure::FigureKind;
@@ -15,7 +15,7 @@ use crate::quote::shortened;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct UnknownName {
-    /// What has such names: "figure".
+    /// What the text was to name: "figure".
     pub what: &'static str,
     /// The text, shortened.
     pub found: String,
@@ -24,7 +24,7 @@ pub struct UnknownName {
 }
 
 impl UnknownName {
-    /// Finds the one of a name.
+    /// Returns the value that has this name.
     ///
     /// # Errors
     /// If none of them is called that.

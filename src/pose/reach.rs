@@ -9,7 +9,7 @@
 //! that is asked for. That is the cell that the shape lies in (1.99 lies in `1:1.99:0.01`) if the sensor cuts nothing off
 //! there; otherwise it is one around the middle. Around the middle means: of the cells in which nothing is cut off, the
 //! one nearest the middle, from a whole number on if there is such a cell; if there is none, the middle of the sensor.
-//! All positions are multiples of the step, so that large and small shapes are touched at the same places of a taxel.
+//! All positions are multiples of the step, so that large and small shapes are touched at the same places within a cell.
 
 use std::ops::Range;
 
@@ -27,7 +27,7 @@ use crate::touch::DOUBTFUL;
 /// ([`default_ranges`]), the others that of [`Ranges::default`].
 pub type GivenRanges = PerAxis<Option<DecimalRange>>;
 
-/// Hundredths of a cell. What divides it can be the step from one position of a cell to the next.
+/// The side of a cell in hundredths. Steps from one position to the next divide it.
 const CELL: u32 = 100;
 
 /// The step of a default range, in hundredths.

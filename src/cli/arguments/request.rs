@@ -247,7 +247,7 @@ fn deepest(matches: &ArgMatches) -> &ArgMatches {
         .map_or(matches, |(_, own)| deepest(own))
 }
 
-/// That two arguments both read standard input, which can be read only once; None if at most one does.
+/// The complaint that two arguments both read standard input, which can be read only once; None if at most one does.
 fn shared_input(matches: &ArgMatches) -> Option<String> {
     let inputs = ["file", "what", "set", "source", "mask", "gain"];
     let mut standard = inputs.into_iter().flat_map(|id| {

@@ -226,10 +226,10 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
     }
 }
 
-/// Notes which key has given something.
+/// Notes the key that gave a value.
 ///
 /// # Errors
-/// If one has done so before.
+/// If a key gave it before.
 fn once<E: Error>(given: &mut Option<&'static str>, key: &'static str) -> Result<(), E> {
     match given.replace(key) {
         None => Ok(()),

@@ -32,14 +32,14 @@ pub(super) struct FlexitacDecoder {
     frame: Frame,
 }
 
-/// Where the bytes begin that are not decided.
+/// Where the bytes that are not decoded yet begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Start {
-    /// Somewhere.
+    /// Anywhere in a frame.
     Anywhere,
-    /// With the first byte of the stream: a marker there is one.
+    /// At the first byte of the stream. If a marker is there, it is not the content of cells.
     Stream,
-    /// With a marker that is taken for one.
+    /// At a marker.
     Marker {
         /// Whether the frame behind it was shown already.
         shown: bool,
