@@ -24,7 +24,6 @@ use error::refused;
 use record_array::{RecordArray, empty};
 
 pub use description::description_beside;
-#[cfg(feature = "tui")]
 pub(crate) use description::name_description;
 pub use error::RecorderError;
 
