@@ -6,10 +6,9 @@
 //! Source: Purcaru and Niculescu; the sense of rotation and the form of the hole are conventions of this project.
 
 use std::fmt;
-use std::str::FromStr;
 
 use crate::geometry::{Ellipse, Extent, Pen, Point, Real, Side, Solid, Turn};
-use crate::parameter::{Parameter, ParameterError, UnknownName};
+use crate::parameter::{Parameter, ParameterError, named};
 use crate::sensor::Sensor;
 
 /// The note shown for a thickness that leaves no room for a hole.
@@ -94,19 +93,7 @@ impl FigureKind {
     }
 }
 
-impl fmt::Display for FigureKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for FigureKind {
-    type Err = UnknownName;
-
-    fn from_str(name: &str) -> Result<Self, UnknownName> {
-        UnknownName::unless_found("figure", name, &Self::ALL, Self::name)
-    }
-}
+named!(FigureKind, "figure", &FigureKind::ALL);
 
 /// A figure on the sensory plane. Its values are always finite, its sizes and its thickness above 0.
 ///

@@ -9,11 +9,9 @@
 //! the carry of an addition fills the whole run at once.
 
 use std::borrow::Cow;
-use std::fmt;
-use std::str::FromStr;
 
 use crate::imprint::{Bounds, Imprint};
-use crate::parameter::UnknownName;
+use crate::parameter::named;
 
 /// What a region is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -34,19 +32,11 @@ impl RegionKind {
     }
 }
 
-impl fmt::Display for RegionKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for RegionKind {
-    type Err = UnknownName;
-
-    fn from_str(name: &str) -> Result<Self, UnknownName> {
-        UnknownName::unless_found("region", name, &[Self::Exterior, Self::Hole], Self::name)
-    }
-}
+named!(
+    RegionKind,
+    "region",
+    &[RegionKind::Exterior, RegionKind::Hole]
+);
 
 /// A piece or a hole; never empty. Its taxels may be borrowed: an imprint is half a kilobyte.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -14,7 +14,6 @@
 //! ```
 
 use std::fmt;
-use std::str::FromStr;
 
 use crate::formats::array::ArrayError;
 use crate::formats::pbm::PbmError;
@@ -22,7 +21,7 @@ use crate::formats::table::TableError;
 use crate::formats::text::TextError;
 use crate::formats::{array, foreign, pbm, table, text};
 use crate::imprint::Imprint;
-use crate::parameter::UnknownName;
+use crate::parameter::named;
 
 /// No file of an imprint is larger; a larger one is refused unread. 1 MiB.
 pub const MAX_BYTES: usize = 1 << 20;
@@ -79,19 +78,7 @@ impl ImprintFormat {
     }
 }
 
-impl fmt::Display for ImprintFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for ImprintFormat {
-    type Err = UnknownName;
-
-    fn from_str(name: &str) -> Result<Self, UnknownName> {
-        UnknownName::unless_found("format", name, Self::ALL, Self::name)
-    }
-}
+named!(ImprintFormat, "format", ImprintFormat::ALL);
 
 /// Why bytes are not an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -20,3 +20,4 @@ pub use error::ParameterError;
 pub use range::Range;
 pub use table::{PARAMETERS, Parameter, ParameterRow, Unit};
 pub use unknown_name::UnknownName;
+pub(crate) use unknown_name::named;

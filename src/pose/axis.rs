@@ -1,10 +1,8 @@
 //! The axes of a pose, and one value for each of them: ranges, indices, poses.
 
-use std::fmt;
 use std::ops::{Index, IndexMut};
-use std::str::FromStr;
 
-use crate::parameter::{Parameter, UnknownName};
+use crate::parameter::{Parameter, named};
 use crate::pose::range::DecimalRange;
 use crate::source::Source;
 
@@ -67,19 +65,7 @@ impl Axis {
     }
 }
 
-impl fmt::Display for Axis {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for Axis {
-    type Err = UnknownName;
-
-    fn from_str(name: &str) -> Result<Self, UnknownName> {
-        UnknownName::unless_found("axis", name, &Self::ALL, Self::name)
-    }
-}
+named!(Axis, "axis", &Axis::ALL);
 
 /// A value for each axis, indexed by [`Axis`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -193,16 +179,4 @@ impl Anchor {
     }
 }
 
-impl fmt::Display for Anchor {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for Anchor {
-    type Err = UnknownName;
-
-    fn from_str(name: &str) -> Result<Self, UnknownName> {
-        UnknownName::unless_found("anchor", name, &Self::ALL, Self::name)
-    }
-}
+named!(Anchor, "anchor", &Anchor::ALL);

@@ -128,7 +128,7 @@ impl ShapeRate {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TouchesUntil {
-    /// The mean; None if a run did not reach it, since nobody knows how many touches that run would take.
+    /// The mean; None if a run did not reach it, since it is not known how many touches that run would take.
     pub mean: Option<f64>,
     /// Its standard error; None for fewer than two runs, too.
     pub standard_error: Option<f64>,

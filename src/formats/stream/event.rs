@@ -1,11 +1,8 @@
 //! What a stream may be, what is known of it beforehand, and what its decoder reports.
 
-use std::fmt;
-use std::str::FromStr;
-
 use crate::formats::value::grouped;
 use crate::frame::Frame;
-use crate::parameter::UnknownName;
+use crate::parameter::named;
 
 /// The formats of streams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -46,20 +43,11 @@ impl StreamFormat {
     }
 }
 
-impl fmt::Display for StreamFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for StreamFormat {
-    type Err = UnknownName;
-
-    fn from_str(name: &str) -> Result<Self, UnknownName> {
-        let all = Self::NAMES.map(|(_, format)| format);
-        UnknownName::unless_found("format", name, &all, Self::name)
-    }
-}
+named!(
+    StreamFormat,
+    "format",
+    &StreamFormat::NAMES.map(|(_, format)| format)
+);
 
 /// What is known of a stream beforehand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
