@@ -60,6 +60,26 @@ impl fmt::Display for UnknownName {
 
 impl std::error::Error for UnknownName {}
 
+/// A type whose values have a `name`: writes them as that, and reads them.
+macro_rules! named {
+    ($type:ident, $what:literal, $all:expr) => {
+        impl std::fmt::Display for $type {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.pad(self.name())
+            }
+        }
+
+        impl std::str::FromStr for $type {
+            type Err = $crate::parameter::UnknownName;
+
+            fn from_str(name: &str) -> Result<Self, Self::Err> {
+                Self::Err::unless_found($what, name, $all, Self::name)
+            }
+        }
+    };
+}
+pub(crate) use named;
+
 #[cfg(test)]
 mod tests {
     use std::fmt::Display;
@@ -89,23 +109,3 @@ mod tests {
         assert_eq!(format!("{:>8}", FigureKind::Hexagon), " hexagon");
     }
 }
-
-/// A type whose values have a `name`: writes them as that, and reads them.
-macro_rules! named {
-    ($type:ident, $what:literal, $all:expr) => {
-        impl std::fmt::Display for $type {
-            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.pad(self.name())
-            }
-        }
-
-        impl std::str::FromStr for $type {
-            type Err = $crate::parameter::UnknownName;
-
-            fn from_str(name: &str) -> Result<Self, Self::Err> {
-                Self::Err::unless_found($what, name, $all, Self::name)
-            }
-        }
-    };
-}
-pub(crate) use named;
