@@ -14,6 +14,7 @@
 //!                                     -> Evaluation   of the model: the limit of one touch
 //!                                     -> given        the same where only some descriptors are known
 //!                                     -> classifiers  the paper's way: classifiers on descriptors, and templates
+//! shards of a training -> ModelMerge -> Model          the same bytes as of a training in one piece
 //! shapes + sizes                      -> Separation   the limit against size and threshold
 //! ```
 //!
@@ -23,6 +24,8 @@
 mod key;
 
 mod model;
+
+mod merge;
 
 mod training;
 
@@ -61,7 +64,8 @@ pub use evaluation::Evaluation;
 pub use given::{GivenDescriptors, GivenError, GivenTable, Rounding, ShapeDescriptor, greedy};
 pub use half_step::HalfStep;
 pub use key::{ImprintKey, KeyTable};
-pub use model::{Model, ModelError, ModelMerge, ModelParts, NamedShape, ShapeCount};
+pub use merge::ModelMerge;
+pub use model::{Model, ModelError, ModelParts, NamedShape, ShapeCount};
 pub use nearest::Nearest;
 pub use noise::{Distances, Method, Noise, NoiseError, UnexplainedDifference};
 pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};

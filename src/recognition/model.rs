@@ -1,6 +1,5 @@
 //! The model of a set of shapes: in how many poses each shape leaves each key.
 
-use std::cmp::Ordering;
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
@@ -315,22 +314,8 @@ impl Model {
         })
     }
 
-    /// Merges all shards of one training into the same model as that of a single run. [`ModelMerge`] needs less memory.
-    ///
-    /// # Errors
-    /// If no shard is given, or one is missing, given twice, or of another training.
-    pub fn merge(shards: impl IntoIterator<Item = Self>) -> Result<Self, ModelError> {
-        let mut shards: Vec<Self> = shards.into_iter().collect();
-        shards.sort_by_key(|model| model.shard.number());
-        let mut merge = ModelMerge::default();
-        for model in &shards {
-            merge.add(model)?;
-        }
-        merge.finish()
-    }
-
     /// Whether both are parts of one training.
-    fn same_training(&self, other: &ModelParts) -> bool {
+    pub(super) fn same_training(&self, other: &ModelParts) -> bool {
         self.shapes == other.shapes
             && self.sensor == other.sensor
             && self.anchor == other.anchor
@@ -339,7 +324,7 @@ impl Model {
     }
 
     /// All but its keys.
-    fn head(&self) -> ModelParts {
+    pub(super) fn head(&self) -> ModelParts {
         ModelParts {
             shapes: self.shapes.clone(),
             sensor: self.sensor,
@@ -531,78 +516,5 @@ impl Gathered {
             self.counts.push(Vec::new());
         }
         slot
-    }
-}
-
-/// Merges the shards of a training one after another: memory holds only what is already merged and one shard.
-#[derive(Debug, Default)]
-pub struct ModelMerge {
-    /// What the first shard says of the training, with the poses of all so far and the number of the last.
-    head: Option<ModelParts>,
-    gathered: Gathered,
-}
-
-impl ModelMerge {
-    /// Adds the next shard: the first, then the second, and so on.
-    ///
-    /// # Errors
-    /// If it is not the next one, or of another training than the first. The merge is then as it was before.
-    pub fn add(&mut self, model: &Model) -> Result<(), ModelError> {
-        let (shard, of) = (model.shard, model.shard.of());
-        // All is checked before anything changes: after a refusal, the right shard can still come.
-        if let Some(head) = &self.head
-            && !model.same_training(head)
-        {
-            return Err(ModelError::Foreign { shard });
-        }
-        let last = self.head.as_ref().map_or(0, |head| head.shard.number());
-        let number = last + 1;
-        match shard.number().cmp(&number) {
-            Ordering::Less => return Err(ModelError::Twice { shard }),
-            Ordering::Greater => return Err(ModelError::Missing { number, of }),
-            Ordering::Equal => {}
-        }
-        match &mut self.head {
-            None => self.head = Some(model.head()),
-            Some(head) => {
-                let poses = head.poses.checked_add(model.poses);
-                head.poses = poses.ok_or(ModelError::Parts("counts beyond any number of poses"))?;
-                head.shard = shard;
-                for (sum, cut) in head.cut.iter_mut().zip(&model.cut) {
-                    *sum += cut;
-                }
-            }
-        }
-        for index in 0..model.keys.len() {
-            let slot = self.gathered.slot(&model.keys, index);
-            for &count in model.counts(index) {
-                slot_add(&mut self.gathered.counts[slot], count);
-            }
-        }
-        Ok(())
-    }
-
-    /// Returns the model of all shards.
-    ///
-    /// # Errors
-    /// If some are missing, or all.
-    pub fn finish(self) -> Result<Model, ModelError> {
-        let mut head = self.head.ok_or(ModelError::NoShards)?;
-        let (last, of) = (head.shard.number(), head.shard.of());
-        if last < of {
-            let number = last + 1;
-            return Err(ModelError::Missing { number, of });
-        }
-        head.shard = Shard::WHOLE;
-        let Gathered { keys, counts } = self.gathered;
-        Model::of_table(head, &keys, |index| counts[index].iter().copied())
-    }
-}
-
-/// Adds a count to those of a key, which stay in the order of the shapes.
-fn slot_add(counts: &mut Vec<ShapeCount>, more: ShapeCount) {
-    match counts.binary_search_by_key(&more.shape, |count| count.shape) {
-        Ok(index) => counts[index].poses += more.poses,
-        Err(index) => counts.insert(index, more),
     }
 }
