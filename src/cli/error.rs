@@ -91,7 +91,7 @@ pub(crate) enum CliError {
         /// The name of a stored shape that is nearly the same, as the end of the message.
         near: String,
     },
-    /// There is no shape of that name, in the library or in its trash.
+    /// No shape has that name, in the library or in its trash.
     #[error("{}{near}", shortened_message(&error.to_string()))]
     NoShape {
         /// Which name it is, and where it is not.

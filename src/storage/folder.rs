@@ -93,7 +93,7 @@ fn open(path: &Path) -> Result<File, LibraryError> {
     File::open(path).map_err(refused)
 }
 
-/// The names of what is in a folder; empty if the folder does not exist, be it that a file is where one above it would
+/// The names of what is in a folder; empty if the folder does not exist, or if a file is where a folder above it would
 /// be.
 pub(crate) fn names(folder: &Path) -> Result<Vec<OsString>, FileError> {
     let refuse = |error| FileError::new("read the folder", folder, error);

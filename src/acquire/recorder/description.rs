@@ -11,8 +11,8 @@ use crate::storage::{Existing, FinishedFile, UnfinishedFile};
 /// No description is longer.
 const LARGEST_DESCRIPTION: u64 = 1 << 22;
 
-/// What the description is to say. To write it takes as long as the disk does, and needs no recorder, to
-/// which frames can be added meanwhile:
+/// What the description is to say. Writing it takes as long as the disk does, and needs no recorder: frames can be added to
+/// that meanwhile.
 /// ```text
 /// set_view -> DescriptionDraft -> prepare -> take_description -> name_description
 /// ```

@@ -321,15 +321,18 @@ mod tests {
     use crate::acquire::recorder::record_array::header;
     use crate::formats::recording::FrameMark;
 
+    fn begun(path: &Path) -> FrameRecorder {
+        let metadata = RecordingMetadata::default();
+        FrameRecorder::create(path, Existing::Kept, &metadata).expect("begun")
+    }
+
     /// The recording gets its names with the first frame, at any time while a description of it is being written.
     #[test]
     fn a_description_is_written_while_the_first_frame_comes() {
         for comes_first in [true, false] {
             let folder = tempfile::tempdir().expect("a folder");
             let path = folder.path().join("a.npy");
-            let metadata = RecordingMetadata::default();
-            let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
-            let mut recorder = recorder.expect("begun");
+            let mut recorder = begun(&path);
             let marks = vec![FrameMark {
                 number: 7,
                 time: None,
@@ -361,9 +364,7 @@ mod tests {
     fn a_recorder_that_is_dropped_leaves_its_frames_but_no_end() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.npy");
-        let metadata = RecordingMetadata::default();
-        let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
-        let mut recorder = recorder.expect("begun");
+        let mut recorder = begun(&path);
         for _ in 0..3 {
             recorder.add(&Frame::new(1, 1), None).expect("recorded");
         }
@@ -378,7 +379,7 @@ mod tests {
         assert_eq!(beside.ended, Some(false));
         // Before its first frame, none of it is there.
         let path = folder.path().join("b.npy");
-        drop(FrameRecorder::create(&path, Existing::Kept, &metadata));
+        drop(begun(&path));
         assert_eq!(std::fs::read_dir(folder.path()).expect("read").count(), 2);
     }
 
@@ -386,9 +387,7 @@ mod tests {
     fn what_others_have_put_there_is_not_replaced_by_a_later_description() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.npy");
-        let metadata = RecordingMetadata::default();
-        let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
-        let mut recorder = recorder.expect("begun");
+        let mut recorder = begun(&path);
         let beside = path.with_extension("json");
         std::fs::write(&beside, "mine").expect("written");
         let file = recorder.set_view(RecordedView::default()).prepare();

@@ -279,7 +279,8 @@ measured.
 
 Classifiers: z measures the distance to the mean of each shape in standard
 deviations; diagonal, lda and qda fit Gaussians with diagonal, common and own
-covariance; knn asks the nearest touches, template the nearest imprints.
+covariance; knn takes the shape of the nearest touches, template that of the
+nearest imprints.
 
 Examples:
   taxel model confusion parts

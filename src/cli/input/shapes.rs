@@ -147,7 +147,7 @@ impl Shelf {
         }
     }
 
-    /// The message about an error of the library; a name that it has not got is compared with those that it has.
+    /// The message about an error of the library; a name that it does not have is compared with those that it has.
     pub(crate) fn refused(&self, error: LibraryError) -> CliError {
         let near = match &error {
             LibraryError::Unknown { name } => self.near(name),

@@ -172,8 +172,8 @@ fn is_roomy(panel: Rect) -> bool {
     }
 }
 
-/// The area of a form: beside the matrix, over its foot where there is too little room, or over all of it; and that of the descriptors,
-/// where they fit beside the form or below it.
+/// The area of a form: beside the matrix, over its foot where there is too little room, or over all of it; and that of the
+/// descriptors, where they fit beside the form or below it.
 fn form(body: Rect, beside: Rect) -> (Rect, Option<Rect>) {
     if beside.width < FORM {
         // Where less than the ruler and two lines of the matrix would be left, it is hidden.

@@ -1,7 +1,8 @@
 //! The results of a sweep, and which part of them is shown: page, descriptor, order, row, cursor of the map.
 //!
 //! What was found never changes and is shared with workers that write it to files. All pages look at the same
-//! descriptor, and the list and the map lead to each other.
+//! descriptor, and the list and the map lead to each other. The file is long because each key changes what several pages
+//! show.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

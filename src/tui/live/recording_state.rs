@@ -49,8 +49,8 @@ impl RecordingState {
         self.name = None;
     }
 
-    /// Forgets that one was asked for.
-    pub(super) fn restart(&mut self) {
+    /// Forgets that a recording was refused.
+    pub(super) fn forget_refusal(&mut self) {
         self.refusal = None;
     }
 }

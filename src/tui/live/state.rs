@@ -586,7 +586,7 @@ impl Live {
         self.number = number;
         self.watched_from = self.history.next_number();
         self.stopped = false;
-        self.recording.restart();
+        self.recording.forget_refusal();
         self.frozen = None;
         self.provisional = None;
         self.held = None;
