@@ -111,6 +111,14 @@ fn bytes_with(variables: &[(&str, &str)]) {
 
 #[test]
 fn nothing_is_done_for_nothing() {
+    // Together: both wait.
+    std::thread::scope(|scope| {
+        scope.spawn(it_idles_after_its_start);
+        scope.spawn(it_idles_after_a_stopped_sweep);
+    });
+}
+
+fn it_idles_after_its_start() {
     let mut program = Program::start(&Start::default());
     program.written(|program| program.shows("? Help"));
     let switches = |program: &Program| (program.status("voluntary_ctxt_switches"), program.cpu());
@@ -139,8 +147,7 @@ fn nothing_is_done_for_nothing() {
 }
 
 /// A sweep wakes the program about ten times a second, and when it is stopped nothing does.
-#[test]
-fn a_stopped_sweep_leaves_nothing_awake() {
+fn it_idles_after_a_stopped_sweep() {
     let mut program = Program::started(&Start::default());
     program.types(b"fr\r:explore --x0 0:9.999:0.001 --y0 0:9.999:0.001\r");
     program.shows("poses a second");

@@ -7,6 +7,7 @@ use std::time::Instant;
 use rustix::process::Signal;
 
 use super::program::{Program, Start, TAXEL};
+use super::tracer::Tracer;
 use crate::skip;
 
 /// Starts the program with some of its calls tampered with; None where that is not possible.
@@ -46,9 +47,11 @@ fn tampered(calls: &str, how: &str) -> Option<Program> {
     }))
 }
 
-/// Every sync takes eight seconds.
-fn hanging() -> Option<Program> {
-    tampered("?fsync,?fdatasync", "delay_enter=8000000")
+/// The program, and its disk: every sync hangs until that is ended.
+fn on_a_hanging_disk() -> Option<(Program, Tracer)> {
+    let mut program = Program::started(&Start::default());
+    let disk = Tracer::hang(&mut program, "?fsync,?fdatasync", &[])?;
+    Some((program, disk))
 }
 
 #[test]
@@ -66,7 +69,9 @@ fn a_hanging_disk_holds_neither_keys_nor_the_end() {
 }
 
 fn ends_before_the_disk(keys: &[u8], signal: Option<Signal>, status: i32) {
-    let Some(mut program) = hanging() else { return };
+    let Some((mut program, disk)) = on_a_hanging_disk() else {
+        return;
+    };
     program.types(b" sname\r");
     program.shows("Saving name: waiting for the disk");
     program.types(b"\x1b[C ");
@@ -84,6 +89,7 @@ fn ends_before_the_disk(keys: &[u8], signal: Option<Signal>, status: i32) {
     program.is_left();
     println!("the shell has the terminal after {:?}", begun.elapsed());
     // The system waits for the one who traces.
+    disk.end();
     let (ended, _) = program.ends();
     assert_eq!(ended.code(), Some(status));
 }
@@ -91,17 +97,20 @@ fn ends_before_the_disk(keys: &[u8], signal: Option<Signal>, status: i32) {
 #[test]
 fn an_export_to_a_hanging_disk_does_not_hold_it() {
     let folder = tempfile::tempdir().expect("a folder");
-    let Some(mut program) = hanging() else { return };
+    let Some((mut program, disk)) = on_a_hanging_disk() else {
+        return;
+    };
     let path = folder.path().join("a.csv");
     program.types(format!(" :write {}\r", path.display()).as_bytes());
     program.shows("waiting for the disk");
     program.types(b"\x1b[C ");
     program.shows("NA 2 in all");
     program.types(b"qy");
+    program.shows("not done yet, because the disk does not answer");
+    program.is_left();
+    disk.end();
     let (ended, _) = program.ends();
     assert_eq!(ended.code(), Some(0));
-    program.is_left();
-    program.shows("not done yet, because the disk does not answer");
 }
 
 /// All threads but the first, and all but the first three, are refused.

@@ -342,31 +342,38 @@ fn keys_go_on_while_a_hanging_disk_takes_a_recording() {
 
 #[test]
 fn the_end_does_not_wait_for_a_recording_on_a_hanging_disk() {
-    for (keys, signal, status) in [
-        (&b"qq"[..], None, 0),
-        (b"", Some(Signal::TERM), 143),
-        (b"", Some(Signal::HUP), 129),
-    ] {
-        let Some((mut watched, file, hanging)) = recorded_on_a_hanging_disk() else {
-            return;
-        };
-        let begun = Instant::now();
-        for key in keys {
-            watched.program.types(&[*key]);
+    // Together: most of their time they wait for that disk.
+    std::thread::scope(|scope| {
+        for (keys, signal, status) in [
+            (&b"qq"[..], None, 0),
+            (b"", Some(Signal::TERM), 143),
+            (b"", Some(Signal::HUP), 129),
+        ] {
+            scope.spawn(move || ends_before_its_recording(keys, signal, status));
         }
-        if let Some(signal) = signal {
-            watched.program.signal(signal);
-        }
-        let why = "Saving touch-1.npy: not done yet, because the disk does not answer";
-        watched.program.shows(why);
-        watched.program.is_left();
-        println!("the shell has the terminal after {:?}", begun.elapsed());
-        // The system waits for the one who traces.
-        hanging.end();
-        let (ended, _) = watched.program.ends();
-        assert_eq!(ended.code(), Some(status));
-        assert_eq!(records(&file), Some(21), "written, though not synced");
+    });
+}
+
+fn ends_before_its_recording(keys: &[u8], signal: Option<Signal>, status: i32) {
+    let Some((mut watched, file, hanging)) = recorded_on_a_hanging_disk() else {
+        return;
+    };
+    let begun = Instant::now();
+    for key in keys {
+        watched.program.types(&[*key]);
     }
+    if let Some(signal) = signal {
+        watched.program.signal(signal);
+    }
+    let why = "Saving touch-1.npy: not done yet, because the disk does not answer";
+    watched.program.shows(why);
+    watched.program.is_left();
+    println!("the shell has the terminal after {:?}", begun.elapsed());
+    // The system waits for the one who traces.
+    hanging.end();
+    let (ended, _) = watched.program.ends();
+    assert_eq!(ended.code(), Some(status));
+    assert_eq!(records(&file), Some(21), "written, though not synced");
 }
 
 #[test]
