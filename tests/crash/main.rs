@@ -30,14 +30,20 @@ mod lacking;
 
 mod threads;
 
+use std::num::NonZeroUsize;
 use std::panic::catch_unwind;
 use std::process::ExitCode;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::Instant;
 
 /// What a campaign has seen, in one line.
 type Campaign = fn() -> String;
 
 const CAMPAIGNS: [(&str, Campaign); 12] = [
+    // The longest first, so that no thread waits for it at the end.
+    ("killed_at_random", random::killed),
     ("killed_at_every_call", calls::killed),
     ("every_error_is_told", calls::refused),
     (
@@ -45,7 +51,6 @@ const CAMPAIGNS: [(&str, Campaign); 12] = [
         recording::killed,
     ),
     ("a_refused_recording_keeps_the_old_one", recording::refused),
-    ("killed_at_random", random::killed),
     ("naive_writing_is_caught", random::naive),
     ("file_systems_that_lack_something", lacking::done_without),
     ("crafted_folders_do_no_harm", lacking::crafted),
@@ -60,36 +65,49 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let asked = Asked::read();
-    let mut failed = 0;
-    for (name, campaign) in CAMPAIGNS {
-        if !asked.runs(name) {
-            continue;
-        }
-        let start = Instant::now();
-        let result = catch_unwind(campaign);
-        let seconds = start.elapsed().as_secs_f64();
-        if let Ok(seen) = result {
-            if let Some((_, why)) = seen.split_once("SKIPPED, ") {
-                if why.contains("strace") {
-                    skip::lacking("strace that may trace");
+    let left = CAMPAIGNS.iter().filter(|(name, _)| asked.runs(name));
+    let left = Mutex::new(left);
+    let failed = AtomicBool::new(false);
+    // A campaign waits for its programs half of the time.
+    thread::scope(|scope| {
+        for _ in 0..asked.threads.get() {
+            scope.spawn(|| {
+                let next = || left.lock().expect("nothing panics there").next();
+                while let Some((name, campaign)) = next() {
+                    if !passes(name, *campaign) {
+                        failed.store(true, Ordering::Relaxed);
+                    }
                 }
-                skip::skipped(&format!("{name}: {}", why.trim_end()));
-            }
-            println!("test {name} ... ok in {seconds:.1} s: {seen}");
-        } else {
-            println!("test {name} ... FAILED in {seconds:.1} s");
-            failed += 1;
+            });
         }
-    }
-    if failed == 0 {
-        ExitCode::SUCCESS
-    } else {
+    });
+    if failed.into_inner() {
         ExitCode::FAILURE
+    } else {
+        ExitCode::SUCCESS
     }
 }
 
+/// Runs a campaign and reports what it has seen, or that it failed.
+fn passes(name: &str, campaign: Campaign) -> bool {
+    let start = Instant::now();
+    let result = catch_unwind(campaign);
+    let seconds = start.elapsed().as_secs_f64();
+    let Ok(seen) = result else {
+        println!("test {name} ... FAILED in {seconds:.1} s");
+        return false;
+    };
+    if let Some((_, why)) = seen.split_once("SKIPPED, ") {
+        if why.contains("strace") {
+            skip::lacking("strace that may trace");
+        }
+        skip::skipped(&format!("{name}: {}", why.trim_end()));
+    }
+    println!("test {name} ... ok in {seconds:.1} s: {seen}");
+    true
+}
+
 /// Which campaigns are asked for, as `cargo test` passes it on.
-#[derive(Default)]
 struct Asked {
     /// Parts of their names; all if there are none.
     names: Vec<String>,
@@ -97,13 +115,23 @@ struct Asked {
     skipped: Vec<String>,
     /// Whether these are whole names.
     exact: bool,
+    /// How many run at once: one for each core, unless a number is given.
+    threads: NonZeroUsize,
 }
 
 impl Asked {
     fn read() -> Self {
         let mut arguments = std::env::args().skip(1);
-        let mut asked = Self::default();
+        let mut asked = Self {
+            names: Vec::new(),
+            skipped: Vec::new(),
+            exact: false,
+            threads: thread::available_parallelism().unwrap_or(NonZeroUsize::MIN),
+        };
         while let Some(argument) = arguments.next() {
+            if let Some(threads) = argument.strip_prefix("--test-threads=") {
+                asked.threads = threads.parse().expect("a number of threads");
+            }
             match argument.as_str() {
                 "--list" => {
                     for (name, _) in CAMPAIGNS {
@@ -113,7 +141,11 @@ impl Asked {
                 }
                 "--skip" => asked.skipped.extend(arguments.next()),
                 "--exact" => asked.exact = true,
-                "--test-threads" | "--color" | "--format" => drop(arguments.next()),
+                "--test-threads" => {
+                    let threads = arguments.next().unwrap_or_default();
+                    asked.threads = threads.parse().expect("a number of threads");
+                }
+                "--color" | "--format" => drop(arguments.next()),
                 flag if flag.starts_with('-') => {}
                 _ => asked.names.push(argument),
             }

@@ -48,19 +48,19 @@ fn kill(act: &str, state: &State, after: Duration) -> (u32, u32) {
     (last("saved"), last("kept"))
 }
 
-/// The seed of the moments: `TAXEL_SEED`, or else another one in each run, which is printed.
-fn seed() -> u32 {
+/// The seed of a campaign's moments: `TAXEL_SEED`, or else another one in each run, which is printed.
+fn seed(campaign: &str) -> u32 {
     let given = std::env::var("TAXEL_SEED").ok();
     let given = given.map(|seed| seed.parse::<u32>().expect("TAXEL_SEED is a whole number"));
     let clock = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
     let seed = given.unwrap_or_else(|| clock.map_or(1, |time| time.subsec_nanos()));
-    println!("TAXEL_SEED={seed} kills at these moments again");
+    println!("{campaign}: TAXEL_SEED={seed} kills at these moments again");
     seed
 }
 
 /// Up to 40 ms each.
-fn moments(count: usize) -> Vec<Duration> {
-    let mut word = seed() | 1;
+fn moments(campaign: &str, count: usize) -> Vec<Duration> {
+    let mut word = seed(campaign) | 1;
     let mut next = || {
         // Xorshift: G. Marsaglia, *Xorshift RNGs*, 2003.
         word ^= word << 13;
@@ -75,7 +75,7 @@ fn moments(count: usize) -> Vec<Duration> {
 pub(crate) fn killed() -> String {
     let (saves, in_trash) = (AtomicU32::new(0), AtomicU32::new(0));
     let kills = kills();
-    each(&moments(kills), |&after| {
+    each(&moments("killed_at_random", kills), |&after| {
         let state = State::new();
         let (saved, kept) = kill("churn", &state, after);
         let one = state.version("one").expect("there is always one");
@@ -111,7 +111,7 @@ pub(crate) fn killed() -> String {
 pub(crate) fn naive() -> String {
     let kills = kills() / 10;
     let mut torn = 0;
-    for after in moments(kills) {
+    for after in moments("naive_writing_is_caught", kills) {
         let state = State::new();
         kill("naive", &state, after);
         match state.library().load("one") {
