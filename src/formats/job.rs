@@ -7,7 +7,7 @@ use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 
 use crate::formats::framed::{FrameRows, RULE_KEYS, RuleRecord};
 use crate::formats::json::message;
-use crate::formats::record::{Record, RecordError, Text, once, value_of};
+use crate::formats::record::{KnownKeys, Record, RecordError, Text, once, value_of};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -22,6 +22,12 @@ pub enum Job {
     /// To describe a matrix as it is.
     Describe(Imprint),
 }
+
+/// The keys of a line, without those of the rule for a frame.
+const JOB_KEYS: KnownKeys = KnownKeys {
+    named: &["figure", "picture", "imprint", "frame", "sensor"],
+    parameters: true,
+};
 
 /// The error for a line without an answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -179,8 +185,7 @@ impl<'de: 'a, 'a> Deserialize<'de> for JobLine<'a> {
                         once("frame", &mut line.frame, value_of("frame", &mut map)?)?;
                         continue;
                     }
-                    let expected = "figure, picture, imprint, frame, sensor or a parameter";
-                    line.record.take(&key, &mut map, expected)?;
+                    line.record.take(&key, &mut map, &JOB_KEYS)?;
                 }
                 Ok(line)
             }

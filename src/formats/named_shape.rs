@@ -15,7 +15,7 @@ use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 
 use crate::figure::FigureKind;
 use crate::formats::json::message;
-use crate::formats::record::{ImprintOrName, Record, RecordError, Text, once, value_of};
+use crate::formats::record::{ImprintOrName, KnownKeys, Record, RecordError, Text, once, value_of};
 use crate::imprint::Imprint;
 use crate::parameter::{PARAMETERS, Parameter, number};
 use crate::picture::Picture;
@@ -198,6 +198,12 @@ struct Line<'a> {
     record: Record<'a>,
 }
 
+/// The keys of a line.
+const LINE_KEYS: KnownKeys = KnownKeys {
+    named: &["name", "weight", "figure", "picture", "imprint"],
+    parameters: true,
+};
+
 impl<'de: 'a, 'a> Deserialize<'de> for Line<'a> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct LineVisitor;
@@ -214,11 +220,7 @@ impl<'de: 'a, 'a> Deserialize<'de> for Line<'a> {
                         "weight" => {
                             once("weight", &mut line.weight, value_of("weight", &mut map)?)?;
                         }
-                        _ => line.record.take(
-                            &key,
-                            &mut map,
-                            "name, weight, figure, picture, imprint or a parameter",
-                        )?,
+                        _ => line.record.take(&key, &mut map, &LINE_KEYS)?,
                     }
                 }
                 Ok(line)

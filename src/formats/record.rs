@@ -244,20 +244,19 @@ impl<'de> Visitor<'de> for RecordVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
         let mut record = Record::default();
         while let Some(Text(key)) = map.next_key()? {
-            let expected = "figure, picture, imprint, sensor or a parameter";
-            record.take(&key, &mut map, expected)?;
+            record.take(&key, &mut map, &RECORD_KEYS)?;
         }
         Ok(record)
     }
 }
 
 impl<'a> Record<'a> {
-    /// Takes the value of a key; `expected` says which keys are known.
+    /// Takes the value of a key, which should be one of `known`.
     pub(crate) fn take<'de: 'a, A: MapAccess<'de>>(
         &mut self,
         key: &str,
         map: &mut A,
-        expected: &str,
+        known: &KnownKeys,
     ) -> Result<(), A::Error> {
         match key {
             "figure" => {
@@ -270,8 +269,47 @@ impl<'a> Record<'a> {
                 once("imprint", &mut self.imprint, imprint)
             }
             "sensor" => once("sensor", &mut self.sensor, value_of("sensor", map)?),
-            other => self.values.take(other, map, expected),
+            other => self.values.take(other, map, known),
         }
+    }
+}
+
+/// The keys that an object may have.
+pub(crate) struct KnownKeys {
+    /// Those in the message about an unknown one.
+    pub(crate) named: &'static [&'static str],
+    /// Whether those of parameters are known too.
+    pub(crate) parameters: bool,
+}
+
+/// Those of a record by itself.
+const RECORD_KEYS: KnownKeys = KnownKeys {
+    named: &["figure", "picture", "imprint", "sensor"],
+    parameters: true,
+};
+/// Those of a sensor.
+const SENSOR_KEYS: KnownKeys = KnownKeys {
+    named: &["columns", "rows", "threshold", "pitch_mm"],
+    parameters: false,
+};
+
+impl KnownKeys {
+    /// The message about a key that is not one of these.
+    fn lack(&self, key: &str) -> String {
+        let named = self.named.iter().copied();
+        let parameters = self
+            .parameters
+            .then(|| PARAMETERS.iter().map(|row| row.key));
+        let meant = did_you_mean(key, named.chain(parameters.into_iter().flatten()));
+        let (last, rest) = match (self.parameters, self.named) {
+            (false, [rest @ .., last]) => (*last, rest),
+            (_, named) => ("a parameter", named),
+        };
+        format!(
+            "unknown key {:?}, expected {} or {last}{meant}",
+            shortened(key),
+            rest.join(", ")
+        )
     }
 }
 
@@ -309,13 +347,10 @@ impl Values {
         &mut self,
         key: &str,
         map: &mut A,
-        expected: &str,
+        known: &KnownKeys,
     ) -> Result<(), A::Error> {
         let Some(index) = PARAMETERS.iter().position(|row| row.key == key) else {
-            return Err(A::Error::custom(format_args!(
-                "unknown key {:?}, expected {expected}",
-                shortened(key)
-            )));
+            return Err(A::Error::custom(known.lack(key)));
         };
         let key = PARAMETERS[index].key;
         once(key, &mut self.0[index], value_of(key, map)?)
@@ -333,7 +368,7 @@ impl<'de> Deserialize<'de> for Values {
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
                 let mut values = Values::default();
                 while let Some(Text(key)) = map.next_key()? {
-                    values.take(&key, &mut map, "columns, rows, threshold or pitch_mm")?;
+                    values.take(&key, &mut map, &SENSOR_KEYS)?;
                 }
                 Ok(values)
             }

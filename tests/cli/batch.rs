@@ -65,7 +65,7 @@ fn sizes_and_pose_have_no_defaults() {
 
 #[test]
 fn bad_lines_are_answered_in_their_places() {
-    let lines: [&[u8]; 16] = [
+    let lines: [&[u8]; 19] = [
         POINT.as_bytes(),
         b"nonsense",
         b"  \r",
@@ -81,6 +81,9 @@ fn bad_lines_are_answered_in_their_places() {
         b"{\"figure\":\"hexagon\",\"side\":1e300,\"x0\":2,\"y0\":2,\"angle\":0}",
         b"{\"frame\":[[1]],\"least\":-1}",
         b"{\"imprint\":\"washer\"}",
+        b"{\"figure\":\"hexagon\",\"sied\":3}",
+        b"{\"parameters\":{}}",
+        b"{\"imprint\":[\"#\"],\"sensor\":{\"colums\":1}}",
         POINT.as_bytes(),
     ];
     let run = taxel("batch", lines.join(&b'\n'));
@@ -109,10 +112,19 @@ fn bad_lines_are_answered_in_their_places() {
         error(
             "15: column 19: imprint: found the string \\\"washer\\\", expected rows of '#' and '.'",
         ),
+        error(
+            "16: column 26: unknown key \\\"sied\\\", expected figure, picture, imprint, frame, sensor or a parameter; did you mean \\\"side\\\"?",
+        ),
+        error(
+            "17: column 13: unknown key \\\"parameters\\\", expected figure, picture, imprint, frame, sensor or a parameter",
+        ),
+        error(
+            "18: column 35: sensor: unknown key \\\"colums\\\", expected columns, rows, threshold or pitch_mm; did you mean \\\"columns\\\"?",
+        ),
         POINT_ANSWER.to_owned(),
     ];
     assert_eq!(run.stdout, expected.concat());
-    assert_eq!(run.stderr, "error: 11 of 14 lines could not be answered\n");
+    assert_eq!(run.stderr, "error: 14 of 17 lines could not be answered\n");
     assert_eq!(run.status, Some(1));
 }
 

@@ -287,6 +287,10 @@ fn commands_do_what_keys_do() {
     for (line, message) in [
         ("fly", "! \"fly\" is unknown; Tab shows the commands"),
         (
+            "explroe",
+            "! \"explroe\" is unknown; Tab shows the commands; did you mean \"explore\"?",
+        ),
+        (
             "figure blob",
             "! figure: \"blob\" is unknown, expected one of ellipse,",
         ),
@@ -419,6 +423,6 @@ fn an_unknown_flag_is_answered_by_those_of_the_command() {
     );
     shows(
         ":figure hexagon --sid 3<Enter>",
-        &["expected one of --side, --x0,"],
+        &["expected one of --side, --x0,", "did you mean \"--side\"?"],
     );
 }

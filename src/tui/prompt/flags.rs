@@ -2,38 +2,38 @@
 //!
 //! ```
 //! use taxel::tui::prompt::flags::read;
-//! let sides = |flag: &str| (flag == "--side").then_some(1).ok_or(format!("{flag} is unknown"));
-//! assert_eq!(read(&["--side=3"], "--side", sides), Ok(vec![("--side", 1, "3")]));
-//! assert_eq!(read(&["--side"], "--side", sides), Err("--side needs a value".to_owned()));
+//! let sides = |flag: &str| (flag == "--side").then_some(1);
+//! assert_eq!(read(&["--side=3"], &["--side"], sides), Ok(vec![("--side", 1, "3")]));
+//! assert_eq!(read(&["--side"], &["--side"], sides), Err("--side needs a value".to_owned()));
 //! ```
 
-use crate::quote::shortened;
+use crate::quote::{did_you_mean, shortened};
 
 /// A flag as it was typed, what it stands for, and its value.
 pub type Flag<'a, T> = (&'a str, T, &'a str);
 
-/// Reads flags, each with its value and none twice. `known` says what a flag stands for, or that there is none of that
-/// name; `example` is one that there is.
+/// Reads flags, each with its value and none twice. `known` says what a flag stands for; None if it is unknown. `names` are
+/// those that an error lists, the first one as an example.
 ///
 /// # Errors
 /// What is wrong with them, in a sentence.
 pub fn read<'a, T: PartialEq>(
     words: &[&'a str],
-    example: &str,
-    known: impl Fn(&str) -> Result<T, String>,
+    names: &[impl AsRef<str>],
+    known: impl Fn(&str) -> Option<T>,
 ) -> Result<Vec<Flag<'a, T>>, String> {
     let mut flags: Vec<Flag<'a, T>> = Vec::new();
     let mut words = words.iter().copied().peekable();
     while let Some(word) = words.next() {
         if !word.starts_with("--") {
-            let found = shortened(word);
+            let (example, found) = (names.first().map_or("--", AsRef::as_ref), shortened(word));
             return Err(format!("expected a flag like {example}, found {found}"));
         }
         let (flag, value) = match word.split_once('=') {
             Some((flag, value)) => (flag, Some(value)),
             None => (word, None),
         };
-        let what = known(flag)?;
+        let what = known(flag).ok_or_else(|| unknown(flag, names))?;
         if flags.iter().any(|(_, own, _)| *own == what) {
             return Err(format!("{flag} is given twice"));
         }
@@ -44,6 +44,17 @@ pub fn read<'a, T: PartialEq>(
         flags.push((flag, what, value));
     }
     Ok(flags)
+}
+
+/// The message about a flag that is not one of these.
+fn unknown(flag: &str, names: &[impl AsRef<str>]) -> String {
+    let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+    format!(
+        "{} is unknown, expected one of {}{}",
+        shortened(flag),
+        names.join(", "),
+        did_you_mean(flag, names)
+    )
 }
 
 /// Whether the value of the last flag is still to come.
@@ -67,13 +78,10 @@ mod tests {
     #[test]
     fn flags_are_read_with_a_blank_or_an_equals_sign() {
         let all = ["--side", "--x0"];
-        let known = |flag: &str| {
-            let index = all.iter().position(|own| *own == flag);
-            index.ok_or_else(|| format!("{} is unknown", shortened(flag)))
-        };
+        let known = |flag: &str| all.iter().position(|own| *own == flag);
         let given = |line: &'static str| {
             let words: Vec<&str> = line.split_whitespace().collect();
-            read(&words, "--side", known)
+            read(&words, &all, known)
         };
         let both = Ok(vec![("--side", 0, "3.5"), ("--x0", 1, "-2")]);
         assert_eq!(given("--side=3.5 --x0=-2"), both);
@@ -84,7 +92,14 @@ mod tests {
             ("--side=", "--side needs a value"),
             ("--side --x0 3", "--side needs a value"),
             ("--side=1 --side 2", "--side is given twice"),
-            ("--sid=3", "--sid is unknown"),
+            (
+                "--sid=3",
+                "--sid is unknown, expected one of --side, --x0; did you mean \"--side\"?",
+            ),
+            (
+                "--angle=3",
+                "--angle is unknown, expected one of --side, --x0",
+            ),
             ("side=3", "expected a flag like --side, found side=3"),
         ] {
             assert_eq!(given(line), Err(error.to_owned()), "{line}");

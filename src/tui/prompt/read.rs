@@ -13,9 +13,10 @@
 
 use crate::figure::{Figure, FigureKind};
 use crate::formats::Name;
+use crate::formats::record::RecordError;
 use crate::parameter::{Parameter, number};
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, RangeError, default_ranges};
-use crate::quote::shortened;
+use crate::quote::{did_you_mean, shortened};
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
 use crate::tui::app::document::Document;
@@ -26,7 +27,7 @@ use crate::tui::explore::work::explored;
 use crate::tui::keys::action::{self, Arguments, FilePurpose};
 use crate::tui::keys::binding::Context;
 use crate::tui::live::message::LiveMessage;
-use crate::tui::prompt::commands::{PromptCommand, find};
+use crate::tui::prompt::commands::{PromptCommand, commands, find};
 use crate::tui::prompt::flags::{self, Flag};
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::request::SeparationFlags;
@@ -44,8 +45,9 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
     let command = find(name).ok_or_else(|| {
         let complete = app.keymap().label(Context::Command, &action::NEXT);
         format!(
-            "{:?} is unknown; {complete} shows the commands",
-            shortened(name)
+            "{:?} is unknown; {complete} shows the commands{}",
+            shortened(name),
+            did_you_mean(name, commands().iter().map(|command| command.name))
         )
     })?;
     let words: Vec<&str> = rest.split_whitespace().collect();
@@ -178,25 +180,27 @@ fn name_of(text: &str) -> Result<Name, String> {
     Name::new(text).map_err(|error| error.to_string())
 }
 
-/// The numbers of flags, which are those of these parameters; `example` is one of them.
+/// The flag of explore's anchor.
+const ANCHOR: &str = "--anchor";
+
+/// A parameter's flag.
+fn flag_of(parameter: Parameter) -> String {
+    format!("--{}", parameter.flag())
+}
+
+/// The numbers of flags; an error about an unknown one lists those of `parameters`.
 fn numbers(
     words: &[&str],
-    (example, parameters): (&str, &[Parameter]),
+    parameters: &[Parameter],
     sensor: &Sensor,
 ) -> Result<Vec<(Parameter, f64)>, String> {
-    let known = |flag: &str| {
-        let parameter = Parameter::from_flag(flag.trim_start_matches("--"));
-        parameter.ok_or_else(|| {
-            let flags = parameters.iter().map(|own| format!("--{}", own.flag()));
-            let flags = flags.collect::<Vec<_>>().join(", ");
-            format!("{} is unknown, expected one of {flags}", shortened(flag))
-        })
-    };
+    let known = |flag: &str| Parameter::from_flag(flag.trim_start_matches("--"));
+    let names: Vec<String> = parameters.iter().copied().map(flag_of).collect();
     let number = |(_, parameter, text): Flag<'_, Parameter>| {
         let value = sensor.read(parameter, text);
         Ok((parameter, value.map_err(|error| error.labelled())?))
     };
-    let flags = flags::read(words, example, known)?.into_iter();
+    let flags = flags::read(words, &names, known)?.into_iter();
     flags.map(number).collect()
 }
 
@@ -205,13 +209,10 @@ fn numbers(
 fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
     let sensor = app.shown().sensor;
     let kind = FigureKind::from_name(kind).ok_or_else(|| {
-        format!(
-            "figure: {:?} is unknown, expected one of {}",
-            shortened(kind),
-            FigureKind::ALL.map(FigureKind::name).join(", ")
-        )
+        let found = shortened(kind);
+        RecordError::FigureKind { found }.to_string()
     })?;
-    let values = numbers(words, ("--side", kind.parameters()), &sensor)?;
+    let values = numbers(words, kind.parameters(), &sensor)?;
     if let Some((foreign, _)) = values
         .iter()
         .find(|(parameter, _)| !kind.parameters().contains(parameter))
@@ -236,7 +237,7 @@ fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
 /// `sensor --columns 32 …`. Parameters that are not given keep their values.
 fn sensor(words: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
-    let values = numbers(words, ("--columns", &SENSOR_PARAMETERS), &Sensor::LARGEST)?;
+    let values = numbers(words, &SENSOR_PARAMETERS, &Sensor::LARGEST)?;
     let sensor = values
         .into_iter()
         .try_fold(document.sensor, |sensor, (parameter, value)| {
@@ -257,19 +258,14 @@ fn explore(words: &[&str], app: &App) -> Result<Message, String> {
     let (mut ranges, mut anchor) = (GivenRanges::default(), Anchor::default());
     // An axis, or None for the anchor.
     let known = |flag: &str| {
-        let name = flag.trim_start_matches("--");
-        let mut axes = Axis::ALL.into_iter();
-        let axis = axes.find(|axis| axis.parameter().flag() == name);
-        (axis.is_some() || name == "anchor")
-            .then_some(axis)
-            .ok_or_else(|| {
-                format!(
-                    "{} is unknown, expected --x0, --y0, --angle, --zoom-x, --zoom-y or --anchor",
-                    shortened(flag)
-                )
-            })
+        let axis = Axis::ALL
+            .into_iter()
+            .find(|axis| flag_of(axis.parameter()) == flag);
+        (axis.is_some() || flag == ANCHOR).then_some(axis)
     };
-    for (flag, axis, text) in flags::read(words, "--x0", known)? {
+    let axes = Axis::ALL.map(|axis| flag_of(axis.parameter()));
+    let names = [&axes[..], &[ANCHOR.to_owned()]].concat();
+    for (flag, axis, text) in flags::read(words, &names, known)? {
         match axis {
             Some(axis) => {
                 let range = text.parse();
@@ -278,7 +274,7 @@ fn explore(words: &[&str], app: &App) -> Result<Message, String> {
             None => {
                 anchor = Anchor::from_name(text).ok_or_else(|| {
                     let names = Anchor::NAMES.join(" or ");
-                    format!("--anchor takes {names}, found {}", shortened(text))
+                    format!("{ANCHOR} takes {names}, found {}", shortened(text))
                 })?;
             }
         }

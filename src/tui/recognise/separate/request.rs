@@ -90,15 +90,9 @@ impl SeparationFlags {
     /// # Errors
     /// What is wrong with them, in a sentence.
     pub fn read(words: &[&str]) -> Result<Self, String> {
-        let known = |flag: &str| {
-            let own = Self::NAMES.into_iter().find(|own| *own == flag);
-            own.ok_or_else(|| {
-                let expected = Self::NAMES.join(", ");
-                format!("{} is unknown, expected {expected}", shortened(flag))
-            })
-        };
+        let known = |flag: &str| Self::NAMES.into_iter().find(|own| *own == flag);
         let mut flags = Self::NONE;
-        let given = flags::read(words, "--scale", known)?;
+        let given = flags::read(words, &Self::NAMES, known)?;
         for (flag, _, text) in &given {
             flags.take(flag, text)?;
         }
@@ -232,7 +226,7 @@ mod tests {
             ("--scale 1 --scale 2", "twice"),
             ("--want 2", "from 0 to 1, found 2"),
             ("--positions 7", "a divisor of 100, found 7"),
-            ("--size 3", "--size is unknown, expected --scale"),
+            ("--size 3", "--size is unknown, expected one of --scale"),
         ] {
             let error = read(line).expect_err(line);
             assert!(error.contains(part), "{line}: {error}");
