@@ -9,15 +9,20 @@ const GAP: f64 = 1.0;
 /// Times up to here are exact to less than a nanosecond; those from 1970 on are to less than a microsecond.
 const FINE: f64 = 1e6;
 
-/// A number of seconds, to the nanosecond.
+/// A number of seconds, to the nanosecond; finite.
 pub(crate) fn to_nanoseconds(seconds: f64) -> f64 {
-    to_decimals(seconds, 9)
+    to_decimals(finite(seconds), 9)
 }
 
-/// The seconds from `start` to `time`, as exactly as these are: 2.3 s − 2.2 s is 0.1 s.
+/// The seconds from `start` to `time`, both finite, as exactly as these are: 2.3 s − 2.2 s is 0.1 s. Finite.
 pub(crate) fn since(start: f64, time: f64) -> f64 {
     let is_fine = start.abs().max(time.abs()) < FINE;
-    to_decimals(time - start, if is_fine { 9 } else { 6 })
+    to_decimals(finite(time - start), if is_fine { 9 } else { 6 })
+}
+
+/// The nearest finite number: a file may give times whose product or difference overflows.
+fn finite(seconds: f64) -> f64 {
+    seconds.clamp(f64::MIN, f64::MAX)
 }
 
 /// The usual time from a frame to the next, given the times between frames in any order: their mean without gaps, as where

@@ -354,11 +354,12 @@ fn request(
             own,
             pitch(own, settings)?.of(None),
         ))),
-        _ => {
+        "batch" => {
             let file = own.get_one::<PathBuf>("file").cloned();
             let file = file.filter(|file| file.as_os_str() != "-");
             Request::Batch(file, settings.sensor(), flags::jobs_of(own))
         }
+        unread => return Err(unread_subcommand(unread)),
     })
 }
 
@@ -446,11 +447,17 @@ fn source(
     Ok((figure, sensor))
 }
 
+/// The error for a subcommand that is defined but not read here: a mistake of ours, which must not run another one.
+pub(super) fn unread_subcommand(name: &str) -> CliError {
+    let message = format!("{name:?} is not implemented; this is a bug\n");
+    clap::Error::raw(ErrorKind::InvalidSubcommand, message).into()
+}
+
 /// The subcommand of `taxel library`.
 fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, CliError> {
     let Some((command, own)) = matches.subcommand() else {
         // Required: there is always one.
-        return Ok(Chore::Path);
+        return Err(unread_subcommand("library"));
     };
     let name = own.try_get_one::<Name>("name").ok().flatten().cloned();
     Ok(match (command, name) {
@@ -466,7 +473,8 @@ fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, CliError> 
         ("delete", Some(name)) => Chore::Delete(name),
         ("restore", Some(name)) => Chore::Restore(name),
         ("check", _) => Chore::Check(own.get_flag("json")),
-        _ => Chore::Path,
+        ("path", _) => Chore::Path,
+        (unread, _) => return Err(unread_subcommand(unread)),
     })
 }
 
@@ -476,7 +484,7 @@ fn what(matches: &ArgMatches) -> Result<OsString, CliError> {
 }
 
 /// The value of an argument that clap makes sure of: without it the command is refused before this is called.
-fn required<T: Clone + Send + Sync + 'static>(
+pub(super) fn required<T: Clone + Send + Sync + 'static>(
     matches: &ArgMatches,
     id: &str,
 ) -> Result<T, CliError> {

@@ -33,6 +33,7 @@ use crate::formats::recording::number;
 use crate::formats::recording::separator::{Separator, decimal};
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
+use crate::formats::seconds::since;
 use crate::frame::Frame;
 use crate::parameter::number::{counted, to_decimals};
 
@@ -272,9 +273,8 @@ impl XsensorState {
         frame.time = moment
             .zip(start)
             .map(|((day, seconds), (first_day, first_seconds))| {
-                // Clocks show thousandths; the seconds of a day are exact to more than that.
                 let days = f64::from(day - first_day) * 86_400.0;
-                to_decimals(days + seconds - first_seconds, 6)
+                since(first_seconds, days + seconds)
             });
         self.sensors += 1;
         Ok(sink(RecordingEvent::Frame(frame)).is_break())
@@ -291,8 +291,8 @@ impl XsensorState {
     }
 
     /// The moment of the frame: day, and seconds of the day.
-    /// None if the clock is not three numbers, nor a single one, of seconds; a date that cannot be read counts as the same
-    /// day.
+    /// None if the clock is not three numbers, nor a single one, of seconds, or if they are too large; a date that cannot
+    /// be read counts as the same day.
     fn moment(&self) -> Option<(i32, f64)> {
         let parts = self.clock.as_ref()?.split(':');
         let parts: Option<Vec<f64>> = parts
@@ -300,12 +300,13 @@ impl XsensorState {
             .collect();
         let date = self.date.as_ref();
         let day = date.and_then(|date| days(date)).unwrap_or(1);
-        match parts?[..] {
-            [hours, minutes, seconds] => Some((day, hours * 3600.0 + minutes * 60.0 + seconds)),
+        let (day, seconds) = match parts?[..] {
+            [hours, minutes, seconds] => (day, hours * 3600.0 + minutes * 60.0 + seconds),
             // They count from the beginning, not from midnight.
-            [seconds] => Some((1, seconds)),
-            _ => None,
-        }
+            [seconds] => (1, seconds),
+            _ => return None,
+        };
+        seconds.is_finite().then_some((day, seconds))
     }
 }
 

@@ -14,7 +14,7 @@ use crate::index::wide;
 use crate::pose::{Axis, Pose, PoseIndex};
 use crate::sweep::SweepResult;
 use crate::touch::Plane;
-use crate::tui::explore::angles::curve::AngleCurve;
+use crate::tui::explore::angles::curve::{AngleCurve, zooms_of};
 use crate::tui::explore::column::ListColumn;
 use crate::tui::explore::map::sight::MapSight;
 use crate::tui::explore::message::{ExplorePage, Findings, Zoom, name_of};
@@ -38,9 +38,9 @@ pub struct Results {
     across: (usize, Vec<Option<f64>>),
     /// The imprints of each angle, once the page of angles was looked at.
     angle_curve: Option<Arc<AngleCurve>>,
-    /// Where those were asked for last.
+    /// The zooms that those were asked for last.
     angles_asked: Option<PoseIndex>,
-    /// Where they could not be found last.
+    /// The zooms at which they could not be found last.
     angles_failed: Option<PoseIndex>,
     /// The imprints that the map shows.
     map_sight: MapSight,
@@ -181,8 +181,10 @@ impl Results {
     pub fn missing_angles(&mut self) -> Option<PoseIndex> {
         let missing = self.page == ExplorePage::Angles
             && self.angle_curve().is_none()
-            && self.angles_asked != Some(self.pose_index);
-        self.angles_asked = missing.then_some(self.pose_index).or(self.angles_asked);
+            && self.angles_asked != Some(zooms_of(self.pose_index));
+        if missing {
+            self.angles_asked = Some(zooms_of(self.pose_index));
+        }
         missing.then_some(self.pose_index)
     }
 
@@ -193,14 +195,14 @@ impl Results {
         }
     }
 
-    /// Takes that the imprints of each angle could not be found at a place.
+    /// Takes that the imprints of each angle could not be found at the zooms of a place.
     pub fn fail_angles(&mut self, place: PoseIndex) {
-        self.angles_failed = Some(place);
+        self.angles_failed = Some(zooms_of(place));
     }
 
-    /// Whether that is so where the map's cursor is.
+    /// Whether that is so at the zooms of the map.
     pub fn angles_failed(&self) -> bool {
-        self.angles_failed == Some(self.pose_index)
+        self.angles_failed == Some(zooms_of(self.pose_index))
     }
 
     /// The imprints that the map showed last.
@@ -530,6 +532,10 @@ mod tests {
         let first = results.pose_index();
         let (early, late) = (curve(first), curve(first.with(Axis::ZoomX, 1)));
         assert_eq!(results.missing_angles(), Some(first));
+        // The curve is that of all angles and positions.
+        results.move_along(Axis::X0, 1);
+        assert_eq!(results.missing_angles(), None, "asked for already");
+        results.move_along(Axis::X0, -1);
         results.zoom(Zoom::X, 1);
         assert!(results.missing_angles().is_some());
         results.take_angles(late);

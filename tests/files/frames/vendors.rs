@@ -264,6 +264,11 @@ fn exports_of_xsensor_differ_in_quotes_colons_and_units() {
     // A time in seconds; a single sensor without a name.
     let found = recorded(xsensor(["0.25", "0.3755"]).as_bytes(), None);
     assert_eq!(found.frames[2].time, Some(0.1255));
+    // Clocks that are too large for a number of seconds are none, and differences of times are finite.
+    let found = recorded(xsensor(["1e306:21:17.9", "1e306:21:18.4"]).as_bytes(), None);
+    assert_eq!((error(&found), found.frames[2].time), (None, None));
+    let found = recorded(xsensor(["-1e308", "1e308"]).as_bytes(), None);
+    assert_eq!(found.frames[2].time, Some(f64::MAX));
     assert_eq!(found.channels[0].start.as_deref(), Some("2022 Aug 16"));
     let nameless = colons
         .replace("Sensor:,left\n", "")

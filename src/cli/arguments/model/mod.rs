@@ -19,6 +19,7 @@ use crate::cli::arguments::flags::{self, json, option, switch, whole};
 use crate::cli::arguments::help::{
     MODEL_DELETE_EXAMPLES, MODEL_EXAMPLES, MODEL_LIST_EXAMPLES, MODEL_SHOW_EXAMPLES,
 };
+use crate::cli::arguments::request::{required, unread_subcommand};
 use crate::cli::error::CliError;
 use crate::formats::Name;
 
@@ -64,20 +65,18 @@ impl ModelRequest {
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let Some((command, own)) = matches.subcommand() else {
             // Required: there is always one.
-            return Ok(Self::List(false));
+            return Err(unread_subcommand("model"));
         };
         Ok(match command {
             "train" => Self::Train(Box::new(train::TrainArguments::of(own)?)),
             "show" => Self::Show(flags::word(own, "model"), own.get_flag("json")),
-            "delete" => match own.get_one::<Name>("name") {
-                Some(name) => Self::Delete(name.clone()),
-                None => Self::List(false),
-            },
+            "delete" => Self::Delete(required(own, "name")?),
             "touches" => Self::Touches(touches::TouchesArguments::of(own)),
             "confusion" => Self::Confusion(Box::new(confusion::ConfusionArguments::of(own)?)),
             "separate" => Self::Separate(Box::new(separate::SeparateArguments::of(own)?)),
-            _ if own.get_flag("names") => Self::Names,
-            _ => Self::List(own.get_flag("json")),
+            "list" if own.get_flag("names") => Self::Names,
+            "list" => Self::List(own.get_flag("json")),
+            unread => return Err(unread_subcommand(unread)),
         })
     }
 }

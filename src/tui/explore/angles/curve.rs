@@ -48,7 +48,7 @@ pub struct AngleSpread {
 }
 
 /// A place with only its zooms.
-fn zooms_of(place: PoseIndex) -> PoseIndex {
+pub(in crate::tui::explore) fn zooms_of(place: PoseIndex) -> PoseIndex {
     place
         .with(Axis::X0, 0)
         .with(Axis::Y0, 0)
