@@ -101,7 +101,8 @@ impl Rule {
             Self::Percent(percent) => {
                 let max = values.values().iter().copied().fold(f64::NAN, f64::max);
                 if max > 0.0 {
-                    from(values, Self::share(percent, max))
+                    // All of the largest value may come out above it by a rounding.
+                    from(values, Self::share(percent, max).min(max))
                 } else {
                     Imprint::empty(values.columns(), values.rows())
                 }
@@ -201,6 +202,13 @@ mod tests {
             let values = matrix(&[&[f64::from(3 * percent), 300.0]]);
             assert_eq!(imprint(Rule::percent(f64::from(percent)), &values), "##");
         }
+    }
+
+    #[test]
+    fn the_largest_value_is_active_at_every_percentage() {
+        let (largest, all) = (14.847_618_057_259_202, Rule::percent(100.0));
+        assert!(largest * 100.0 / 100.0 > largest);
+        assert_eq!(imprint(all, &matrix(&[&[largest, 6.0]])), "#.");
     }
 
     #[test]
