@@ -98,7 +98,7 @@ impl StoredShape {
         Self { name, ..self }
     }
 
-    /// Reads a file's content.
+    /// Reads a file's content; a byte order mark before it is skipped.
     ///
     /// # Errors
     /// What is wrong with it, where, and what was expected.
@@ -106,6 +106,7 @@ impl StoredShape {
         if text.len() > MAX_BYTES {
             return Err(ShapeError::Large);
         }
+        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
         let file: ShapeFile<'_> =
             serde_json::from_slice(text).map_err(|error| ShapeError::Json {
                 line: error.line(),

@@ -218,7 +218,11 @@ proptest! {
         };
         let name = taxel::formats::Name::new(&name).expect("the names of the test are right");
         let shape = StoredShape::new(name, sensor, imprint, source).expect("of one size");
-        prop_assert_eq!(StoredShape::read(shape.write().as_bytes()), Ok(shape));
+        let text = shape.write();
+        let marked = format!("\u{feff}{text}");
+        for text in [marked, text] {
+            prop_assert_eq!(StoredShape::read(text.as_bytes()), Ok(shape.clone()));
+        }
     }
 
     #[test]
