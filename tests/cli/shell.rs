@@ -387,6 +387,15 @@ fn pages_of_the_manual_tell_what_the_help_tells() {
         taxel("man", "").stdout,
         fs::read_to_string(pages.join("taxel.1")).expect("a page")
     );
+    let run = taxel("man figure", "");
+    let (name, _) = run.stderr.split_once('\n').expect("a line");
+    assert_eq!(
+        (run.status, name),
+        (
+            Some(2),
+            "error: 'figure' is a command, which 'taxel help figure' explains; as a folder, write './figure'"
+        )
+    );
     let groff = has("groff");
     for command in COMMANDS.iter() {
         let name = format!("taxel {command}").trim().replace(' ', "-");

@@ -343,7 +343,7 @@ fn request(
         "library" => Request::Library(chore(own, settings)?),
         "script" => Request::Script(Script::of(own)),
         "completions" => Request::Completions(required::<Shell>(own, "shell")?),
-        "man" => Request::Man(own.get_one::<PathBuf>("folder").cloned()),
+        "man" => Request::Man(man_folder(own, command)?),
         "sweep" => Request::Sweep(Box::new(sweep(own, command, settings)?)),
         "merge" => {
             let files = own.get_many::<PathBuf>("files").into_iter().flatten();
@@ -445,6 +445,27 @@ fn source(
     let sensor = settings.sensor();
     let figure = Source::Figure(given.figure(kind, &sensor)?);
     Ok((figure, sensor))
+}
+
+/// The folder for manual pages.
+///
+/// # Errors
+/// A usage error for the name of a command: its page was meant.
+fn man_folder(
+    matches: &ArgMatches,
+    command: &mut clap::Command,
+) -> Result<Option<PathBuf>, CliError> {
+    let folder = matches.get_one::<PathBuf>("folder").cloned();
+    let named = folder.as_ref().and_then(|folder| folder.to_str());
+    match named.filter(|name| command.find_subcommand(name).is_some()) {
+        Some(name) => {
+            let message = format!(
+                "'{name}' is a command, which 'taxel help {name}' explains; as a folder, write './{name}'"
+            );
+            Err(misused(command, "man", &message))
+        }
+        None => Ok(folder),
+    }
 }
 
 /// The error for a subcommand that is defined but not read here: a mistake of ours, which must not run another one.
