@@ -356,7 +356,9 @@ fn a_training_is_taken_up_where_it_was_left() {
 #[test]
 fn models_have_names_and_cards() {
     let place = Place::new();
-    assert_eq!(place.done("model list"), "");
+    let built_in = "figures: built in\nfigures-30: built in\nshapes: built in\n";
+    assert_eq!(place.done("model list"), built_in);
+    assert_eq!(place.done("model list --json"), "");
     place.done(&format!(
         "model train rectangles.jsonl {COARSE} --name parts --threshold 0.4"
     ));

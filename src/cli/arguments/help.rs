@@ -255,7 +255,8 @@ Examples:
 
 /// `taxel model list`: where models are.
 pub(crate) const MODEL_LIST_EXAMPLES: &str = "\
-Models are files in the folder 'models' beside the library.
+Models are files in the folder 'models' beside the library; only these are
+listed by --names and --json. The built-in ones are trained when first used.
 
 Examples:
   taxel model list --json";
