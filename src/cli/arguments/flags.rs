@@ -12,9 +12,11 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
+use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches};
 
 use crate::cli::arguments::parameters;
+use crate::cli::error::CliError;
 use crate::formats::{Name, NameError};
 use crate::memory::MemorySize;
 use crate::parameter::{Parameter, number};
@@ -299,4 +301,21 @@ fn file_of(
         let known = path.extension().is_some_and(is_known);
         known.then_some(path).ok_or(expected)
     })
+}
+
+/// The value of an argument that clap makes sure of: without it the command is refused before this is called.
+pub(super) fn required<T: Clone + Send + Sync + 'static>(
+    matches: &ArgMatches,
+    id: &str,
+) -> Result<T, CliError> {
+    matches.get_one::<T>(id).cloned().ok_or_else(|| {
+        let message = format!("the argument '{id}' is required\n");
+        clap::Error::raw(ErrorKind::MissingRequiredArgument, message).into()
+    })
+}
+
+/// The error for a subcommand that is defined but not read here: a mistake of ours, which must not run another one.
+pub(super) fn unread_subcommand(name: &str) -> CliError {
+    let message = format!("{name:?} is not implemented; this is a bug\n");
+    clap::Error::raw(ErrorKind::InvalidSubcommand, message).into()
 }

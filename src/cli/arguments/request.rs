@@ -12,7 +12,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::parser::ValueSource;
 
 use crate::cli::arguments::definitions;
-use crate::cli::arguments::flags;
+use crate::cli::arguments::flags::{self, required, unread_subcommand};
 use crate::cli::arguments::frames::FramesArguments;
 use crate::cli::arguments::groups;
 use crate::cli::arguments::model::ModelRequest;
@@ -468,12 +468,6 @@ fn man_folder(
     }
 }
 
-/// The error for a subcommand that is defined but not read here: a mistake of ours, which must not run another one.
-pub(super) fn unread_subcommand(name: &str) -> CliError {
-    let message = format!("{name:?} is not implemented; this is a bug\n");
-    clap::Error::raw(ErrorKind::InvalidSubcommand, message).into()
-}
-
 /// The subcommand of `taxel library`.
 fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, CliError> {
     let Some((command, own)) = matches.subcommand() else {
@@ -502,17 +496,6 @@ fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, CliError> 
 /// The argument that is a name or a file.
 fn what(matches: &ArgMatches) -> Result<OsString, CliError> {
     required(matches, "what")
-}
-
-/// The value of an argument that clap makes sure of: without it the command is refused before this is called.
-pub(super) fn required<T: Clone + Send + Sync + 'static>(
-    matches: &ArgMatches,
-    id: &str,
-) -> Result<T, CliError> {
-    matches.get_one::<T>(id).cloned().ok_or_else(|| {
-        let message = format!("the argument '{id}' is required\n");
-        clap::Error::raw(ErrorKind::MissingRequiredArgument, message).into()
-    })
 }
 
 /// What to keep of a touch.

@@ -21,6 +21,7 @@ use crate::tui::live::history::bytes_of;
 use crate::tui::live::message::{FrameBatch, ProvisionalChange, RecordedFrames, SourceState};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::lock::locked;
+use crate::tui::runtime::progress::caught;
 use crate::tui::runtime::recording::Recording;
 use crate::tui::runtime::source;
 
@@ -130,7 +131,7 @@ impl FrameFeed {
         Ok(())
     }
 
-    /// Reads a source to its end. `fresh` is called when there is something to take where there was nothing.
+    /// Reads a source to its end; a panic counts as an error of the source. `fresh` is called when there is something to take where there was nothing.
     pub(super) fn run(
         &self,
         source: &FrameSource,
@@ -140,7 +141,7 @@ impl FrameFeed {
         fresh: &mut dyn FnMut(&Self) -> ControlFlow<()>,
     ) {
         let mut wanted = ControlFlow::Continue(());
-        let ended = acquire(source, options, stop, &mut |event| {
+        let mut consumer = |event: AcquireEvent<'_>| {
             let is_time = matches!(event, AcquireEvent::Tick(_) | AcquireEvent::Silent { .. });
             // A script has no clock: the time between its frames is its own, not a silence of the source.
             if is_time && options.once {
@@ -150,13 +151,15 @@ impl FrameFeed {
                 wanted = fresh(self);
             }
             wanted
-        });
+        };
+        let ended = caught(|| acquire(source, options, stop, &mut consumer));
+        let ended = ended.and_then(|ended| ended.map_err(|error| error.to_string()));
         if wanted.is_break() {
             return;
         }
         let state = match ended {
             Ok(()) => SourceState::Ended,
-            Err(error) => SourceState::Failed(error.to_string()),
+            Err(reason) => SourceState::Failed(reason),
         };
         if self.change(|pending| pending.batch.status.state = state) {
             let _ = fresh(self);

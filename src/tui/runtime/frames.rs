@@ -18,7 +18,7 @@ use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::message::{FrameBatch, LiveEvent};
 use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::frame_feed::FrameFeed;
-use crate::tui::runtime::progress::{WorkerEventSink, caught};
+use crate::tui::runtime::progress::WorkerEventSink;
 use crate::tui::runtime::recording::Recording;
 use crate::tui::runtime::script_frames::{ScriptReader, ScriptSource};
 use crate::tui::runtime::source;
@@ -100,16 +100,10 @@ impl FrameWatcher {
             let post = || post(WorkerEvent::Live(number, LiveEvent::Waiting));
             let mut options = request.options.clone();
             options.waits = true;
-            let run = || {
-                feed.run(&source, &request, &options, &stop, &mut |_| {
-                    post();
-                    ControlFlow::Continue(())
-                });
-            };
-            if let Err(reason) = caught(run) {
-                feed.fail(reason);
+            feed.run(&source, &request, &options, &stop, &mut |_| {
                 post();
-            }
+                ControlFlow::Continue(())
+            });
         });
         let thread = thread.map(|thread| self.thread = Some(thread));
         if let Err(reason) = thread {

@@ -15,11 +15,12 @@ use std::ffi::OsString;
 
 use clap::{Arg, ArgMatches, Command};
 
-use crate::cli::arguments::flags::{self, json, option, switch, whole};
+use crate::cli::arguments::flags::{
+    self, json, option, required, switch, unread_subcommand, whole,
+};
 use crate::cli::arguments::help::{
     MODEL_DELETE_EXAMPLES, MODEL_EXAMPLES, MODEL_LIST_EXAMPLES, MODEL_SHOW_EXAMPLES,
 };
-use crate::cli::arguments::request::{required, unread_subcommand};
 use crate::cli::error::CliError;
 use crate::formats::Name;
 
