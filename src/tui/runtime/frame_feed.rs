@@ -339,6 +339,27 @@ mod tests {
     }
 
     #[test]
+    fn a_panic_of_the_reader_is_an_error_of_the_source() {
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        std::fs::write(&file, "r0c0,r0c1\n1,2\n").expect("written");
+        let (feed, request) = (FrameFeed::default(), WatchRequest::new("none"));
+        let source = FrameSource::File(file.path().to_owned());
+        let mut sound = false;
+        feed.run(
+            &source,
+            &request,
+            &AcquireOptions::default(),
+            &AtomicBool::new(false),
+            &mut |_| {
+                assert!(std::mem::replace(&mut sound, true), "a bug");
+                ControlFlow::Continue(())
+            },
+        );
+        let batch = feed.take().expect("a state");
+        assert!(matches!(batch.status.state, SourceState::Failed(_)));
+    }
+
+    #[test]
     fn a_provisional_frame_is_shown_until_it_is_withdrawn() {
         let feed = FrameFeed::default();
         let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
