@@ -237,6 +237,10 @@ fn flags_of_the_screen_do_not_stand_before_a_command() {
         let expected = format!("cannot be used with '{name}', which is only for the screen");
         assert!(run.stderr.contains(&expected), "{flag}: {}", run.stderr);
     }
+    // The live page is a screen too.
+    let run = run(&mut taxel("--no-mouse watch touch.csv"));
+    let expected = "'--no-mouse' must come after 'watch'";
+    assert!(run.stderr.contains(expected), "{}", run.stderr);
 }
 
 /// Opening a pipe would wait for a writer.

@@ -17,7 +17,7 @@ use crate::acquire::AcquireOptions;
 use crate::cli::arguments::flags::{self, option, switch, whole};
 use crate::cli::arguments::frames::{self, ProcessingArguments};
 use crate::cli::arguments::help::WATCH_EXAMPLES;
-use crate::cli::arguments::parameters;
+use crate::cli::arguments::{parameters, program};
 use crate::cli::commands::naming::NamingArguments;
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::SensorSettings;
@@ -89,6 +89,7 @@ pub(crate) fn command() -> Command {
         .args(frames::rules())
         .args(frames::naming())
         .args([write, flags::replace().requires("write"), flags::json()])
+        .args(program::look().map(|arg| arg.conflicts_with("json")))
 }
 
 /// A factor above 0: 2 plays twice as fast, 0.5 at half the speed.

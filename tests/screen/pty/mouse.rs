@@ -3,6 +3,7 @@
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::script::Session;
 
+use super::live::Watched;
 use super::program::{Program, Start};
 use super::screens::session;
 
@@ -103,6 +104,11 @@ fn m_gives_it_back_to_the_terminal_and_takes_it_again() {
     program.types(b"q");
     program.ends_well(0);
     assert_eq!(program.count(b"?1000h"), 0);
+    let Some(mut watched) = Watched::started("", "--no-mouse") else {
+        return;
+    };
+    watched.program.shows("no frame yet");
+    assert_eq!(watched.program.count(b"?1000h"), 0);
 }
 
 /// What stands between the marks of OSC 52, decoded.
