@@ -397,4 +397,61 @@ mod tests {
         assert_eq!(events, [first, second].concat());
         assert_eq!(dropped, 1);
     }
+
+    /// The times of the first five frames of two connections, of which each loses its first line.
+    fn times_over_a_gap(connections: [String; 2]) -> Vec<Option<f64>> {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let address = listener.local_addr().expect("its address").to_string();
+        let sender = std::thread::spawn(move || {
+            for lines in connections {
+                let (mut connection, _) = listener.accept().expect("a connection");
+                connection.write_all(lines.as_bytes()).expect("sent");
+            }
+        });
+        let options = AcquireOptions {
+            shape: Some((1, 2)),
+            ..AcquireOptions::default()
+        };
+        let mut times = Vec::new();
+        let source = FrameSource::Tcp(address);
+        let result = run(&source, &options, &AtomicBool::new(false), &mut |event| {
+            if let AcquireEvent::Frame { time, .. } = event {
+                times.push(time);
+            }
+            if times.len() == 5 {
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        });
+        sender.join().expect("all was sent");
+        assert!(result.is_ok());
+        times
+    }
+
+    #[test]
+    fn the_times_of_a_source_go_on_over_a_gap() {
+        let json = |time: f64| format!("{{\"time\":{time},\"frame\":[[1,2]]}}\n");
+        let dated = |time: f64| format!("2024-05-01 12:00:0{time},1,2\n");
+        // Midnight is in the gap.
+        let clock = |time: f64| {
+            let (hour, second) = if time < 1.0 {
+                ("23:59", 59.0)
+            } else {
+                ("00:00", -1.0)
+            };
+            format!("{hour}:{:04.1},1,2\n", second + time)
+        };
+        let formats: [&(dyn Fn(f64) -> String + Sync); 3] = [&json, &dated, &clock];
+        std::thread::scope(|scope| {
+            for line in formats {
+                scope.spawn(move || {
+                    let text = |times: &[f64]| times.iter().map(|&time| line(time)).collect();
+                    let connections = [text(&[0.0, 0.1, 0.2, 0.3]), text(&[1.8, 1.9, 2.0])];
+                    let times = times_over_a_gap(connections);
+                    let expected = [0.0, 0.1, 0.2, 1.8, 1.9].map(Some);
+                    assert_eq!(times, expected, "{}", line(0.0));
+                });
+            }
+        });
+    }
 }

@@ -74,7 +74,7 @@ pub(crate) fn leading(line: &[u8]) -> Option<(Moment, &[u8])> {
 }
 
 /// Counts midnights of clocks without a date: a clock that falls by more than half a day has passed one.
-#[derive(Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Midnights {
     days: u32,
     last: Option<f64>,

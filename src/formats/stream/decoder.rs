@@ -13,6 +13,7 @@ use crate::formats::stream::flexitac::FlexitacDecoder;
 use crate::formats::stream::lines::LinesDecoder;
 use crate::formats::stream::matsense::MatsenseDecoder;
 use crate::formats::stream::numbers;
+use crate::formats::stream::source_clock::SourceClock;
 
 /// A line of 512 × 512 values is shorter.
 const LONGEST_LINE: usize = 8 << 20;
@@ -43,8 +44,8 @@ pub struct StreamDecoder {
     first: bool,
     /// Whether the first line may lack its beginning.
     torn: bool,
-    /// The time from which those of frames count, once there is one.
-    start: Option<f64>,
+    /// The clock of the source, as the last decoder left it.
+    clock: SourceClock,
 }
 
 /// What decodes the next bytes.
@@ -77,7 +78,7 @@ impl StreamDecoder {
             skipping: false,
             first: true,
             torn: !options.from_start,
-            start: None,
+            clock: SourceClock::default(),
         };
         if let Some(format) = options.format {
             decoder.begin(format, options.from_start);
@@ -119,9 +120,11 @@ impl StreamDecoder {
     fn reset(&mut self, format: Option<StreamFormat>, from_start: bool) {
         self.bytes.clear();
         (self.skipping, self.first, self.torn) = (false, true, !from_start);
-        if let State::Json(decoder) = &self.state {
-            self.start = decoder.start();
-        }
+        self.clock = match &self.state {
+            State::Lines(decoder) => decoder.clock,
+            State::Json(decoder) => decoder.clock,
+            _ => self.clock,
+        };
         self.state = State::Looking(FormatSearch::default());
         self.options.from_start = from_start;
         if let Some(format) = format {
@@ -131,10 +134,10 @@ impl StreamDecoder {
 
     /// Starts the decoder of a format. `from_start`: whether the first byte to come begins a frame.
     fn begin(&mut self, format: StreamFormat, from_start: bool) {
-        let shape = self.options.shape;
+        let (shape, clock) = (self.options.shape, self.clock);
         self.state = match (format, shape) {
-            (StreamFormat::Lines, _) => State::Lines(LinesDecoder::new(shape, from_start)),
-            (StreamFormat::JsonLines, _) => State::Json(JsonDecoder::new(shape, self.start)),
+            (StreamFormat::Lines, _) => State::Lines(LinesDecoder::new(shape, from_start, clock)),
+            (StreamFormat::JsonLines, _) => State::Json(JsonDecoder::new(shape, clock)),
             (StreamFormat::Ros2, _) => State::Ros(RosDecoder::new(shape, from_start)),
             (StreamFormat::Flexitac, Some(shape)) => {
                 State::Flexitac(FlexitacDecoder::new(shape, from_start))

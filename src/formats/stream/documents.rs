@@ -5,9 +5,9 @@
 
 use crate::formats::recording::json_lines::FrameLine;
 use crate::formats::recording::ros_text::{self, RosLine, RosMessage};
-use crate::formats::seconds::since;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::size::FrameSize;
+use crate::formats::stream::source_clock::SourceClock;
 use crate::frame::Frame;
 
 /// A decoder of JSON lines.
@@ -17,27 +17,21 @@ pub(super) struct JsonDecoder {
     line: FrameLine,
     /// Rows and columns of all frames.
     size: FrameSize,
-    /// The time of the first frame, from which all others count.
-    start: Option<f64>,
+    /// What times count from.
+    pub(super) clock: SourceClock,
     /// The frame made of it.
     frame: Frame,
 }
 
 impl JsonDecoder {
-    /// `shape` is for lists of cells without rows, `start` the time from which others count; without it that of the first
-    /// frame.
-    pub(super) fn new(shape: Option<(u16, u16)>, start: Option<f64>) -> Self {
+    /// `shape` is for lists of cells without rows.
+    pub(super) fn new(shape: Option<(u16, u16)>, clock: SourceClock) -> Self {
         Self {
             line: FrameLine::new(shape),
             size: FrameSize::new(shape),
-            start,
+            clock,
             frame: Frame::new(1, 1),
         }
-    }
-
-    /// The time from which others count, once there is one.
-    pub(super) fn start(&self) -> Option<f64> {
-        self.start
     }
 
     /// Decodes a line.
@@ -59,7 +53,7 @@ impl JsonDecoder {
                 self.frame.number = counts.frames;
                 self.frame.label = self.line.label;
                 let time = self.line.time;
-                self.frame.time = time.map(|time| since(*self.start.get_or_insert(time), time));
+                self.frame.time = time.map(|time| self.clock.since_first(time));
                 counts.frames += 1;
                 sink(StreamEvent::Frame(&self.frame));
             }

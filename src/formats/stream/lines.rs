@@ -15,11 +15,11 @@
 //! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are never
 //! joined. Where frames are known to be a line each, each line that is none is a frame that is lost.
 
-use crate::formats::recording::moment::{self, Midnights};
-use crate::formats::seconds::since;
+use crate::formats::recording::moment;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
 use crate::formats::stream::size::FrameSize;
+use crate::formats::stream::source_clock::SourceClock;
 use crate::frame::{Frame, MAX_FRAME_SIDE};
 
 /// The most values of a frame.
@@ -47,10 +47,8 @@ pub(super) struct LinesDecoder {
     rows: u16,
     /// The moment at the beginning of its first line, in seconds.
     time: Option<f64>,
-    /// That of the first frame, from which times count.
-    start: Option<f64>,
-    /// The midnights that clocks have passed.
-    midnights: Midnights,
+    /// What moments count from.
+    pub(super) clock: SourceClock,
     /// Whether a row of it is wrong.
     broken: bool,
     /// What that row looks like.
@@ -85,15 +83,14 @@ fn may_be_end((rows, columns): (u16, u16), next: (u16, u16)) -> bool {
 
 impl LinesDecoder {
     /// Where the stream is joined in the middle, nothing counts before the first boundary.
-    pub(super) fn new(shape: Option<(u16, u16)>, from_start: bool) -> Self {
+    pub(super) fn new(shape: Option<(u16, u16)>, from_start: bool, clock: SourceClock) -> Self {
         Self {
             size: FrameSize::new(shape),
             begun: from_start,
             values: Vec::new(),
             rows: 0,
             time: None,
-            start: None,
-            midnights: Midnights::default(),
+            clock,
             broken: false,
             broken_row: Vec::new(),
             parted: false,
@@ -118,7 +115,7 @@ impl LinesDecoder {
             return;
         }
         let (moment, line) = match moment::leading(line) {
-            Some((moment, numbers)) => (Some(self.midnights.seconds(moment)), numbers),
+            Some((moment, numbers)) => (Some(self.clock.read(moment)), numbers),
             None => (None, line),
         };
         self.numbers(moment, line, counts, sink);
@@ -307,7 +304,7 @@ impl LinesDecoder {
         self.frame.reset(columns, rows);
         self.frame.number = counts.frames;
         let time = self.time;
-        self.frame.time = time.map(|time| since(*self.start.get_or_insert(time), time));
+        self.frame.time = time.map(|time| self.clock.since_first(time));
         self.frame.values_mut().copy_from_slice(&self.values);
     }
 
@@ -356,7 +353,7 @@ mod tests {
 
     /// The frames of lines as rows, columns and first value, and how many were dropped.
     fn decoded(text: &str, shape: Option<(u16, u16)>) -> (Vec<(u16, u16, f64)>, u64) {
-        let mut decoder = LinesDecoder::new(shape, true);
+        let mut decoder = LinesDecoder::new(shape, true, SourceClock::default());
         let (mut frames, mut counts) = (Vec::new(), StreamCounts::default());
         let mut sink = |event: StreamEvent<'_>| {
             if let StreamEvent::Frame(frame) = event {
@@ -408,7 +405,7 @@ mod tests {
 
     #[test]
     fn the_first_block_is_shown_at_once_and_withdrawn_if_it_is_no_frame() {
-        let mut decoder = LinesDecoder::new(None, true);
+        let mut decoder = LinesDecoder::new(None, true, SourceClock::default());
         let (mut events, mut counts) = (String::new(), StreamCounts::default());
         for line in ["3 4", "", "1 2", "3 4", "", "1 2", "3 4", ""] {
             decoder.line(line.as_bytes(), &mut counts, &mut |event| {
@@ -445,7 +442,7 @@ mod tests {
     #[test]
     fn a_moment_before_a_frame_is_its_time() {
         let times = |text: &str, shape| {
-            let mut decoder = LinesDecoder::new(shape, true);
+            let mut decoder = LinesDecoder::new(shape, true, SourceClock::default());
             let (mut times, mut counts) = (Vec::new(), StreamCounts::default());
             let mut sink = |event: StreamEvent<'_>| {
                 if let StreamEvent::Frame(frame) = event {

@@ -27,6 +27,8 @@ mod numbers;
 
 mod size;
 
+mod source_clock;
+
 mod lines;
 
 mod documents;
