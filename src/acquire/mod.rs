@@ -21,6 +21,8 @@ mod followed_file;
 
 mod event;
 
+mod continued_time;
+
 mod stream;
 
 mod playback;

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use crate::acquire::continued_time::ContinuedTime;
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
 use crate::acquire::followed_file::{self, FollowEnd, FollowedFile, Growth};
 use crate::acquire::recorder::description_beside;
@@ -174,12 +175,14 @@ struct Player<'a, 'b> {
 }
 
 /// How a recording is read from its beginning once more.
-#[derive(Clone, Copy, Default)]
+#[derive(Default)]
 struct Round<'a> {
     /// Whether its channels were reported before.
     is_again: bool,
     /// The number of its first frame.
     first: u64,
+    /// The times of its frames.
+    times: ContinuedTime,
     /// Whether the file grows, if it is followed.
     growth: Option<&'a Growth>,
 }
@@ -190,7 +193,7 @@ impl Player<'_, '_> {
         let mut file = File::open(path).map_err(AcquireError::opening)?;
         let mut round = Round::default();
         loop {
-            let (pace, read) = self.round(format, &mut file, round);
+            let (pace, read) = self.round(format, &mut file, &mut round);
             // What has no frame is not repeated: it would be read again and again without a pause.
             let ends = read?.is_break() || !self.options.repeat || pace.frames == 0;
             let consumer = &mut **self.consumer.borrow_mut();
@@ -215,7 +218,7 @@ impl Player<'_, '_> {
             let waiting = &mut || self.tick();
             let mut followed =
                 FollowedFile::new(file, &growth, waiting).map_err(AcquireError::opening)?;
-            let (pace, read) = self.round(format, &mut followed, round);
+            let (pace, read) = self.round(format, &mut followed, &mut round);
             let end;
             (file, end) = followed.into_parts();
             let how = match end {
@@ -228,6 +231,7 @@ impl Player<'_, '_> {
                 return Ok(());
             }
             (round.is_again, round.first) = (true, round.first + u64::from(pace.frames));
+            round.times.rejoin();
             // Its beginning may not be written yet.
             format = loop {
                 match File::open(path).and_then(recognised_input) {
@@ -253,7 +257,7 @@ impl Player<'_, '_> {
         &self,
         format: RecordingFormat,
         input: &mut dyn RecordingInput,
-        round: Round<'r>,
+        round: &mut Round<'r>,
     ) -> (Pace<'r>, Result<ControlFlow<()>, RecordingError>) {
         let reading = ReadOptions {
             shape: self.options.shape,
@@ -276,9 +280,10 @@ impl Player<'_, '_> {
                 }
                 RecordingEvent::Frame(frame) if pace.has_no_shape(frame) => ControlFlow::Break(()),
                 RecordingEvent::Frame(mut frame) => {
-                    let time = frame.time;
+                    let own = frame.time;
                     let given_up =
                         !self.options.once && pace.wait(frame, self.stop, consumer).is_break();
+                    let time = own.map(|own| round.times.of(own, Instant::now()));
                     if round.first > 0 {
                         renumbered.copy_from(frame);
                         renumbered.number += round.first;
@@ -322,6 +327,7 @@ fn description_of(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::seconds::to_nanoseconds;
 
     #[test]
     fn only_frames_of_the_channel_that_is_watched_are_waited_for() {
@@ -405,5 +411,51 @@ mod tests {
         assert!(with(&[Some(1000.0), Some(5000.0)]), "until 9,000 s");
         assert!(!with(&[Some(5000.0), Some(6000.0)]), "until 7,000 s");
         assert!(!with(&[]), "there is none");
+    }
+
+    /// The times of the five frames of a file and of the three that then take their place.
+    fn times_of_a_rewritten(path: &Path, [before, after]: &[String; 2]) -> Vec<f64> {
+        std::fs::write(path, before).expect("written");
+        let (options, stop) = (AcquireOptions::default(), AtomicBool::new(false));
+        let mut times = Vec::new();
+        let result = run(path, &options, &stop, &mut |event| {
+            if let AcquireEvent::Frame { time, .. } = event {
+                times.extend(time);
+                if times.len() == 5 {
+                    std::fs::write(path, after).expect("written");
+                }
+            }
+            if times.len() == 8 {
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        });
+        assert!(result.is_ok());
+        times
+    }
+
+    #[test]
+    fn the_times_of_a_file_that_is_rewritten_while_it_is_followed_go_on() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let csv = |frames: std::ops::Range<u8>| {
+            let lines = frames.map(|tenth| format!("{:.1},1,2\n", f64::from(tenth) / 10.0));
+            "time_s,r0c0,r0c1\n".to_owned() + &lines.collect::<String>()
+        };
+        let json = |frames: std::ops::Range<u8>| {
+            let times = frames.map(|tenth| f64::from(tenth) / 10.0);
+            let lines = times.map(|time| format!("{{\"time\":{time},\"frame\":[[1,2]]}}\n"));
+            lines.collect::<String>()
+        };
+        for (name, contents) in [
+            ("r.csv", [csv(0..5), csv(0..3)]),
+            ("r.jsonl", [json(0..5), json(0..3)]),
+        ] {
+            let times = times_of_a_rewritten(&folder.path().join(name), &contents);
+            assert_eq!(times[..5], [0.0, 0.1, 0.2, 0.3, 0.4], "{name}");
+            assert!(times.is_sorted_by(|one, next| one < next), "{times:?}");
+            let begun = times[5];
+            let steps = times[5..].iter().map(|time| to_nanoseconds(time - begun));
+            assert_eq!(steps.collect::<Vec<_>>(), [0.0, 0.1, 0.2], "{name}");
+        }
     }
 }

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::acquire::byte_input::{ByteInput, ReadOutcome};
+use crate::acquire::continued_time::ContinuedTime;
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
 use crate::acquire::source::FrameSource;
 use crate::formats::seconds::to_nanoseconds;
@@ -19,10 +20,6 @@ const SILENCE: Duration = Duration::from_secs(2);
 
 /// A source that is gone is tried again after this time.
 const RETRY: Duration = Duration::from_secs(1);
-
-/// How far a source's clock may run ahead of this machine's across a gap, in seconds: the last frame before the gap may have
-/// come late.
-const LATE: f64 = 1.0;
 
 /// The time between two ticks.
 const TICK: Duration = Duration::from_millis(100);
@@ -39,12 +36,8 @@ struct StreamClock {
     frame_came: bool,
     /// Bytes until the last frame or the last message of silence.
     bytes: u64,
-    /// The time of the last frame that had one of its own, and when it came.
-    given: Option<(f64, Instant)>,
-    /// Whether the source was opened anew since then.
-    rejoined: bool,
-    /// What is added to the frames' own times.
-    shift: f64,
+    /// The times of frames that have one of their own.
+    times: ContinuedTime,
 }
 
 impl StreamClock {
@@ -58,27 +51,8 @@ impl StreamClock {
             last_tick: now,
             frame_came: false,
             bytes: 0,
-            given: None,
-            rejoined: false,
-            shift: 0.0,
+            times: ContinuedTime::default(),
         }
-    }
-
-    /// The time of a frame, given its own. After a gap the source's clock may have restarted or been set; then the time of the
-    /// gap is taken from this machine's clock, so that times keep growing.
-    fn continued(&mut self, own: f64, now: Instant) -> f64 {
-        let mut time = own + self.shift;
-        if std::mem::take(&mut self.rejoined)
-            && let Some((last, when)) = self.given
-        {
-            let gap = (now - when).as_secs_f64();
-            if time <= last || time > last + gap + LATE {
-                self.shift += last + gap - time;
-                time = last + gap;
-            }
-        }
-        self.given = Some((time, now));
-        to_nanoseconds(time)
     }
 }
 
@@ -120,7 +94,7 @@ pub(super) fn run(
                     return Ok(());
                 }
                 decoder.begin_anew();
-                clock.rejoined = true;
+                clock.times.rejoin();
                 continue;
             }
             Ok(ReadOutcome::End) if source.comes_back() && !options.once => {
@@ -138,7 +112,7 @@ pub(super) fn run(
             Some(found) => input = found,
             None => return Ok(()),
         }
-        clock.rejoined = true;
+        clock.times.rejoin();
         clock.last_frame = Instant::now();
         clock.bytes = decoder.counts().bytes;
     }
@@ -279,7 +253,7 @@ fn report(
             clock.frame_came = true;
             let arrived = now - *clock.first.get_or_insert(now);
             let arrived = clock.timed.then(|| to_nanoseconds(arrived.as_secs_f64()));
-            let own = frame.time.map(|own| clock.continued(own, now));
+            let own = frame.time.map(|own| clock.times.of(own, now));
             let time = own.or(arrived);
             consumer(AcquireEvent::Frame { frame, time })
         }
