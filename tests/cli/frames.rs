@@ -350,6 +350,62 @@ fn frames_are_exported_with_their_number_and_stored() {
     assert_eq!(answers(&shown)[0]["na"], 4);
 }
 
+/// Rows of four cells, each with a label; 7 stands twice.
+const LABELLED: &str = "label,a,b,c,d\n7,1,0,0,0\n7,1,1,0,0\n8,1,1,1,0\n";
+
+#[test]
+fn one_frame_is_saved_or_exported_by_a_label() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let library = folder.path().join("library");
+    let file = folder.path().join("foo.svg");
+    let of_label = |label: u8, flags: &str| {
+        let (library, flags) = (
+            library.display(),
+            flags.replace("FILE", file.to_str().expect("UTF-8")),
+        );
+        let line = "frames - --rows 2 --columns 2 --at-least 1 --label";
+        taxel(
+            &format!("{line} {label} {flags} --library {library}"),
+            LABELLED,
+        )
+    };
+    for flags in [
+        "--save foo",
+        "--save foo --force",
+        "--export FILE",
+        "--export - --format svg",
+    ] {
+        let run = of_label(7, flags);
+        let message = "frames 0 and 1 are both labelled 7; choose one with --frame";
+        assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""), "{flags}");
+        assert_eq!(
+            run.stderr,
+            format!("error: standard input: {message}\n"),
+            "{flags}"
+        );
+    }
+    assert!(!library.exists(), "nothing is kept");
+    let left = std::fs::read_dir(folder.path()).expect("a folder").count();
+    assert_eq!(left, 0, "nothing is kept");
+    // Without them both are answered, and a label of one frame is enough.
+    assert_eq!(answers(&of_label(7, "--json")).len(), 2);
+    let svg = of_label(8, "--save foo --export - --format svg");
+    assert_eq!(svg.stdout.matches("<svg xmlns").count(), 1);
+    assert!(library.exists());
+}
+
+#[test]
+fn standard_output_takes_the_export_of_one_frame() {
+    let line = format!("frames {} --at-least 9", sample("tekscan.asf"));
+    misused(
+        &format!("{line} --all --export - --format svg"),
+        "the argument '--all' cannot be used with '--export -', which takes one frame; \
+         with a name each frame has a file of its own\n",
+    );
+    let run = taxel(&format!("{line} --peak --export - --format txt"), "");
+    assert_eq!(run.stdout, ".....\n..#..\n.###.\n.....\n");
+}
+
 #[test]
 fn cells_that_are_not_square_have_no_lengths_in_mm() {
     let run = frames("xsensor.csv", "--channel left --peak --at-least 9");

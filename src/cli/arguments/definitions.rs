@@ -305,7 +305,8 @@ fn parse_atlas(text: &str) -> Result<AtlasFile, &'static str> {
 }
 
 /// `taxel frames FILE`.
-/// With `--export` each frame has a file of its own; a single shape can be saved, so not with `--all`.
+/// With `--export` each frame has a file of its own; a single shape can be saved, so not with `--all`, nor by a label
+/// that several frames have.
 fn frames() -> Command {
     let keeping = keeping().map(|arg| match arg.get_id().as_str() {
         "save" => arg

@@ -157,6 +157,13 @@ pub(crate) struct Kept {
     pub(crate) export: Option<Export>,
 }
 
+impl Kept {
+    /// Whether anything is to be kept.
+    pub(crate) fn is_asked(&self) -> bool {
+        self.saving.is_some() || self.export.is_some()
+    }
+}
+
 /// How to store a shape.
 #[derive(Clone, Debug)]
 pub(crate) struct Saving {
@@ -499,13 +506,25 @@ fn what(matches: &ArgMatches) -> Result<OsString, CliError> {
 }
 
 /// What to keep of a touch.
+///
+/// # Errors
+/// If standard output would have to hold more than one export: an answer beside it, or those of several frames.
 fn kept(matches: &ArgMatches, command: &mut clap::Command, name: &str) -> Result<Kept, CliError> {
     let path = matches.get_one::<PathBuf>("export");
-    if path.is_some_and(|path| path.as_os_str() == "-") && matches.get_flag("json") {
-        return Err(CliError::Unused {
-            flag: "json",
-            reason: "with '--export -', which writes to standard output in its place".to_owned(),
-        });
+    if path.is_some_and(|path| path.as_os_str() == "-") {
+        if matches.get_flag("json") {
+            return Err(CliError::Unused {
+                flag: "json",
+                reason: "with '--export -', which writes to standard output in its place"
+                    .to_owned(),
+            });
+        }
+        // Only `taxel frames` has it.
+        if let Ok(Some(true)) = matches.try_get_one::<bool>("all") {
+            let message = "the argument '--all' cannot be used with '--export -', which takes one frame; \
+                           with a name each frame has a file of its own";
+            return Err(misused(command, name, message));
+        }
     }
     let export = path.map(|path| export(matches, path, command, name));
     Ok(Kept {

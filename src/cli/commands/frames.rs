@@ -276,8 +276,37 @@ impl Selection {
             }
     }
 
+    /// Refuses a label that several frames have: it does not say which of them is meant.
+    ///
+    /// # Errors
+    /// [`CliError::Frames`] with the numbers of the first two.
+    fn check_label(&self, recording: &mut RecordingFile, label: i64) -> Result<(), CliError> {
+        let mut numbers = Vec::new();
+        recording.read_again(&mut |event| {
+            if let RecordingEvent::Frame(frame) = event
+                && self.has(frame)
+            {
+                numbers.push(frame.number);
+            }
+            if numbers.len() < 2 {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        })?;
+        match numbers[..] {
+            [first, second] => Err(recording.refused(&format!(
+                "frames {first} and {second} are both labelled {label}; choose one with --frame"
+            ))),
+            _ => Ok(()),
+        }
+    }
+
     /// Answers the frames; true if there was one.
     /// The recording is read from its beginning again, and no further than to the frame whose number is known.
+    ///
+    /// # Errors
+    /// If one of several frames with a label were to be kept; otherwise as [`Self::give`].
     fn answer(
         &self,
         recording: &mut RecordingFile,
@@ -285,6 +314,11 @@ impl Selection {
         processing: &mut Processing,
         output: &mut FramesOutput<'_>,
     ) -> Result<bool, CliError> {
+        if let FrameChoice::Label(label) = self.choice
+            && output.kept.is_asked()
+        {
+            self.check_label(recording, label)?;
+        }
         let (mut answered, mut failure) = (false, None);
         let name = recording.name().to_owned();
         // A damage was found before, and is reported afterwards.
