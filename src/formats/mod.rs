@@ -77,7 +77,7 @@ pub(crate) mod separation;
 pub use described::DescribedImprint;
 #[cfg(feature = "tui")]
 pub(crate) use drawing::axis_ends;
-pub use drawing::{ConfusionMap, Drawing, LinePlot, PointPlot, PoseMap};
+pub use drawing::{ConfusionMap, Drawing, DrawingFormat, LinePlot, PointPlot, PoseMap};
 
 #[cfg(any(test, feature = "tui"))]
 pub(crate) use drawing::axis_marks;

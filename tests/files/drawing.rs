@@ -6,7 +6,7 @@ use std::path::Path;
 
 use taxel::description::regions;
 use taxel::figure::Figure;
-use taxel::formats::{ConfusionMap, Drawing, LinePlot, PointPlot, PoseMap};
+use taxel::formats::{ConfusionMap, Drawing, DrawingFormat, LinePlot, PointPlot, PoseMap};
 use taxel::imprint::Imprint;
 use taxel::picture::Picture;
 use taxel::sensor::Sensor;
@@ -398,4 +398,24 @@ fn matrices_and_curves_are_drawn_in_pixels() {
         let differing = one.iter().zip(&other).filter(|(one, other)| one != other);
         assert!(differing.count() > 50);
     }
+}
+
+#[test]
+fn a_format_writes_what_its_method_does() {
+    let plot = LinePlot::new("x", "y").with_curve("c", &[(0.0, 0.0), (1.0, 1.0)]);
+    for format in DrawingFormat::ALL {
+        assert_eq!(format.name().parse(), Ok(*format));
+        let content = plot.content(*format).expect("in memory");
+        assert_eq!(
+            content == plot.svg().into_bytes(),
+            *format == DrawingFormat::Svg
+        );
+        #[cfg(feature = "png")]
+        assert_eq!(
+            content == plot.png().expect("in memory"),
+            *format == DrawingFormat::Png
+        );
+    }
+    assert_eq!(DrawingFormat::of_ending("SVG"), Some(DrawingFormat::Svg));
+    assert_eq!(DrawingFormat::of_ending("csv"), None);
 }

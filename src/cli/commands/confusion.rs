@@ -9,7 +9,7 @@ use serde_json::json;
 
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::confusion::{ConfusionArguments, Evaluated};
-use crate::cli::commands::export::{ending, put, written};
+use crate::cli::commands::export::{drawn_format, ending, put, written};
 use crate::cli::commands::model;
 use crate::cli::commands::noise;
 use crate::cli::error::{CliError, MOST_PAIRED};
@@ -196,21 +196,19 @@ fn advice(asked: &ConfusionArguments) -> String {
 /// # Errors
 /// [`CliError::TooManyShapes`] for a drawing whose matrix would not be legible.
 fn file(path: &Path, own: &Evaluation, knows_certain: bool) -> Result<Vec<u8>, CliError> {
-    let map = || {
-        let map = ConfusionMap::new(&own.labels, own.confusion.rows());
-        map.ok_or_else(|| CliError::TooManyShapes {
-            name: path.to_string_lossy().into_owned(),
-            shapes: own.labels.len(),
-        })
+    let Some(format) = drawn_format(path) else {
+        return Ok(evaluation::csv(own).into_bytes());
     };
+    let map = ConfusionMap::new(&own.labels, own.confusion.rows());
+    let map = map.ok_or_else(|| CliError::TooManyShapes {
+        name: path.to_string_lossy().into_owned(),
+        shapes: own.labels.len(),
+    })?;
     let mut title = format!("error {}", evaluation::percent(own.error()));
     if knows_certain {
         let certain = share(own.certain, own.touches);
         title += &format!(", certain {}", evaluation::percent(certain));
     }
-    Ok(match ending(path).as_str() {
-        "svg" => map()?.with_title(&title).svg().into_bytes(),
-        "png" => map()?.with_title(&title).png().map_err(CliError::Write)?,
-        _ => evaluation::csv(own).into_bytes(),
-    })
+    let map = map.with_title(&title);
+    map.content(format).map_err(CliError::Write)
 }

@@ -10,7 +10,7 @@ use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::settings::pitch::Pitch;
 use crate::formats::Content;
-use crate::formats::{Drawing, ImprintFormat};
+use crate::formats::{Drawing, DrawingFormat, ImprintFormat};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::source::Source;
@@ -22,36 +22,28 @@ enum Format {
     /// The imprint, as text, PBM, CSV or NPY.
     Imprint(ImprintFormat),
     /// A drawing of the imprint with its descriptors.
-    Svg,
-    /// The same drawing in pixels.
-    Png,
+    Drawing(DrawingFormat),
 }
 
 impl Format {
     /// The format of that name, as in `--format`.
     fn of(name: &str) -> Option<Self> {
-        match name {
-            "svg" => Some(Self::Svg),
-            "png" => Some(Self::Png),
-            _ => ImprintFormat::ALL
-                .iter()
-                .find(|format| format.name() == name)
-                .map(|&format| Self::Imprint(format)),
-        }
+        let format = name.parse().map(Self::Imprint);
+        format.or_else(|_| name.parse().map(Self::Drawing)).ok()
     }
 
     /// The format that a file's ending stands for.
     fn of_ending(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        let format = ImprintFormat::of_ending(&ending).map(Self::Imprint);
-        format.or_else(|| Self::of(&ending).filter(|format| !matches!(format, Self::Imprint(_))))
+        let format = ImprintFormat::of_ending(&ending(path)).map(Self::Imprint);
+        format.or_else(|| drawn_format(path).map(Self::Drawing))
     }
 }
 
 /// The names of all formats, for `--format`.
 pub(crate) fn names() -> Vec<&'static str> {
     let imprints = ImprintFormat::ALL.iter().map(|format| format.name());
-    imprints.chain(["svg", "png"]).collect()
+    let drawings = DrawingFormat::ALL.iter().map(|format| format.name());
+    imprints.chain(drawings).collect()
 }
 
 /// A file to write.
@@ -162,8 +154,7 @@ impl Export {
     fn begin_with(&self, imprint: &Imprint, draw: impl Fn() -> Drawing) -> Result<Begun, CliError> {
         let content = match self.format {
             Format::Imprint(format) => format.write(imprint),
-            Format::Svg => draw().svg().into_bytes(),
-            Format::Png => draw().png().map_err(CliError::Write)?,
+            Format::Drawing(format) => draw().content(format).map_err(CliError::Write)?,
         };
         match &self.path {
             None => Ok(Begun::Content(content)),
@@ -216,6 +207,11 @@ pub(crate) fn written(path: &Path) -> String {
 pub(crate) fn ending(path: &Path) -> String {
     let ending = path.extension().and_then(|ending| ending.to_str());
     ending.map_or_else(String::new, str::to_ascii_lowercase)
+}
+
+/// The format of a drawing that a file's name asks for; None where no drawing has its ending.
+pub(crate) fn drawn_format(path: &Path) -> Option<DrawingFormat> {
+    DrawingFormat::of_ending(&ending(path))
 }
 
 /// Writes a file: completely or not at all.

@@ -22,7 +22,7 @@ use serde_json::json;
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::confusion::{ConfusionArguments, NoiseArguments};
 use crate::cli::arguments::model::touches::TouchesArguments;
-use crate::cli::commands::export::{ending, put};
+use crate::cli::commands::export::{drawn_format, put};
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
@@ -127,10 +127,9 @@ fn write_noise(table: &[NoiseRow], asked: &ConfusionArguments) -> Result<(), Cli
     let Some(path) = asked.export.as_deref() else {
         return Ok(());
     };
-    let content = match ending(path).as_str() {
-        "svg" => noise_plot(table).svg().into_bytes(),
-        "png" => noise_plot(table).png().map_err(CliError::Write)?,
-        _ => noise_csv(table).into_bytes(),
+    let content = match drawn_format(path) {
+        Some(format) => noise_plot(table).content(format).map_err(CliError::Write)?,
+        None => noise_csv(table).into_bytes(),
     };
     put(path, &content, asked.existing)
 }

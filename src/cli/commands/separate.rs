@@ -11,7 +11,7 @@ use std::sync::atomic::Ordering;
 
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::separate::SeparateArguments;
-use crate::cli::commands::export::{ending, put, written};
+use crate::cli::commands::export::{drawn_format, ending, put, written};
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shape_set;
@@ -72,15 +72,11 @@ pub(crate) fn separate(
         error => error.into(),
     })?;
     if let Some(path) = &asked.export {
-        let content = match ending(path).as_str() {
-            "svg" => drawing(asked.axis, &curves, asked.wanted)
-                .svg()
-                .into_bytes(),
-            "png" => {
-                let drawing = drawing(asked.axis, &curves, asked.wanted);
-                drawing.png().map_err(CliError::Write)?
-            }
-            _ => csv(asked.axis, &curves).into_bytes(),
+        let content = match drawn_format(path) {
+            Some(format) => drawing(asked.axis, &curves, asked.wanted)
+                .content(format)
+                .map_err(CliError::Write)?,
+            None => csv(asked.axis, &curves).into_bytes(),
         };
         put(path, &content, asked.existing)?;
         if !asked.quiet {

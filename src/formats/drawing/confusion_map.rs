@@ -5,7 +5,6 @@
 
 use crate::formats::drawing::page::{DrawingPage, MARGIN, TEXT, width};
 use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
-use crate::formats::drawing::svg;
 use crate::formats::value::decimal;
 
 /// More shapes would make a page that nothing prints.
@@ -63,20 +62,6 @@ impl ConfusionMap {
         self
     }
 
-    /// As SVG 1.1.
-    pub fn svg(&self) -> String {
-        svg::write(&self.page())
-    }
-
-    /// As PNG, 8 bits of grey. Characters beyond Latin-1 are shown as `?`.
-    ///
-    /// # Errors
-    /// Those of the encoder, which has none for a page in memory.
-    #[cfg(feature = "png")]
-    pub fn png(&self) -> std::io::Result<Vec<u8>> {
-        crate::formats::drawing::png::write(&self.page())
-    }
-
     /// 0 where a row is shorter than the others.
     fn count(&self, row: usize, column: usize) -> u128 {
         let cell = self.counts.get(row).and_then(|row| row.get(column));
@@ -84,7 +69,7 @@ impl ConfusionMap {
     }
 
     /// Lays the matrix out, with the names above and on the left.
-    fn page(&self) -> DrawingPage {
+    pub(super) fn page(&self) -> DrawingPage {
         let longest = |texts: &mut dyn Iterator<Item = usize>| texts.max().unwrap_or_default();
         let names = longest(&mut self.labels.iter().map(|label| label.chars().count()));
         let shapes = 0..self.labels.len();

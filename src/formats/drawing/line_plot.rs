@@ -4,7 +4,6 @@ use crate::formats::drawing::axis::Ticks;
 use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, width};
 use crate::formats::drawing::plane::{axes, label, path_of};
 use crate::formats::drawing::scene::{Position, Segment, Stroke, TextAnchor, circle};
-use crate::formats::drawing::svg;
 
 /// Width and height of the plane, in points.
 const PLANE: Position = (324.0, 200.0);
@@ -59,20 +58,6 @@ impl LinePlot {
         self
     }
 
-    /// As SVG 1.1.
-    pub fn svg(&self) -> String {
-        svg::write(&self.page())
-    }
-
-    /// As PNG, 8 bits of grey. Characters beyond Latin-1 are shown as `?`.
-    ///
-    /// # Errors
-    /// Those of the encoder, which has none for a page in memory.
-    #[cfg(feature = "png")]
-    pub fn png(&self) -> std::io::Result<Vec<u8>> {
-        crate::formats::drawing::png::write(&self.page())
-    }
-
     /// The largest number on each axis; above 0.
     fn ends(&self) -> Position {
         let points = self.curves.iter().flat_map(|(_, points)| points);
@@ -85,7 +70,7 @@ impl LinePlot {
     }
 
     /// Lays out axes, grid, curves and legend.
-    fn page(&self) -> DrawingPage {
+    pub(super) fn page(&self) -> DrawingPage {
         let (end_x, end_y) = self.ends();
         let (across, upwards) = (Ticks::new(end_x, 0.0), Ticks::new(end_y, 0.0));
         let corner = (

@@ -37,6 +37,8 @@ mod point_plot;
 
 mod pose_map;
 
+mod format;
+
 mod svg;
 
 #[cfg(feature = "png")]
@@ -60,11 +62,15 @@ pub(crate) use axis::axis_ends;
 #[cfg(any(test, feature = "tui"))]
 pub(crate) use axis::axis_marks;
 pub use confusion_map::ConfusionMap;
+pub use format::DrawingFormat;
+use format::written;
 pub use line_plot::LinePlot;
 use page::{DrawingPage, Subject};
 pub use point_plot::PointPlot;
 pub use pose_map::PoseMap;
 use scene::Segment;
+
+written!(Drawing, ConfusionMap, LinePlot, PointPlot, PoseMap);
 
 /// Wider ones would make the page wider than paper.
 const LONGEST_TITLE: usize = 100;
@@ -145,20 +151,6 @@ impl Drawing {
             self.chosen = Some(index);
         }
         self
-    }
-
-    /// As SVG 1.1.
-    pub fn svg(&self) -> String {
-        svg::write(&self.page())
-    }
-
-    /// As PNG, 8 bits of grey. Characters beyond Latin-1 are shown as `?`.
-    ///
-    /// # Errors
-    /// Those of the encoder, which has none for a page in memory.
-    #[cfg(feature = "png")]
-    pub fn png(&self) -> std::io::Result<Vec<u8>> {
-        png::write(&self.page())
     }
 
     fn page(&self) -> DrawingPage {

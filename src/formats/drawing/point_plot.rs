@@ -6,7 +6,6 @@ use crate::formats::drawing::axis::{Ticks, axis_ends};
 use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, width};
 use crate::formats::drawing::plane::{axes, label, path_of};
 use crate::formats::drawing::scene::{Position, Segment, Stroke, TextAnchor, circle};
-use crate::formats::drawing::svg;
 
 /// Width and height of the plane, in points.
 const PLANE: Position = (324.0, 243.0);
@@ -79,20 +78,6 @@ impl PointPlot {
         self
     }
 
-    /// As SVG 1.1.
-    pub fn svg(&self) -> String {
-        svg::write(&self.page())
-    }
-
-    /// As PNG, 8 bits of grey. Characters beyond Latin-1 are shown as `?`.
-    ///
-    /// # Errors
-    /// Those of the encoder, which has none for a page in memory.
-    #[cfg(feature = "png")]
-    pub fn png(&self) -> std::io::Result<Vec<u8>> {
-        crate::formats::drawing::png::write(&self.page())
-    }
-
     /// All points, those of the curves too.
     fn all(&self) -> impl Iterator<Item = &Position> {
         let curves = self.curves.iter().flat_map(|(_, points, _)| points);
@@ -100,7 +85,7 @@ impl PointPlot {
     }
 
     /// Lays out frame, marks, points and the legend of the curves.
-    fn page(&self) -> DrawingPage {
+    pub(super) fn page(&self) -> DrawingPage {
         let (from_x, to_x) = axis_ends(self.all().map(|point| point.0));
         let (from_y, to_y) = axis_ends(self.all().map(|point| point.1));
         let across = Ticks::between((from_x, to_x), 0.0, STEPS);

@@ -6,7 +6,6 @@ use crate::formats::drawing::axis::Ticks;
 use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, width};
 use crate::formats::drawing::plane::{label, path_of};
 use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
-use crate::formats::drawing::svg;
 use crate::formats::value::decimal;
 
 /// The larger side of the plane, in points.
@@ -80,20 +79,6 @@ impl PoseMap {
         self
     }
 
-    /// As SVG 1.1.
-    pub fn svg(&self) -> String {
-        svg::write(&self.page())
-    }
-
-    /// As PNG, 8 bits of grey. Characters beyond Latin-1 are shown as `?`.
-    ///
-    /// # Errors
-    /// Those of the encoder, which has none for a page in memory.
-    #[cfg(feature = "png")]
-    pub fn png(&self) -> std::io::Result<Vec<u8>> {
-        crate::formats::drawing::png::write(&self.page())
-    }
-
     /// How many rows it has.
     fn rows(&self) -> usize {
         self.ids.len() / self.columns
@@ -106,7 +91,7 @@ impl PoseMap {
     }
 
     /// Lays out areas, borders and axes.
-    fn page(&self) -> DrawingPage {
+    pub(super) fn page(&self) -> DrawingPage {
         let side = PLANE / count(self.columns.max(self.rows()));
         let [x0, y0] = self.ends;
         let across = ticks(x0, self.columns);

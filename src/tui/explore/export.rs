@@ -6,6 +6,7 @@ use crate::quote::shortened;
 use crate::storage::{AtlasFile, is_poses};
 use crate::tui::app::line_prompt::LinePrompt;
 use crate::tui::explore::drawing::drawn_format;
+use crate::tui::explore::page::is_csv;
 use crate::tui::explore::pages;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
@@ -59,11 +60,7 @@ impl ExportKind {
             Self::Sweep { .. } => {
                 is_poses(name) || drawn_format(name).is_some() || AtlasFile::new(name).is_ok()
             }
-            Self::Curve => {
-                let ending = std::path::Path::new(name).extension();
-                let mut own = ["csv", "svg", "png"].iter();
-                ending.is_some_and(|ending| own.any(|own| ending.eq_ignore_ascii_case(own)))
-            }
+            Self::Curve => is_csv(name) || drawn_format(name).is_some(),
         }
     }
 }

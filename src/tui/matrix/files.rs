@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use crate::formats::{Drawing, ImprintFormat, Name};
+use crate::formats::{Drawing, DrawingFormat, ImprintFormat, Name};
 use crate::imprint::Imprint;
 use crate::parameter::Parameter;
 use crate::quote::shortened;
@@ -50,6 +50,10 @@ fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
     if let Some(format) = ImprintFormat::of_ending(&ending) {
         return Ok(format.write(&reading.imprint));
     }
+    if let Some(format) = DrawingFormat::of_ending(&ending) {
+        let content = drawing(app).content(format);
+        return content.map_err(|error| error.to_string());
+    }
     match ending.as_str() {
         "json" => {
             let own = Path::new(name).file_stem().and_then(|stem| stem.to_str());
@@ -60,9 +64,6 @@ fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
             let name = name.map_err(|error| error.to_string())?;
             Ok(app.shown().to_shape(name, reading).write().into_bytes())
         }
-        "svg" => Ok(drawing(app).svg().into_bytes()),
-        #[cfg(feature = "png")]
-        "png" => drawing(app).png().map_err(|error| error.to_string()),
         _ => Err(format!(
             "{:?}: expected a name that ends in one of {ENDINGS}",
             shortened(name)

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use crate::formats::separation::{SeparationCurve, csv, drawing};
 use crate::recognition::{SeparationPoint, SmallestSize};
 use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::explore::drawing::drawn_format;
+use crate::tui::explore::page::is_csv;
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::found::{SizeFound, SizesFound};
 use crate::tui::recognise::separate::request::SeparationRequest;
@@ -218,19 +220,11 @@ impl Separate {
             points: self.points(),
             smallest: self.smallest.clone(),
         }];
-        let ending = std::path::Path::new(name).extension();
-        let ending = ending.map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        match ending.as_deref() {
-            Some("csv") => Ok(csv(request.axis, &curves).into_bytes()),
-            Some("svg") => {
-                let plot = drawing(request.axis, &curves, Some(request.wanted));
-                Ok(plot.svg().into_bytes())
-            }
-            Some("png") => {
-                let plot = drawing(request.axis, &curves, Some(request.wanted));
-                plot.png().map_err(|error| error.to_string())
-            }
-            _ => Err("expected a name that ends in .csv, .svg or .png".to_owned()),
+        if is_csv(name) {
+            return Ok(csv(request.axis, &curves).into_bytes());
         }
+        let format = drawn_format(name).ok_or("expected a name that ends in .csv, .svg or .png")?;
+        let plot = drawing(request.axis, &curves, Some(request.wanted));
+        plot.content(format).map_err(|error| error.to_string())
     }
 }
