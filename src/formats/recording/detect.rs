@@ -62,6 +62,8 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
         _ if has(b"SensCountX=") => RecordingFormat::Zebris,
         _ if has(b"Pict-No.:") && has(b"Matrix:") => RecordingFormat::Emed,
         _ if is_ros(ros_text::without_notices(trimmed)) => RecordingFormat::Ros2,
+        // Rows without the object around them: read as JSON, it says what they lack.
+        _ if trimmed.starts_with(b"[[") => RecordingFormat::JsonLines,
         _ if is_table(row) => RecordingFormat::Csv,
         _ => return None,
     })

@@ -353,7 +353,8 @@ impl FormatSearch {
 /// The format of text that has such a line; None if others may have it, too.
 fn form_of_line(line: &[u8], after_first: bool) -> Option<StreamFormat> {
     match line.trim_ascii() {
-        [b'{', ..] => Some(StreamFormat::JsonLines),
+        // Rows without the object around them: read as JSON, its lines say what they lack.
+        [b'{', ..] | [b'[', b'[', ..] => Some(StreamFormat::JsonLines),
         line if line == b"---" || ros_text::begins_message(line) => Some(StreamFormat::Ros2),
         line if after_first && is_numbers(line) => Some(StreamFormat::Lines),
         _ => None,

@@ -194,6 +194,15 @@ fn a_line_of_more_fields_than_a_frame_has_is_refused_before_they_are_collected()
 }
 
 #[test]
+fn bare_rows_of_json_are_refused_as_json() {
+    let found = recorded(b"[[1,2,3],[4,5,60]]\n", None);
+    assert_eq!(
+        error(&found),
+        "line 1, column 1: found a list, expected an object with a key \"frame\""
+    );
+}
+
+#[test]
 fn a_line_of_json_gives_a_key_once() {
     for (keys, message) in [
         ("\"t\":1,\"t\":2", "\"t\" is given twice"),
