@@ -61,7 +61,7 @@ pub(crate) enum CliError {
         /// Its name.
         name: String,
     },
-    /// Some lines of a batch were wrong. Each has its own message among the answers.
+    /// Some lines of a batch were wrong. The answer to each contains its own message.
     #[error("{bad} of {lines} lines could not be answered")]
     Lines {
         /// How many were wrong.
@@ -194,7 +194,7 @@ pub(crate) enum CliError {
         /// How many.
         shapes: usize,
     },
-    /// A size or a threshold at which a set cannot be looked at.
+    /// A size or a threshold at which a set cannot be evaluated.
     #[error("{place}: {error}")]
     Separation {
         /// The size and the threshold.

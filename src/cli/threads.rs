@@ -19,7 +19,7 @@ pub(crate) fn pool(jobs: usize) -> Result<ThreadPool, CliError> {
     pool.map_err(|error| CliError::System(io::Error::other(error)))
 }
 
-/// Does work that uses all cores in a pool of its own: that of the whole program fails for good where it gets no threads.
+/// Does work that uses all cores in a thread pool of its own: the global pool fails permanently if it gets no threads.
 ///
 /// # Errors
 /// Those of the work.

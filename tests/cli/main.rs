@@ -71,9 +71,9 @@ fn program<A: AsRef<OsStr>>(arguments: &[A], locale: &str) -> Command {
         .env_remove("LC_CTYPE")
         .env_remove("LANG")
         .env("LC_ALL", locale)
-        // Nobody's settings.
+        // No settings file.
         .env("TAXEL_CONFIG", "/dev/null")
-        // No library but the shapes that come with the program, whoever runs the tests.
+        // No library, only the shapes that come with the program.
         .env(
             "TAXEL_LIBRARY",
             concat!(env!("CARGO_TARGET_TMPDIR"), "/no-library"),
@@ -89,7 +89,7 @@ fn program<A: AsRef<OsStr>>(arguments: &[A], locale: &str) -> Command {
     command
 }
 
-/// What a run leaves.
+/// The result of a run.
 #[derive(Debug, PartialEq, Eq)]
 struct Run {
     status: Option<i32>,
@@ -100,7 +100,7 @@ struct Run {
 fn finish(mut child: Child, input: &[u8]) -> Run {
     let mut stdin = child.stdin.take().expect("standard input is piped");
     let output = std::thread::scope(|scope| {
-        // A program that stops early closes its end; that is its right.
+        // A program that stops early may close its end of the pipe.
         scope.spawn(move || drop(stdin.write_all(input)));
         child.wait_with_output().expect("the program ends")
     });
@@ -134,7 +134,7 @@ fn refused(run: &Run, status: i32, message: &str) {
     assert_eq!(*run, expected);
 }
 
-/// Wrong usage: status 2, a message that starts like this, and the way to the help.
+/// Wrong usage: status 2, a message that starts like this, and a pointer to the help.
 fn misused(line: &str, message: &str) {
     let run = taxel(line, "");
     assert_eq!(run.status, Some(2), "{line}");

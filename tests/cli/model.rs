@@ -225,9 +225,9 @@ fn what_is_said_and_written_fits_what_is_asked() {
         let line = text.lines().find(|line| line.starts_with("wrong"));
         line.expect("it is there").to_owned()
     };
-    assert!(wrong("").ends_with("the limit: no method errs less"));
+    assert!(wrong("").ends_with("the limit: no method does better"));
     let given = wrong("--given na,p");
-    assert!(given.ends_with("no method that sees only these descriptors errs less"));
+    assert!(given.ends_with("no method that sees only these descriptors does better"));
     assert!(wrong("--classifier lda").ends_with('%'), "not the limit");
     place.done("model confusion m.npz --classifier all --export all.csv");
     let table = String::from_utf8(place.read("all.csv")).expect("text");
@@ -315,7 +315,7 @@ fn a_training_is_taken_up_where_it_was_left() {
     let again = train(of);
     let kept = first
         .stdout
-        .replace("written: ", "kept, complete and of this study: ");
+        .replace("written: ", "kept: complete, and part of this study: ");
     assert_eq!((again.status, again.stdout), (Some(0), kept));
     assert!(place.read("part.npz") == written);
     for (more, reason) in [
@@ -323,10 +323,7 @@ fn a_training_is_taken_up_where_it_was_left() {
             "washer parts.jsonl --shard 1/3",
             "its shard is 2/3, not 1/3",
         ),
-        (
-            "parts.jsonl washer --shard 2/3",
-            "is not in its place there",
-        ),
+        ("parts.jsonl washer --shard 2/3", "is missing, or differs"),
         (
             "washer --shard 2/3 --columns 16 --rows 16",
             "it has more shapes",

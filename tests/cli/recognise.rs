@@ -198,7 +198,7 @@ fn the_exit_status_says_whether_the_answer_was_expected() {
     let two = place.run("recognise - --model r --expect d", &[good, speck].concat());
     assert_eq!(
         two.stderr,
-        "error: --expect: expected \"d\", found another answer, or none, in 1 of 2 lines\n"
+        "error: --expect: expected \"d\", found another answer or none for 1 of 2 lines\n"
     );
     assert_eq!(run(&[good, speck, "{}\n"].concat()), Some(1));
     refused(

@@ -123,7 +123,7 @@ fn a_script_changes_nothing_outside_its_folder() {
         ),
         (outside.to_str().expect("text"), "", "a script writes only"),
         (".hidden.svg", "", "a script writes only below its folder"),
-        ("theirs.svg", "y", "was there before the script"),
+        ("theirs.svg", "y", "existed before the script"),
     ] {
         let shown = run("a.taxel", &export(path, answer), &["--size", "200x24"]);
         assert!(shown.stdout.contains(refusal), "{path}: {shown:?}");

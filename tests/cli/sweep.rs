@@ -253,7 +253,11 @@ fn a_study_is_taken_up_where_it_was_left() {
     assert_eq!(first.status, Some(0), "{}", first.stderr);
     let written = fs::read(path("2.npz")).expect("an atlas");
     let again = part("--shard 2/3 --resume --json");
-    assert!(again.stderr.contains("kept, complete and of this study: "));
+    assert!(
+        again
+            .stderr
+            .contains("kept: complete, and part of this study: ")
+    );
     let of = |run: &Run| {
         let mut answer: Value = serde_json::from_str(&run.stdout).expect("an answer");
         answer["seconds"] = Value::Null;

@@ -474,7 +474,7 @@ fn a_tare_that_does_not_fit_is_said_to_be_left_out() {
     let recorded = lines(&taxel(&record, "").stdout);
     for command in ["frames --all --json", "watch --once"] {
         let run = taxel(&format!("{command} {file} --at-least 5"), "");
-        let expected = "the recording's tare of 3 × 2 cells is left out";
+        let expected = "the recording's tare of 3 × 2 cells is not used";
         assert!(run.stderr.contains(expected), "{}", run.stderr);
         let again = taxel(&format!("{command} {file} {crop}"), "");
         assert_eq!((again.status, again.stderr.as_str()), (Some(0), ""));

@@ -133,7 +133,7 @@ pub(super) fn memory() -> Arg {
     option(
         "memory",
         "SIZE",
-        "Stop before it uses more memory: 500M, 2G;\ndefault what is free",
+        "Stop before using more memory: 500M, 2G;\ndefault all that is free",
     )
     .value_parser(|text: &str| text.parse::<MemorySize>())
 }
@@ -160,7 +160,7 @@ pub(super) fn shard_of(matches: &ArgMatches) -> Shard {
 pub(super) fn resume() -> Arg {
     switch(
         "resume",
-        "Skip the shard if its file is complete and fits;\nrefuse any other file",
+        "Skip the shard if its file is complete and belongs\nto this study; refuse any other file",
     )
     .conflicts_with("force")
 }

@@ -4,9 +4,9 @@
 //! pages are made from the same texts. No line is wider than 80 columns. A test runs every example
 //! (`tests/cli/shell.rs`).
 //!
-//! What belongs here: what a value means and what happens if it is missing, the formats of input, one line each on what
-//! may surprise; not what a flag's own help says. Commands are indented by two spaces, and long ones continue after a
-//! `\`.
+//! What belongs here: the meaning of a value and what happens if it is missing, the formats of input, and a line on
+//! each thing that may surprise; not what a flag's own help says. Commands are indented by two spaces, and long ones
+//! continue after a `\`.
 
 /// What the program is for: the first lines of `taxel --help`.
 pub(crate) const ABOUT: &str = "\
@@ -34,8 +34,8 @@ Examples:
 
 /// `taxel figure`: on which sensor the ranges of the flags hold.
 pub(crate) const FIGURE_EXAMPLES: &str = "\
-The ranges are for a sensor of 16 x 16; for another sensor, read its larger side
-instead of 16. Flags that are not given take their defaults.
+The ranges are for a sensor of 16 x 16; for another sensor, replace 16 by its
+larger side. Flags that are not given take their defaults.
 
 Examples:
   taxel figure ellipse --x0 1.99 --y0 1.47 --thickness 2
@@ -48,8 +48,8 @@ Examples:
 pub(crate) const PICTURE_EXAMPLES: &str = "\
 If a stored shape and a file have the same name, the shape is taken. A file is a
 stored shape or an imprint. A stored shape keeps its sensor; an imprint gets one
-of 16 x 16, or of its own size if that is larger. Flags that are not given
-change nothing: without flags, the picture stays as it is.
+of 16 x 16, or of its own size if that is larger. Without flags, the picture
+stays as it is.
 
 Examples:
   taxel picture washer --x0 6 --y0 4.5
@@ -87,7 +87,7 @@ Examples:
   taxel export key - --format pbm-plain
   taxel figure hexagon --angle 17 --export hexagon.png";
 
-/// `taxel batch`: the format of a line, and what becomes of a wrong one.
+/// `taxel batch`: the format of a line, and what happens if one is wrong.
 pub(crate) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:
   {"figure":"hexagon","side":3,"x0":2.1,"y0":1.35,"angle":17,"thickness":1}
   {"picture":["##","#."],"x0":5,"y0":3,"angle":10,"zoom_x":1.5,"zoom_y":1}
@@ -95,8 +95,8 @@ pub(crate) const BATCH_EXAMPLES: &str = r###"Each line is a JSON object:
   {"imprint":[".##.","#..#",".##."]}
   {"frame":[[0,3,8],[1,9,12]],"at_least":5}
 Sizes, place, angle and zooms have no defaults here, unlike the flags of other
-commands; a figure without "thickness" is solid. A picture is named as in the
-library. A figure or picture may have its own sensor:
+commands; a figure without "thickness" is solid. A picture is given by its rows
+or by its name in the library. A figure or picture may have its own sensor:
   "sensor":{"columns":32,"rows":32,"threshold":0.5}
 A frame has the values of a sensor in rows, and "at_least":VALUE, "percent":P
 or "low":VALUE,"high":VALUE; "least":TAXELS drops pieces of fewer taxels.
@@ -122,11 +122,11 @@ pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command per line; places are col
   Expect /re/         ExpectNot /re/      ExpectAt 3,10 "text"
   ExpectStyle 3,10 reverse
   Source touch.csv    Frames 3  (watch a recording, and take its next 3 frames)
-Quit checks that the program has ended. Source fails without a readable file,
-Frames if too few frames come. Without --library the script has its own, empty
-library. It writes files only below its own folder, and replaces none that was
-there before; --allow-outside, for scripts that you trust, lets it write
-anywhere and set a library.
+Quit checks that the program has ended. Source fails if the file cannot be
+read, Frames if too few frames come. Without --library, the script has an empty
+library of its own. It writes files only below its own folder, and replaces only
+files that it wrote itself; --allow-outside, for scripts that you trust, lets it
+write anywhere and set a library.
 
 Exit status: 0 all expectations held, 1 one failed, 2 the script is wrong, 3 the
 program ended before the script.
@@ -148,9 +148,8 @@ for settings, or the file that --config or TAXEL_CONFIG names:
   "x" = "toggle"
   "<C-n>" = "new"
 Flags override the environment, which overrides the file. If the file has
-anything unknown in it, taxel names the line and column and does not start.
-Scripts ignore the settings unless --config is given, so they do the same for
-everybody.
+an unknown entry, taxel names its line and column and does not start. Scripts
+ignore the settings unless --config is given, so they do the same for everybody.
 
 Examples:
   taxel config
@@ -218,8 +217,8 @@ pub(crate) const MODEL_EXAMPLES: &str = "\
 A model holds every imprint that its shapes can leave, and in how many poses
 each shape leaves it. So counting finds the best answer to one touch: no method
 gets a smaller share of the touches wrong.
-MODEL is the name of a model beside the library, of one that is built in
-(figures, figures-30, shapes), or a file.
+MODEL is a file, the name of a model beside the library, or the name of a
+built-in model: figures, figures-30 or shapes.
 
 Examples:
   taxel model train parts.jsonl --name parts
@@ -231,7 +230,7 @@ pub(crate) const MODEL_TRAIN_EXAMPLES: &str = "\
 A line of JSON is a shape as for 'taxel batch', but with a name and no pose:
   {\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}
   {\"name\":\"ring\",\"picture\":\"washer\"}
-Of a stored shape only the taxels count, not its pitch and threshold: a taxel is
+A stored shape gives only its taxels, not its pitch and threshold: a taxel is
 one cell. By default, every shape is touched at 100 x 100 positions inside one
 cell and at every whole degree. The sensor is the smallest that holds all
 shapes, at least 16 x 16; its size is printed. Poses that the sensor cuts off
@@ -271,7 +270,7 @@ Examples:
 /// `taxel model confusion`: what the numbers mean.
 pub(crate) const MODEL_CONFUSION_EXAMPLES: &str = "\
 A row is a true shape, a column the name that the best classifier gives it; the
-numbers count the touches of all poses. 'certain' are touches that only one
+numbers count the touches of all poses. 'certain' counts touches that only one
 shape can leave. The descriptors are those that do not depend on where the
 imprint lies: na, nae, ce, p, f, roundness, area, diagonals, side_ratio,
 filling, cg_cd, cg_cd_direction. CG-CD at full precision is more of a
@@ -294,14 +293,14 @@ Examples:
 
 /// `taxel model separate`: what it answers.
 pub(crate) const MODEL_SEPARATE_EXAMPLES: &str = "\
-Trains the set at each scale, which multiplies all lengths, or, if lengths are
-in mm, at each pitch, and prints how many touches even the best classifier names
+Trains the set at each scale, which multiplies all lengths, or at each pitch, if
+lengths are in mm, and prints how many touches even the best classifier names
 wrong. Sizes at which the shapes do not fit on 64 x 64 taxels are left out, and
-standard error says which. With --pitch, a taxel of a stored shape is 1 mm,
-whatever its own pitch; its threshold does not count either. --want scans from
-the smallest size upwards, then in tenths of the step before the first size that
-reaches the error. The error is not monotonic, so --want also reports how many
-larger sizes miss it again.
+standard error lists them. With --pitch, a taxel of a stored shape is 1 mm; the
+shape's own pitch and threshold are ignored. --want scans from the smallest size
+upwards, then in tenths of the step before the first size that reaches the
+error. The error is not monotonic, so --want also reports how many larger sizes
+miss it again.
 
 Examples:
   taxel model separate parts --scale 0.5:2:0.1 --positions 20
@@ -328,8 +327,8 @@ each {\"imprint\":[\"..##\",...]} or, for several touches of one shape,
 frame, label, time and channel; other keys are ignored. An imprint at the rim
 may be cut off and is never 'certain'. With --noise, even an imprint that no
 shape leaves gets an answer: it is compared with every key in every place on the
-matrix. With --expect, the exit status is 3 if the answer is another one, tied,
-rejected or unknown.
+matrix. With --expect, the exit status is 3 if the answer is another shape, or
+is tied, rejected or unknown.
 
 Built-in models: 'figures', the seven figures in their default sizes;
 'figures-30', the same at about 30 cells each; 'shapes', those that come with
@@ -405,7 +404,7 @@ Examples:
 
 /// `taxel library check`.
 pub(crate) const CHECK_EXAMPLES: &str = r#"Reads every shape, and lists other files in the folder, shapes with another
-name inside their file, and names that differ in case only. The exit status is
+name inside their file, and names that differ only in case. The exit status is
 1 if a shape is broken. --json prints an array on one line, with an object for
 each finding; without findings it is empty:
   {"finding":"broken","name":"ring","reason":"..."}
@@ -448,7 +447,7 @@ null. A stream consists of numbers in lines, JSON lines, the output of
 'ros2 topic echo', or FlexiTac's or MatSense's bytes; its content decides which.
 A recording is played at its own rate. If a serial line or connection is lost,
 taxel tries again each second, unless --once is given; on a terminal, it also
-waits for one that is not there yet. Torn, short, long and garbled frames are
+waits for one that does not exist yet. Torn, short, long and garbled frames are
 dropped and counted.
 
 --write records every frame, shown or not; numpy can open the file at any time.

@@ -199,7 +199,7 @@ impl Given {
     }
 }
 
-/// What becomes of the file of a shard that is there already.
+/// What happens if the file of a shard exists already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ShardFile {
     /// It is in the way: an error.

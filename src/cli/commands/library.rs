@@ -225,7 +225,7 @@ pub(crate) fn delete(shelf: &Shelf, name: &str) -> Result<String, CliError> {
 /// Brings the shape of that name back that was deleted last.
 ///
 /// # Errors
-/// If there is none in the trash, or there is a shape of that name again.
+/// If no such shape is in the trash, or a shape has that name again.
 pub(crate) fn restore(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     let restored = shelf.library()?.restore(name);
     let name = restored.map_err(|error| shelf.refused(error))?;

@@ -180,9 +180,9 @@ fn grid(
     Ok((sensor, anchor, ranges))
 }
 
-/// The given sensor, or the smallest, and the ranges in which it cuts no shape off, as far as that can be.
-/// The smallest sensor is square, with sides of [`LEAST_SIDE`] or more. Where not even the largest one holds the
-/// shapes, training says which poses are cut off.
+/// The given sensor, or the smallest suitable one, and the ranges in which it cuts off no shape, if there are such
+/// ranges. The smallest sensor is square, with sides of [`LEAST_SIDE`] or more. Where not even the largest one holds
+/// the shapes, training says which poses are cut off.
 fn fitting(
     shapes: &[NamedShape],
     asked: &TrainArguments,
@@ -349,7 +349,7 @@ fn never_certain(model: &Model) -> String {
     let names = never.iter().map(|&shape| &*model.shapes()[shape].name);
     match names.collect::<Vec<_>>().join(", ") {
         none if none.is_empty() => {
-            "never certain: none; each leaves imprints of its own\n".to_owned()
+            "never certain: none; each shape leaves imprints of its own\n".to_owned()
         }
         names => format!("never certain: {names}; other shapes leave all their imprints, too\n"),
     }
@@ -436,8 +436,8 @@ pub(crate) fn names(shelf: &Shelf) -> Result<String, CliError> {
     Ok(names.map(|name| format!("{name}\n")).collect())
 }
 
-/// Lists the built-in models, which are trained when they are first used, and those beside the library, by name.
-/// A model that cannot be read has its reason in place of the numbers. The lines of JSON are those of files only.
+/// Lists the built-in models, which are trained when they are first used, and those beside the library, sorted by name.
+/// If a model cannot be read, the reason takes the place of the numbers. The JSON lists only models in files.
 /// ```text
 /// figures: built in
 /// parts: 3 shapes, 845 keys, error 1.6 %

@@ -39,7 +39,7 @@ use crate::recognition::{Answer, AnswerState, Evidence, Model, Noise};
 /// # Errors
 /// [`CliError::Unexpected`] at the end if `--expect` names another shape than one of the answers; [`CliError::NoSet`] and
 /// [`CliError::NotInModel`] for names that do not exist; [`CliError::Mask`] for dead taxels of another size than the
-/// touch; and those of reading files. A line that is wrong is answered by its error instead.
+/// touch; and those of reading files. The answer to a wrong line is its error.
 pub(crate) fn recognise(
     asked: &RecogniseArguments,
     shelf: &Shelf,
@@ -161,7 +161,7 @@ impl<'a> Recogniser<'a> {
                 let all = counted(all.into_inner(), "line");
                 Err(CliError::Unexpected {
                     expected: expected.clone(),
-                    found: format!("another answer, or none, in {others} of {all}"),
+                    found: format!("another answer or none for {others} of {all}"),
                 })
             }
             _ => Ok(()),

@@ -15,8 +15,8 @@ use crate::sensor::Sensor;
 use crate::storage::{ArchiveFileError, load_atlas, load_model};
 use crate::sweep::{Shard, SweepResult};
 
-/// What is said before the name of a file that is there already.
-pub(crate) const KEPT: &str = "kept, complete and of this study";
+/// The words before the name of a file that exists already.
+pub(crate) const KEPT: &str = "kept: complete, and part of this study";
 
 /// The atlas of a shard that was swept before; None if there is no such file.
 ///
@@ -69,7 +69,7 @@ pub(crate) fn model(
     let (mut shapes, asked) = (found.shapes().iter(), training.shapes());
     let other = asked.iter().find(|&shape| shapes.next() != Some(shape));
     if let Some(shape) = other {
-        let difference = format!("the shape {:?} is not in its place there", shape.name);
+        let difference = format!("the shape {:?} is missing, or differs", shape.name);
         return Err(foreign(path, &difference));
     }
     if shapes.next().is_some() {

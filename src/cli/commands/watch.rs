@@ -1,7 +1,7 @@
 //! `taxel watch`: a line of JSON for each frame of a source, and a recording of all of them if one is wanted.
 //!
-//! Every frame is recorded before it is answered. A live source that is recorded is never held up: if whoever reads the
-//! answers is slow, frames are left unanswered, and their number is reported. Otherwise answers wait, as in any
+//! Every frame is recorded before it is answered. A live source that is recorded is never held up: if the reader of the
+//! answers is slow, some frames get no answer, and their number is reported. Otherwise answers wait, as in any
 //! pipeline.
 //!
 //! ```text
@@ -492,7 +492,7 @@ impl Watcher<'_> {
                 self.unfit += 1;
                 if self.unfit == 1 {
                     let number = frame.number;
-                    self.say(&format!("frame {number} is not answered: {error}"));
+                    self.say(&format!("frame {number} is not printed: {error}"));
                 }
                 return Ok(());
             }
@@ -620,7 +620,7 @@ impl Watcher<'_> {
         }
         if self.unfit > 0 {
             let frames = counted(self.unfit, "frame");
-            self.say(&format!("{frames} of another size not answered"));
+            self.say(&format!("{frames} of another size not printed"));
         }
         let recorded = self.recorder.take().map(FrameRecorder::finish);
         // A file that could not be begun is not for want of frames.
@@ -632,7 +632,7 @@ impl Watcher<'_> {
         let given_up = self.lines.given_up;
         if given_up > 0 {
             let frames = counted(given_up, "frame");
-            self.say(&format!("{frames} recorded but not answered"));
+            self.say(&format!("{frames} recorded but not printed"));
         }
         let name = self.name.clone();
         let written = self.lines.finish();

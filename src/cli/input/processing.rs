@@ -1,4 +1,4 @@
-//! How the frames of a recording are processed: what the flags ask for, and what needs all frames first.
+//! How the frames of a recording are processed: by the flags, and by steps that need all frames first.
 
 use std::ops::ControlFlow;
 
@@ -10,8 +10,8 @@ use crate::formats::recording::{ChannelInfo, ReadOptions, RecordingError, Record
 use crate::frame::{Peak, Processing, SetRule, TareFrames, View};
 use crate::matrix::Matrix;
 
-/// How frames are looked at; without tare and rule, which need the recording.
-/// Crop, flips, turn and mask are applied in this order, then the tare, then the gain.
+/// The processing that the flags ask for, without tare and rule, which need the recording. Crop, flips, turn and mask
+/// are applied in this order, then the tare, then the gain.
 ///
 /// # Errors
 /// If the mask or the gain cannot be read.
@@ -43,7 +43,7 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
     let (mut found, mut is_recording) = (None, false);
     let mut take = |event: RecordingEvent<'_>| {
         if let RecordingEvent::Frame(frame) = event {
-            // A second one is only looked for.
+            // Of a second frame only the existence matters.
             is_recording = found.is_some();
             found.get_or_insert_with(|| View::default().of(frame, &mut gain));
         }
@@ -54,8 +54,8 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
         }
     };
     let read = match file.read(&mut take) {
-        // Its lines were taken for frames, or for no table since nothing parts a single column, but it is one table of
-        // factors.
+        // Each line was read as a frame; or the file did not look like a table, because a single column has no
+        // separators. It is one table of factors.
         Err(error @ (RecordingError::Shape { .. } | RecordingError::Unknown)) => {
             match file.read_table(&mut take) {
                 Err(RecordingError::Unknown) => Err(error),
@@ -71,13 +71,13 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
     if is_recording {
         return Err(file.refused(&"a recording of several frames, expected a table of factors"));
     }
-    let found = found.ok_or_else(|| file.refused(&"no frame, expected one of factors"))?;
+    let found = found.ok_or_else(|| file.refused(&"no frame, expected a table of factors"))?;
     found.map_err(|error| file.refused(&error))?;
     Ok(gain)
 }
 
 /// The rule of the flags, else that of the recording.
-/// A threshold of the recording is the one that its maker's program would draw its pictures with; it counts from it on.
+/// The threshold of a recording is the one with which its maker's program draws pictures; values from it on are active.
 ///
 /// # Errors
 /// If neither gives one. There is no default: what a value means differs from sensor to sensor.
@@ -95,8 +95,8 @@ pub(crate) fn rule(
     })
 }
 
-/// That the tare of a recording is left out, since it is of another size than what is seen of the frames; None where it
-/// is used, none is wanted or there is none.
+/// The message that the recording's tare is not used, since its size differs from that of the visible part of the
+/// frames. None if it is used, if the flags say how to tare, or if the recording has none.
 pub(crate) fn unused_tare(
     asked: &ProcessingArguments,
     info: &ChannelInfo,
@@ -108,7 +108,7 @@ pub(crate) fn unused_tare(
     let tare = info.tare.as_ref()?;
     let baseline = tare.baseline();
     Some(format!(
-        "the recording's tare of {} × {} cells is left out; it fits with the --crop and --turn of the recording",
+        "the recording's tare of {} × {} cells is not used; to use it, give the --crop and --turn of the recording",
         baseline.columns(),
         baseline.rows()
     ))

@@ -128,8 +128,8 @@ impl NamedBy {
     /// The remark behind the error.
     fn remark(self) -> &'static str {
         match self {
-            Self::Imprint => "  the limit: no method errs less",
-            Self::Descriptors => "  no method that sees only these descriptors errs less",
+            Self::Imprint => "  the limit: no method does better",
+            Self::Descriptors => "  no method that sees only these descriptors does better",
             Self::Classifier => "",
         }
     }
@@ -168,7 +168,7 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
     if named != NamedBy::Classifier {
         line("certain", *certain, "  only one shape can leave them");
     }
-    line("tied", *tied, "  named by the order of the set");
+    line("tied", *tied, "  given the first of the tied names");
     line("in top two", *right_in_top_two, "");
     let _ = writeln!(
         text,

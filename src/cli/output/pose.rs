@@ -76,7 +76,7 @@ fn integer_if_whole<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok,
     }
 }
 
-/// A shape's pose, as far as one touch tells it.
+/// A shape's pose, as far as one touch determines it.
 pub(crate) struct PoseReport {
     /// The shape.
     name: String,

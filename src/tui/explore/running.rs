@@ -117,9 +117,9 @@ fn draw(theme: &Theme, running: &Running, buffer: &mut Buffer, area: Rect) {
     let (title, end) = match &running.job {
         WorkKind::Sweep(grid) => (
             format!("Exploring: {}", name_of(grid.source())),
-            "stop keeps what is complete",
+            "stopping keeps what is complete",
         ),
-        WorkKind::Write(name, _) => (format!("Writing {name}"), "stop leaves nothing behind"),
+        WorkKind::Write(name, _) => (format!("Writing {name}"), "stopping leaves no file behind"),
     };
     // On a low screen what matters most comes first.
     let spaced = usize::from(area.height >= 9);

@@ -332,7 +332,7 @@ actions! {
     }
 
     with_arguments {
-        "compare" Arguments::Shape(Purpose::Compare), "compare with a stored shape; alone, with the step before";
+        "compare" Arguments::Shape(Purpose::Compare), "compare with a stored shape, or with the step before";
         "cursor" Arguments::Taxel, "move the cursor, or put it on a taxel";
         "delete" Arguments::Shape(Purpose::Delete), "Delete: move a stored shape to the trash";
         "explore" Arguments::Ranges, "Explore: all imprints in these ranges";
@@ -343,7 +343,7 @@ actions! {
         "open" Arguments::File(FilePurpose::Open), "open a shape or an imprint from a file";
         "picture" Arguments::Shape(Purpose::Picture), "Picture: place a stored shape, or move the one here";
         "recognise" Arguments::Model, "Recognise: which shape of this model left the imprint";
-        "restore" Arguments::Deleted, "bring back a deleted shape; alone, the one deleted last";
+        "restore" Arguments::Deleted, "bring back this deleted shape, or the one deleted last";
         "save" Arguments::Name, "Save: store what is on the matrix";
         "seed" Arguments::Seed, "set the seed of the quiz's random touches";
         "sensor" Arguments::Sensor, "Sensor: columns, rows, threshold, pitch";

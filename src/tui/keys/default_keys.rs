@@ -70,7 +70,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('o') => OUTLINE, Char('b') => RECTANGLE]
             "" "the true outline; the rectangle with CG (G), CD (D)";
         [Char('g') => GRAB] "grab" "hold the shape, to move it with the arrows";
-        [Char('w') => WATCH] "" "Watch: the frames of a sensor, once one is watched";
+        [Char('w') => WATCH] "" "Watch: back to the frames of the watched sensor";
         [ShiftArrow(Left) => NUDGE_LEFT, ShiftArrow(Right) => NUDGE_RIGHT,
             ShiftArrow(Up) => NUDGE_UP, ShiftArrow(Down) => NUDGE_DOWN]
             "" "move the shape by a step, without holding it";
@@ -117,7 +117,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     /// Where a question has no "no" of its own, `n` only closes it. A key without a row leaves it open.
     Question {
         [Char('y') => ACCEPT] "yes" "yes";
-        [Char('n') => DECLINE] "no" "no; what was left unsaved last time: to the trash";
+        [Char('n') => DECLINE] "no" "no; unsaved work from last time goes to the trash";
         [Char('s') => SAVE] "save first" "at the end: save first, then quit";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "not now" "cancel, without an answer";
         [Char('?') => HELP] "help" "these keys";
@@ -153,7 +153,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     Compare {
         [Tab => NEXT, BackTab => PREVIOUS] "view" "differences, the first, the second";
         [LEFT => LEFT, RIGHT => RIGHT, UP => SCROLL_UP, DOWN => SCROLL_DOWN]
-            "scroll" "what does not fit on the screen";
+            "scroll" "scroll, if not everything fits";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten rows up, down";
         [Home => FIRST, End => LAST] "" "the first, the last rows";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL, Char('=') => CANCEL]
@@ -213,7 +213,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('e') => RANGES] "ranges" "explore other ranges";
         [Char('?') => HELP] "help" "all keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
-            "close" "back to the matrix; what was found is kept";
+            "close" "back to the matrix; the results are kept";
     }
 
     /// Enter takes the first pose of the selected imprint: of its poses the one that the sweep came to first.
@@ -321,7 +321,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "keep, forget" "keep this touch as one of several; forget them";
         [Char('o') => NEXT_SET, Char('O') => PREVIOUS_SET]
             "other model" "next, previous model";
-        [Char('v') => CONFUSION] "confusion" "which shapes are taken for which";
+        [Char('v') => CONFUSION] "confusion" "which shapes are confused with which";
         [Char('V') => SEPARATE] "" "the error against the size of the shapes";
         [Char('i') => PANEL] "answer" "on a narrow screen: the answer or the matrix";
         [Char('P') => POSES] "" "outlines of the likeliest pose and of others";
@@ -381,13 +381,13 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Home => FIRST, End => LAST] "" "the oldest frame; follow the source";
         [ShiftArrow(Left) => WINDOW_LEFT, ShiftArrow(Right) => WINDOW_RIGHT,
             ShiftArrow(Up) => WINDOW_UP, ShiftArrow(Down) => WINDOW_DOWN]
-            "other taxels" "where not all taxels fit on the screen: see others";
-        [Char('c') => FOLLOW_CONTACT] "" "see those of the contact again";
+            "other taxels" "see other taxels, if not all fit on the screen";
+        [Char('c') => FOLLOW_CONTACT] "" "see the taxels of the contact again";
         [Char('p') => PEAK_HOLD] "peak" "hold the peak of each cell, or release it";
         [Char('v') => NEXT_LAYER] "view" "raw values, tared values, the imprint";
         [Char('#') => NUMBERS] "" "values as numbers, or in shades";
         [Char('g') => OWN_RANGE] "" "shades over this frame's values, or a fixed range";
-        [Char('i') => PANEL] "" "only the numbers, or the taxels, too";
+        [Char('i') => PANEL] "" "only the numbers, or the taxels as well";
         [Char('r') => RECORD] "record" "record all frames in a file, or stop recording";
         [Char('m') => MARK_FRAME] "" "mark this frame, or remove its mark";
         [Char('n') => NEXT_MODEL] "name" "name the shape by the next model, or by none";
@@ -410,7 +410,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
 
     /// Help follows as one types; Esc brings back the lines and the search that were there before.
     Search {
-        [Enter => ACCEPT] "keep" "keep the search, for the next matches";
+        [Enter => ACCEPT] "keep" "keep the search, to go to other matches";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "back to where the search began";
         [F1 => HELP] "help" "these keys";
     }

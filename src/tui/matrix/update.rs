@@ -253,7 +253,7 @@ fn next_display(app: &mut App) {
         Display::Imprint => (Display::Shades, "coverage in shades"),
         Display::Shades => (
             Display::Percent,
-            "coverage in percent; one digit is tens: 5 is 50 to 59 %",
+            "coverage in percent; a single digit is tens: 5 is 50 to 59 %",
         ),
         Display::Percent => (Display::Imprint, "active taxels"),
     };

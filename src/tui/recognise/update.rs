@@ -124,7 +124,7 @@ fn show_poses(app: &mut App) {
         app,
         match (seen, none) {
             (true, _) => "without poses",
-            (false, true) => "no pose: no shape of the model leaves this imprint",
+            (false, true) => "no pose to show: no shape of the model leaves this imprint",
             (false, false) => "the likeliest pose; others of the 95 % faintly",
         },
     );

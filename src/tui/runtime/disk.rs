@@ -407,7 +407,7 @@ impl DiskQueue {
         None
     }
 
-    /// Starts the thread where it is wanted and there is none. Without one, requests are carried out at once.
+    /// Starts the thread if one is wanted and none runs. Without a thread, requests are carried out at once.
     fn start(&mut self) {
         if self.thread.is_some() || self.post.is_none() {
             return;

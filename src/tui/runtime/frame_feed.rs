@@ -1,10 +1,10 @@
-//! What a source of frames has brought and the screen has not taken yet, and what is recorded of it.
+//! The frames of a source that the screen has not taken yet, and their recording.
 //!
 //! ```text
 //! acquire -> take_in -> Recording: every frame
 //!                    -> Pending: frames, bounded in bytes, and how the source is -> take -> FrameBatch
 //! ```
-//! The thread that reads the source takes in, and the screen's takes; neither waits for the other longer than a moment.
+//! The thread that reads the source adds frames, and the screen's thread takes them; neither waits long for the other.
 
 use std::mem::take;
 use std::ops::ControlFlow;
@@ -30,7 +30,7 @@ use crate::tui::runtime::source;
 pub(super) struct FrameFeed {
     /// Held for as long as it takes to add or to take frames, never while a file is written.
     pending: Mutex<Pending>,
-    /// What is recorded in. Held for a moment only: a slow disk holds up the source, and nobody else.
+    /// The recording. Its lock is held only briefly, so a slow disk holds up the source and nothing else.
     recording: Mutex<Option<Arc<Recording>>>,
 }
 

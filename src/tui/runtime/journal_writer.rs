@@ -140,7 +140,7 @@ impl JournalWriter {
         self.written(PATIENCE)
     }
 
-    /// Has everything written, and waits for that for at most `patience`. False if it is not written.
+    /// Writes everything, waiting for at most `patience`. False if it is not written by then.
     pub(in crate::tui) fn written(&self, patience: Duration) -> bool {
         let (done, written) = channel();
         self.send(JournalRequest::Flush(done));

@@ -476,7 +476,8 @@ impl World {
         self.journal.note(app);
         lines.extend(self.writer.left());
         if !is_kept && app.unsaved_work().is_some() {
-            let line = "unsaved work may not be on the disk, which refuses it or does not answer\n";
+            let line =
+                "unsaved work may not be on the disk: the disk refuses it or does not answer\n";
             lines.push(line.to_owned());
         }
         (lines, is_kept)

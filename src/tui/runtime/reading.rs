@@ -3,7 +3,7 @@
 //! ```text
 //! ask -> answer within a moment: the next message
 //!        later: as soon as no other page stands above the one that asked
-//!        Esc there: no longer waited for; the thread that hangs is left to itself, and another one goes on
+//!        Esc there: no longer waited for; the hanging thread is left to itself, and another one continues
 //! ```
 
 use std::collections::VecDeque;

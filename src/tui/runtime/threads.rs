@@ -1,6 +1,6 @@
 //! The threads that share long work on the screen.
 //!
-//! `rayon` builds the pool of a program once. If the system refuses a thread then, whoever uses the pool panics, also later.
+//! `rayon` builds the pool of a program once. If the system refuses a thread then, every later use of the pool panics.
 //! Therefore all its threads are there before it is built. If there are too few, each thread does its own work alone:
 //! ```text
 //! prepare   on the screen's thread, before there is work: a thread a core, or a pool of that thread alone

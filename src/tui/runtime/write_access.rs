@@ -51,7 +51,7 @@ impl WriteAccess {
         let mut written = locked(&self.written);
         if existing == Existing::Replaced && path.exists() && !written.contains(&path) {
             return Err(format!(
-                "{name}: was there before the script; without --allow-outside, a script replaces only its own files"
+                "{name}: existed before the script; without --allow-outside, a script replaces only its own files"
             ));
         }
         if existing == Existing::Kept && !path.exists() {

@@ -1,7 +1,7 @@
 //! What messages do in the list of shapes, and what the answers of the library do.
 //!
 //! Requests to the library are effects ([`crate::tui::runtime::effect::LibraryRequest`]); its answers come back as
-//! messages, perhaps after the page that asked was closed. An answer that nobody waits for changes nothing.
+//! messages, perhaps after the page that asked was closed. An answer for a closed page changes nothing.
 
 use crate::imprint::Imprint;
 use crate::picture::Picture;

@@ -146,7 +146,7 @@ fn why_empty(keymap: &Keymap, dialog: &ListDialog) -> Option<String> {
     )
 }
 
-/// Draws how many shapes the filter leaves, and that typing makes one as long as there is none.
+/// Draws how many shapes the filter leaves; without a filter, a note that typing makes one.
 fn draw_count(theme: &Theme, dialog: &ListDialog, buffer: &mut Buffer, area: Rect) {
     let count = format!("  {} of {}", dialog.rows().len(), dialog.total());
     let hinted = format!("{count}; type to search");

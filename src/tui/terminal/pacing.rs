@@ -1,13 +1,13 @@
 //! Keeps a slow line free for keys: at most one picture of a source is under way.
 //!
-//! A line that is slower than its source would queue up pictures in the buffers of the system and of SSH, and what a key
-//! asks for would come after all of them. How full these are cannot be seen here, so each picture that only frames have
-//! caused ends in a question to the terminal, and the next one waits for the answer:
+//! On a line that is slower than the source, pictures would queue up in the buffers of the system and of SSH, and the
+//! effect of a key would appear after all of them. How full these buffers are cannot be seen here, so each picture that
+//! only frames have caused ends in a question to the terminal, and the next one waits for the answer:
 //! ```text
 //! picture, ESC [ 5 n  ->  terminal     device status report (DSR) of ECMA-48
 //!          ESC [ 0 n  <-               the terminal has come this far; the newest frame is drawn next
 //! ```
-//! What a key asks for is drawn at once and without a question. Where nothing answers, pictures come as fast as the
+//! The effect of a key is drawn at once and without a question. Where nothing answers, pictures come as fast as the
 //! terminal takes their bytes.
 
 use std::time::{Duration, Instant};

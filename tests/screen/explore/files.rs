@@ -149,7 +149,7 @@ fn no_part_of_a_file_is_left_at_the_end() {
     program.until("60,000,000 poses, ");
     program.until("distinct imprints");
     export(&mut program.session, &folder.path().join("poses.npy"));
-    shows(&program.session, &["stop leaves nothing behind"]);
+    shows(&program.session, &["stopping leaves no file behind"]);
     drop(program);
     let names = std::fs::read_dir(folder.path()).expect("a folder").count();
     assert_eq!(names, 0);

@@ -93,7 +93,7 @@ fn work_is_shown_and_stopped_and_what_is_complete_is_kept() {
         LONG,
         &[
             "0 of 36,000,000,000 poses, 0 %",
-            "stop keeps what is complete",
+            "stopping keeps what is complete",
             "Esc stop",
         ],
     );
@@ -184,7 +184,7 @@ fn a_plot_of_angles_that_fails_says_so_and_is_not_waited_for() {
     program.session.send(Message::Worker(failed));
     shows(
         &program.session,
-        &["no memory", "the imprints of each angle were not found"],
+        &["no memory", "the imprints of each angle cannot be computed"],
     );
 }
 

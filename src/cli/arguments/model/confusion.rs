@@ -136,7 +136,7 @@ fn questions() -> [Arg; 4] {
         )
         .value_parser(parse_given),
         switch("greedy", "Choose descriptors one by one until none helps"),
-        switch("pairs", "The error for each pair of shapes alone"),
+        switch("pairs", "Print the error of each pair of shapes alone"),
         option(
             "classifier",
             "NAME",
@@ -180,13 +180,13 @@ fn noisy() -> [Arg; 5] {
     let noise = option(
         "noise",
         "START:END:STEP",
-        "Test touches whose taxels flip this often",
+        "Test touches whose taxels flip with this\nprobability",
     )
     .value_parser(parse_noise_range);
     let dead = option(
         "dead",
         "N,...",
-        "Also with N dead taxels, drawn anew for each\ntouch; default 0",
+        "Also test with N dead taxels, drawn anew for\neach touch; default 0",
     )
     .value_delimiter(',')
     .value_parser(whole::<u32>(0..=4095))

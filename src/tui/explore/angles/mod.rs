@@ -100,7 +100,7 @@ fn title(results: &Results) -> String {
 fn without_curve(results: &Results) -> &'static str {
     match results.angle_curve() {
         Some(_) => "no pose has a value",
-        None if results.angles_failed() => "the imprints of each angle were not found",
+        None if results.angles_failed() => "the imprints of each angle cannot be computed",
         None => "computing",
     }
 }

@@ -90,7 +90,7 @@ pub(in crate::tui) fn in_separate(
 /// Puts the imprint at the cursor onto the matrix; `false` if there is none. The work ends.
 fn put_example(app: &mut App, page: &Separate) -> bool {
     if page.work().is_some() {
-        refuse(app, "the sizes are still being looked at");
+        refuse(app, "the sizes are still being computed");
         return false;
     }
     let found = page.selected().and_then(|size| {
@@ -98,7 +98,7 @@ fn put_example(app: &mut App, page: &Separate) -> bool {
         Some((size.point.value, example.imprint?))
     });
     let Some((size, imprint)) = found else {
-        refuse(app, "nothing is confused in this size");
+        refuse(app, "no shapes are confused at this size");
         return false;
     };
     let own = *page.request().trained.model.sensor();
