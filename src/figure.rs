@@ -219,7 +219,7 @@ impl Figure {
     /// Creates a figure from the values that `value` returns for the parameters of its kind, in range on a sensor.
     ///
     /// # Errors
-    /// The first value that is out of range, or missing; only the thickness may be.
+    /// The first value that is out of range or missing; only the thickness may be missing.
     pub fn new(
         kind: FigureKind,
         sensor: &Sensor,

@@ -56,7 +56,7 @@
 //!  sweep        every pose of a grid at once -> its atlas
 //!  recognition  models of shapes: the posterior of a touch, the limit of any method
 //!  prelude      what a program that uses the crate imports
-//!  ───────────  above: no input or output, no panic but on an index that the caller made up; below: the world
+//!  ───────────  above: no input or output, no panic except on an index that the caller made up; below: the world
 //!  formats      text, PBM, CSV, NPY, JSON, atlases, models; recordings and streams of
 //!               sensors; drawings as SVG and PNG
 //!  storage      files: atomic writes, the folder of stored shapes, journal, trash

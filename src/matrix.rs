@@ -20,7 +20,7 @@ pub struct Matrix<T> {
 }
 
 impl<T: Copy> Matrix<T> {
-    /// Creates a matrix with the same value in every cell. Sides beyond 1 to 64 are brought to the nearest of these.
+    /// Creates a matrix with the same value in every cell. Sides are clamped to 1 to 64.
     pub fn filled(columns: u8, rows: u8, value: T) -> Self {
         let mut matrix = Self {
             columns: 1,
@@ -31,7 +31,7 @@ impl<T: Copy> Matrix<T> {
         matrix
     }
 
-    /// Changes the size, with the same value in every cell. Memory is only taken for more cells than there have been.
+    /// Changes the size, with the same value in every cell. It allocates only if there are more cells than ever before.
     pub fn reset(&mut self, columns: u8, rows: u8, value: T) {
         self.columns = columns.clamp(1, MAX_SIDE);
         self.rows = rows.clamp(1, MAX_SIDE);
@@ -55,7 +55,7 @@ impl<T: Copy> Matrix<T> {
         &self.values
     }
 
-    /// The same, to be changed.
+    /// The same, mutable.
     pub fn values_mut(&mut self) -> &mut [T] {
         &mut self.values
     }

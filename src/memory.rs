@@ -15,7 +15,7 @@ use crate::formats::value::counted;
 use crate::pose::PoseGrid;
 use crate::sweep::{Sweep, TimingSample};
 
-/// The least time between two looks.
+/// The least time between two checks.
 const PAUSE: Duration = Duration::from_millis(20);
 
 /// Bytes that an imprint takes in an atlas beside its own: its count, hash, description and the values of its statistics.
@@ -82,18 +82,18 @@ impl fmt::Display for MemorySize {
 /// Watches over the memory of a piece of work.
 #[derive(Debug)]
 pub(crate) struct MemoryGuard {
-    /// What the user can do where it is too little; the end of each message.
+    /// What the user can do if the memory is too little; the end of each message.
     advice: &'static str,
     /// What is allowed; None where the system does not say what is free.
     allowed: Option<MemorySize>,
-    /// When memory is looked at next.
+    /// When memory is checked next.
     due: Mutex<Instant>,
-    /// Whether too much was in use once.
+    /// Whether too much has been in use at some time.
     exceeded: AtomicBool,
 }
 
 impl MemoryGuard {
-    /// A guard with this bound, or with all that the machine has free and limits allow.
+    /// A guard with this bound; without one, with all memory that is free and that limits allow.
     pub(crate) fn new(allowed: Option<MemorySize>, advice: &'static str) -> Self {
         Self {
             advice,
@@ -124,7 +124,7 @@ impl MemoryGuard {
         true
     }
 
-    /// As [`Self::allows`], for work in few and large steps: memory is looked at each time.
+    /// Like [`Self::allows`], but for work in few and large steps: memory is checked each time.
     #[cfg(feature = "cli")]
     pub(crate) fn allows_now(&self) -> bool {
         if let Ok(mut due) = self.due.lock() {
@@ -177,7 +177,7 @@ impl MemoryGuard {
             return Ok(());
         };
         let expected = expected(grid);
-        // The estimate may be twice too high: imprints of one angle may be those of another.
+        // The estimate may be twice too high: several angles may leave the same imprints.
         if expected.0 / 2 <= allowed.0 {
             return Ok(());
         }

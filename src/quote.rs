@@ -25,8 +25,8 @@ pub(crate) fn is_invisible(character: char) -> bool {
     )
 }
 
-/// The end of a message about a wrong name: which of `names` was probably meant; empty if none is much like it. Of equally
-/// near ones it is one of the same length, else the first. Upper and lower case are the same here.
+/// The end of a message about a wrong name: which of `names` was probably meant; empty if none is similar enough. Of
+/// equally similar names it is one of the same length, else the first. Case is ignored.
 #[cfg(feature = "json")]
 pub(crate) fn did_you_mean<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let length = |text: &str| text.chars().count();
@@ -37,7 +37,7 @@ pub(crate) fn did_you_mean<'a>(wrong: &str, names: impl IntoIterator<Item = &'a 
     let slips = |name: &'a str| {
         let slips = strsim::osa_distance(&wrong, &name.to_lowercase());
         let (typed, meant) = (length(&wrong), length(name));
-        // One letter of three may be wrong.
+        // One letter in three may be wrong.
         (3 * slips <= typed.max(meant)).then_some(((slips, typed.abs_diff(meant)), name))
     };
     let nearest = names.into_iter().filter_map(slips);

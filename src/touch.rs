@@ -27,7 +27,7 @@ use crate::sensor::Sensor;
 /// Coverages this near to the threshold are computed with more digits, for every shape of the program; a share of a
 /// cell.
 pub(crate) const DOUBTFUL: f64 = 1e-10;
-/// User-defined outlines may reach further away, and rounding errors grow with the numbers.
+/// User-defined outlines may reach farther than the shapes of the program, and rounding errors grow with coordinates.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
 /// The sensory plane: a sensor that can be touched repeatedly. A touch allocates only if a coverage is in doubt.

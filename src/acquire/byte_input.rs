@@ -29,8 +29,8 @@ const ASKED: Duration = Duration::from_millis(100);
 /// How long a connection may take.
 const CONNECTING: Duration = Duration::from_secs(5);
 
-/// How long a connection may be silent until its other end is asked for a sign of life, how long an answer may take, and
-/// how many answers may be missing.
+/// How long a connection may be silent before the system probes its other end, how long an answer may take, and how
+/// many answers may be missing.
 const SILENT: Duration = Duration::from_secs(15);
 const BETWEEN_PROBES: Duration = Duration::from_secs(5);
 const PROBES: u32 = 3;
@@ -60,8 +60,8 @@ pub(super) enum ByteInput {
 }
 
 impl ByteInput {
-    /// Opens a source; a file is read to its end only, if asked for. `waiting` is called ten times a second where that takes
-    /// long; None if it breaks.
+    /// Opens a source; on request, a file is read only to its present end. `waiting` is called ten times a second while
+    /// opening takes long; None if it breaks.
     ///
     /// # Errors
     /// What the system reports.
@@ -130,7 +130,7 @@ impl ByteInput {
     }
 }
 
-/// Opens a pipe with a name. To open it in the usual way would wait for its writer, and no signal could end that.
+/// Opens a named pipe. Opening it in the usual way would wait for a writer, and no signal could end the wait.
 fn open_fifo(path: &Path) -> io::Result<File> {
     let flags = OFlags::RDONLY | OFlags::NONBLOCK | OFlags::CLOEXEC;
     Ok(open(path, flags, Mode::empty())?.into())
@@ -180,8 +180,9 @@ fn connect(address: &str) -> io::Result<TcpStream> {
     Err(failure)
 }
 
-/// Has the system ask the other end for a sign of life when nothing comes. Nothing is ever sent to a sensor, so one that
-/// lost its power would not be noticed otherwise; half a minute later, reading fails, and the connection is made again.
+/// Lets the system probe the other end when nothing comes. Nothing is ever sent to a sensor, so a loss of its power
+/// would not be noticed otherwise. Without an answer, reading fails after half a minute, and the connection is made
+/// again.
 ///
 /// # Errors
 /// What the system reports.

@@ -12,24 +12,24 @@ use crate::frame::Frame;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AcquireOptions {
-    /// The format of a stream; found by looking where there is none. With one a file is a stream, not a recording.
+    /// The format of a stream; detected if not given. If it is given, a file is a stream, not a recording.
     pub format: Option<StreamFormat>,
-    /// Rows and columns, of streams and of recordings that do not say them.
+    /// Rows and columns of streams, and of recordings that do not state them.
     pub shape: Option<(u16, u16)>,
-    /// Those of streams, where `shape` does not say them; recordings say their own.
+    /// Rows and columns of streams only, if `shape` is not given; recordings state their own.
     pub stream_shape: Option<(u16, u16)>,
-    /// The channel of a recording whose frames are played at its rate; without a name the first one. Those of the others
-    /// are given at once.
+    /// The channel of a recording whose frames are played at its rate; by default the first one. Frames of other
+    /// channels are given at once.
     pub channel: Option<String>,
     /// Bits per second of a serial line.
     pub baud: u32,
     /// Whether a connection or a serial line that cannot be opened yet is tried again each second.
     pub waits: bool,
-    /// Read to the end, as fast as it goes, and stop there.
+    /// Read to the end as fast as possible, then stop.
     pub once: bool,
     /// Begin a recording again at its end.
     pub repeat: bool,
-    /// How many times as fast as it was recorded a recording is played; 1 if it is not above 0.
+    /// The speed at which a recording is played, relative to its own; 1 if it is not above 0.
     pub speed: f64,
 }
 
@@ -59,9 +59,9 @@ pub enum AcquireEvent<'a> {
     Frame {
         /// The frame.
         frame: &'a Frame,
-        /// Its time in seconds: its own, or that of its arrival since the first one where it comes from a device, a pipe or
-        /// a connection; None otherwise. After a gap it goes on growing, even if the source's own clock began anew; a
-        /// recording that is repeated begins again.
+        /// Its time in seconds: its own, or, from a device, a pipe or a connection, that of its arrival since the first
+        /// frame; None otherwise. After a gap the time goes on growing, even if the source's own clock restarted; if a
+        /// recording is repeated, times begin again.
         time: Option<f64>,
     },
     /// A frame that is shown but not kept, until what follows it confirms it.
@@ -70,7 +70,8 @@ pub enum AcquireEvent<'a> {
     Withdrawn,
     /// Something odd in a recording.
     Note(&'a RecordingNote),
-    /// What has come so far: at least ten times a second, frames or not, unless a source is read as fast as it goes.
+    /// What has come so far. Reported at least ten times a second, with or without frames, unless a source is read as
+    /// fast as possible.
     Tick(&'a StreamCounts),
     /// No frame for two seconds.
     Silent {
@@ -81,7 +82,7 @@ pub enum AcquireEvent<'a> {
     },
     /// The source cannot be opened yet; it is tried again each second.
     Absent(&'a io::Error),
-    /// The source is gone; it is tried again each second.
+    /// The source is lost; it is tried again each second.
     Lost(&'a io::Error),
     /// The source is there, or is back.
     Back {

@@ -1,7 +1,7 @@
 //! A recording that may still grow: at its end, it waits for more, like `tail -f`.
 //!
-//! A file that has grown since it was opened is followed until it is truncated or replaced. One that has not, but was
-//! changed a moment ago, gets a moment to grow; any other file is read to its end.
+//! A file that has grown since it was opened is followed until it is truncated or replaced. A file that has not grown
+//! but was changed shortly before gets a moment to grow; any other file is read to its end.
 
 use std::cell::Cell;
 use std::fs::File;
@@ -52,7 +52,7 @@ pub(super) enum FollowEnd {
     Anew(ReadAnew),
 }
 
-/// Such a file. Whoever reads it waits at its end.
+/// A recording that may still grow. Reading waits at its end.
 pub(super) struct FollowedFile<'a> {
     file: GrowingFile,
     growth: &'a Growth,
@@ -124,7 +124,7 @@ impl Read for FollowedFile<'_> {
 }
 
 impl Seek for FollowedFile<'_> {
-    /// Only to the start, which is all that a reader of lines or markers needs.
+    /// Seeks only to the start, which is all that a reader of lines or markers needs.
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         if to != SeekFrom::Start(0) {
             return Err(io::ErrorKind::Unsupported.into());

@@ -10,7 +10,7 @@ use std::time::{Duration, SystemTime};
 /// How long a file that ends is left alone until it may have grown.
 const GROWTH: Duration = Duration::from_millis(50);
 
-/// The number of bytes before the end of what was read that are compared with the file, to see whether it was written anew.
+/// How many of the last bytes that were read are compared with the file, to find out whether it was rewritten.
 const REMEMBERED: usize = 1 << 12;
 
 /// Why a file is read from its start again.
@@ -43,7 +43,7 @@ pub(super) struct GrowingFile {
     last: Vec<u8>,
     /// Whether all that was there has been read.
     at_end: bool,
-    /// When it had been changed the last time it was looked at.
+    /// Its modification time when it was last checked.
     changed: Option<SystemTime>,
 }
 
@@ -100,7 +100,7 @@ impl GrowingFile {
         Ok(count)
     }
 
-    /// Begins at the start again where that has to be; to be called before each reading.
+    /// Begins at the start again if necessary. Must be called before each read.
     ///
     /// # Errors
     /// What the system reports.
@@ -112,7 +112,7 @@ impl GrowingFile {
             self.rewind()?;
             return Ok(Some(ReadAnew::Cut));
         }
-        // As long as there is none of that name, what is open is all there is.
+        // While no file has that name, the open file is the only one.
         let Ok(named) = fs::metadata(&self.path) else {
             return Ok(None);
         };

@@ -19,10 +19,10 @@ use crate::formats::recording::{
 use crate::formats::stream::StreamCounts;
 use crate::frame::Frame;
 
-/// The rate of a recording that does not say its own: ten frames a second.
+/// The rate of a recording that does not state one: ten frames a second.
 const STEP: f64 = 0.1;
 
-/// A wait is cut into pieces of this length, so that it can be broken off.
+/// Waits are divided into pieces of this length, so that they can be interrupted.
 const MOMENT: Duration = Duration::from_millis(100);
 
 /// No frame is waited for longer than a day.

@@ -11,8 +11,8 @@ use rustix::termios::{
     ControlModes, OptionalActions, QueueSelector, ioctl_tiocexcl, tcflush, tcgetattr, tcsetattr,
 };
 
-/// Opens a line at a speed in bits per second. Many boards begin anew when a line is opened; what they had sent before is
-/// thrown away.
+/// Opens a line at a speed in bits per second. Many boards restart when a line is opened; bytes that they sent before
+/// are discarded.
 ///
 /// # Errors
 /// [`io::ErrorKind::ResourceBusy`] if another program has it open; [`io::ErrorKind::InvalidInput`] if it is another kind of

@@ -73,7 +73,8 @@ impl FrameSource {
         }
     }
 
-    /// Refuses what cannot be read however long it is waited for: a file that cannot be opened, an address without a port.
+    /// Refuses a source that cannot be read however long one waits: a file that cannot be opened, an address without a
+    /// port.
     ///
     /// # Errors
     /// [`AcquireError::Io`].
@@ -126,7 +127,7 @@ fn is_for_devices(path: &Path) -> bool {
     path.parent() == Some(Path::new("/dev")) || path.starts_with("/dev/serial")
 }
 
-/// Refuses what is no host with a port.
+/// Refuses an address that is not a host with a port.
 ///
 /// # Errors
 /// [`io::ErrorKind::InvalidInput`].

@@ -1,7 +1,7 @@
 //! One canonical form for imprints that differ only by a shift, a quarter turn or a mirror image.
 //!
 //! First the active taxels are moved to the top left corner. There are eight images under quarter turns and
-//! mirrors; only those that are not higher than wide are considered: four, or eight if the bounds are a square. The one
+//! mirrors; only those at least as wide as high are considered: four, or all eight if the bounds are a square. The one
 //! whose rows come first in order is the canonical form. Rows are compared as whole numbers, from the top.
 
 use crate::atlas::counter::ImprintCounter;

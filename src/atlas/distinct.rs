@@ -141,8 +141,8 @@ impl Atlas {
         self.number(&key, hash)
     }
 
-    /// The number of the nearest imprint that is the same but for a shift by whole taxels, and how many columns to the right
-    /// and rows down of it the given one lies. None if there is none.
+    /// The number of the nearest imprint that differs from the given one only by a shift of whole taxels, and how many
+    /// columns to the right and rows below it the given one lies. None if there is no such imprint.
     ///
     /// ```
     /// use taxel::prelude::*;

@@ -6,8 +6,8 @@
 //!  |  sign
 //!  a descriptor as in JSON and CSV, or id, count (also: poses), pieces, holes
 //! ```
-//! `=` and `!=` compare as many decimals as were typed: `f=12.3`, or `f=1.23e1`, holds for 12.26 and for 12.34. An imprint
-//! for which a descriptor does not exist fulfils no condition on it.
+//! `=` and `!=` compare as many decimals as were typed: `f=12.3`, or `f=1.23e1`, holds for 12.26 and for 12.34. An
+//! imprint without a value for a descriptor fulfils no condition on that descriptor.
 
 use rayon::prelude::*;
 
@@ -35,7 +35,7 @@ pub struct AtlasFilter {
     conditions: Vec<Condition>,
 }
 
-/// Why an expression is none.
+/// Why a text is not an expression.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FilterError {
@@ -109,7 +109,7 @@ struct Condition {
     quantity: Quantity,
     relation: Relation,
     number: f64,
-    /// Half of the last decimal that was typed: so far a value may lie from the number and still be equal to it.
+    /// Half of the last decimal that was typed: a value at most this far from the number counts as equal.
     half: f64,
 }
 
@@ -247,7 +247,7 @@ fn half_a_unit(number: &str) -> f64 {
         .map_or(0, |(_, decimals)| decimals.len());
     let decimals = i32::try_from(decimals).unwrap_or(i32::MAX);
     let decimals = decimals.saturating_sub(exponent).max(0);
-    // A hair more, as ends are decimals that f64 cannot hold.
+    // Slightly more, since the ends are decimals that `f64` cannot hold.
     0.5 * 10_f64.powi(-decimals) * (1.0 + 1e-9)
 }
 

@@ -3,7 +3,7 @@
 //! Each row takes 8, 16, 32 or 64 bits, whichever is the first to hold the sensor's columns. A key's hash is the
 //! exclusive or of one random number per active taxel (A. L. Zobrist, *A new hashing method with application for game
 //! playing*, 1970), so toggling a taxel changes it in one step. Keys with equal hashes are still compared in full, and no
-//! result depends on the hashes. The numbers are others in each run: with known ones, anybody could make an atlas of
+//! result depends on the hashes. The numbers differ from run to run: if they were known, anybody could make an atlas of
 //! imprints with equal hashes, which would take minutes to merge.
 
 use std::hash::{BuildHasher, RandomState};

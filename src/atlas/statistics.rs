@@ -2,15 +2,15 @@
 //!
 //! Mean, standard deviation (of the population) and coefficient of variation are weighted by how often each imprint
 //! occurs. The variance of a feature is the mean of its variances at a fixed orientation (one angle, one pair of zooms), plus
-//! the variance of its means at these: **`sd_position`** is the root of the first part, **`sd_angle`** that of the
-//! second, each orientation weighted by its poses that have a value (which usually are as many for all), so
-//! `sd² = sd_position² + sd_angle²`.
+//! the variance of its means at these: **`sd_position`** is the square root of the first part, **`sd_angle`** that of
+//! the second, so `sd² = sd_position² + sd_angle²`. Each orientation is weighted by its number of poses with a value,
+//! which is usually the same for all.
 //!
 //! **Directions** that go all around have a circular mean, that of the unit vectors; with `R` the length of the mean
-//! vector the deviation is `√(−2 ln R)` (K. V. Mardia, *Statistics of Directional Data*, 1972), in degrees. In place of
-//! the variances stand `R`'s logarithms: `sd_position` is made from the mean over the orientations of their own `R`,
-//! `sd_angle` from what `R` falls short of that, and the squares add up as above. A smallest and a largest direction do
-//! not exist, nor does a coefficient of variation.
+//! vector the deviation is `√(−2 ln R)` (K. V. Mardia, *Statistics of Directional Data*, 1972), in degrees. Logarithms
+//! of `R` take the place of the variances: `sd_position` comes from the mean of the orientations' own `R`, `sd_angle`
+//! from the difference between that mean and the overall `R`, and the squares add up as above. A direction has no
+//! smallest and no largest value, and no coefficient of variation.
 //!
 //! All sums are whole numbers of 2⁻⁴⁰: the result does not depend on threads, shards or symmetries.
 

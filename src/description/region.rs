@@ -208,7 +208,8 @@ fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: imp
             let seeds = &mut piece.words_mut()[top..bottom];
             seeds[0] = spread(open[0] & open[0].wrapping_neg(), open[0]);
             let end = flood(seeds, open, 1, diagonal);
-            // One pass for all that is asked of the piece: how many rows it has is hard to foresee for a processor.
+            // One pass computes all that is needed of the piece: a processor predicts the number of its rows badly, so
+            // several passes would cost more.
             let (mut across, mut runs) = (0, true);
             for (open, &taxels) in open.iter_mut().zip(&*seeds).take(end) {
                 *open &= !taxels;
@@ -228,7 +229,7 @@ fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: imp
     }
 }
 
-/// Shows a component of which some rows are not runs, filled. `filled` is empty at first.
+/// Passes a component that has rows which are not runs to `visit`, with its filled region. `filled` must be empty.
 fn show_filled(
     kind: RegionKind,
     piece: &Imprint,
@@ -275,8 +276,8 @@ fn is_run(word: u64) -> bool {
 
 /// Whether each run of `open` holds a bit of `seeds`, which lies inside of `open`.
 fn meets_all(seeds: u64, open: u64) -> bool {
-    // Adding a seed to its run carries up to the run's end and turns every bit over on the way, the last one unless
-    // another seed is there.
+    // Adding a seed to its run carries up to the run's end and flips the bits on the way, including the last one unless
+    // it is another seed.
     let last = open & !(open >> 1);
     let reached = open ^ open.wrapping_add(seeds) | seeds;
     reached & last == last

@@ -33,7 +33,7 @@ impl RuleRecord {
     /// The rule of these keys.
     ///
     /// # Errors
-    /// If there is none, or there are several, or it is out of range; the message is one sentence.
+    /// If the rule is missing or out of range, or if there are several; the message is one sentence.
     pub(crate) fn rule(&self) -> Result<Rule, String> {
         let made = |rule: Result<Rule, FrameError>| rule.map_err(|error| error.to_string());
         match (self.at_least, self.percent, self.low, self.high) {

@@ -33,7 +33,7 @@ pub(crate) fn extend_ascii(text: &mut Vec<u8>, value: &(impl Serialize + ?Sized)
     }
 }
 
-/// Writes JSON in ASCII. What has to be escaped can only stand inside of a text, where `\u` may stand for it.
+/// Writes JSON in ASCII. Other characters occur only inside strings, where `\u` can replace them.
 #[cfg(feature = "cli")]
 struct AsciiFormatter;
 

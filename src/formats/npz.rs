@@ -247,19 +247,19 @@ pub enum ArchiveError {
         /// What can be read here.
         expected: &'static str,
     },
-    /// A header that is none.
+    /// An invalid header.
     #[error("header: {0}")]
     Header(String),
-    /// A source or a sensor that is none.
+    /// An invalid source or sensor.
     #[error("header: {0}")]
     Record(#[from] RecordError),
-    /// A range that is none.
+    /// An invalid range.
     #[error("header: {0}")]
     Range(#[from] RangeError),
-    /// A shard that is none.
+    /// An invalid shard.
     #[error("header: {0}")]
     Shard(#[from] ShardError),
-    /// A grid that is none.
+    /// An invalid grid.
     #[error("header: {0}")]
     Grid(#[from] GridError),
     /// Numbers that contradict each other.

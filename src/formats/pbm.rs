@@ -29,7 +29,7 @@ pub enum PbmError {
         /// Width or height.
         what: &'static str,
     },
-    /// A digit that is none.
+    /// A character that should be a digit.
     Digit {
         /// Which line.
         line: usize,

@@ -53,7 +53,7 @@ pub enum ShapeError {
     /// A key without which it is not a shape.
     #[error("{0}: missing")]
     Missing(&'static str),
-    /// A source that is none.
+    /// An invalid source.
     #[error("source: {0}")]
     Source(RecordError),
     /// An imprint of another size than the sensor's.

@@ -163,8 +163,8 @@ impl FlipCounter {
     }
 }
 
-/// The flip probability e at which the given share of repeated states differs, and its standard error: that of the share
-/// times the slope of e over it.
+/// The flip probability e at which the given share of repeated states differs, and its standard error: that of the
+/// share, times the slope of e as a function of the share.
 ///
 /// A share p of `repeated` independent states would have the variance p (1 − p) / repeated. But each frame is the first, the
 /// middle and the last of three, so states that are one or two frames apart are correlated. Let z be 1 − p where a state is

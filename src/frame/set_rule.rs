@@ -1,9 +1,9 @@
-//! A rule, with who has set it: an argument, the settings, the recording or a key.
+//! A rule, and who set it: an argument, the settings, the recording or a key.
 
 use crate::frame::processing::Processing;
 use crate::frame::rule::Rule;
 
-/// A rule and who has set it.
+/// A rule and who set it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetRule {
     /// The rule.
@@ -42,8 +42,8 @@ impl RuleOrigin {
 }
 
 impl SetRule {
-    /// Has frames processed by a rule, or without one. Without one, how many taxels a piece has at least stays: it holds for
-    /// the rule that is set later.
+    /// Sets the rule by which frames are processed, or removes it. After a removal, the smallest size of a piece is
+    /// kept for the next rule.
     pub fn apply(rule: Option<Self>, processing: &mut Processing) {
         processing.rule = rule.map(|set| set.rule);
         if let Some(set) = rule {

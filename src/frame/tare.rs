@@ -56,7 +56,7 @@ impl TareFrames {
     /// Adds a frame; does nothing once there are enough.
     ///
     /// # Errors
-    /// If it is of another size than the first one, or if the wanted number of frames of this size takes too much memory.
+    /// If it differs in size from the first one, or if the wanted number of frames of this size takes too much memory.
     pub fn add(&mut self, frame: &Matrix<f64>) -> Result<(), FrameError> {
         if self.missing() == 0 {
             return Ok(());

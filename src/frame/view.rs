@@ -111,7 +111,7 @@ impl View {
         }
     }
 
-    /// Where a cell of the cropped frame ends up.
+    /// The cell of the visible part to which a cell of the cropped frame goes.
     fn position(&self, column: u8, row: u8, columns: u8, rows: u16) -> (u8, u8) {
         // At most 64: checked before.
         let last_row = u8::try_from(rows.saturating_sub(1)).unwrap_or(MAX_SIDE - 1);

@@ -26,7 +26,7 @@ pub(crate) struct CellGrid<T> {
     /// The entries of a pair of rows: one before the first column, one a column, one behind the last.
     stride: usize,
     entries: Vec<CellSums<T>>,
-    /// The extent of everything drawn: the least x and y, and the largest ones.
+    /// The extent of everything drawn: the smallest x and y, and the largest ones.
     low: Point<T>,
     high: Point<T>,
     /// The largest moment of an ellipse that was drawn.
@@ -101,8 +101,8 @@ impl<T: Real> CellGrid<T> {
         row(self.low.y)..(row(self.high.y) + 1).min(rows)
     }
 
-    /// The entries of these rows that may hold something; all others are empty. Where pieces lie follows from
-    /// [`Real::cell`] too, and that never puts a larger number into a cell before.
+    /// The entries of these rows that may hold something; all others are empty. [`Real::cell`] also decides where
+    /// pieces lie, and it never puts a larger number into an earlier cell.
     fn entries_drawn(&self) -> Range<usize> {
         self.locate(self.low.x).0..self.locate(self.high.x).0 + 1
     }
@@ -114,9 +114,9 @@ impl<T: Real> CellGrid<T> {
         column(entries.start)..column(entries.end)
     }
 
-    /// What the areas of rows `2 * pair` and `2 * pair + 1` in these columns are above a level; the areas are in [0, 1] up
-    /// to a rounding. `columns` is [`Self::columns`], one of the rows at least lies in [`Self::rows`]; the other one may
-    /// lie outside, all 0.
+    /// By how much the areas of rows `2 * pair` and `2 * pair + 1` exceed a level in these columns; the areas are in
+    /// [0, 1] up to a rounding error. `columns` is [`Self::columns`]. At least one of the two rows lies in
+    /// [`Self::rows`]; one outside is all 0.
     pub(crate) fn pair(
         &self,
         pair: usize,

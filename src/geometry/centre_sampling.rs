@@ -1,4 +1,4 @@
-//! Which cells of a grid are covered by ellipses by half or more, decided by the cells' centres.
+//! Which cells of a grid are at least half covered by ellipses, decided by the cells' centres.
 //!
 //! **Method.** A cell is symmetric about its centre, so a straight line through the centre halves it. Therefore a
 //! convex shape covers less than half of a cell whose centre it does not cover.
@@ -29,7 +29,7 @@ use crate::index::from_first;
 const SIDE: usize = u64::BITS as usize;
 /// With coordinates or moments beyond this, the areas of open cells are not exact to 1e-10.
 const FAR: f64 = 25_000.0;
-/// With less curvature than this, a cell that is not open may be covered by one half up to 1e-10.
+/// With less curvature than this, the covered share of a cell that is not open may lie within 1e-10 of one half.
 const FLAT: f64 = 1e-8;
 
 /// Ellipses on a grid of at most 64 × 64 unit cells with its top left corner at the origin.
@@ -158,7 +158,7 @@ impl Curve {
     /// Adds itself to the rows from `first` on. Returns whether it is material in material, or a hole elsewhere.
     fn sample(&self, rows: &mut [ShapeRow], first: i32) -> bool {
         let cuts = &self.cuts;
-        // What lies deep enough lies in an ellipse that is smaller by the root of this.
+        // The points that lie deep enough form an ellipse, scaled by the square root of this.
         let deep = 1.0 - self.sure_depth();
         let chord = |y: f64| {
             let level = min(max(y, cuts.top.y), cuts.bottom.y);
@@ -175,7 +175,8 @@ impl Curve {
             let mut crossed = 0;
             for side in 0..2 {
                 crossed |= columns_between(above[side], below[side]);
-                // Between two lines the ellipse reaches further only at its leftmost and at its rightmost point.
+                // Between two lines, the ellipse reaches further than on the lines only at its leftmost and its
+                // rightmost point.
                 let (level, columns) = farthest[side];
                 if number == level {
                     crossed |= columns_between(above[side], columns);

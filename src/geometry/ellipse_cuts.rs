@@ -56,7 +56,7 @@ impl<T: Real> EllipseCuts<T> {
         }
         let inverse = Point::new(T::ONE / reach.x, T::ONE / reach.y);
         let extent = Point::new(area * inverse.y, area * inverse.x);
-        // How far the points of the extremes lie aside of the axes through the centre.
+        // How far the extreme points lie to the side of the centre.
         let mixed = ellipse.skew();
         let skew = Point::new(mixed * inverse.y, mixed * inverse.x);
         Some(Self {
@@ -66,7 +66,7 @@ impl<T: Real> EllipseCuts<T> {
             shear: Point::new(skew.x * inverse.y, skew.y * inverse.x),
             extent,
             half_area: area * T::HALF,
-            // Of circles and upright ellipses there is none to be computed.
+            // Circles and upright ellipses are not tilted.
             tilt: if mixed == T::ZERO {
                 T::ZERO
             } else {

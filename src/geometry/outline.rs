@@ -83,7 +83,8 @@ impl<T: Real> Ellipse<T> {
         (self.across.x * self.along.y - self.across.y * self.along.x).abs()
     }
 
-    /// By how much its extreme points lie aside, times the reach in that direction; 0 where it is upright or a circle.
+    /// How far an extreme point lies to the side of the centre, times the reach in its direction; 0 for a circle or an
+    /// upright ellipse.
     pub(crate) fn skew(&self) -> T {
         self.across.x * self.across.y + self.along.x * self.along.y
     }

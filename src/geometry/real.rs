@@ -52,7 +52,7 @@ pub trait Real:
     /// Two areas (in cells) that differ by less than this count as equal.
     const TIE: Self;
 
-    /// The decimal number as which `value` is written; `value` itself if the type has no more digits than that.
+    /// The shortest decimal that reads back as `value`; `value` itself if the type has no more digits than `f64`.
     fn decimal(value: f64) -> Self;
     /// The nearest `f64`.
     fn to_f64(self) -> f64;

@@ -79,7 +79,7 @@ pub type Ranges = PerAxis<DecimalRange>;
 /// x0 and y0 locate the anchor, the corner of a picture before it is zoomed.
 pub type Pose = PerAxis<f64>;
 
-/// The position of a pose in a grid: for each axis which value of its range, counted from 0.
+/// The position of a pose in a grid: for each axis, the index of its value in the range, from 0.
 pub type PoseIndex = PerAxis<u64>;
 
 impl<T> PerAxis<T> {

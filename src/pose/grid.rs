@@ -44,7 +44,8 @@ impl PoseGrid {
     /// A grid of poses of `source`, whose own position, angle and zoom do not matter.
     ///
     /// # Errors
-    /// If a range leaves that of its parameter, if a figure is to be zoomed, or for more than [`MAX_POSES`] poses.
+    /// If a range exceeds that of its parameter, if a figure is to be zoomed, or if there are more than [`MAX_POSES`]
+    /// poses.
     pub fn new(
         source: Source,
         sensor: Sensor,
@@ -183,7 +184,7 @@ impl PoseGrid {
         }
     }
 
-    /// The shape with the values of a pose, but for those beyond the range of their parameter.
+    /// The shape with the values of a pose, except those beyond the range of their parameter.
     fn source_in(&self, pose: Pose) -> Source {
         let mut source = self.source.clone();
         for axis in self.axes() {
@@ -192,7 +193,7 @@ impl PoseGrid {
         source
     }
 
-    /// Where the point that the shape turns about lies in a pose, whatever the anchor: x and y in cells.
+    /// The point that the shape turns about, in a pose, whatever the anchor: x and y in cells.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -281,7 +282,7 @@ impl PoseGrid {
         Boundary::of(&self.placed(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0)))
     }
 
-    /// Where the point that the shape turns about lies in an orientation, with the anchor at the origin.
+    /// The point that the shape turns about, in an orientation, with the anchor at the origin.
     pub(crate) fn centre_from_anchor(&self, orientation: u64) -> [f64; 2] {
         let pose = self.first_pose(orientation);
         self.centre(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0))
@@ -309,7 +310,7 @@ impl PoseGrid {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GridError {
-    /// A range that leaves that of its parameter.
+    /// A range that exceeds that of its parameter.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     /// A number that no range can have.

@@ -1,9 +1,9 @@
 //! Exact ranges of decimals, `start:end:step` with the end included: the values of one axis of a sweep.
 //!
 //! The numbers are integers scaled by a power of ten, so `5:5.99:0.01` is one hundred hundredths and nothing is
-//! accumulated: value `i` is the `f64` nearest to the exact decimal `start + i·step`. Where the step does not
-//! lead to the end, the last value is the largest one below it. A single number is a range of one. Units are those of
-//! the parameter. Convention of this project.
+//! accumulated: value `i` is the `f64` nearest to the exact decimal `start + i·step`. If the steps do not reach the end
+//! exactly, the last value is the largest one below the end. A single number is a range of one. Units are those of the
+//! parameter. Convention of this project.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -264,7 +264,7 @@ fn places(text: &str) -> usize {
     fraction.trim_end_matches('0').len()
 }
 
-/// What stands before and behind the point of a decimal, without its sign.
+/// The digits before and after the decimal point, without the sign.
 fn parts(text: &str) -> (&str, &str) {
     let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
     digits.split_once('.').unwrap_or((digits, ""))

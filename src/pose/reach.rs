@@ -5,11 +5,12 @@
 //! cut off when the shape reaches beyond the sensor there, by the rule of [`crate::touch::reaches_beyond`]. Units are
 //! cell sides, the frame is that of the plane. Convention of this project.
 //!
-//! Where x0 or y0 is not given, a sweep takes one cell of positions, in steps of a hundredth or of another share of a cell
-//! that is asked for. That is the cell that the shape lies in (1.99 lies in `1:1.99:0.01`) if the sensor cuts nothing off
-//! there; otherwise it is one around the middle. Around the middle means: of the cells in which nothing is cut off, the
-//! one nearest the middle, from a whole number on if there is such a cell; if there is none, the middle of the sensor.
-//! All positions are multiples of the step, so that large and small shapes are touched at the same places within a cell.
+//! If x0 or y0 is not given, a sweep takes one cell of positions, in steps of a hundredth of a cell unless another step
+//! is requested. It takes the cell that the shape lies in (1.99 lies in `1:1.99:0.01`) if the sensor cuts nothing off
+//! there, and otherwise one around the middle: of the cells in which nothing is cut off, the one nearest to the middle,
+//! starting at a whole number if possible. If something is cut off in every cell, it takes the middle of the sensor.
+//! All positions are multiples of the step, so that large and small shapes are touched at the same places within a
+//! cell.
 
 use std::ops::Range;
 
@@ -152,13 +153,13 @@ fn union(one: Extent, other: Extent) -> Extent {
     }
 }
 
-/// Returns the ranges of a sweep of `source` where not all of them are given: in x0 and y0 the cell that the shape lies
-/// in if no pose is cut off there, otherwise one around the middle.
+/// Returns the ranges of a sweep of `source`, with defaults for those that are not given: for x0 and y0, the cell that
+/// the shape lies in if no pose is cut off there, otherwise one around the middle.
 ///
 /// The shape's own position counts; its angle and zooms only if they are in the ranges. Given ranges stay as they are.
 ///
 /// # Errors
-/// If a given range leaves that of its parameter, or a figure is to be zoomed.
+/// If a given range exceeds that of its parameter, or a figure is to be zoomed.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -209,14 +210,14 @@ pub fn default_ranges(
     Ok(ranges)
 }
 
-/// Returns the ranges in which every one of some shapes is swept on one sensor: where x0 or y0 is not given, the one
-/// cell around the middle in which none of them is cut off, in any angle asked for.
+/// Returns the ranges in which each of several shapes is swept on one sensor. If x0 or y0 is not given, it gets the
+/// cell around the middle in which none of the shapes is cut off at any requested angle.
 ///
 /// If there is no such cell, it lies where the middle of their common reach is in the middle of the sensor, and
 /// [`PoseGrid::poses_beyond_sensor`] says how many poses of which shape are cut off.
 ///
 /// # Errors
-/// If a given range leaves that of its parameter, or a figure is to be zoomed.
+/// If a given range exceeds that of its parameter, or a figure is to be zoomed.
 pub fn common_ranges<'a>(
     sources: impl IntoIterator<Item = &'a Source>,
     sensor: &Sensor,
@@ -227,14 +228,14 @@ pub fn common_ranges<'a>(
     Ok(Reach::of_all(sources, anchor, given)?.ranges(sensor, given, FINE))
 }
 
-/// Returns the smallest square sensor, of at least `least` × `least` taxels, on which none of some shapes is cut off in
-/// any pose, and the ranges of these poses: where x0 or y0 is not given, one cell around the middle that is the same for
-/// all shapes. It has the threshold and the pitch of the default sensor. None if even 64 × 64 taxels are too few.
+/// Returns the smallest square sensor of at least `least` × `least` taxels on which no shape is cut off in any pose,
+/// and the ranges of these poses: where x0 or y0 is not given, one cell around the middle that is the same for all
+/// shapes. It has the threshold and the pitch of the default sensor. None if even 64 × 64 taxels are too few.
 ///
-/// Recognition takes 16 for `least`: a set of small shapes is swept on the sensor that everything else is.
+/// Recognition takes 16 for `least`, so that a set of small shapes is swept on the same sensor as everything else.
 ///
 /// # Errors
-/// If a given range leaves that of its parameter on the largest sensor, or a figure is to be zoomed.
+/// If a given range exceeds that of its parameter on the largest sensor, or a figure is to be zoomed.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -245,7 +246,7 @@ pub fn common_ranges<'a>(
 /// let all_angles = GivenRanges::default();
 /// let fit = smallest_sensor([&triangle, &disc], Anchor::Centre, &all_angles, 16)?;
 /// let (sensor, ranges) = fit.expect("it fits on 64 × 64");
-/// // Its corners run on a circle of radius 6.8, and the centre goes through one cell.
+/// // Its corners move on a circle of radius 6.8, and its centre moves within one cell.
 /// assert_eq!((sensor.columns(), sensor.rows()), (16, 16));
 /// assert_eq!(ranges[Axis::X0].to_string(), "7:7.99:0.01");
 /// let grid = PoseGrid::new(triangle, sensor, Anchor::Centre, ranges)?;
@@ -380,7 +381,7 @@ impl Reach {
         ranges
     }
 
-    /// What it reaches from and to on an axis, and the zoom of the position.
+    /// How far it reaches on an axis, from and to, and the zoom of the position.
     fn along(&self, axis: Axis) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
         self.0
             .iter()
@@ -397,8 +398,8 @@ impl Reach {
             .all(|(low, high, zoom)| low + zoom * at >= -DOUBTFUL && high + zoom * at <= end)
     }
 
-    /// From and up to which position nothing is cut off; up to before from where something is, everywhere. Without a
-    /// shape, nothing limits it but the sensor.
+    /// The first and the last position at which nothing is cut off. The last is below the first if something is cut off
+    /// everywhere. Without a shape, only the sensor limits the positions.
     fn limits(&self, axis: Axis, side: u8) -> (f64, f64) {
         let end = f64::from(side);
         let all = self.along(axis);
@@ -476,7 +477,7 @@ fn cell_from(start: i64, sensor: &Sensor, step: u32) -> DecimalRange {
     DecimalRange::from_units(start, step.into(), 2, u64::from(CELL / step))
 }
 
-/// The largest position that a sensor allows, in hundredths.
+/// The largest position that a sensor allows, in hundredths of a cell.
 fn limit(sensor: &Sensor) -> i64 {
     i64::from(sensor.side()) * 100
 }

@@ -6,9 +6,9 @@
 //! A picture that a half turn maps onto itself has 180°; for sweeps also one that has a quarter turn, since its zooms may differ.
 //! Angles are compared as exact decimals.
 //!
-//! Upright figures have right and left alike, so at minus an angle they are the mirror image of themselves at that angle,
-//! about the vertical line through their centre. So do some pictures; others have top and bottom alike, and are their
-//! mirror image at 180° minus the angle.
+//! Upright figures are left-right symmetric, so a figure at minus an angle is the mirror image of itself at that angle,
+//! about the vertical line through its centre. The same holds for some pictures; others are top-bottom symmetric, and
+//! their mirror image is at 180° minus the angle.
 
 use crate::figure::FigureKind;
 use crate::imprint::{Bounds, Imprint};
@@ -18,7 +18,7 @@ use crate::pose::axis::{Axis, Ranges};
 use crate::pose::range::DecimalRange;
 use crate::source::Source;
 
-/// How many rotations of a full turn leave a shape as it is, the order of its rotational symmetry; None of any angle.
+/// The order of a shape's rotational symmetry: how many rotations within a full turn leave it as it is; None if all do.
 fn order(source: &Source) -> Option<u32> {
     let figure = match source {
         Source::Figure(figure) => figure,

@@ -72,7 +72,7 @@ impl<'a> Evidence<'a> {
     }
 }
 
-/// The answer to the question which shape was touched.
+/// Which shape was touched, and how certain that is.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Answer {
@@ -91,7 +91,8 @@ pub struct Answer {
     pub method: Method,
 }
 
-/// Logarithms of products of the same whole numbers in another order differ by less.
+/// Two logarithms that differ by less count as equal: the order in which the same whole numbers are multiplied changes
+/// the last digits.
 const SAME: f64 = 1e-12;
 
 impl Model {
@@ -132,7 +133,7 @@ impl Model {
         Answer { method, ..answer }
     }
 
-    /// The shapes that may leave the touches under a noise, and which keys that took.
+    /// The shapes that may leave the touches under a noise, and which keys were compared.
     fn possible_under(&self, noise: &Noise, touches: &[Imprint]) -> (Posterior, Method) {
         let mut further = 0;
         loop {
@@ -152,8 +153,8 @@ impl Model {
         }
     }
 
-    /// A lower and an upper bound of ln(w Π P(touch | s)) for each shape, and which keys that took. `further` distances more
-    /// are looked at than one touch needs.
+    /// A lower and an upper bound of ln(w Π P(touch | s)) for each shape, and which keys were compared. Takes `further`
+    /// more distances into account than one touch needs.
     fn odds_under(
         &self,
         noise: &Noise,
@@ -192,8 +193,9 @@ impl Model {
         Posterior::of_logarithms(&logarithms)
     }
 
-    /// Returns the imprint of the model nearest to the first touch that no shape leaves, else to the last touch. Dead taxels
-    /// of the noise are left out. None without a touch, or if no key fits its matrix.
+    /// Returns the imprint of the model that is nearest to the first touch that no shape leaves, or to the last touch
+    /// if shapes leave all of them. Dead taxels of the noise are left out. None without a touch, or if no key fits its
+    /// matrix.
     pub fn nearest_of(&self, evidence: Evidence<'_>) -> Option<Nearest> {
         let dead = evidence.noise.and_then(Noise::dead);
         let mut last = None;
@@ -211,7 +213,8 @@ impl Model {
 struct Posterior {
     /// Those of positive probability, the likeliest first, equals in their order.
     ranking: Vec<(usize, f64)>,
-    /// How many are possible at all. That may be more: the probability of some may be too small for an `f64`.
+    /// How many shapes are possible at all. The ranking may have fewer: some probabilities may be too small for an
+    /// `f64`.
     possible: usize,
 }
 

@@ -128,12 +128,12 @@ pub struct PoseSample {
     pub seed: u64,
 }
 
-/// Scores of the shapes for a key, the best the lowest.
+/// Scores of the shapes for a key; the lowest is the best.
 type Scores = Vec<f64>;
 
 /// What is added to a variance of 1, so that covariances of dependent features can be inverted.
 const RIDGE: f64 = 0.001;
-/// The same for single variances, which only need not be 0.
+/// The same for single variances, which only have to differ from 0.
 const LEAST_VARIANCE: f64 = 1e-9;
 
 impl Classifier {
@@ -219,7 +219,7 @@ fn evaluate(model: &Model, scores: impl Fn(usize) -> Scores + Sync) -> Evaluatio
     evaluation.finished()
 }
 
-/// The shape with the lowest score, the one with the next score, and the latter again if both scores are equal.
+/// The shape with the lowest score, the one with the second lowest, and the second one again if the two are tied.
 fn first_two(scores: &[f64]) -> [Option<usize>; 3] {
     let lowest = |without: Option<usize>| {
         let open = (0..scores.len()).filter(|&shape| Some(shape) != without);

@@ -44,7 +44,7 @@ pub struct Evaluation {
     pub right_in_top_two: u128,
     /// How much a touch tells about the shape on average, in bits: H(S) − H(S | key).
     pub information_bits: f64,
-    /// How much there is to tell, in bits: H(S).
+    /// How many bits are needed to name the shape: H(S).
     pub prior_bits: f64,
     /// Number of distinct keys, or of distinct values if descriptors are given instead of keys.
     pub keys: usize,

@@ -245,7 +245,7 @@ fn known(
 impl std::str::FromStr for GivenDescriptors {
     type Err = GivenError;
 
-    /// Reads a list with commas.
+    /// Reads a list separated by commas.
     fn from_str(text: &str) -> Result<Self, GivenError> {
         let descriptors = text.split(',').map(str::parse);
         Ok(Self::new(
@@ -262,7 +262,7 @@ impl std::fmt::Display for GivenDescriptors {
     }
 }
 
-/// The descriptions of all keys of a model, and the classes that descriptors put them in.
+/// The descriptions of all keys of a model, which descriptors divide into classes.
 #[derive(Debug)]
 pub struct GivenTable<'a> {
     model: &'a Model,
@@ -270,7 +270,7 @@ pub struct GivenTable<'a> {
     descriptions: Vec<Option<Description>>,
 }
 
-/// For each key the number of its class, from 0 in order of their first keys.
+/// For each key, the number of its class. Classes are numbered from 0, in the order of their first keys.
 type Classes = Vec<u32>;
 
 impl<'a> GivenTable<'a> {
@@ -284,7 +284,7 @@ impl<'a> GivenTable<'a> {
         }
     }
 
-    /// Returns what is known of each key, in their order; None of the empty one.
+    /// Returns what is known of each key, in their order; None for the empty key.
     pub(super) fn descriptions(&self) -> &[Option<Description>] {
         &self.descriptions
     }
@@ -358,7 +358,7 @@ impl Rounding {
         let (steps, turn) = (round(number / self.step) as i64, 360.0 / self.step);
         let is_circular = self.descriptor.0.dimension == Dimension::Direction;
         let whole_turn = turn.round();
-        // A quotient of decimals is a rounding off.
+        // A quotient of decimals may be off by a rounding error.
         let is_whole = (turn - whole_turn).abs() <= 4.0 * f64::EPSILON * turn;
         if is_circular && whole_turn >= 1.0 && is_whole {
             steps.rem_euclid(whole_turn as i64)

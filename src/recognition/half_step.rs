@@ -10,7 +10,7 @@ use crate::recognition::model::{Model, ShapeCount, share};
 use crate::recognition::training::{Training, TrainingError};
 use crate::sensor::MAX_SIDE;
 
-/// What becomes of touches half a step off the grid, in x0, y0 and angle.
+/// How touches half a step off the grid, in x0, y0 and angle, are named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct HalfStep {
@@ -42,10 +42,11 @@ impl HalfStep {
 }
 
 impl Model {
-    /// Touches every shape half a step beyond each pose of the model, and names what that leaves.
+    /// Touches every shape half a step beyond each pose of the model, and names the imprints.
     ///
     /// It takes about as long as the training, and more where many imprints are new. `progress` is called as by
-    /// [`Training::progress`]; after the training with 0, for each new imprint whose nearest one is searched.
+    /// [`Training::progress`]; after the training, it is called with 0 for each new imprint whose nearest one is
+    /// searched.
     ///
     /// # Errors
     /// [`TrainingError::Steps`] if half a step has too many decimals; [`TrainingError::Stopped`].
@@ -106,7 +107,7 @@ impl Model {
     }
 }
 
-/// An imprint with a taxel or two of room around it, in which a nearest one may lie.
+/// An imprint with a margin of up to two taxels, in which the nearest imprint may lie.
 fn with_margin(imprint: Option<&Imprint>) -> Imprint {
     const MARGIN: u8 = 2;
     let Some(imprint) = imprint else {

@@ -24,7 +24,7 @@ impl Model {
 /// Merges the shards of a training one after another: memory holds only what is already merged and one shard.
 #[derive(Debug, Default)]
 pub struct ModelMerge {
-    /// What the first shard says of the training, with the poses of all so far and the number of the last.
+    /// The training as the first shard describes it, with the number of poses so far and the number of the last shard.
     head: Option<ModelParts>,
     gathered: Gathered,
 }
@@ -33,10 +33,10 @@ impl ModelMerge {
     /// Adds the next shard: the first, then the second, and so on.
     ///
     /// # Errors
-    /// If it is not the next one, or of another training than the first. The merge is then as it was before.
+    /// If it is not the next one, or of another training than the first. The merge then stays unchanged.
     pub fn add(&mut self, model: &Model) -> Result<(), ModelError> {
         let (shard, of) = (model.shard(), model.shard().of());
-        // All is checked before anything changes: after a refusal, the right shard can still come.
+        // Everything is checked before anything changes: after a refusal, the right shard can still be added.
         if let Some(head) = &self.head
             && !model.same_training(head)
         {
@@ -72,7 +72,7 @@ impl ModelMerge {
     /// Returns the model of all shards.
     ///
     /// # Errors
-    /// If some are missing, or all.
+    /// If some or all are missing.
     pub fn finish(self) -> Result<Model, ModelError> {
         let mut head = self.head.ok_or(ModelError::NoShards)?;
         let (last, of) = (head.shard.number(), head.shard.of());

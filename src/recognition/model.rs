@@ -108,7 +108,7 @@ pub struct ModelParts {
     pub poses: u64,
     /// Poses of each shape that reach beyond the sensor.
     pub cut: Vec<u64>,
-    /// An imprint of each key, None for that of an empty touch; in order or not.
+    /// An imprint of each key, None for the key of an empty touch; in any order.
     pub keys: Vec<(Option<Imprint>, Vec<ShapeCount>)>,
 }
 
@@ -158,7 +158,7 @@ pub enum ModelError {
         /// Counted from 1.
         number: usize,
     },
-    /// A name that would break the lines it stands in.
+    /// A name that would break the lines of an answer.
     #[error("name {name:?} of shape {number} has a line break or another control character")]
     ControlCharacter {
         /// Counted from 1.
@@ -237,7 +237,7 @@ impl Model {
     /// Assembles a model.
     ///
     /// # Errors
-    /// If names or weights are not as they should be, or if the counts of a shape do not sum up to its poses.
+    /// If a name or weight is invalid, or if the counts of a shape do not add up to its poses.
     pub fn from_parts(mut parts: ModelParts) -> Result<Self, ModelError> {
         let keys = std::mem::take(&mut parts.keys);
         let mut table = KeyTable::default();
@@ -253,7 +253,7 @@ impl Model {
         Self::of_table(parts, &table, |index| counted[index].iter().copied())
     }
 
-    /// Puts a model together of the keys of a table in any order and the counts of each, by shape.
+    /// Builds a model from the keys of a table, in any order, and the counts of each key, by shape.
     pub(super) fn of_table<I: IntoIterator<Item = ShapeCount>>(
         head: ModelParts,
         table: &KeyTable,
@@ -456,7 +456,7 @@ impl Model {
     }
 }
 
-/// The number of poses of a grid, or of its part; None if they are too many for any grid.
+/// The number of poses of a grid, or of a part of it; None if it is too large for any grid.
 fn poses(ranges: &Ranges, shard: Shard) -> Option<u64> {
     let count = |axis: Axis| ranges[axis].count();
     let others = [Axis::Y0, Axis::Angle, Axis::ZoomX, Axis::ZoomY].map(count);
@@ -466,7 +466,7 @@ fn poses(ranges: &Ranges, shard: Shard) -> Option<u64> {
     poses.filter(|&poses| poses <= MAX_POSES)
 }
 
-/// Adds ln n of a key to the logarithm of each shape of a set; −∞ of a shape that does not leave the key.
+/// Adds ln n of a key to the logarithm of each shape of a set; −∞ for a shape that does not leave the key.
 pub(super) fn add_log_counts(logarithms: &mut [f64], counts: &[ShapeCount]) {
     let mut counts = counts.iter().peekable();
     for (shape, logarithm) in logarithms.iter_mut().enumerate() {
@@ -484,7 +484,8 @@ pub(super) fn float(count: u64) -> f64 {
     count as f64
 }
 
-/// The largest of some values, with the number of its shape; of equals the first one. The values are in the order of the set.
+/// The largest of some values, with the number of its shape; the first among equals. The values are in the order of the
+/// set.
 pub(super) fn first_of_most<T: PartialOrd>(
     values: impl IntoIterator<Item = (usize, T)>,
 ) -> Option<(usize, T)> {
@@ -492,7 +493,7 @@ pub(super) fn first_of_most<T: PartialOrd>(
     values.into_iter().reduce(larger)
 }
 
-/// A part of a whole; 0 of nothing, as in a shard that has no pose.
+/// A part divided by the whole; 0 if the whole is 0, as in a shard without poses.
 #[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
 pub(crate) fn share(part: u128, whole: u128) -> f64 {
     if whole == 0 {

@@ -37,7 +37,7 @@ impl Model {
         observed: &Imprint,
         dead: Option<&Imprint>,
     ) -> Option<Nearest> {
-        // With dead taxels its key alone says nothing: one of them may be a hole in it.
+        // With dead taxels, the key of the imprint alone is not enough: a dead taxel may be a hole in it.
         if dead.is_none()
             && let Some(key) = self.keys().find(&ImprintKey::of(observed))
         {

@@ -66,9 +66,10 @@ impl fmt::Display for UnexplainedDifference {
     }
 }
 
-/// A difference is not explained by a noise that makes it, or a larger one, less probable than this. A posterior compares the
-/// shapes of a set only with each other, so it names one of them however far the touch is from all. If a shape of the set
-/// left the touch, its own imprint is no nearer than the nearest one, so this happens to fewer than one touch in a million.
+/// A noise does not explain a difference if a difference at least as large is less probable than this. A posterior
+/// compares the shapes of a set only with each other, so it names one of them however far the touch is from all. If a
+/// shape of the set left the touch, its own imprint is no nearer than the nearest one, so fewer than one such touch in
+/// a million is reported as unexplained.
 const EXPLAINED: f64 = 1e-6;
 
 impl Noise {
@@ -101,8 +102,8 @@ impl Noise {
         self.dead.as_ref()
     }
 
-    /// Returns that a touch differs from its nearest imprint, in `found` taxels, by more than this noise explains; None if
-    /// it explains that.
+    /// Checks whether this noise explains that a touch differs from its nearest imprint in `found` taxels. None if it
+    /// does; otherwise the numbers.
     ///
     /// ```
     /// use taxel::recognition::Noise;
@@ -145,8 +146,8 @@ impl Noise {
         self.flip / (1.0 - self.flip)
     }
 
-    /// Distances beyond the least one that matter, if all touches together are at most `odds` times as probable as the
-    /// nearest one, distances apart.
+    /// How many distances beyond the least one matter, if all touches together, apart from their distances, are at most
+    /// `odds` times as probable as the nearest one.
     fn reach(&self, odds: f64) -> u32 {
         if self.flip == 0.0 {
             return 0;
@@ -163,7 +164,7 @@ impl Noise {
     }
 }
 
-/// Which keys an answer needed, the fewest first.
+/// Which keys were compared for an answer, the fewest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Method {
@@ -230,7 +231,7 @@ impl Model {
         (sum > 0.0).then(|| likelihoods.into_iter().map(|own| own / sum).collect())
     }
 
-    /// P(imprint | s) · w for each shape, all times one number; `distances` are those of the imprint.
+    /// P(imprint | s) · w for each shape, times a common factor; `distances` are those of the imprint.
     pub(super) fn likelihoods(
         &self,
         imprint: &Imprint,
@@ -249,8 +250,8 @@ impl Model {
             .collect()
     }
 
-    /// A lower and an upper bound of ln P(imprint | s) for each shape, all plus the same number: without and with all that
-    /// lies beyond `distances`. Both are −∞ for a shape of which no imprint fits the matrix.
+    /// A lower and an upper bound of ln P(imprint | s) for each shape, plus a common number: without and with
+    /// everything beyond `distances`. Both are −∞ for a shape if none of its imprints fits the matrix.
     pub(super) fn log_likelihoods(
         &self,
         imprint: &Imprint,
@@ -352,12 +353,12 @@ impl Model {
         })
     }
 
-    /// By looking up keys: those of the imprint itself, and, if more matter, of all imprints that differ by one taxel. None
-    /// if that is not enough.
+    /// Looks up the key of the imprint itself and, if larger distances matter, the keys of all imprints that differ by
+    /// one taxel. None if that is not enough.
     fn near(&self, imprint: &Imprint, reach: u32) -> Option<Distances> {
         let nowhere = shift_count((0, 0), (imprint.columns(), imprint.rows()));
         let at = |imprint: &Imprint, sums: &mut [u64]| {
-            // Nothing lies in every place alike.
+            // The empty key is the same in every place.
             let times = if imprint.is_empty() { nowhere } else { 1 };
             for count in self.counts_of(imprint) {
                 sums[usize::from(count.shape)] += count.poses * times;
@@ -379,7 +380,7 @@ impl Model {
             });
         }
         if !exact {
-            // The least distance may be 1, but then distances of 2 matter too.
+            // The least distance may be 1, but then distance 2 matters too.
             return None;
         }
         let mut flipped = *imprint;
@@ -416,7 +417,7 @@ impl Model {
 
 /// The sum of touches at distances from the first one on, each as probable as its distance makes it.
 fn weighed(touches: &[u64], noise: &Noise) -> f64 {
-    // From far to near: a sum of small numbers first.
+    // From far to near, so that small numbers are added first.
     let touches = touches.iter().rev();
     touches.fold(0.0, |sum, &touches| sum * noise.ratio() + float(touches))
 }
@@ -470,14 +471,14 @@ mod tests {
         let touch = Imprint::empty(16, 16);
         let noise = Noise::new(0.01).expect("in range");
         assert!(noise.at_least(0, 256) > 1.0 - 1e-12);
-        // The distribution of Poisson with the same mean has 2.4e-6 and 4.7e-7 here.
+        // The Poisson distribution with the same mean gives 2.4e-6 and 4.7e-7 here.
         assert_eq!(noise.unexplained(&touch, 13), None);
         let found = noise.unexplained(&touch, 14).expect("not explained");
         assert_eq!(
             found.to_string(),
             "14 taxels differ, about 3 are expected at this noise: perhaps none of these shapes"
         );
-        // Of a row that is dead nothing is expected.
+        // No flips are expected in a dead row.
         let dead = "################".parse().expect("a row");
         let found = noise.without(dead).unexplained(&touch, 14);
         assert_eq!(found.map(|own| own.expected), Some(2.4));

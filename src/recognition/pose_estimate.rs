@@ -37,9 +37,9 @@ pub struct AngleEstimate {
 }
 
 impl AngleEstimate {
-    /// Mean and standard deviation. None where the angles spread as far as if nothing were known of them: as far as equally
-    /// likely angles of one period, whose standard deviation is the period over the root of 12.
-    /// The mean lies between the [`ends`](Self::ends), so it may be below 0.
+    /// Mean and standard deviation. None if the angles spread as far as if they were unknown: as far as equally likely
+    /// angles of one period, whose standard deviation is the period divided by √12. The mean lies between the
+    /// [`ends`](Self::ends), so it may be below 0.
     #[must_use]
     pub fn known(&self) -> Option<(f64, f64)> {
         let (mean, deviation) = (self.mean?, self.standard_deviation?);
@@ -50,7 +50,8 @@ impl AngleEstimate {
         Some((if begun { mean - self.period } else { mean }, deviation))
     }
 
-    /// The first and the last of the fewest whole degrees that hold 95 %. Those that pass the period begin below 0.
+    /// The first and the last of the fewest whole degrees that hold 95 %. A run that passes the end of the period
+    /// begins below 0.
     #[must_use]
     pub fn ends(&self) -> (i64, i64) {
         let (first, count) = (i64::from(self.most.0), i64::from(self.most.1));
@@ -63,7 +64,7 @@ impl AngleEstimate {
     }
 }
 
-/// The whole degrees that a period begins: 52 of a heptagon, the last one cut short.
+/// The number of whole degrees in a period, counting one that is cut short: 52 for a heptagon.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -74,9 +75,9 @@ fn whole_degrees(period: f64) -> u32 {
 }
 
 impl Model {
-    /// Returns the poses in which a shape leaves an imprint, by touching with it in every pose of the model. `progress`
-    /// is called as by [`Sweep::progress`]. None if there is no such shape, if it does not leave the imprint, if the
-    /// imprint is empty, or if it was stopped.
+    /// Finds the poses in which a shape leaves an imprint, by touching with the shape in every pose of the model.
+    /// `progress` is called as by [`Sweep::progress`]. None if there is no such shape, if it does not leave the
+    /// imprint, if the imprint is empty, or if it was stopped.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -169,7 +170,7 @@ impl Model {
 pub struct PlacedSource {
     /// The shape on the sensor of the model.
     pub source: Source,
-    /// By how many columns and rows its imprint lies elsewhere on the matrix.
+    /// By how many columns and rows its imprint is shifted on the matrix.
     pub by: [f64; 2],
 }
 
@@ -246,8 +247,8 @@ fn whole(angle: f64, period: f64) -> usize {
 #[derive(Debug, Default)]
 struct PoseMoments {
     poses: u64,
-    /// The first position, from which the others are measured: squares of large numbers would leave a spread where there is
-    /// none.
+    /// The first position. The others are measured from it, because rounding errors of large squares would look like a
+    /// spread.
     origin: Option<[f64; 2]>,
     position: [f64; 2],
     squares: [f64; 2],
@@ -275,7 +276,7 @@ impl PoseMoments {
         self.squares[1] += poses * y * y;
     }
 
-    /// Adds an angle as a part of a full turn.
+    /// Adds an angle, given as a part of a full turn.
     fn turn(&mut self, weight: u64, part: f64) {
         let (sine, cosine) = libm::sincos(part * std::f64::consts::TAU);
         self.cosine += float(weight) * cosine;

@@ -175,7 +175,8 @@ impl Observed {
         }
     }
 
-    /// The least distance of a key of `count` taxels in a place. It grows with neither of the place's numbers.
+    /// A lower bound of the distance of a key of `count` taxels in a place. It grows with neither of the place's two
+    /// numbers.
     fn bound(&self, count: u32, place: BoxPosition) -> u32 {
         let apart = if place.inside > count {
             place.inside - count
@@ -187,8 +188,8 @@ impl Observed {
     }
 }
 
-/// What the keys of a box are compared with: parts of the observed imprint as large as the box, those with the most taxels
-/// first.
+/// The windows that the keys of a box are compared with: parts of the observed imprint as large as the box, those with
+/// the most taxels first.
 struct Windows {
     places: Vec<BoxPosition>,
     /// Words of each.
@@ -319,7 +320,7 @@ impl KeyIndex {
             (Some(one), Some(other)) => Some(std::cmp::min(one, other)),
             (one, other) => one.or(other),
         };
-        // What the most promising group has rules out most others.
+        // The best distance in the most promising group rules out most other groups.
         let (of, group) = self.promising(observed)?;
         let windows = Windows::new(observed, of, u32::MAX);
         let keys = group.keys.start..group.keys.end.min(group.keys.start + TASK);
@@ -351,8 +352,8 @@ impl KeyIndex {
         Some((of, group))
     }
 
-    /// How many places each key has at each distance from `least` to `most`: `take` adds them to a sum of type `S`, key by
-    /// key.
+    /// Counts, for each key, its places at each distance from `least` to `most`; `take` adds the counts to a sum of
+    /// type `S`, key by key.
     pub(super) fn counted<S: Send>(
         &self,
         observed: &Observed,
@@ -424,8 +425,8 @@ impl KeyIndex {
         boxes.reduce_with(&add)
     }
 
-    /// Calls `take` for each of some keys of a group and each window whose distance is at most `most`, with the place of
-    /// the key in this index; it answers up to which distance the next ones matter.
+    /// Calls `take` for each of some keys of a group and each window whose distance is at most `most`, with the place
+    /// of the key in this index; its result is the largest distance that still matters.
     fn compare(
         &self,
         group: &Group,

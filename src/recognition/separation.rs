@@ -250,8 +250,8 @@ impl Separation {
         Ok(point)
     }
 
-    /// Returns the same with the model that it was counted from, and the evaluation of that. The zooms of the model are those
-    /// of its first shape only, so it stays in the crate.
+    /// Returns the same with the model that it was counted from and the evaluation of that model. The model has the
+    /// zooms of its first shape only, so it stays in the crate.
     ///
     /// # Errors
     /// Those of [`Self::at`].
@@ -491,7 +491,7 @@ mod tests {
         let found = found.expect("not stopped").expect("it is reached");
         assert_eq!(found.step, 0.02);
         assert!(found.point.error() <= wanted);
-        // The same by looking at every one.
+        // The same by trying every one.
         let fine = scan("0.5:1.7:0.02");
         let first = fine.iter().find(|point| {
             let coarse = points.iter().find(|other| other.error() <= wanted);

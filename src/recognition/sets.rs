@@ -52,7 +52,7 @@ pub fn equal_figures() -> Vec<NamedShape> {
     EQUAL.map(shape).to_vec()
 }
 
-/// How many positions of a cell there are in each direction: a divisor of 100, so that their steps are whole hundredths.
+/// The number of positions within a cell in each direction: a divisor of 100, so that steps are whole hundredths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellPositions(u8);
 
@@ -118,7 +118,7 @@ impl GridSteps {
         degrees: 1,
     };
 
-    /// Tenths of a cell and every second degree: of 200 poses of [`Self::FINE`], one.
+    /// Tenths of a cell and every second degree: one in 200 poses of [`Self::FINE`].
     pub const COARSE: Self = Self {
         positions: CellPositions::COARSE,
         degrees: 2,

@@ -83,7 +83,8 @@ impl RecognitionRate {
     }
 }
 
-/// What became of a touch: whether the model holds its imprint, and the name that it was given with its probability, or None.
+/// The result of a touch: whether the model holds its imprint, and the shape that it was named as, with the
+/// probability; None if it got no name.
 pub(super) struct Judgement {
     pub(super) is_held: bool,
     pub(super) named: Option<(usize, f64)>,
@@ -199,9 +200,9 @@ impl NoisyTouches {
         }
     }
 
-    /// The same with that many more dead taxels. They are drawn anew for each touch, and the classifier knows which they are.
-    /// So touches are independent, and the standard error includes how much sensors with different dead taxels differ. The
-    /// same seed draws the same dead taxels whatever the noise.
+    /// The same with that many additional dead taxels. They are drawn anew for each touch, and the classifier knows
+    /// which they are. So touches are independent, and the standard error includes how much sensors with different dead
+    /// taxels differ. The same seed draws the same dead taxels whatever the noise.
     #[must_use]
     pub fn with_random_dead(self, count: u32) -> Self {
         let random_dead = count;
@@ -215,7 +216,7 @@ impl NoisyTouches {
 /// Draws touches of one shape.
 #[derive(Clone, Default)]
 pub(super) struct Draw {
-    /// Up to and with each key: how many touches, and the number of the key.
+    /// For each key: the number of touches up to and including it, and the number of the key.
     sums: Vec<(u64, usize)>,
 }
 
@@ -398,7 +399,7 @@ impl Model {
         (!stopped.into_inner()).then_some(results)
     }
 
-    /// The number of touches of one run, and whether it ended with the right shape. None if it was given up.
+    /// The number of touches of one run, and whether it ended with the right shape. None if the run was abandoned.
     fn run_until(
         &self,
         until: f64,
@@ -420,7 +421,7 @@ impl Model {
     }
 }
 
-/// Mean and standard error of runs. Without those that were given up the mean would be too small.
+/// Mean and standard error of runs. Leaving out abandoned runs would make the mean too small.
 fn summary(runs: u64, lengths: &[Option<(u32, bool)>]) -> TouchesUntil {
     let own: Vec<f64> = lengths
         .iter()
@@ -476,7 +477,7 @@ mod tests {
         let touches = NoisyTouches::new(&sensor, noise, 2000, 0);
         let rate = model.recognition_rate(&touches, &noise, &|_| true);
         let rate = rate.expect("not stopped");
-        // The long one is always named, so nothing is left to chance but what is claimed.
+        // The long one is always named, so only the claimed probability is left to chance.
         assert_eq!((rate.touches, rate.right), (4000, 2000));
         assert_eq!((rate.accuracy(), rate.standard_error()), (0.9, 0.0));
         assert!((rate.claimed() - 0.9).abs() < 0.002, "{rate:?}");

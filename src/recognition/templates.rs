@@ -114,7 +114,7 @@ fn shifts(own: &[u32], other: &[u32]) -> std::ops::Range<isize> {
     2 - other.len().cast_signed()..own.len().cast_signed() - 1
 }
 
-/// The first row or column of one imprint and of the other one that meet at a shift.
+/// The first rows, or columns, of the two imprints that meet at a shift.
 fn starts(shift: isize) -> (usize, usize) {
     let start = |shift: isize| shift.max(0).unsigned_abs();
     (start(shift), start(-shift))
@@ -147,7 +147,7 @@ mod tests {
             );
             assert_eq!(one.distance(&other, u32::MAX), expected);
             assert_eq!(other.distance(&one, u32::MAX), expected);
-            // No more than what is asked for.
+            // Never more than the given bound.
             assert_eq!(one.distance(&other, expected + 1), expected);
             assert_eq!(one.distance(&other, expected), expected);
             assert_eq!(one.distance(&other, 0), 0);

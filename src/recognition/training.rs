@@ -63,7 +63,7 @@ pub enum TrainingError {
     /// An invalid set: a name is missing or given twice, or a weight is 0.
     #[error(transparent)]
     Set(#[from] ModelError),
-    /// A shape that has no such poses.
+    /// A shape that cannot be touched in these poses.
     #[error("{name}: {error}")]
     Grid {
         /// The shape.

@@ -10,7 +10,7 @@ use crate::formats::shape::MAX_BYTES;
 use crate::storage::atomic_file::sync_folder;
 use crate::storage::error::{FileError, LibraryError};
 
-/// A hash of a file's content. Two contents with the same stamp are taken for equal.
+/// A hash of a file's content. Two contents with the same stamp count as equal.
 pub(crate) fn stamp(content: &[u8]) -> u64 {
     let mut hasher = DefaultHasher::new();
     content.hash(&mut hasher);
@@ -56,8 +56,8 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, LibraryError> {
     let found = file.metadata();
     let found = found.map_err(|error| FileError::new("look at it", path, error))?;
     check_regular(path, &found)?;
-    // Asked for no more than is there, so that the end needs no read of its own. A length of 0 may mean that it is
-    // unknown.
+    // Asks for no more bytes than the file has, so that finding the end needs no further read. A length of 0 may mean
+    // that it is unknown.
     let length = usize::try_from(found.len()).unwrap_or(MAX_BYTES + 1);
     let length = if length == 0 { MAX_BYTES } else { length }.min(MAX_BYTES + 1);
     let mut content = Vec::with_capacity(length);

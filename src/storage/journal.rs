@@ -1,4 +1,4 @@
-//! Unsaved work: kept in a file while the program runs, and offered again after it died.
+//! Unsaved work: kept in a file while the program runs, and offered again if it died.
 //!
 //! Each running program holds the lock of a file of its own in the folder's `.journal`. A journal whose lock is free
 //! was left by a program that died; the program that takes its lock offers it, so several programs do not take each

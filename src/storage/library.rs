@@ -49,7 +49,7 @@ pub struct LibraryEntry {
 pub struct LoadedShape {
     /// The shape, under the name of its file.
     pub shape: StoredShape,
-    /// The name that the file says; another where the file was renamed or copied by hand.
+    /// The name inside the file; it differs from the file's own name if the file was renamed or copied by hand.
     pub written_name: Name,
     /// A hash of the file's content.
     pub stamp: u64,

@@ -1,4 +1,4 @@
-//! Who may write: a lock that is held while a shape is written, and by a journal as long as its program runs.
+//! A lock: a writer of a shape holds one while it writes, and a journal holds one as long as its program runs.
 //!
 //! The system releases a lock when its program dies, so none is ever left behind.
 

@@ -37,7 +37,7 @@ pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
     read_model(BufReader::new(file)).map_err(|error| ArchiveFileError::new(path, error))
 }
 
-/// Reads a model from a file that holds all of it: one that can be asked.
+/// Reads a whole model from a file, so that it can answer touches.
 ///
 /// # Errors
 /// Those of [`load_model`]; [`ArchiveError::PartOfModel`] for a shard, which knows some of the poses only.
@@ -81,7 +81,7 @@ pub struct ModelFolder(PathBuf);
 impl ModelFolder {
     /// The folder `models` beside the folder of a library.
     pub fn beside(library: &Path) -> Self {
-        // `.` has no name to put another beside.
+        // `.` has no name that could be replaced by another one.
         let whole = match library.file_name() {
             Some(_) => library.to_owned(),
             None => library

@@ -47,12 +47,12 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     SHIPPED.iter().map(|&(name, _)| name)
 }
 
-/// Whether a shape of that name comes with the program, upper and lower case alike.
+/// Whether a shape of that name comes with the program, regardless of case.
 pub(crate) fn has(name: &Name) -> bool {
     SHIPPED.iter().any(|(shipped, _)| name.same(shipped))
 }
 
-/// The shape of that name with its stamp; none where no shape of that name comes with the program.
+/// The shape of that name with its stamp; None if no shape of that name comes with the program.
 pub(crate) fn load(name: &Name) -> Option<Result<(StoredShape, u64), LibraryError>> {
     let &(name, text) = SHIPPED.iter().find(|(shipped, _)| name.same(shipped))?;
     let broken = |error| LibraryError::Broken {

@@ -1,6 +1,6 @@
 //! The files that a sweep writes: its atlas, in the format of the name's extension, and the atlas number of every pose.
 //!
-//! At every time there is all of a file or what was there before ([`crate::storage::atomic_file`]).
+//! At any time, either the complete new file or the old one is there ([`crate::storage::atomic_file`]).
 
 use std::fs::File;
 use std::io::{self, BufReader, Seek, SeekFrom, Write};
@@ -72,7 +72,7 @@ impl AtlasFile {
     /// A file of that name.
     ///
     /// # Errors
-    /// What was expected, where its ending is that of no format.
+    /// What was expected, if no format has this extension.
     pub fn new(path: impl Into<PathBuf>) -> Result<Self, &'static str> {
         let path = path.into();
         let ending = path.extension().and_then(|ending| ending.to_str());
@@ -96,7 +96,7 @@ impl AtlasFile {
         &self.path
     }
 
-    /// Whether a file can be begun there: said before the work rather than after it.
+    /// Checks whether a file can be begun there, so that an error comes before the work rather than after it.
     ///
     /// # Errors
     /// Those of the system, with the file's name; where one is there and is to be kept.

@@ -63,10 +63,10 @@ impl SweepMerge {
     /// Adds the next shard: the first, then the second, and so on.
     ///
     /// # Errors
-    /// If it is not the next one, incomplete, or of another grid than the first. The merge is then as it was before.
+    /// If it is incomplete, not the next one, or of another grid than the first. The merge then stays unchanged.
     pub fn add(&mut self, result: SweepResult) -> Result<(), MergeError> {
         let (shard, of) = (result.shard, result.shard.of());
-        // All is checked before anything changes: after a refusal, the right shard can still come.
+        // Everything is checked before anything changes: after a refusal, the right shard can still be added.
         if let Some(begun) = &self.0
             && (result.grid != begun.grid || of != begun.of)
         {

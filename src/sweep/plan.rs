@@ -111,7 +111,8 @@ impl Task {
     }
 }
 
-/// The usual number of poses in a task: enough to outweigh its start, few enough to share the work among threads.
+/// The usual number of poses in a task: enough to outweigh the cost of starting it, few enough to share the work among
+/// threads.
 const TASK_POSES: u64 = 20_000;
 /// The most poses in a task with rows that are images of each other. Both rows of a pair must be in the same task.
 const HALVED_TASK_POSES: u64 = 1_000_000;
@@ -120,7 +121,7 @@ const TASKS: u64 = 16;
 
 /// The tasks of one block (all angles at one pair of zooms) within the rows of a shard, in the order of the first of
 /// their orientations. They are made one at a time, because a large grid has millions. If `mirrored`, groups that are
-/// mirror images share tasks; rows then come far from their order.
+/// mirror images share tasks; rows then come far out of order.
 pub(crate) fn tasks(
     grid: &PoseGrid,
     shard: &Range<u64>,

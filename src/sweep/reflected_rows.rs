@@ -1,8 +1,8 @@
 //! Rows that are images of rows swept before ([`crate::sweep::point_symmetry`]): their runs, read backwards.
 //!
 //! The image of a row has the same runs in reverse order, cut in two where the range of x0 wraps around. The imprint of
-//! each run is turned by 180° and shifted by whole cells. What is counted, and in which order, is the same as if the
-//! row had been swept itself.
+//! each run is turned by 180° and shifted by whole cells. The counts and their order are the same as if the row had
+//! been swept itself.
 
 use crate::atlas::{ImprintCounter, Layout};
 use crate::index::{narrow, wide};

@@ -143,7 +143,7 @@ impl SweepResult {
     /// The result that such numbers make.
     ///
     /// # Errors
-    /// Where they contradict each other or the grid.
+    /// If they contradict each other or the grid.
     pub(crate) fn from_parts(
         grid: PoseGrid,
         shard: Shard,
@@ -214,7 +214,7 @@ pub(crate) struct Parts {
     pub(crate) counts: Vec<u64>,
     /// The number of the first pose of each.
     pub(crate) first_poses: Vec<u64>,
-    /// Sums about the orientations, in a form that may change between versions.
+    /// Sums over the orientations, in a form that may change between versions.
     pub(crate) variance_words: Vec<u64>,
 }
 
@@ -280,7 +280,7 @@ mod tests {
         assert_eq!(doubled, Some("an imprint that is there twice"));
         let sums = Some("sums that contradict each other, or of another version");
         assert_eq!(fault(&|parts| parts.variance_words.push(0)), sums);
-        // An orientation of more poses than it has.
+        // An orientation with sums for more poses than it has.
         let orientation = 3 + 5 * features().len();
         let unsound = |parts: &mut Parts| parts.variance_words.extend(vec![u64::MAX; orientation]);
         assert_eq!(fault(&unsound), sums);

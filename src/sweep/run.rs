@@ -122,8 +122,8 @@ impl<'a> Sweep<'a> {
         result
     }
 
-    /// Sweeps portion after portion. `take` receives what each found while the next one is being swept; if runs are kept,
-    /// in the order of the grid. A portion that is stopped is lost, and the result is `false`.
+    /// Sweeps portion after portion. `take` receives the results of each portion while the next one is being swept; if
+    /// runs are kept, in the order of the grid. If a portion is stopped, its results are lost and `false` is returned.
     pub(super) fn each_portion(
         self,
         layout: &Layout,
@@ -172,8 +172,8 @@ impl<'a> Sweep<'a> {
 /// What the groups of some tasks found.
 pub(super) type Portion = Vec<Found>;
 
-/// The next tasks that run side by side: enough to keep all threads busy till the end of them, few enough for the
-/// memory, which holds what each of them found. `width` is the number of poses in a row.
+/// The next tasks that run side by side: enough to keep all threads busy to the end, few enough for the memory that
+/// their results take. `width` is the number of poses in a row.
 fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec<Task> {
     const POSES: u64 = 4_000_000;
     let threads = rayon::current_num_threads();

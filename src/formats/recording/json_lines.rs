@@ -1,4 +1,4 @@
-//! A JSON object a line: `{"t": 0.1, "frame": [[0, 12], [null, 3]]}`, null where there is no cell.
+//! A JSON object a line: `{"t": 0.1, "frame": [[0, 12], [null, 3]]}`, null for a missing cell.
 //! ```text
 //! {"t": 0.00, "frame": [[0, 12], [null, 3]]}
 //! {"t": 0.05, "frame": [0, 13, null, 4], "label": 7}

@@ -1,4 +1,4 @@
-//! Moments as tables write them: a date of ISO 8601 and a clock, or a clock alone.
+//! Timestamps as tables write them: an ISO 8601 date and a time of day, or a time of day alone.
 //! ```text
 //! 2024-05-01T12:00:00.125Z      2024-05-01 12:00:00,125      12:00:00.125
 //! 2024/05/01 12:00:00+02:00     20:00:00
@@ -8,7 +8,7 @@
 use crate::formats::recording::separator::decimal;
 use crate::formats::recording::text_row::Field;
 
-/// A moment.
+/// A timestamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Moment {
     /// The seconds from 1970; of a clock alone, from midnight.
@@ -17,7 +17,7 @@ pub(crate) struct Moment {
     pub(crate) is_dated: bool,
 }
 
-/// Reads a moment; None for anything else. Second 60, a leap second, counts as the first of the next minute.
+/// Reads a timestamp; None for anything else. Second 60, a leap second, counts as the first of the next minute.
 pub(super) fn read(field: &[u8]) -> Option<Moment> {
     let text = str::from_utf8(field).ok()?.trim();
     let (day, clock) = match text.split_once(['T', 't', ' ']) {
@@ -43,8 +43,9 @@ pub(super) fn read(field: &[u8]) -> Option<Moment> {
     })
 }
 
-/// The moment at the beginning of a line of numbers, and the numbers behind it; None without one, or without a number. A comma
-/// may part cells or begin the fraction of a second: where nothing tells which, as in `12:00:00,125 7 3`, it is no moment.
+/// The timestamp at the beginning of a line of numbers, and the numbers after it; None without a timestamp or without a
+/// number. A comma may separate cells or begin the fraction of a second. Where both are possible, as in `12:00:00,125 7
+/// 3`, there is no timestamp.
 pub(crate) fn leading(line: &[u8]) -> Option<(Moment, &[u8])> {
     let mark = if line.contains(&b';') { b';' } else { b',' };
     let line = line.trim_ascii_start();

@@ -2,7 +2,8 @@
 //!
 //! A header names the cells, see [`cell_names`](super::cell_names). Without one, rows and columns have to be known
 //! beforehand, unless the table is in blocks of a row a line; numbers before or behind the cells are then recognised by how
-//! they grow from line to line ([`without_header`]). A moment is the time where no number is; other texts are passed over.
+//! they grow from line to line ([`without_header`]). A timestamp is the time of its frame unless a column of numbers
+//! gives the time; other texts are ignored.
 
 use std::io::BufRead;
 
@@ -37,7 +38,7 @@ pub(super) struct TableLayout {
     pub(super) lines: LineLayout,
     /// What was assumed, if anything.
     pub(super) note: Option<RecordingNote>,
-    /// The moment of the first frame as it is written, where lines have one.
+    /// The timestamp of the first frame as it is written, if lines have one.
     pub(super) start: Option<String>,
 }
 
@@ -258,7 +259,8 @@ impl LineLayout {
 }
 
 impl FrameFields {
-    /// These fields, whose first line has such `fields`, with a moment beside the cells as the time where no number is.
+    /// These fields, whose first line has such `fields`, with a timestamp beside the cells as the time, unless a number
+    /// gives the time.
     fn with_moment(mut self, separator: Separator, fields: &[&[u8]]) -> Self {
         let is_moment =
             |&field: &usize| fields.get(field).copied().and_then(moment::read).is_some();
@@ -404,7 +406,7 @@ fn named_cells(
 /// milliseconds behind them. What grows from line to line says which it is. The first of them is line `number` of the file.
 ///
 /// # Errors
-/// If the line has fewer fields than a frame has cells, or others that are none of these or may be either.
+/// If the line has fewer fields than a frame has cells, or if other fields are not cells or may be.
 fn without_header(
     (rows, columns): (u16, u16),
     number: u64,

@@ -60,7 +60,7 @@ impl TekscanHeader {
     /// The key ends at a blank or at a comma, which spreadsheet programs put there.
     ///
     /// # Errors
-    /// If rows or columns are none that a frame can have.
+    /// If a frame cannot have these rows or columns.
     fn line(&mut self, line: &[u8], number: u64) -> Result<(), RecordingError> {
         let is_end = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
         let end = line.iter().position(is_end);

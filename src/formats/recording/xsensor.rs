@@ -155,7 +155,7 @@ impl XsensorState {
     /// Takes what a line `key,value` says.
     ///
     /// # Errors
-    /// If rows or columns are none that a frame can have.
+    /// If a frame cannot have these rows or columns.
     fn line(&mut self, key: &str, value: &str, number: u64) -> Result<(), RecordingError> {
         let number_of = || match decimal(value.as_bytes()) {
             Field::Value(value) => Some(value),

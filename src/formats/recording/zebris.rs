@@ -64,7 +64,7 @@ impl ZebrisHeader {
     /// Takes what a line `key=value` says; other lines say nothing.
     ///
     /// # Errors
-    /// If a count is none that a frame can have.
+    /// If a frame cannot have this count.
     fn line(&mut self, line: &str, number: u64) -> Result<(), RecordingError> {
         let Some((key, value)) = line.split_once('=') else {
             return Ok(());
