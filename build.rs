@@ -1,14 +1,13 @@
 //! What `taxel --version` says: the version, and for an optimised build the commit that it was made from.
 //!
-//! The commit is that of `TAXEL_COMMIT` where a packager sets it, that of the published package, or that of git; where
-//! there is none of these, the version stands alone. A build for tests goes without: it would have to be made anew after
-//! each commit.
+//! The commit comes from `TAXEL_COMMIT` if a packager sets it, from the published package, or from git; without any of
+//! these, only the version is shown. A build for tests has no commit: it would have to be rebuilt after each commit.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-/// What git would have to report as changed for the program to be another one.
+/// The paths whose changes make a different program.
 const SOURCES: [&str; 5] = ["src", "library", "build.rs", "Cargo.toml", "Cargo.lock"];
 
 /// Characters of a commit's name: enough for a repository of this size.
@@ -35,7 +34,7 @@ fn main() {
 /// The commit that a folder with a package holds, and whether its sources were changed since.
 pub(crate) fn commit(folder: &Path) -> Option<String> {
     packaged(folder).or_else(|| {
-        // A repository around the package, of which this is no part, says nothing about it.
+        // A repository around the package that does not contain it says nothing about it.
         let top = fs::canonicalize(git(folder, &["rev-parse", "--show-toplevel"])?).ok()?;
         if top != fs::canonicalize(folder).ok()? {
             return None;
@@ -60,12 +59,12 @@ fn packaged(folder: &Path) -> Option<String> {
     Some(format!("{short}{}", if changed { ", changed" } else { "" }))
 }
 
-/// Letters and digits only, so that nothing else can get into the program's words.
+/// Letters and digits only, so that nothing else can get into the program's output.
 fn is_plain(name: &str) -> bool {
     !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_alphanumeric())
 }
 
-/// Has cargo come back when another commit is checked out or the sources change.
+/// Makes cargo run this script again when another commit is checked out or the sources change.
 fn watch(folder: &Path) {
     let paths = SOURCES.map(|source| folder.join(source));
     let branch = git(folder, &["rev-parse", "--symbolic-full-name", "HEAD"]);
@@ -74,13 +73,13 @@ fn watch(folder: &Path) {
         .into_iter()
         .flatten()
         .map(|path| folder.join(path));
-    // Of a file that is not there cargo thinks that it changes all the time.
+    // Cargo considers a missing file changed at every build.
     for path in paths.into_iter().chain(of_git).filter(|path| path.exists()) {
         println!("cargo:rerun-if-changed={}", path.display());
     }
 }
 
-/// What names another repository than that of the folder, as git sets it for its hooks.
+/// The variables by which git's hooks name another repository than that of the folder.
 pub(crate) const OF_GIT: [&str; 4] = [
     "GIT_DIR",
     "GIT_WORK_TREE",
@@ -88,7 +87,7 @@ pub(crate) const OF_GIT: [&str; 4] = [
     "GIT_OBJECT_DIRECTORY",
 ];
 
-/// What git answers; none where it does not know, or is not there.
+/// The answer of git; None if git does not know, or is not installed.
 fn git(folder: &Path, arguments: &[&str]) -> Option<String> {
     let mut command = Command::new("git");
     for variable in OF_GIT {

@@ -1,6 +1,6 @@
 //! Lines of `taxel batch` a second, as the README has them: on one core, and on all of them.
 //!
-//! Ratios of runs that take turns, the fastest of each: what else the machine does slows both.
+//! The runs take turns, and the fastest of each gives the ratios: other work on the machine slows both.
 
 use std::fs::{self, File};
 use std::process::{Command, Stdio};
@@ -26,7 +26,7 @@ fn fastest<const N: usize>(mut run: [&mut dyn FnMut(); N]) -> [Duration; N] {
     best
 }
 
-/// Answers a file by so many threads.
+/// Answers a file with this number of threads.
 fn batch(input: &std::path::Path, jobs: usize) {
     let status = Command::new(env!("CARGO_BIN_EXE_taxel"))
         .args(["batch", "--jobs", &jobs.to_string()])

@@ -1,7 +1,7 @@
 //! The scan of all keys at all places (`cargo bench --bench scan`): time per pair of a key and a place where nothing can be
 //! skipped, and per query where most can.
 //!
-//! The templates are random blobs of about 30 taxels in boxes of 6 × 6, so no two are alike; a million of them are more
+//! The templates are random blobs of about 30 taxels in boxes of 6 × 6, so no two are equal; a million of them are more
 //! keys than any set of shapes that was tried has.
 
 use std::hint::black_box;

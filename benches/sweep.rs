@@ -3,9 +3,9 @@
 //! descriptors of each imprint's main region, and all statistics, included.
 //!
 //! `cargo bench --bench sweep` prints two tables; a part of a row's name after `--` restricts them. Pose by pose, 20,000
-//! poses spread over the grid are taken and the time extrapolated. Each row is gone through in several rounds, all ways
-//! in turn, and each number is the least of its rounds. What runs on one thread is measured in processor time, which
-//! others on the same machine disturb least; for two threads beside one it has to be the clock on the wall, with both
+//! poses spread over the grid are taken and the time extrapolated. Each row is measured in several rounds, with all
+//! methods in turn, and each number is the smallest of its rounds. Work on one thread is measured in processor time,
+//! which other work on the machine disturbs least. Two threads are compared with one by wall-clock time, with both
 //! cores awake.
 
 use std::hint::black_box;

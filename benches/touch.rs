@@ -110,7 +110,7 @@ const FIGURES: [Case; 3] = [
     ("circle", circle, peer_circle),
 ];
 
-/// A comparison is worth something where both do the same work: the imprint and every number are held equal first.
+/// The comparison is fair only if both do the same work, so the imprint and every number are first checked to be equal.
 fn assert_alike(name: &str, plane: &mut Plane, figure: &Figure, peer: &mut Peer, touch: PeerTouch) {
     let imprint = plane.touch(figure);
     let theirs = touch(peer).to_vec();

@@ -1,10 +1,10 @@
-//! The crash campaign: real programs, killed at every call of the system and at random, refused every call in turn, on
-//! a full disk and on one that cannot be written to. After each of these the library must be whole: no shape lost or
-//! torn, no start blocked, the old file or the new one in its place.
+//! The crash campaign: real programs, killed at every system call and at random, with every system call refused in
+//! turn, on a full disk and on one that cannot be written to. After each of these, the library must be intact: no shape
+//! lost or torn, no start blocked, either the old or the new file in place.
 //!
 //! `cargo test --test crash` kills 300 times at random; `TAXEL_KILLS=2000 cargo test --test crash`, or `-- --ignored`,
-//! does it 2,000 times. The seed of a run is printed, and `TAXEL_SEED` sets it. What the machine does not allow is skipped
-//! and reported.
+//! does it 2,000 times. The seed of a run is printed, and `TAXEL_SEED` sets it. Tests that the machine does not allow
+//! are skipped and reported.
 
 #[path = "../common/array.rs"]
 mod array;

@@ -1,4 +1,4 @@
-//! What is written and read: files of other programs, drawings, the stored shapes, and hostile bytes.
+//! Files that taxel reads and writes: those of other programs, drawings, stored shapes, and hostile bytes.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,4 +1,4 @@
-//! The programs of `examples/`, each run, and what they say held to the paper and to plain geometry.
+//! Runs each program of `examples/` and compares its output with the paper and with plain geometry.
 
 use std::f64::consts::PI;
 

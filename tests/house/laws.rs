@@ -2,7 +2,7 @@
 //!
 //! A room is a folder or a file directly under `src/`. `lib.rs` lists the rooms in reading order, and a room names only
 //! rooms above it. Inside a room files may name each other as long as there is no cycle. The last tests break each law
-//! on sources of their own: a check that cannot fail is worth nothing.
+//! in small example sources, since a check that cannot fail is worth nothing.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -25,8 +25,9 @@ const OWNED: [(&str, &str); 5] = [
 ];
 
 /// The number of lines in `src` where an impossible case becomes a value (`unwrap_or(0)` and the like, true defaults among
-/// them) is at most this. Such a value hides a mistake as a plausible number, but nothing in the text tells it from a true
-/// default: so they are counted, not forbidden, and a new one takes the place of another. It only goes down.
+/// them) is at most this. Such a value hides a mistake behind a plausible number, but the text does not show whether it
+/// is a true default. So they are counted rather than forbidden, and a new one must replace another. The number only
+/// goes down.
 const MOST_FALLBACKS: usize = 47;
 
 /// What breaks the law, as `file:line: what; law: which`.
@@ -107,7 +108,7 @@ fn owned(source: &Source<'_>, report: &mut impl FnMut(usize, &str, &str)) {
                 report(line, &name, &format!("only src/{room}/ names {owned}"));
             }
         }
-        // A glob, or a second name for std, would hide what is taken from it.
+        // A glob import, or another name for `std`, would hide what is imported.
         let opens = matches!(
             path[..],
             ["std", "fs" | "*" | "self", ..]
@@ -302,7 +303,7 @@ fn order(
     }
 }
 
-/// The file that an item comes from: `file`, or the one below it that its front page takes the item from.
+/// The file that defines an item: `file`, or the file below it from which `file` re-exports the item.
 fn reexported<'a>(file: &[&'a str], target: &[&'a str], all: &[Source<'a>]) -> Vec<&'a str> {
     let item = target.get(file.len());
     let front = all.iter().find(|source| source.module == file);

@@ -1,4 +1,4 @@
-//! The project itself: its source keeps the laws of its rooms, and its papers say what the program does.
+//! The project itself: its source keeps the rules of its modules, and its documents say what the program does.
 
 #[cfg(feature = "sweep")]
 #[path = "../common/paper.rs"]

@@ -1,8 +1,8 @@
 //! Two measures of the source: lines of documentation for each line of code, room by room, and the length of functions.
 //!
-//! Both are taken of the text. A line of documentation begins with `///` or `//!`; other comments and empty lines count
-//! for nothing, and all else is code. Unit tests at the end of a file are left out. A function ends at the first line
-//! that closes it at its own indentation, which is where rustfmt puts it.
+//! Both are measured on the text. A line of documentation begins with `///` or `//!`; other comments and empty lines do
+//! not count, and everything else is code. Unit tests at the end of a file are left out. A function ends at the first
+//! line that closes it at its own indentation, which is where rustfmt puts it.
 
 use std::collections::BTreeMap;
 use std::path::Path;

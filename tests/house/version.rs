@@ -1,4 +1,4 @@
-//! Which commit a build says it was made from.
+//! The commit that a build reports.
 
 use std::path::Path;
 use std::process::Command;

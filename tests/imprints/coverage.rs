@@ -1,4 +1,4 @@
-//! Coverages worked by hand: every expected value stands beside its shape as a closed form.
+//! Coverages computed by hand: every expected value is given beside its shape in closed form.
 //!
 //! The numbers of the shapes are decimals as a user writes them, most of which have no exact binary form.
 
@@ -59,7 +59,7 @@ fn upright_rectangles_cover_products() {
 #[rustfmt::skip] // A case a line.
 fn turned_squares_and_regular_polygons_cover_triangles() {
     let sqrt_3 = 3_f64.sqrt();
-    // What a hexagon of side 1 leaves of the first cell of its bounding rectangle: two triangles are missing.
+    // A hexagon of side 1 covers the first cell of its bounding rectangle except for two triangles.
     let hexagon = 1.0 - sqrt_3 / 8.0 - (1.0 - sqrt_3 / 2.0).powi(2) / (2.0 * sqrt_3);
     let lower = 0.75 * sqrt_3 - hexagon;
     let cases: &[(&str, Cells)] = &[

@@ -117,7 +117,7 @@ fn posteriors_are_those_of_the_definition() {
     }
 }
 
-/// One shape's likely touch may be impossible, but for the noise, for the shape that all others are of.
+/// Without noise, a touch that is likely for one shape may be impossible for the shape that left all other touches.
 #[test]
 fn touches_that_contradict_each_other_are_weighed_not_ruled_out() {
     let model = tiny();

@@ -359,7 +359,7 @@ fn answers_say_how_far_they_can_be_trusted() {
         let expected = float(own.expect("it has one").poses).powi(2) / squares;
         assert!((probability - expected).abs() < 1e-12);
     }
-    // However often it is touched, the others leave it, too; their probability is below any number.
+    // However often it is touched, the other shapes can leave it, too; their probability is smaller than any `f64`.
     let often = vec![bar; 20_000];
     let answer = model.recognise(Evidence::of(&often));
     assert_eq!(answer.ranking.len(), 1);

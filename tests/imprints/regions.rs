@@ -1,4 +1,4 @@
-//! Regions and descriptors of grids drawn in the source, worked by hand.
+//! Regions and descriptors of grids drawn in the source, computed by hand.
 //!
 //! The steps around a region are counted by walking it with a finger: `straight` to a taxel beside, above or below,
 //! `diagonal` across a corner.

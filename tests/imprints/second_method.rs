@@ -4,7 +4,7 @@
 //! shoelace formula. An ellipse is mapped to the unit disc, the cell with it, and the disc's share of that parallelogram
 //! is a sum of triangles and sectors about its centre. Vertices come from the figures' definitions, not from the code
 //! under test. Where a cell's coverage lies on the threshold the methods may differ in `f64`; there the taxel must be
-//! active, since the decimals drawn here have two digits and no near miss is that near.
+//! active: the decimals drawn here have two digits, and then no near miss comes that close.
 
 use std::f64::consts::PI;
 

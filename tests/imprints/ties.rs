@@ -1,7 +1,7 @@
-//! Exact ties, and what misses one by a hair: whether a taxel is active, worked by hand in real arithmetic.
+//! Exact ties and near misses: whether a taxel is active, computed by hand in real arithmetic.
 //!
-//! A coverage of just the threshold is active. Hardly any number here has an exact binary form, so plain rounding
-//! decides about half of these cases wrongly. The near misses fall short by 1e-9 down to 1e-18 of a cell.
+//! A taxel whose coverage is exactly the threshold is active. Hardly any number here has an exact binary form, so plain
+//! rounding decides about half of these cases wrongly. The near misses fall short by 1e-9 down to 1e-18 of a cell.
 
 use crate::common::{figure, picture, sensor};
 use taxel::geometry::{Ellipse, Pen, Point, Polygon, Real, Side, Solid};
@@ -73,7 +73,7 @@ fn upright_rectangles_tie() {
         (0.36, "rectangle length=1 width=1 x0=3 y0=3 thickness=0.1", &[(3, 3)], &[]),
         (0.64, "rectangle length=1 width=1 x0=3 y0=3 thickness=0.2", &[(3, 3)], &[]),
         (0.72, "rectangle length=1 width=0.8 x0=3 y0=3.1 thickness=0.3", &[(3, 3)], &[]),
-        // However little is asked for, what is not covered at all is inactive: the inside of a ring.
+        // However low the threshold, a taxel that is not covered at all is inactive: the inside of a ring.
         (1e-21, "rectangle length=5 width=5 x0=3 y0=3 thickness=1", &[(3, 3), (5, 3)], &[(5, 5), (2, 3), (8, 3)]),
         (1e-310, "rectangle length=5 width=1e-11 x0=3 y0=3", &[(3, 3), (7, 3)], &[(2, 3), (8, 3), (3, 2)]),
         // The whole cell.
@@ -119,7 +119,7 @@ fn circles_through_a_corner_of_a_cell_cover_it_fully() {
         (1.0, "ellipse radius_x=10 radius_y=5 x0=1 y0=6 angle=90", &[(14, 16), (7, 5)], &[(14, 17)]),
         // The hole of a ring, radius 5, touches the corners of cells outside of it.
         (1.0, "ellipse radius_x=8 radius_y=8 x0=1 y0=1 thickness=3", &[(12, 13), (13, 12), (4, 5)], &[(11, 13), (12, 12)]),
-        // A circle that touches grid lines covers none of the cells behind them, however small the share asked for.
+        // A circle that touches grid lines covers none of the cells behind them, however low the threshold.
         (1e-12, "ellipse radius_x=2 radius_y=2 x0=3 y0=3", &[(3, 3), (6, 6)], &[(2, 4), (2, 5), (4, 2), (7, 4), (5, 7)]),
         // The radius 1e-9 shorter leaves about 1e-18 of the cell uncovered.
         (1.0, "ellipse radius_x=4.999999999 radius_y=4.999999999 x0=1.000000001 y0=1.000000001", &[(6, 6)], &[(8, 9), (9, 8), (2, 3), (3, 2)]),

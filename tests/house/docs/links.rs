@@ -97,7 +97,7 @@ fn every_link_leads_to_a_file_and_a_heading() {
     assert!(checked >= 20, "{checked} links were found");
 }
 
-/// Nobody finds a page that no other page links to.
+/// Readers cannot find a page that no other page links to.
 #[test]
 fn every_page_is_linked_from_the_readme() {
     let pages = documents();
@@ -164,7 +164,7 @@ fn sources(folder: &Path, text: &mut String) {
     }
 }
 
-/// The ways described for contributors name types, tables and functions that are there.
+/// The guide for contributors names types, tables and functions that exist.
 #[test]
 fn every_name_in_the_guide_for_contributors_exists() {
     let mut all = String::new();

@@ -76,7 +76,7 @@ pub(crate) fn want() -> String {
     ])
 }
 
-/// The figures that the text of the page tells, held to what the program prints.
+/// The numbers in the text of the page are those that the program prints.
 #[test]
 fn the_text_says_what_the_commands_print() {
     let page = crate::docs::document("docs/recognition.md");

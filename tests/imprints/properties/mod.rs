@@ -1,4 +1,4 @@
-//! What holds for every shape, whatever the numbers: drawn at random, from a fixed seed, made small where it fails.
+//! Properties that hold for every shape: shapes are drawn at random from a fixed seed, and a failing one is shrunk.
 //!
 //! All coordinates are hundredths, so that a moved or mirrored shape is written in as few decimals as the first one
 //! and ties stay ties: imprints are compared taxel by taxel, with no tolerance.
