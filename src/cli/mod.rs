@@ -58,6 +58,7 @@ use error::CliError;
 use input::lines::LineInput;
 use input::shapes::Shelf;
 use output::charset::Charset;
+use output::progress::Progress;
 use settings::resolved::Effective;
 
 use crate::sensor::Sensor;
@@ -225,7 +226,10 @@ impl Surroundings {
     /// Runs `taxel frames`. Answers that were made before an error are printed.
     fn frames(&self, asked: &FramesArguments, form: Form, kept: Kept) -> Result<(), CliError> {
         let processing = input::processing::processing(&asked.processing)?;
-        let model = asked.naming.load(&self.shelf)?;
+        let model = asked.naming.find(&self.shelf)?;
+        let recording = frames::open(asked)?;
+        let progress = |poses| Progress::new(poses, false, self.charset);
+        let model = model.map(|model| model.ready(&progress)).transpose()?;
         let noise = asked.naming.noise_with(processing.view.mask.as_ref());
         let mut answers = BufWriter::new(io::stdout().lock());
         let output = FramesOutput {
@@ -239,7 +243,7 @@ impl Surroundings {
             answers: &mut answers,
             notes: &mut |text| note(text, self.charset),
         };
-        let done = frames::frames(asked, processing, output);
+        let done = frames::frames(asked, recording, processing, output);
         answers.flush().map_err(CliError::Write)?;
         done
     }

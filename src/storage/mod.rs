@@ -87,4 +87,7 @@ pub use trash::TRASH_KEPT;
 pub use sweep_file::{ArchiveFileError, AtlasFile, PoseFile, is_poses, load_atlas, open_archive};
 
 #[cfg(all(feature = "recognition", feature = "library"))]
-pub use models::{ModelCache, ModelFolder, load_model, load_whole_model, model_hash, save_model};
+pub use models::{
+    ModelCache, ModelFolder, cached_or_trained, load_model, load_whole_model, model_hash,
+    save_model,
+};

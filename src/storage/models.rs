@@ -190,7 +190,7 @@ impl ModelCache {
     }
 
     /// Returns the file that holds the model of a training.
-    pub fn file(&self, training: &Training<'_>) -> PathBuf {
+    fn file(&self, training: &Training<'_>) -> PathBuf {
         // All that the model depends on, and the version of the program, in a text that differs where these do.
         let mut text = format!("{} {:?}", env!("CARGO_PKG_VERSION"), training);
         for grid in training.grids() {
@@ -200,9 +200,9 @@ impl ModelCache {
             .join(format!("{:032x}.{ENDING}", xxh3_128(text.as_bytes())))
     }
 
-    /// Returns the model of a training if it is there and whole.
-    pub fn load(&self, training: &Training<'_>) -> Option<Model> {
-        let model = load_model(&self.file(training)).ok()?;
+    /// Returns the model of a training if its file is there and whole.
+    fn load(path: &Path, training: &Training<'_>) -> Option<Model> {
+        let model = load_model(path).ok()?;
         let same = training.grids().iter().zip(model.shapes());
         let mut same = same.map(|(grid, shape)| {
             grid.sensor() == model.sensor()
@@ -214,7 +214,7 @@ impl ModelCache {
 
     /// Keeps a model. A cache that cannot be written to is not an error: the model is trained again next time. One that
     /// takes more than 64 MB is not kept.
-    pub fn keep(&self, path: &Path, model: &Model) {
+    fn keep(&self, path: &Path, model: &Model) {
         self.keep_up_to(MAX_CACHED, path, model);
     }
 
@@ -228,6 +228,28 @@ impl ModelCache {
             let _ = replace_file(path, bytes.get_ref());
         }
     }
+}
+
+/// Returns the model of a training: that of the cache, otherwise the one that `train` makes of it, which is then kept there.
+/// Without a cache it is trained each time.
+///
+/// # Errors
+/// Those of `train`.
+pub fn cached_or_trained<'a, E>(
+    cache: Option<&ModelCache>,
+    training: Training<'a>,
+    train: impl FnOnce(Training<'a>) -> Result<Model, E>,
+) -> Result<Model, E> {
+    let Some(cache) = cache else {
+        return train(training);
+    };
+    let path = cache.file(&training);
+    if let Some(model) = ModelCache::load(&path, &training) {
+        return Ok(model);
+    }
+    let model = train(training)?;
+    cache.keep(&path, &model);
+    Ok(model)
 }
 
 /// Writes a whole file in place of the one of that name, if there is one.
@@ -293,21 +315,36 @@ mod tests {
     fn a_cache_gives_what_was_trained_and_nothing_else() {
         let folder = tempfile::tempdir().expect("a folder");
         let cache = ModelCache::in_folder(folder.path().join("cache"));
-        assert!(cache.load(&training(4.0)).is_none());
-        let model = training(4.0).run().expect("not stopped");
+        // Whether a model is trained, and the model.
+        let model = |side: f64| {
+            let mut is_trained = false;
+            let model = cached_or_trained(Some(&cache), training(side), |training| {
+                is_trained = true;
+                training.run()
+            });
+            (is_trained, model.expect("not stopped"))
+        };
+        let trained = training(4.0).run().expect("not stopped");
         let path = cache.file(&training(4.0));
         // One that is too large is not written.
-        cache.keep_up_to(99, &path, &model);
+        cache.keep_up_to(99, &path, &trained);
         assert!(!folder.path().join("cache").exists());
-        cache.keep(&path, &model);
-        cache.keep_up_to(99, &path, &model);
-        let cached = cache.load(&training(4.0)).expect("it is there");
-        assert_eq!(Evaluation::of(&cached), Evaluation::of(&model));
-        assert!(cache.load(&training(4.1)).is_none());
-        // A damaged one is trained again.
+        assert!(model(4.0).0);
+        cache.keep_up_to(99, &path, &trained);
+        let (is_trained, cached) = model(4.0);
+        assert!(!is_trained);
+        assert_eq!(Evaluation::of(&cached), Evaluation::of(&trained));
+        assert!(model(4.1).0);
+        // A damaged one is trained again, and one that was stopped is not kept.
         let mut bytes = fs::read(&path).expect("it is there");
         bytes.truncate(bytes.len() / 2);
         fs::write(&path, bytes).expect("written");
-        assert!(cache.load(&training(4.0)).is_none());
+        let stopped = cached_or_trained(Some(&cache), training(4.0), |_| Err("stopped"));
+        assert_eq!(stopped.err(), Some("stopped"));
+        assert!(model(4.0).0);
+        assert!(!model(4.0).0);
+        // Nothing is kept without a cache.
+        let trained = cached_or_trained(None, training(4.0), |_| Err("trained"));
+        assert_eq!(trained.err(), Some("trained"));
     }
 }

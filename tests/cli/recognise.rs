@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::model::{COARSE, Place, keys};
-use super::{Run, misused, refused};
+use super::{Run, finish, misused, program, refused};
 
 /// A square of 4 × 4, which only one of the rectangles leaves.
 const SQUARE: &str = "......\n.####.\n.####.\n.####.\n.####.\n......\n";
@@ -410,6 +410,51 @@ fn the_seven_figures_are_at_hand() {
     );
     let card = place.done("model show figures");
     assert!(card.contains("hexagon: hexagon side 4.00"), "{card}");
+}
+
+/// Each of these is refused before a built-in set is trained.
+#[test]
+fn what_is_mistyped_costs_no_training() {
+    let place = place();
+    place.write("there.svg", "");
+    for line in [
+        "recognise nowhere",
+        "recognise square.txt --noise 0.01 --mask nowhere",
+        "frames nowhere --all --at-least 1 --model figures",
+        "model confusion figures --export there.svg",
+    ] {
+        let arguments: Vec<&str> = line.split(' ').collect();
+        let mut program = program(&arguments, "C.UTF-8");
+        program
+            .current_dir(place.0.path())
+            .env("XDG_CACHE_HOME", place.path("cache"));
+        let run = finish(program.spawn().expect("it starts"), b"");
+        assert_eq!(run.status, Some(1), "{line}: {}", run.stderr);
+        let said = |name: &str| run.stderr.contains(name);
+        assert!(said("nowhere") || said("there.svg"), "{}", run.stderr);
+        let is_trained = std::fs::exists(place.path("cache")).expect("it can be looked at");
+        assert!(!is_trained, "{line}");
+    }
+}
+
+/// One thread: each more has a stack, which counts too.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_training_of_a_built_in_set_keeps_to_the_memory_that_there_is() {
+    let place = place();
+    let mut command = std::process::Command::new("sh");
+    command
+        .args(["-c", "ulimit -d 12000; exec \"$0\" recognise square.txt"])
+        .arg(env!("CARGO_BIN_EXE_taxel"))
+        .current_dir(place.0.path())
+        .env("TAXEL_CONFIG", "/dev/null")
+        .env("XDG_CACHE_HOME", place.path("cache"))
+        .env("RAYON_NUM_THREADS", "1");
+    let run = command.output().expect("it starts");
+    let said = String::from_utf8_lossy(&run.stderr);
+    assert_eq!(run.status.code(), Some(1), "{said}");
+    assert!(said.contains("more memory than the 11.7M"), "{said}");
+    assert!(said.contains("taxel model train"), "{said}");
 }
 
 /// Frames of which one has a square, with `--model` and through a pipe.

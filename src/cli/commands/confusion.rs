@@ -16,6 +16,7 @@ use crate::cli::error::{CliError, MOST_PAIRED};
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
+use crate::cli::output::progress::Progress;
 use crate::formats::{ConfusionMap, json};
 use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model, greedy, share};
 use crate::storage::UnfinishedFile;
@@ -34,6 +35,7 @@ pub(crate) fn confusion(
         // What cannot be written is refused before the work.
         drop(UnfinishedFile::new(path, asked.existing)?);
     }
+    let model = model.ready(&|poses| Progress::new(poses, asked.quiet, charset))?;
     let as_json = asked.form == EvaluationForm::Json;
     let text = match &asked.of {
         Evaluated::Imprints => shown(asked, &Evaluation::of(&model), None, charset),

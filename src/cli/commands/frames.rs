@@ -77,6 +77,18 @@ impl FramesOutput<'_> {
     }
 }
 
+/// Opens the recording that is asked for.
+///
+/// # Errors
+/// If it cannot be opened.
+pub(crate) fn open(asked: &FramesArguments) -> Result<RecordingFile, CliError> {
+    let mut options = ReadOptions::default();
+    if let Some((rows, columns)) = asked.processing.shape {
+        options = options.with_shape(rows, columns);
+    }
+    RecordingFile::open(&asked.file, options)
+}
+
 /// Lists a recording, or answers the frames that are asked for; `processing` is what the flags ask for.
 ///
 /// # Errors
@@ -84,14 +96,10 @@ impl FramesOutput<'_> {
 /// or size do not fit.
 pub(crate) fn frames(
     asked: &FramesArguments,
+    mut recording: RecordingFile,
     processing: Processing,
     mut output: FramesOutput<'_>,
 ) -> Result<(), CliError> {
-    let mut options = ReadOptions::default();
-    if let Some((rows, columns)) = asked.processing.shape {
-        options = options.with_shape(rows, columns);
-    }
-    let mut recording = RecordingFile::open(&asked.file, options)?;
     let mut scan = Scan::of(&mut recording, &processing.view);
     for warning in recording
         .complaint()

@@ -14,7 +14,7 @@
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde_json::json;
 
@@ -41,8 +41,8 @@ use crate::recognition::{
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::{
-    ArchiveFileError, ModelCache, ModelFolder, UnfinishedFile, load_model, load_whole_model,
-    model_hash, save_model,
+    ArchiveFileError, ModelCache, ModelFolder, UnfinishedFile, cached_or_trained, load_model,
+    load_whole_model, model_hash, save_model,
 };
 use crate::tui::recognise::sets::{ModelChoice, unknown_set};
 
@@ -77,21 +77,34 @@ pub(crate) fn train(
     }
     let memory = MemoryGuard::new(asked.memory, TOO_LITTLE_MEMORY);
     let progress = Progress::new(training.poses(), asked.quiet, charset);
+    let pool = threads::pool(asked.jobs)?;
+    let model = pool.install(|| run(training, &memory, &progress, stopped));
+    let model = model.map_err(|error| signals.failure_or(error))?;
+    let saved = save_model(&model, &path, asked.there.existing(), stopped);
+    saved.map_err(|error| signals.failure_or(error.into()))?;
+    trained(&model, &path, "written", asked, charset)
+}
+
+/// Runs a training until it is done, memory runs short or `stopped` becomes true.
+///
+/// # Errors
+/// [`CliError::Memory`], or that of the training.
+fn run(
+    training: Training<'_>,
+    memory: &MemoryGuard,
+    progress: &Progress,
+    stopped: &AtomicBool,
+) -> Result<Model, CliError> {
     let report = |poses: u64| {
         progress.add(poses);
         !stopped.load(Ordering::Relaxed) && memory.allows()
     };
-    let pool = threads::pool(asked.jobs)?;
-    let model = pool.install(|| training.progress(&report).run());
+    let model = training.progress(&report).run();
     progress.finish();
-    let model = model.map_err(|error| match error {
+    model.map_err(|error| match error {
         TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),
-        TrainingError::Stopped => signals.failure(),
         error => error.into(),
-    })?;
-    let saved = save_model(&model, &path, asked.there.existing(), stopped);
-    saved.map_err(|error| signals.failure_or(error.into()))?;
-    trained(&model, &path, "written", asked, charset)
+    })
 }
 
 /// What is printed of a model whose file is `done`: written, or there already.
@@ -216,12 +229,44 @@ pub(crate) fn is_kept(name: &Name, shelf: &Shelf) -> bool {
     folder(shelf).is_ok_and(|models| models.file(name).exists())
 }
 
-/// Finds a model that can be asked: one beside the library, then a built-in set, which is trained if the cache has not got
-/// it, then a file.
+/// A model that was found, so that what else may be refused is looked at before a training.
+#[derive(Debug)]
+pub(crate) enum FoundModel {
+    /// That of a file, which is read.
+    Read(Box<Model>),
+    /// A built-in set.
+    BuiltIn(Training<'static>),
+}
+
+impl FoundModel {
+    /// The model. That of a built-in set comes from the user's cache; if it is not there it is trained, which takes some
+    /// seconds, and `progress` begins to show how many poses are done. Signals keep their meaning meanwhile: nothing is left
+    /// behind that would have to be removed.
+    ///
+    /// # Errors
+    /// [`CliError::Memory`].
+    pub(crate) fn ready(self, progress: &dyn Fn(u64) -> Progress) -> Result<Model, CliError> {
+        let training = match self {
+            Self::Read(model) => return Ok(*model),
+            Self::BuiltIn(training) => training,
+        };
+        let cache = ModelCache::of_user();
+        cached_or_trained(cache.as_ref(), training, |training| {
+            let memory = MemoryGuard::new(
+                None,
+                "train a model of fewer shapes or coarser steps (taxel model train)",
+            );
+            let progress = progress(training.poses());
+            run(training, &memory, &progress, &AtomicBool::new(false))
+        })
+    }
+}
+
+/// Finds a model that can be asked: one beside the library, then a built-in set, then a file.
 ///
 /// # Errors
 /// [`CliError::NoSet`] if nothing has that name; otherwise why the file cannot be read, or that it is one shard only.
-pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<Model, CliError> {
+pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<FoundModel, CliError> {
     found(which, shelf, &load_whole_model)
 }
 
@@ -230,15 +275,16 @@ fn found(
     which: &OsStr,
     shelf: &Shelf,
     load: &dyn Fn(&Path) -> Result<Model, ArchiveFileError>,
-) -> Result<Model, CliError> {
-    match choice(which, shelf)? {
-        ModelChoice::Stored(name) => Ok(load(&folder(shelf)?.file(&name))?),
-        ModelChoice::File(path) => Ok(load(&path)?),
-        own => match own.training() {
-            Some(training) => kept_or_trained(training?),
-            None => Err(unknown(which, shelf)),
-        },
-    }
+) -> Result<FoundModel, CliError> {
+    let path = match choice(which, shelf)? {
+        ModelChoice::Stored(name) => folder(shelf)?.file(&name),
+        ModelChoice::File(path) => path,
+        own => {
+            let training = own.training().ok_or_else(|| unknown(which, shelf))?;
+            return Ok(FoundModel::BuiltIn(training?));
+        }
+    };
+    Ok(FoundModel::Read(Box::new(load(&path)?)))
 }
 
 /// The set of shapes that a name or a file means, not read yet.
@@ -269,22 +315,6 @@ fn unknown(which: &OsStr, shelf: &Shelf) -> CliError {
     CliError::NoSet(unknown_set(&which.to_string_lossy(), &stored))
 }
 
-/// The model of a built-in set, from the cache or trained now.
-/// Training takes some seconds, so the model is kept in the user's cache, under a name made of shapes, grid and
-/// version. Without a cache, or if it cannot be written, the model is trained each time; that is not an error.
-fn kept_or_trained(training: Training<'static>) -> Result<Model, CliError> {
-    let Some(cache) = ModelCache::of_user() else {
-        return Ok(training.run()?);
-    };
-    if let Some(model) = cache.load(&training) {
-        return Ok(model);
-    }
-    let path = cache.file(&training);
-    let model = training.run()?;
-    cache.keep(&path, &model);
-    Ok(model)
-}
-
 /// Shows the card of a model.
 /// The card in words, or as an object of JSON. Both end with the evaluation of one touch ([`evaluation::summary`]).
 pub(crate) fn show(
@@ -294,6 +324,7 @@ pub(crate) fn show(
     charset: Charset,
 ) -> Result<String, CliError> {
     let model = found(which, shelf, &load_model)?;
+    let model = model.ready(&|poses| Progress::new(poses, false, charset))?;
     let limit = Evaluation::of(&model);
     if json {
         return Ok(json::ascii(&card_json(&model, &limit)?) + "\n");

@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use crate::cli::commands::model;
+use crate::cli::commands::model::{self, FoundModel};
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::answer::{AnswerJson, AnswerText};
@@ -10,7 +10,6 @@ use crate::cli::output::charset::Charset;
 use crate::formats::json;
 use crate::imprint::Imprint;
 use crate::recognition::{Evidence, Model, Noise};
-use crate::tui::recognise::sets::ModelChoice;
 
 /// Which model names imprints, and how often a taxel of the sensor flips.
 #[derive(Clone, Debug, Default)]
@@ -22,27 +21,13 @@ pub(crate) struct NamingArguments {
 }
 
 impl NamingArguments {
-    /// Reads or trains the model; None if none is asked for. Training takes seconds.
+    /// Finds the model; None if none is asked for.
     ///
     /// # Errors
     /// If there is no such model, or it cannot be read.
-    pub(crate) fn load(&self, shelf: &Shelf) -> Result<Option<Model>, CliError> {
+    pub(crate) fn find(&self, shelf: &Shelf) -> Result<Option<FoundModel>, CliError> {
         let model = self.model.as_ref();
         model.map(|model| model::find(model, shelf)).transpose()
-    }
-
-    /// Reads a model that is in a file; None where it is trained first, or none is asked for.
-    ///
-    /// # Errors
-    /// As for [`Self::load`].
-    pub(crate) fn load_file(&self, shelf: &Shelf) -> Result<Option<Model>, CliError> {
-        let Some(model) = &self.model else {
-            return Ok(None);
-        };
-        match model::choice(model, shelf)? {
-            ModelChoice::Stored(_) | ModelChoice::File(_) => self.load(shelf),
-            _ => Ok(None),
-        }
     }
 
     /// The noise, with the dead cells of a mask left out.

@@ -332,6 +332,7 @@ pub(crate) fn touches(
     charset: Charset,
 ) -> Result<String, CliError> {
     let model = model::find(&asked.model, shelf)?;
+    let model = model.ready(&|poses| Progress::new(poses, asked.quiet, charset))?;
     let signals = Signals::heard().map_err(CliError::System)?;
     let all = asked.runs * model.shapes().len() as u64;
     let progress = Progress::counting("runs", all, asked.quiet, charset);

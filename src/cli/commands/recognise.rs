@@ -26,6 +26,7 @@ use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{AnswerJson, AnswerText};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::pose::PoseReport;
+use crate::cli::output::progress::Progress;
 use crate::formats::framed::{FrameRows, RuleRecord};
 use crate::formats::json;
 use crate::formats::record::Text;
@@ -47,8 +48,11 @@ pub(crate) fn recognise(
     output: &mut dyn Write,
 ) -> Result<(), CliError> {
     let model = model::find(&asked.model, shelf)?;
-    let recogniser = Recogniser::new(asked, &model, shelf)?;
-    match input(&asked.what, shelf)? {
+    let noise = noise(asked, shelf)?;
+    let input = input(&asked.what, shelf)?;
+    let model = model.ready(&|poses| Progress::new(poses, false, charset))?;
+    let recogniser = Recogniser::new(asked, &model, noise.as_ref())?;
+    match input {
         Asked::Imprint(imprint) => recogniser.answer_imprint(&imprint, charset, output),
         Asked::Lines(input) => recogniser.answer_lines(input, output),
     }
@@ -65,19 +69,15 @@ struct Recogniser<'a> {
 }
 
 impl<'a> Recogniser<'a> {
-    /// Prepares a model for the noise that is asked for.
+    /// Asks a model under a noise.
     ///
     /// # Errors
-    /// If the model has no shape of the expected name, or the mask cannot be read.
+    /// If the model has no shape of the expected name.
     fn new(
         asked: &'a RecogniseArguments,
         model: &'a Model,
-        shelf: &Shelf,
+        noise: Option<&Noise>,
     ) -> Result<Self, CliError> {
-        let noise = match (asked.noise, &asked.mask) {
-            (Some(noise), Some(mask)) => Some(noise.without(imprint_of(mask, shelf)?)),
-            (noise, _) => noise,
-        };
         if let Some(name) = &asked.expect
             && model.shapes().iter().all(|shape| shape.name != *name)
         {
@@ -91,7 +91,7 @@ impl<'a> Recogniser<'a> {
         Ok(Self {
             asked,
             model,
-            noise,
+            noise: noise.copied(),
         })
     }
 
@@ -251,9 +251,15 @@ impl<'a> Recogniser<'a> {
     }
 }
 
-/// The imprint that an argument names.
-fn imprint_of(what: &OsStr, shelf: &Shelf) -> Result<Imprint, CliError> {
-    Ok(*shelf.find(what)?.imprint())
+/// How often taxels fail, and which always do, if that is given.
+///
+/// # Errors
+/// If the mask cannot be read.
+fn noise(asked: &RecogniseArguments, shelf: &Shelf) -> Result<Option<Noise>, CliError> {
+    Ok(match (asked.noise, &asked.mask) {
+        (Some(noise), Some(mask)) => Some(noise.without(*shelf.find(mask)?.imprint())),
+        (noise, _) => noise,
+    })
 }
 
 /// What is to be recognised.

@@ -42,7 +42,7 @@ pub(crate) fn separate(
     shelf: &Shelf,
     charset: Charset,
 ) -> Result<String, CliError> {
-    let (separation, usual) = set(asked, shelf)?;
+    let (separation, usual) = set(asked, shelf, charset)?;
     let thresholds: Vec<f64> = match &asked.thresholds {
         Some(range) => range.values().collect(),
         None => vec![usual],
@@ -171,7 +171,11 @@ fn left_out(asked: &SeparateArguments, fitting: &[f64]) -> Option<String> {
 }
 
 /// The set, and the threshold if none is given.
-fn set(asked: &SeparateArguments, shelf: &Shelf) -> Result<(Separation, f64), CliError> {
+fn set(
+    asked: &SeparateArguments,
+    shelf: &Shelf,
+    charset: Charset,
+) -> Result<(Separation, f64), CliError> {
     if let ([what], [], false) = (
         &asked.set.what[..],
         &asked.set.shapes[..],
@@ -179,6 +183,7 @@ fn set(asked: &SeparateArguments, shelf: &Shelf) -> Result<(Separation, f64), Cl
     ) && is_model(what, shelf)
     {
         let model = model::find(what, shelf)?;
+        let model = model.ready(&|poses| Progress::new(poses, asked.quiet, charset))?;
         let separation = Separation::new(model.shapes().to_vec())?
             .positions(asked.positions.unwrap_or_else(|| positions(&model)))
             .angles(asked.angles.unwrap_or(model.ranges()[Axis::Angle]));

@@ -29,7 +29,9 @@ use crate::cli::error::CliError;
 use crate::cli::input::processing;
 use crate::cli::input::recording::RecordingFile;
 use crate::cli::input::shapes::Shelf;
+use crate::cli::output::charset::Charset;
 use crate::cli::output::line_writer::LineWriter;
+use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
 use crate::formats::json;
 use crate::formats::recording::{
@@ -225,21 +227,20 @@ pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
 }
 
 /// Writes the answers; with a model it names each imprint before, so that neither its training nor its search holds up a
-/// recording. A model that is in a file is read at once.
+/// recording. A model that is in a file is read at once. Standard error is for what is odd about the source: it shows no
+/// progress of a training.
 fn line_writer(
     asked: &WatchArguments,
     processing: &Processing,
     shelf: &Shelf,
 ) -> Result<LineWriter, CliError> {
-    let naming = asked.naming.clone();
-    let noise = naming.noise_with(processing.view.mask.as_ref());
-    let shelf = shelf.clone();
-    let read = naming.load_file(&shelf)?;
+    let noise = asked.naming.noise_with(processing.view.mask.as_ref());
+    let found = asked.naming.find(shelf)?;
     LineWriter::start(move |lines| {
-        let model = read.map_or_else(|| naming.load(&shelf), |model| Ok(Some(model)));
-        let Some(model) = model? else {
+        let Some(found) = found else {
             return lines.write(&mut |_, _| ());
         };
+        let model = found.ready(&|poses| Progress::new(poses, true, Charset::Ascii))?;
         let namer = FrameNamer::new(&model, noise.as_ref());
         lines.write(&mut |line, imprint| namer.extend(line, imprint))
     })

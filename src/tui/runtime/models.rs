@@ -18,7 +18,9 @@ use crate::formats::Name;
 use crate::memory::MemoryGuard;
 use crate::quote::shortened;
 use crate::recognition::{Model, TrainingError};
-use crate::storage::{Library, ModelCache, ModelFolder, load_whole_model, location};
+use crate::storage::{
+    Library, ModelCache, ModelFolder, cached_or_trained, load_whole_model, location,
+};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::recognise::message::{Prepared, RecognitionEvent};
 use crate::tui::recognise::sets::{ModelChoice, TrainedModel, unknown_set};
@@ -71,33 +73,24 @@ impl ModelStore {
             (None, ModelChoice::File(path)) => return self.file(path),
             (None, _) => return Err(format!("{choice} cannot be trained")),
         };
-        let cached = self
-            .cache
-            .as_ref()
-            .map(|cache| (cache, cache.file(&training)));
-        if let Some((cache, _)) = &cached
-            && let Some(model) = cache.load(&training)
-        {
-            return Ok(model);
-        }
-        if !begins(training.poses()) {
-            return Err("training was stopped".to_owned());
-        }
-        let memory = MemoryGuard::new(
-            None,
-            "take fewer shapes or coarser steps, or train it in shards on the command line (taxel model train --shard)",
-        );
-        let within = |poses| progress(poses) && memory.allows();
-        let model = training.progress(&within).run();
-        let model = model.map_err(|error| match error {
-            TrainingError::Stopped if memory.exceeded() => memory.message(),
-            TrainingError::Stopped => "training was stopped".to_owned(),
-            error => error.to_string(),
-        })?;
-        if let Some((cache, file)) = cached {
-            cache.keep(&file, &model);
-        }
-        Ok(model)
+        cached_or_trained(self.cache.as_ref(), training, |training| {
+            if !begins(training.poses()) {
+                return Err("training was stopped".to_owned());
+            }
+            let memory = MemoryGuard::new(
+                None,
+                "take fewer shapes or coarser steps, or train it in shards on the command line (taxel model train --shard)",
+            );
+            let within = |poses| progress(poses) && memory.allows();
+            training
+                .progress(&within)
+                .run()
+                .map_err(|error| match error {
+                    TrainingError::Stopped if memory.exceeded() => memory.message(),
+                    TrainingError::Stopped => "training was stopped".to_owned(),
+                    error => error.to_string(),
+                })
+        })
     }
 
     /// Reads one of the user's models.
