@@ -1,6 +1,5 @@
 //! The drawing of a page of the results, for a file.
 
-use std::io;
 use std::path::Path;
 
 use crate::formats::{DrawingFormat, PointPlot, PoseMap};
@@ -24,10 +23,11 @@ impl PageDrawing {
     ///
     /// # Errors
     /// Those of the encoder.
-    pub fn content(&self, format: DrawingFormat) -> io::Result<Vec<u8>> {
-        match self {
+    pub fn content(&self, format: DrawingFormat) -> Result<Vec<u8>, String> {
+        let content = match self {
             Self::Points(plot) => plot.content(format),
             Self::Map(map) => map.content(format),
-        }
+        };
+        content.map_err(|error| error.to_string())
     }
 }

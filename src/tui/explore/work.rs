@@ -49,7 +49,7 @@ pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
             match drawing.content(format) {
                 Ok(content) => Some(Effect::File(FileRequest::Write(name, content, existing))),
                 Err(error) => {
-                    refuse(app, error.to_string());
+                    refuse(app, error);
                     None
                 }
             }
