@@ -609,6 +609,25 @@ fn the_matrix_goes_into_files() {
 }
 
 #[test]
+fn names_are_quoted_in_tables_where_they_have_to_be() {
+    let place = Place::new();
+    place.write(
+        "odd.jsonl",
+        "{\"name\":\"bar, long\",\"figure\":\"rectangle\",\"length\":5,\"width\":2}\n\
+         {\"name\":\" é's #1; \",\"figure\":\"rectangle\",\"length\":9,\"width\":2}\n\
+         {\"name\":\"a \\\"disc\\\"\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}\n",
+    );
+    place.done("model train odd.jsonl --positions 1 --angle 0 --quiet --out m.npz");
+    assert_eq!(
+        place.done("model confusion m.npz --csv"),
+        "true,\"bar, long\", é's #1; ,\"a \"\"disc\"\"\"\n\
+         \"bar, long\",1,0,0\n \
+         é's #1; ,0,1,0\n\
+         \"a \"\"disc\"\"\",0,0,1\n"
+    );
+}
+
+#[test]
 fn an_interrupted_training_leaves_nothing() {
     let place = Place::new();
     // Minutes of work.

@@ -16,6 +16,7 @@
 //! Rows are true shapes, columns the names that they are given. All numbers are counted touches, not estimates.
 
 use std::fmt::Write;
+use std::iter;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::json;
@@ -263,20 +264,18 @@ pub(crate) fn worst_pairs(evaluation: &Evaluation, charset: Charset) -> String {
 /// disc,0,1728
 /// ```
 pub(crate) fn csv(evaluation: &Evaluation) -> String {
-    let quoted = |label: &String| {
-        if label.contains([',', '"', '\n', '\r']) {
-            format!("\"{}\"", label.replace('"', "\"\""))
-        } else {
-            label.clone()
-        }
+    let mut table = csv::Writer::from_writer(Vec::new());
+    let mut write = |name: &str, cells: &[String]| {
+        let cells = cells.iter().map(String::as_str);
+        // Cannot fail: the table is kept in memory, and all rows are equally long.
+        let _ = table.write_record(iter::once(name).chain(cells));
     };
-    let names: Vec<String> = evaluation.labels.iter().map(quoted).collect();
-    let mut text = format!("true,{}\n", names.join(","));
-    for (name, row) in names.iter().zip(evaluation.confusion.rows()) {
-        let cells: Vec<String> = row.iter().map(ToString::to_string).collect();
-        let _ = writeln!(text, "{name},{}", cells.join(","));
+    write("true", &evaluation.labels);
+    for (name, row) in evaluation.labels.iter().zip(evaluation.confusion.rows()) {
+        write(name, &row.iter().map(u128::to_string).collect::<Vec<_>>());
     }
-    text
+    let _ = table.flush();
+    String::from_utf8_lossy(table.get_ref()).into_owned()
 }
 
 /// Descriptors chosen one after the other, and the limit in the last row.
