@@ -9,6 +9,8 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::flag;
 
 use crate::cli::error::CliError;
+use crate::memory::MemoryGuard;
+use crate::recognition::TrainingError;
 
 /// Signals that stop the work, each with the exit status that a shell reports for it: 128 and its number.
 const STOPPING: [(i32, u8); 3] = [(SIGINT, 130), (SIGTERM, 143), (SIGHUP, 129)];
@@ -66,6 +68,15 @@ impl Signals {
             self.failure()
         } else {
             error
+        }
+    }
+
+    /// The error of a training: one that was stopped says whether memory ran short or a signal came.
+    pub(crate) fn failure_of(&self, error: TrainingError, memory: &MemoryGuard) -> CliError {
+        match error {
+            TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),
+            TrainingError::Stopped => self.failure(),
+            error => error.into(),
         }
     }
 

@@ -36,7 +36,6 @@ use crate::formats::{LinePlot, json};
 use crate::memory::MemoryGuard;
 use crate::recognition::{
     GivenDescriptors, MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate, TouchesUntil,
-    TrainingError,
 };
 use crate::sensor::Sensor;
 
@@ -296,11 +295,7 @@ pub(crate) fn half_step(
     };
     let result = model.half_step(&report);
     progress.finish();
-    let result = result.map_err(|error| match error {
-        TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),
-        TrainingError::Stopped => signals.failure(),
-        error => error.into(),
-    })?;
+    let result = result.map_err(|error| signals.failure_of(error, &memory))?;
     if asked.form == EvaluationForm::Json {
         let answer = json!({
             "touches": evaluation::number(result.touches),

@@ -66,11 +66,7 @@ pub(crate) fn separate(
     let pool = threads::pool(asked.jobs)?;
     let curves = pool.install(|| curves(asked, &separation, (&sizes, &thresholds), &report));
     progress.finish();
-    let curves = curves.map_err(|error| match error {
-        TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),
-        TrainingError::Stopped => signals.failure(),
-        error => error.into(),
-    })?;
+    let curves = curves.map_err(|error| signals.failure_of(error, &memory))?;
     if let Some(path) = &asked.export {
         let content = match drawn_format(path) {
             Some(format) => drawing(asked.axis, &curves, asked.wanted)
