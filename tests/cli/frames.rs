@@ -350,6 +350,17 @@ fn frames_are_exported_with_their_number_and_stored() {
     assert_eq!(answers(&shown)[0]["na"], 4);
 }
 
+#[test]
+fn a_report_on_noise_has_no_lengths() {
+    misused(
+        &format!(
+            "frames {} --noise-report --at-least 9 --pitch 2",
+            sample("tekscan.asf")
+        ),
+        "the argument '--noise-report' cannot be used with '--pitch <MM>'",
+    );
+}
+
 /// Rows of four cells, each with a label; 7 stands twice.
 const LABELLED: &str = "label,a,b,c,d\n7,1,0,0,0\n7,1,1,0,0\n8,1,1,1,0\n";
 

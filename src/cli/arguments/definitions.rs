@@ -322,7 +322,7 @@ fn frames() -> Command {
         .args(
             of_sensor(&[Parameter::Pitch])
                 .into_iter()
-                .map(|arg| arg.requires("choice")),
+                .map(|arg| arg.requires("choice").conflicts_with("noise-report")),
         )
         .args(keeping)
         .group(kept())
