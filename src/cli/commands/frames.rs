@@ -385,9 +385,7 @@ impl Selection {
         }
         let instead = keep(&imprint, heat, frame, &titles[0], pitch, output, &mut lines)?;
         let text = match (instead, output.form) {
-            (Some(content), _) => {
-                return output.answers.write_all(&content).map_err(CliError::Write);
-            }
+            (Some(content), _) => content,
             (None, Form::Json(_)) => {
                 for note in lines.split_off(titles.len()) {
                     (output.notes)(&note);
@@ -398,8 +396,7 @@ impl Selection {
                 lines.push(report::size(&imprint, None, pitch));
                 let gap = if again { "\n" } else { "" };
                 let map = heat.map_or_else(String::new, |values| {
-                    let unit = listed.info.unit.as_ref();
-                    let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
+                    let unit = unit(&listed.info);
                     heat_map(values, &output.charset.line(&unit), output.charset) + "\n"
                 });
                 let table = report::table(&imprint, &lines, pitch, output.charset);
@@ -457,8 +454,7 @@ impl Selection {
         if let Some(channel) = &listed.info.name {
             title += &format!(", {channel}");
         }
-        let unit = listed.info.unit.as_ref();
-        let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
+        let unit = unit(&listed.info);
         let max = processed.max.map_or("–".to_owned(), short);
         let mut values = format!("sum {}{unit}, max {max}{unit}", short(processed.sum));
         if self.tare > 0 {
@@ -488,6 +484,12 @@ impl Selection {
         }
         text + &format!(" (by {})", self.rule.from.name())
     }
+}
+
+/// The unit of a channel behind a number: ` kPa`; empty if it is unknown.
+fn unit(info: &ChannelInfo) -> String {
+    let unit = info.unit.as_ref();
+    unit.map_or(String::new(), |unit| format!(" {unit}"))
 }
 
 /// The side of a cell in mm, and a line if the recording's cells are not square.
