@@ -35,7 +35,9 @@ use crate::formats::{Name, json};
 use crate::memory::MemoryGuard;
 use crate::pose::{Anchor, Axis, GridError, Ranges, Reach, check_given};
 use crate::quote::did_you_mean;
-use crate::recognition::{CellPositions, Evaluation, LEAST_SIDE, Model, NamedShape, Training};
+use crate::recognition::{
+    CellPositions, Evaluation, LEAST_SIDE, Model, NamedShape, Training, TrainingError,
+};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::{
