@@ -50,6 +50,11 @@ impl Document {
 }
 
 impl Document {
+    /// Whether nothing is on the matrix: no touch, and no taxel set by hand. Its sensor alone is no work.
+    pub fn is_empty(&self) -> bool {
+        self.source.is_none() && self.edits.is_empty()
+    }
+
     /// The document of a stored shape: touched by its source, and by hand what differs from that.
     pub fn of_shape(shape: &StoredShape) -> Self {
         let mut document = Self {

@@ -14,8 +14,16 @@ pub struct DocumentOrigin {
     pub brought_by: Option<String>,
     /// The name that the document was loaded from or stored under.
     pub name: Option<StoredName>,
-    /// What would be found again: work that differs from it is unsaved.
+    /// What would be found again.
     pub saved: Document,
+}
+
+impl DocumentOrigin {
+    /// Whether a document that comes from here is unsaved work: nothing would find it again. Of an empty one there is
+    /// nothing to lose.
+    pub fn would_lose(&self, document: &Document) -> bool {
+        !document.is_empty() && *document != self.saved
+    }
 }
 
 /// Where a document is stored.
@@ -157,14 +165,13 @@ impl History {
     }
 
     /// Whether something was drawn and left for a document from elsewhere without being saved: only undoing would bring
-    /// it back. An empty matrix has nothing to save.
+    /// it back.
     pub fn left_unsaved(&self) -> bool {
         let states = || self.past.iter().chain([&self.present]);
         states().zip(states().skip(1)).any(|(state, next)| {
             state.origin != next.origin
-                && state.document != Document::empty(state.document.sensor)
                 && (self.origins.get(state.origin))
-                    .is_some_and(|origin| origin.saved != state.document)
+                    .is_some_and(|origin| origin.would_lose(&state.document))
         })
     }
 

@@ -486,7 +486,12 @@ impl App {
 
     /// Whether there is work that would be lost.
     pub fn unsaved(&self) -> bool {
-        self.history.present() != &self.history.origin().saved
+        self.history.origin().would_lose(self.history.present())
+    }
+
+    /// Whether the document differs from what is stored under its name. What is empty may, although nothing is lost.
+    pub(in crate::tui) fn is_changed(&self) -> bool {
+        *self.history.present() != self.history.origin().saved
     }
 
     /// Whether what is on the matrix is being saved.
@@ -499,7 +504,7 @@ impl App {
     /// asked for, the former was given up.
     pub fn unsaved_work(&self) -> Option<StoredShape> {
         let shown = self.shown();
-        if self.run_state == RunState::Quit || *shown == self.history.origin().saved {
+        if self.run_state == RunState::Quit || !self.history.origin().would_lose(shown) {
             return self.saving.back().map(|save| (*save.shape).clone());
         }
         let stored = self.stored_name().unwrap_or(UNNAMED);

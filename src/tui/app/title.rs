@@ -37,7 +37,7 @@ pub(in crate::tui) fn name(app: &App) -> Option<String> {
     if !app.dialogs.is_empty() && is_other(app, app.shown()) {
         return None;
     }
-    let changed = if app.unsaved() { "*" } else { "" };
+    let changed = if app.is_changed() { "*" } else { "" };
     Some(format!("{stored}{changed}"))
 }
 

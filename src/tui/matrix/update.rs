@@ -45,7 +45,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
     match message {
         Message::New => {
             let origin = app.history.origin();
-            if origin.name.is_none() && *app.history.present() == Document::empty(sensor) {
+            if origin.name.is_none() && app.history.present().is_empty() {
                 inform(app, "the matrix is empty already");
             } else {
                 begin(app, Document::empty(sensor), None);

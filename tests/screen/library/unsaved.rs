@@ -99,6 +99,24 @@ fn all_unsaved_work_that_is_thrown_away_can_be_brought_back() {
     );
 }
 
+/// The journal and the question before quitting know the same unsaved work.
+#[test]
+fn an_empty_matrix_is_no_work_wherever_it_comes_from() {
+    for keys in [
+        "f<Enter>sx<Enter>u",
+        "S<Tab>9<Enter>",
+        "<Space>sx<Enter><Space>",
+    ] {
+        let session = session(keys);
+        let app = session.app();
+        assert!(!app.unsaved() && app.unsaved_work().is_none(), "{keys}");
+    }
+    // It differs from the stored shape all the same, and says so beside its name.
+    shows("f<Enter>sx<Enter>u", &["· x*\n"]);
+    let drawn = session("f<Enter>sx<Enter><Space>");
+    assert!(drawn.app().unsaved() && drawn.app().unsaved_work().is_some());
+}
+
 #[test]
 fn a_drawing_whose_file_was_deleted_is_unsaved() {
     let mut session = session("<Space>sa<Enter>da<Enter>yq");
