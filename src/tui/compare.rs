@@ -17,7 +17,7 @@ use crate::formats::value;
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::number::{around, narrow};
@@ -436,8 +436,8 @@ impl Page for Comparison {
         Some(Message::Field(1))
     }
 
-    fn scrolls(&self) -> bool {
-        true
+    fn wheel(&self) -> Wheel {
+        Wheel::Rows
     }
 
     fn has_use_for(&self, message: &Message, area: Rect) -> bool {

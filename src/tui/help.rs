@@ -5,7 +5,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::{HelpLine, Keymap, help};
@@ -175,8 +175,8 @@ impl Page for Help {
         cursor
     }
 
-    fn scrolls(&self) -> bool {
-        true
+    fn wheel(&self) -> Wheel {
+        Wheel::Rows
     }
 
     fn has_use_for(&self, message: &Message, _area: Rect) -> bool {

@@ -14,7 +14,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::counted;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::found::{Search, contains, marked};
@@ -170,8 +170,8 @@ impl Page for HistoryDialog {
         Some(Message::Scroll(to - from))
     }
 
-    fn scrolls(&self) -> bool {
-        true
+    fn wheel(&self) -> Wheel {
+        Wheel::Rows
     }
 
     fn has_use_for(&self, message: &Message, _area: Rect) -> bool {

@@ -9,7 +9,7 @@ use crate::tui::app::change::{change, settle};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::menu;
 use crate::tui::app::message::{Message, Mouse, MouseKind};
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::app::state::{App, NarrowPage};
 use crate::tui::widget::number::taxels;
 
@@ -26,16 +26,13 @@ enum Target {
     Page(Message),
 }
 
-/// Lines that a turn of the wheel scrolls.
-const WHEEL: i16 = 3;
-
 /// Does what the mouse says, or gives the message that a key would have given. A click beside everything does nothing,
 /// and a notice stays.
 pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
     let target = at(app, mouse.column, mouse.row);
     match (mouse.kind, target) {
-        (MouseKind::ScrollUp, _) => return scroll(app, -WHEEL),
-        (MouseKind::ScrollDown, _) => return scroll(app, WHEEL),
+        (MouseKind::ScrollUp, _) => return scroll(app, -1),
+        (MouseKind::ScrollDown, _) => return scroll(app, 1),
         (MouseKind::Release, _) => app.paint = None,
         (MouseKind::Press, Some(Target::Taxel(column, row, whole))) => {
             app.begin_action();
@@ -91,11 +88,11 @@ fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
     settle(app);
 }
 
-/// The message of a turn of the wheel, None where there is nothing to scroll.
-fn scroll(app: &App, lines: i16) -> Option<Message> {
+/// The message of a notch of the wheel, up if negative; None where there is nothing to scroll.
+fn scroll(app: &App, notch: i16) -> Option<Message> {
     let top = app.dialogs.last().map(Dialog::page);
-    let scrolls = top.is_some_and(Page::scrolls);
-    scrolls.then_some(Message::Scroll(lines))
+    let lines = top.map_or(Wheel::Idle, Page::wheel).lines()?;
+    Some(Message::Scroll(notch * lines))
 }
 
 /// What is at a position of the screen, None if that is nothing or the screen is too small.

@@ -30,6 +30,28 @@ pub enum Slot {
     Question,
 }
 
+/// What a notch of the mouse wheel does on a page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wheel {
+    /// Nothing.
+    Idle,
+    /// One step, where only what is chosen is visible: more would skip what lies between.
+    Step,
+    /// Three rows of a list, or of what is larger than the screen.
+    Rows,
+}
+
+impl Wheel {
+    /// By how many lines a notch scrolls; None where it does nothing.
+    pub fn lines(self) -> Option<i16> {
+        match self {
+            Self::Idle => None,
+            Self::Step => Some(1),
+            Self::Rows => Some(3),
+        }
+    }
+}
+
 /// Poses that are drawn over the matrix.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PoseLayer<'a> {
@@ -65,9 +87,9 @@ pub trait Page {
         None
     }
 
-    /// Whether the mouse wheel scrolls it.
-    fn scrolls(&self) -> bool {
-        false
+    /// What the mouse wheel does on it.
+    fn wheel(&self) -> Wheel {
+        Wheel::Idle
     }
 
     /// Whether Cancel and Quit go to its own update. Otherwise they close it.

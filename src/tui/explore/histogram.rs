@@ -15,6 +15,7 @@ use ratatui::layout::{Position, Rect};
 use crate::atlas::Histogram;
 use crate::description::Dimension;
 use crate::formats::value::{counted, fitting, grouped};
+use crate::tui::app::page::Wheel;
 use crate::tui::explore::message::ExplorePage;
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
@@ -33,6 +34,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     sifted: false,
     drawing: None,
     table: Some(table),
+    wheel: Wheel::Step,
     draw,
     click: |_, _, _| None,
     update: choose_descriptor,

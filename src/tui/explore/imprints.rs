@@ -19,6 +19,7 @@ use crate::atlas::AtlasEntry;
 use crate::formats::value::{counted, fitting, grouped};
 use crate::pose::Axis;
 use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::page::Wheel;
 use crate::tui::explore::column::ListColumn;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::page::ResultsPage;
@@ -43,6 +44,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     sifted: true,
     drawing: None,
     table: None,
+    wheel: Wheel::Rows,
     draw,
     click,
     update,

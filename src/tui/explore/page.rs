@@ -9,6 +9,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::page::Wheel;
 use crate::tui::explore::drawing::{PageDrawing, drawn_format};
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::results::Results;
@@ -30,6 +31,8 @@ pub struct ResultsPage {
     pub drawing: Option<fn(&Results) -> Option<PageDrawing>>,
     /// Its numbers for a CSV file: None for the list of imprints, whose file has all of them, and for drawings.
     pub table: Option<fn(&Results, Rect) -> String>,
+    /// What the mouse wheel does on it.
+    pub wheel: Wheel,
     /// Draws it. Returns where the cursor is, None if the page has none.
     pub draw: fn(&Results, &Theme, &mut Buffer, Rect) -> Option<Position>,
     /// What a click at a position means.

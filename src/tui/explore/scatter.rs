@@ -17,6 +17,7 @@ use crate::atlas::{AtlasEntry, features};
 use crate::formats::value::{counted, fitting};
 use crate::formats::{PointPlot, axis_ends};
 use crate::tui::app::message::Message;
+use crate::tui::app::page::Wheel;
 use crate::tui::explore::drawing::PageDrawing;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
@@ -37,6 +38,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     sifted: true,
     drawing: Some(drawing),
     table: None,
+    wheel: Wheel::Step,
     draw,
     click,
     update,

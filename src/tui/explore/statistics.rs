@@ -15,6 +15,7 @@ use ratatui::layout::{Position, Rect};
 use crate::atlas::{STATISTIC_COLUMNS, features};
 use crate::formats::value::{fitting, grouped};
 use crate::tui::app::message::Message;
+use crate::tui::app::page::Wheel;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
@@ -30,6 +31,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     sifted: false,
     drawing: None,
     table: Some(table),
+    wheel: Wheel::Rows,
     draw,
     click: |results, page, at| {
         let row = StatisticsTable::of(page, results).row(at)?;

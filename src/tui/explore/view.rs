@@ -12,7 +12,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::pose::Axis;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::pages;
@@ -72,8 +72,8 @@ impl Page for Results {
         (pages::row(self.page()).click)(self, parts.page, at)
     }
 
-    fn scrolls(&self) -> bool {
-        true
+    fn wheel(&self) -> Wheel {
+        pages::row(self.page()).wheel
     }
 
     /// An empty list has nothing to compare, to put onto the matrix or to go to. Where all columns of the statistics

@@ -16,7 +16,7 @@ use crate::frame::{Rule, RuleOrigin};
 use crate::imprint::Imprint;
 use crate::recognition::AnswerState;
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
@@ -49,8 +49,8 @@ impl Page for Live {
         true
     }
 
-    fn scrolls(&self) -> bool {
-        true
+    fn wheel(&self) -> Wheel {
+        Wheel::Step
     }
 
     fn has_use_for(&self, message: &Message, area: Rect) -> bool {

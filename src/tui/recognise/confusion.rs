@@ -11,7 +11,7 @@ use crate::imprint::Imprint;
 use crate::recognition::share;
 use crate::sensor::Sensor;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Keymap;
@@ -222,8 +222,8 @@ impl Page for Confusion {
         )))
     }
 
-    fn scrolls(&self) -> bool {
-        true
+    fn wheel(&self) -> Wheel {
+        Wheel::Rows
     }
 }
 

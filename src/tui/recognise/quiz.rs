@@ -11,7 +11,7 @@ use crate::recognition::below;
 use crate::sensor::Sensor;
 use crate::touch::Plane;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
@@ -258,8 +258,8 @@ impl Page for Quiz {
         })
     }
 
-    fn scrolls(&self) -> bool {
-        true
+    fn wheel(&self) -> Wheel {
+        Wheel::Rows
     }
 
     fn cancels_itself(&self) -> bool {

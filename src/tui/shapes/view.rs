@@ -16,7 +16,7 @@ use ratatui::layout::{Position, Rect};
 use crate::description::{RegionKind, regions};
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 use crate::tui::app::message::{Message, Purpose};
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
@@ -73,8 +73,8 @@ impl Page for ListDialog {
         !of_rows || !self.is_listed() || self.choice().is_some()
     }
 
-    fn scrolls(&self) -> bool {
-        true
+    fn wheel(&self) -> Wheel {
+        Wheel::Rows
     }
 }
 

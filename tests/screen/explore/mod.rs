@@ -309,6 +309,26 @@ fn work_is_stopped_by_every_key_that_leaves_it() {
 }
 
 /// The last column is the last that can be seen, so that one step back is seen too.
+/// Where only the chosen descriptor is visible, a notch of the wheel goes to the next one, as a key does.
+#[test]
+fn the_wheel_skips_no_descriptor() {
+    for page in ["3", "5", "6"] {
+        let keys = format!("fr<Enter>{SHORT}{page}");
+        let mut turned = session(&keys);
+        let pressed = session(&format!("{keys}<Down><Down><Up>"));
+        for kind in [
+            MouseKind::ScrollDown,
+            MouseKind::ScrollDown,
+            MouseKind::ScrollUp,
+        ] {
+            let (column, row) = (10, 10);
+            turned.send(Message::Mouse(Mouse { kind, column, row }));
+        }
+        assert_eq!(turned.screen(), pressed.screen(), "page {page}");
+        assert_ne!(turned.screen(), session(&keys).screen(), "page {page}");
+    }
+}
+
 #[test]
 fn columns_of_statistics_end_with_the_last() {
     let mut session = session("fp<Enter>");

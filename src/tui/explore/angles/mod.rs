@@ -18,6 +18,7 @@ use crate::formats::value::fitting;
 use crate::formats::{PointPlot, axis_ends};
 use crate::pose::Axis;
 use crate::tui::app::message::Message;
+use crate::tui::app::page::Wheel;
 use crate::tui::explore::angles::curve::AngleSpread;
 use crate::tui::explore::drawing::PageDrawing;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
@@ -42,6 +43,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     sifted: false,
     drawing: Some(drawing),
     table: None,
+    wheel: Wheel::Step,
     draw,
     click,
     update: choose_descriptor,

@@ -19,6 +19,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::pose::Axis;
 use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::page::Wheel;
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::page::ResultsPage;
@@ -33,6 +34,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     sifted: false,
     drawing: Some(view::drawing),
     table: None,
+    wheel: Wheel::Rows,
     draw: view::draw,
     click,
     update,

@@ -19,7 +19,7 @@ use crate::formats::separation::{said, short};
 use crate::formats::value::{decimal, grouped};
 use crate::recognition::{SizeAxis, SmallestSize};
 use crate::tui::app::message::Message;
-use crate::tui::app::page::{Page, Slot};
+use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::explore::running::gauge;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
@@ -132,8 +132,8 @@ impl Page for Separate {
             .then_some(Message::Recognise(RecogniseMessage::Select(row)))
     }
 
-    fn scrolls(&self) -> bool {
-        true
+    fn wheel(&self) -> Wheel {
+        Wheel::Rows
     }
 
     fn cancels_itself(&self) -> bool {
