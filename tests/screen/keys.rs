@@ -5,7 +5,7 @@ use taxel::tui::keys::binding::Context;
 use taxel::tui::keys::default_keys::DEFAULT_KEYS;
 use taxel::tui::keys::keymap::{Keymap, help};
 
-use crate::session::{hides, session, shows};
+use crate::session::{hides, session, shows, then};
 
 #[test]
 fn the_cursor_stays_on_the_matrix() {
@@ -710,6 +710,18 @@ fn help_is_read_page_by_page() {
     let [first, second] = ["?", "?<PageDown>"].map(body);
     assert_eq!(second.first(), first.last(), "{second:#?}");
     assert_eq!(body("?<PageDown><PageUp>"), first);
+}
+
+/// Its ends are reached as those of other lists, and what does nothing there is answered by its own keys.
+#[test]
+fn help_has_a_first_and_a_last_line() {
+    let first = session("?").screen();
+    shows("?<End>", &["; the end", "redraw the screen"]);
+    assert_eq!(session("?<End><Home>").screen(), first);
+    shows(
+        "?g",
+        &["! g does nothing here; Up Down PageUp PageDown scroll, / searches"],
+    );
 }
 
 #[test]

@@ -156,16 +156,27 @@ fn perform(app: &mut App, message: Message) -> Option<Effect> {
     }
 }
 
-/// Says of a key without a meaning where the keys are listed; of each key once.
+/// Says of a key without a meaning where the keys are listed, or in that list how to read it; of each key once.
 fn unknown(app: &mut App, key: Key) {
-    if !app.unknown_keys.contains(&key) {
-        app.unknown_keys.push(key);
-        let help = app.keymap().label(app.context(), &action::HELP);
-        refuse(
-            app,
-            format!("{} does nothing here; {help} lists the keys", key.label()),
-        );
+    if app.unknown_keys.contains(&key) {
+        return;
     }
+    app.unknown_keys.push(key);
+    let here = app.context();
+    let label = |action| app.keymap().label(here, action);
+    let instead = if here == Context::Help {
+        let scrolling = [
+            &action::SCROLL_UP,
+            &action::SCROLL_DOWN,
+            &action::SCREEN_UP,
+            &action::SCREEN_DOWN,
+        ];
+        let scrolling = scrolling.map(label).join(" ");
+        format!("{scrolling} scroll, {} searches", label(&action::SEARCH))
+    } else {
+        format!("{} lists the keys", label(&action::HELP))
+    };
+    refuse(app, format!("{} does nothing here; {instead}", key.label()));
 }
 
 /// Handles a message over a page, which was taken off the stack and goes back unless it is done with.
@@ -240,6 +251,8 @@ fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
             let page = room.1.saturating_sub(1).max(1).cast_signed();
             help.scroll(page.saturating_mul(by.into()), keymap, room);
         }
+        Message::ScrollTo(Endpoint::First) => help.scroll(i16::MIN, keymap, room),
+        Message::ScrollTo(Endpoint::Last) => help.scroll(i16::MAX, keymap, room),
         Message::Match(by) if !help.go_to_match(by, keymap, room) => {
             refused = Some(no_search(keymap, Context::Help));
         }

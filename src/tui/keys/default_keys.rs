@@ -402,6 +402,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "scroll" "scroll by a line";
         [PageUp => SCREEN_UP, PageDown => SCREEN_DOWN, Char(' ') => SCREEN_DOWN]
             "" "scroll by a page";
+        [Home => FIRST, End => LAST] "" "the first, the last line";
         [Char('/') => SEARCH] "search" "search for a key or what it does";
         [Char('n') => NEXT_MATCH, Char('N') => PREVIOUS_MATCH] "match" "next, previous match";
         [Char('q') => QUIT, Char('?') => QUIT, F1 => QUIT, Enter => QUIT] "close" "close";
