@@ -84,7 +84,7 @@ fn restore_says_what_it_misses() {
         &mut session,
         "<Esc>sone<Enter>:save two<Enter>:delete one<Enter>y:delete two<Enter>y",
     );
-    then(&mut session, ":restore <Tab>", &[":restore    two one"]);
+    then(&mut session, ":restore <Tab>", &[":restore    two  one"]);
     then(&mut session, "o<Tab><Enter>", &["one is back"]);
     then(
         &mut session,
@@ -112,6 +112,20 @@ fn names_and_flags_are_completed() {
         ":figure rect<Tab>--l<Tab>2 --w<Tab>3<Enter>",
         &["rectangle length 2.00 width 3.00"],
     );
+}
+
+/// Names may have spaces, so that one space would not say where a name ends.
+#[test]
+fn two_spaces_part_the_names_that_are_offered() {
+    let mut session = session("<Space>sa b<Enter>n<Space>sa c<Enter>");
+    for command in ["load", "compare", "delete"] {
+        let keys = format!(":{command} a <Tab>");
+        let texts = [format!(":{command} a    a b  a c")];
+        then(&mut session, &keys, &texts.each_ref().map(String::as_str));
+        press(&mut session, "<Esc>");
+    }
+    press(&mut session, "da b<Enter>yda c<Enter>y");
+    then(&mut session, ":restore <Tab>", &[":restore a    a c  a b"]);
 }
 
 /// As many candidates as fit, and how many more there are.
@@ -394,7 +408,7 @@ fn commands_are_completed_and_recalled() {
     let mut session = session(":re<Tab>");
     shows(
         &session,
-        &[":re   recognise rectangle redo redraw region restore"],
+        &[":re   recognise  rectangle  redo  redraw  region  restore"],
     );
     then(&mut session, "g<Tab>", &[":region"]);
     then(

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Save as: my shape█                                  the name to save under; a broken rule stands above
-//! :figure hex█   hexagon heptagon … 2 more            a command, and what the last word could become
+//! :figure hex█   hexagon  heptagon … 2 more           a command, and what the last word could become
 //! ```
 //! Candidates that do not fit are counted.
 
@@ -100,11 +100,11 @@ impl LinePrompt for CommandDialog {
     }
 }
 
-/// Words after a gap, and the number of those that do not fit.
+/// Words after a gap, and the number of those that do not fit. Two spaces between them: a name may contain one.
 fn as_many_as_fit(words: &[String], room: usize) -> String {
     let mut text = String::new();
     for (index, word) in words.iter().enumerate() {
-        let gap = if index == 0 { "   " } else { " " };
+        let gap = if index == 0 { "   " } else { "  " };
         let left = words.len() - index;
         // The last one needs no room behind it for what is left then.
         let behind = match left {
