@@ -724,6 +724,29 @@ fn help_has_a_first_and_a_last_line() {
     );
 }
 
+/// Those of the other pages stand below the keys that work here, so that a search finds them.
+#[test]
+fn help_on_a_page_of_explore_lists_those_of_the_others() {
+    let mut help = session("fr<Enter>:explore --x0 5 --y0 5<Enter>?");
+    shows(
+        &help,
+        &["In the list of imprints", "Exploring, on every page"],
+    );
+    then(
+        &mut help,
+        "/zoom<Enter>",
+        &["match 1 of", "On the map", "+ -"],
+    );
+    // Enter opens the histogram from the statistics, whatever it means on this page.
+    then(
+        &mut help,
+        "/its histogram<Enter>",
+        &["Enter                   its"],
+    );
+    hides(&help, &["! "]);
+    shows("fr<Enter>:explore --x0 5 --y0 5<Enter>4?", &["On the map"]);
+}
+
 #[test]
 fn a_drawing_says_how_it_can_be_moved() {
     shows("g", &["! nothing to move: f places a figure"]);

@@ -140,6 +140,13 @@ impl Context {
         own.filter(|_| self != Self::Grab)
     }
 
+    /// The other pages of the screen that this place is a page of; none where a screen has no pages to turn to.
+    pub(in crate::tui) fn other_pages(self) -> impl Iterator<Item = Self> {
+        let turns = |place: Self| place.outer() == EXPLORE;
+        let others = Self::ALL.into_iter();
+        others.filter(move |other| turns(self) && turns(*other) && *other != self)
+    }
+
     /// Whether a key that means nothing here is looked up in this place, at once or at last.
     pub(in crate::tui) fn leads_to(self, place: Self) -> bool {
         std::iter::successors(Some(self), |context| context.outer()).any(|own| own == place)

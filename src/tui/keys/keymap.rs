@@ -151,29 +151,31 @@ pub enum HelpLine {
 }
 
 /// The lines of help in a place: on the matrix, where a user begins, all rows; elsewhere the rows of the place and of
-/// those around it, without keys that have another meaning in the inner one.
+/// those around it, without keys that have another meaning in the inner one, then those of the screen's other pages.
 pub fn help(context: Context, keymap: &Keymap) -> Vec<HelpLine> {
-    let places = match context {
-        Context::Matrix => Context::ALL.to_vec(),
-        inner => std::iter::successors(Some(inner), |place| place.outer()).collect(),
-    };
+    let whole = |place| section(place, keymap, &[]);
+    if context == Context::Matrix {
+        return Context::ALL.into_iter().flat_map(whole).collect();
+    }
     let mut lines = Vec::new();
     let mut taken: Vec<Key> = Vec::new();
-    for place in places {
-        let rows: Vec<HelpLine> = keymap
-            .of(place)
-            .map(|row| row.without(&taken))
-            .filter(|row| taken.is_empty() || !row.keys.is_empty())
-            .map(|row| HelpLine::Keys(row.labels(), row.help))
-            .collect();
-        if !rows.is_empty() {
-            lines.push(HelpLine::Place(place));
-            lines.extend(rows);
-        }
-        if context != Context::Matrix {
-            let own = keymap.of(place).flat_map(|row| row.keys.iter());
-            taken.extend(own.map(|(key, _)| *key));
-        }
+    for place in std::iter::successors(Some(context), |place| place.outer()) {
+        lines.extend(section(place, keymap, &taken));
+        let own = keymap.of(place).flat_map(|row| row.keys.iter());
+        taken.extend(own.map(|(key, _)| *key));
+    }
+    lines.extend(context.other_pages().flat_map(whole));
+    lines
+}
+
+/// The heading and the rows of a place, without keys that are taken; nothing where no row is left.
+fn section(place: Context, keymap: &Keymap, taken: &[Key]) -> Vec<HelpLine> {
+    let rows = keymap.of(place).map(|row| row.without(taken));
+    let rows = rows.filter(|row| taken.is_empty() || !row.keys.is_empty());
+    let mut lines = vec![HelpLine::Place(place)];
+    lines.extend(rows.map(|row| HelpLine::Keys(row.labels(), row.help)));
+    if lines.len() == 1 {
+        lines.clear();
     }
     lines
 }
