@@ -423,6 +423,27 @@ fn a_script_records_each_frame_once() {
     assert_eq!(beside["marks"][0]["number"], 5, "{beside}");
 }
 
+/// Nothing can come into a recording that is begun after the end; one that runs can still be ended.
+#[test]
+fn nothing_is_recorded_of_a_source_that_has_ended() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let world = world().confined_to(folder.path().to_owned());
+    let mut page = started(world, ":watch tests/scripts/touch.csv<Enter>");
+    shows(&page, &["r record"]);
+    page.frames(20);
+    then(
+        &mut page,
+        "r",
+        &[
+            "ended",
+            "! the source has ended, so there is nothing to record",
+        ],
+    );
+    hides(&page, &["r record"]);
+    let mut files = std::fs::read_dir(folder.path()).expect("a folder");
+    assert!(files.next().is_none());
+}
+
 #[test]
 fn a_recording_has_the_threshold_and_the_tare_of_its_end() {
     let folder = tempfile::tempdir().expect("a folder");

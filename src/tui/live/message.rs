@@ -187,3 +187,10 @@ pub enum SourceState {
     /// It cannot be read, and why.
     Failed(String),
 }
+
+impl SourceState {
+    /// Whether no frame can come any more. A source that is lost is tried again, and a file that is followed may grow.
+    pub fn is_final(&self) -> bool {
+        matches!(self, Self::Ended | Self::Failed(_))
+    }
+}

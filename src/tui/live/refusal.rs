@@ -2,7 +2,7 @@
 
 use crate::frame::FrameError;
 
-/// Why a frame is not marked, no tare made of frames, or no imprint taken.
+/// Why a frame is not marked, no tare made of frames, no imprint taken, or nothing recorded.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LiveRefusal {
@@ -18,6 +18,9 @@ pub enum LiveRefusal {
     /// The frames cannot be processed together.
     #[error(transparent)]
     Frame(#[from] FrameError),
+    /// No frame can come any more.
+    #[error("the source has ended, so there is nothing to record")]
+    SourceEnded,
     /// Nothing says which values are active.
     #[error("no threshold, so no imprint")]
     NoThreshold,

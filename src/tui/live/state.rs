@@ -365,11 +365,7 @@ impl Live {
         for frame in &batch.frames {
             self.add(frame);
         }
-        let is_ended = matches!(
-            self.status.state,
-            SourceState::Ended | SourceState::Failed(_)
-        );
-        let tare_fails = is_ended && self.tare.end_of_source();
+        let tare_fails = self.status.state.is_final() && self.tare.end_of_source();
         if self.frozen.is_none() {
             let unseen = batch.frames.len().saturating_sub(1);
             self.not_drawn += unseen as u64;

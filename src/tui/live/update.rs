@@ -208,7 +208,10 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             page.display.looked_at = None;
             inform(app, "the taxels of the contact");
         }
-        LiveMessage::Record => return Some(record(page)),
+        LiveMessage::Record => match record(page) {
+            Ok(effect) => return Some(effect),
+            Err(refused) => refuse(app, refused.to_string()),
+        },
         LiveMessage::Mark => mark(app, page),
         LiveMessage::NextModel => {
             app.works += 1;
@@ -282,10 +285,16 @@ pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
 /// Begins a recording, or ends it.
 /// The description of the recording says how its frames were looked at last. The frames are written as they come, without
 /// view, tare or threshold.
-fn record(page: &mut Live) -> Effect {
+///
+/// # Errors
+/// After the end of the source.
+fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
     if page.recording().name().is_some() {
         page.set_recording(None);
-        return Effect::Work(Work::StopRecording);
+        return Ok(Effect::Work(Work::StopRecording));
+    }
+    if page.status().state.is_final() {
+        return Err(LiveRefusal::SourceEnded);
     }
     let channel = page.status().channel.as_deref();
     let metadata = RecordingMetadata {
@@ -300,7 +309,7 @@ fn record(page: &mut Live) -> Effect {
         ended: None,
         ended_by: None,
     };
-    Effect::Work(Work::Record(Box::new(metadata)))
+    Ok(Effect::Work(Work::Record(Box::new(metadata))))
 }
 
 /// The page of the source that was watched last, open or not.

@@ -54,7 +54,13 @@ impl Page for Live {
     }
 
     fn has_use_for(&self, message: &Message, area: Rect) -> bool {
-        !matches!(message, Message::Live(LiveMessage::Window(_))) || hides_taxels(self, area)
+        match message {
+            Message::Live(LiveMessage::Window(_)) => hides_taxels(self, area),
+            Message::Live(LiveMessage::Record) => {
+                self.recording().name().is_some() || !self.status().state.is_final()
+            }
+            _ => true,
+        }
     }
 
     fn draw(
