@@ -425,6 +425,16 @@ fn commands_are_completed_and_recalled() {
 }
 
 #[test]
+fn commands_have_short_forms() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let world = crate::session::world().confined_to(folder.path().to_owned());
+    let mut session = crate::session::started(world, "<Space>:w one.txt<Enter>");
+    shows(&session, &["written: ", "one.txt"]);
+    press(&mut session, ":q!<Enter>");
+    assert!(session.app().ended());
+}
+
+#[test]
 fn a_seed_is_confirmed() {
     shows(":seed 3<Enter>", &["random touches begin with the seed 3"]);
 }

@@ -44,7 +44,7 @@ pub struct PromptCommand {
 const MOST_RECENT: usize = 5;
 
 /// Short forms of commands.
-const SHORT: [(&str, &str); 2] = [("q", "quit"), ("q!", "quit!")];
+const SHORT: [(&str, &str); 3] = [("q", "quit"), ("q!", "quit!"), ("w", "write")];
 
 /// Actions that work on the matrix, where the prompt opens: those that have a key there or have no key at all.
 pub fn actions() -> impl Iterator<Item = &'static Action> {
