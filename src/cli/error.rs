@@ -107,9 +107,17 @@ pub(crate) enum CliError {
         /// What is wrong.
         error: String,
     },
-    /// A training that is refused; with the flag that allows it, if there is one.
-    #[error("{reason}{flag}", reason = .0, flag = flag_of(.0))]
+    /// A training that is refused.
+    #[error(transparent)]
     Training(#[from] TrainingError),
+    /// A training of poses that the sensor cuts off.
+    #[error("{error}; {remedy}, or allow it with --allow-cut")]
+    Cut {
+        /// How many poses of which shape.
+        error: TrainingError,
+        /// What helps.
+        remedy: &'static str,
+    },
     /// A file that cannot be of that form.
     #[error("{name}: {what} is written as {expected}")]
     Ending {
@@ -367,14 +375,6 @@ fn with_flag(error: &GridError) -> String {
             format!("--{flag} {} {}", short(*value), error.complaint())
         }
         error => error.to_string(),
-    }
-}
-
-/// What follows the reason of a refused training: the flag that allows it.
-fn flag_of(error: &TrainingError) -> &'static str {
-    match error {
-        TrainingError::Cut { .. } => " with --allow-cut",
-        _ => "",
     }
 }
 

@@ -22,11 +22,11 @@ pub(crate) use boundary::Boundary;
 pub use grid::{GridError, MAX_POSES, PoseGrid};
 pub use placed::Placed;
 pub use range::{DecimalRange, MAX_VALUES, RangeError};
-#[cfg(feature = "recognition")]
-pub(crate) use reach::Reach;
 #[cfg(feature = "cli")]
 pub(crate) use reach::check_given;
 pub use reach::{GivenRanges, common_ranges, default_ranges, smallest_sensor};
+#[cfg(feature = "recognition")]
+pub(crate) use reach::{Reach, SensorSides};
 #[cfg(feature = "recognition")]
 pub(crate) use symmetry::exact_period;
 pub(crate) use symmetry::{AngleClasses, period};

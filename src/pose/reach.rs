@@ -261,7 +261,68 @@ pub fn smallest_sensor<'a>(
 ) -> Result<Option<(Sensor, Ranges)>, GridError> {
     let sources: Vec<&Source> = sources.into_iter().collect();
     let reach = Reach::of_all(sources.iter().copied(), anchor, given)?;
-    Ok(reach.smallest_sensor(&sources, given, least, FINE))
+    let sides = SensorSides::at_least(least);
+    Ok(reach.smallest_sensor(&sources, given, sides, FINE))
+}
+
+/// The sides of a sensor that is looked for: given ones, and how small the others may be. If none is given, it is square.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SensorSides {
+    columns: Option<u8>,
+    rows: Option<u8>,
+    least: u8,
+}
+
+impl SensorSides {
+    /// None is given.
+    pub(crate) fn at_least(least: u8) -> Self {
+        Self {
+            columns: None,
+            rows: None,
+            least: least.clamp(1, MAX_SIDE),
+        }
+    }
+
+    /// The sides of `sensor` along some axes are given, too.
+    #[cfg(feature = "cli")]
+    pub(crate) fn with_sides_of(self, sensor: &Sensor, is_given: impl Fn(Axis) -> bool) -> Self {
+        Self {
+            columns: is_given(Axis::X0).then(|| sensor.columns()),
+            rows: is_given(Axis::Y0).then(|| sensor.rows()),
+            ..self
+        }
+    }
+
+    /// The largest of its sensors.
+    pub(crate) fn largest(self) -> Sensor {
+        self.sensors().last().unwrap_or(Sensor::LARGEST)
+    }
+
+    /// From the smallest to the largest.
+    fn sensors(self) -> impl Iterator<Item = Sensor> {
+        let sides = self.least..=MAX_SIDE;
+        sides.filter_map(move |side| {
+            Sensor::new(self.columns.unwrap_or(side), self.rows.unwrap_or(side)).ok()
+        })
+    }
+
+    /// The side along an axis, if it is given.
+    fn given(self, axis: Axis) -> Option<u8> {
+        match axis {
+            Axis::Y0 => self.rows,
+            _ => self.columns,
+        }
+    }
+}
+
+/// The axes of positions, and the sides of a sensor along them.
+fn plane_axes(sensor: &Sensor) -> [(Axis, u8); 2] {
+    [(Axis::X0, sensor.columns()), (Axis::Y0, sensor.rows())]
+}
+
+/// Whether given positions and the sizes of the shapes are allowed on a sensor: they may be too large for a small one.
+fn allows(sensor: &Sensor, given: &GivenRanges, sources: &[&Source]) -> bool {
+    check_given(given, sensor).is_ok() && sources.iter().all(|source| is_allowed(source, sensor))
 }
 
 /// The rule of parameters: a size may be too large for a sensor on which the shape lies.
@@ -344,36 +405,54 @@ impl Reach {
         self.0.append(&mut other.0);
     }
 
-    /// The smallest square sensor of at least `least` × `least` taxels that cuts nothing off, and the ranges there, as
-    /// [`smallest_sensor`] gives them; `sources` are the shapes.
+    /// The smallest sensor with these sides that cuts nothing off, and the ranges there, as [`smallest_sensor`] gives them;
+    /// `sources` are the shapes. None if there is none.
     pub(crate) fn smallest_sensor(
         &self,
         sources: &[&Source],
         given: &GivenRanges,
-        least: u8,
+        sides: SensorSides,
         step: u32,
     ) -> Option<(Sensor, Ranges)> {
-        let sides = least.clamp(1, MAX_SIDE)..=MAX_SIDE;
-        let sensors = sides.filter_map(|side| Sensor::new(side, side).ok());
-        // A given position may be too large for a small sensor.
-        let sensors = sensors.filter(|sensor| check_given(given, sensor).is_ok());
-        let mut fitting = sensors.filter_map(|sensor| {
-            let ranges = self.ranges(&sensor, given, step);
-            let holds = [Axis::X0, Axis::Y0].into_iter().all(|axis| {
-                let range = ranges[axis];
-                let mut ends = [range.value(0), range.last()].into_iter();
-                ends.all(|end| self.within(axis, sensor.side(), end))
+        let best = self.best_sensor(sources, given, sides, step);
+        let is_held = |(sensor, ranges): &(Sensor, Ranges)| {
+            let mut axes = plane_axes(sensor).into_iter();
+            let holds = axes.all(|(axis, side)| {
+                self.clears_start(axis, ranges[axis]) && self.clears_end(axis, side, ranges[axis])
             });
-            let allowed = || sources.iter().all(|source| is_allowed(source, &sensor));
-            (holds && allowed()).then_some((sensor, ranges))
-        });
-        fitting.next()
+            holds && allows(sensor, given, sources)
+        };
+        Some(best).filter(is_held)
+    }
+
+    /// The smallest sensor with these sides beyond which nothing is gained, and the ranges there: a larger one would cut off
+    /// as much. The largest sensor if each gains something. Where nothing needs to be cut off, nothing is.
+    pub(crate) fn best_sensor(
+        &self,
+        sources: &[&Source],
+        given: &GivenRanges,
+        sides: SensorSides,
+        step: u32,
+    ) -> (Sensor, Ranges) {
+        let at = |sensor: Sensor| (sensor, self.ranges(&sensor, given, step));
+        let is_enough = |(sensor, ranges): &(Sensor, Ranges)| {
+            let mut axes = plane_axes(sensor).into_iter();
+            let gains_nothing = axes.all(|(axis, side)| {
+                // What is cut off at the left or the top is so on every sensor, unless the position is chosen with it.
+                sides.given(axis).is_some()
+                    || self.clears_end(axis, side, ranges[axis])
+                        && (given[axis].is_some() || self.clears_start(axis, ranges[axis]))
+            });
+            gains_nothing && allows(sensor, given, sources)
+        };
+        let mut enough = sides.sensors().map(at).filter(is_enough);
+        enough.next().unwrap_or_else(|| at(sides.largest()))
     }
 
     /// Given ranges, which the sensor allows, and one cell around the middle for a position that is not given.
     pub(crate) fn ranges(&self, sensor: &Sensor, given: &GivenRanges, step: u32) -> Ranges {
         let mut ranges = filled(given);
-        for (axis, side) in [(Axis::X0, sensor.columns()), (Axis::Y0, sensor.rows())] {
+        for (axis, side) in plane_axes(sensor) {
             if given[axis].is_none() {
                 ranges[axis] = cell_from(self.middle(axis, side, step), sensor, step);
             }
@@ -391,11 +470,17 @@ impl Reach {
             })
     }
 
-    /// Whether nothing is cut off with the anchor at a position.
-    fn within(&self, axis: Axis, side: u8, at: f64) -> bool {
+    /// Whether nothing is cut off at the left, or at the top, with the anchor at any of these positions.
+    fn clears_start(&self, axis: Axis, positions: DecimalRange) -> bool {
+        let mut all = self.along(axis);
+        all.all(|(low, _, zoom)| low + zoom * positions.value(0) >= -DOUBTFUL)
+    }
+
+    /// The same at the right, or at the bottom, of a sensor of this side.
+    fn clears_end(&self, axis: Axis, side: u8, positions: DecimalRange) -> bool {
         let end = f64::from(side) + DOUBTFUL;
-        self.along(axis)
-            .all(|(low, high, zoom)| low + zoom * at >= -DOUBTFUL && high + zoom * at <= end)
+        let mut all = self.along(axis);
+        all.all(|(_, high, zoom)| high + zoom * positions.last() <= end)
     }
 
     /// The first and the last position at which nothing is cut off. The last is below the first if something is cut off

@@ -7,7 +7,9 @@
 use crate::figure::Figure;
 use crate::parameter::Parameter;
 use crate::parameter::number::to_decimals;
-use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach};
+use crate::pose::{
+    Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach, SensorSides,
+};
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::model::{Model, NamedShape, check_shapes, share};
 use crate::recognition::sets::CellPositions;
@@ -186,7 +188,12 @@ impl Separation {
         let mut given = GivenRanges::default();
         given[Axis::Angle] = Some(self.angles);
         let sources: Vec<&Source> = scaled.iter().map(|shape| &shape.source).collect();
-        let fit = reach.smallest_sensor(&sources, &given, LEAST_SIDE, self.positions.step());
+        let fit = reach.smallest_sensor(
+            &sources,
+            &given,
+            SensorSides::at_least(LEAST_SIDE),
+            self.positions.step(),
+        );
         let (sensor, ranges) = fit.ok_or(TrainingError::Large)?;
         let grid = |(shape, zooms): (&NamedShape, &GivenRanges)| {
             let refused = |error| refused(&shape.name, error);

@@ -2,7 +2,7 @@
 
 use crate::figure::{Figure, FigureKind};
 use crate::parameter::Parameter;
-use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, Reach};
+use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, Reach, SensorSides};
 use crate::recognition::model::NamedShape;
 use crate::recognition::training::{LEAST_SIDE, Training, TrainingError};
 use crate::sensor::Sensor;
@@ -169,7 +169,12 @@ impl Training<'_> {
             name: "the set".to_owned(),
             error,
         })?;
-        let fit = reach.smallest_sensor(&sources, &given, LEAST_SIDE, steps.positions().step());
+        let fit = reach.smallest_sensor(
+            &sources,
+            &given,
+            SensorSides::at_least(LEAST_SIDE),
+            steps.positions().step(),
+        );
         let (sensor, ranges) = fit.ok_or(TrainingError::Large)?;
         Self::new(shapes, sensor, Anchor::Centre, ranges)
     }

@@ -73,7 +73,7 @@ pub enum TrainingError {
     },
     /// Poses that the sensor cuts off, so that imprints depend on its rim.
     #[error(
-        "{name}: the {columns} × {rows} sensor cuts off {} of {} poses; use a larger sensor or other positions, or allow it",
+        "{name}: the {columns} × {rows} sensor cuts off {} of {} poses",
         grouped(*cut), grouped(*poses)
     )]
     Cut {

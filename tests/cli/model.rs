@@ -510,8 +510,7 @@ fn sets_that_make_no_sense_are_refused_in_one_sentence() {
     refused(
         &train("--shape 'huge=ellipse radius_x=40 radius_y=40'", ""),
         1,
-        "huge: the 64 × 64 sensor cuts off 7,200 of 7,200 poses; use a larger sensor or other positions, \
-         or allow it with --allow-cut",
+        "huge: the 64 × 64 sensor cuts off 7,200 of 7,200 poses; use smaller shapes, or allow it with --allow-cut",
     );
     refused(
         &taxel("model confusion nowhere", ""),
@@ -530,6 +529,78 @@ fn sets_that_make_no_sense_are_refused_in_one_sentence() {
         "model train parts.jsonl --out m.npz --positions 3",
         "invalid value '3' for '--positions <N>': expected 1, 2, 4, 5, 10, 20, 25, 50 or 100",
     );
+}
+
+#[test]
+fn training_chooses_the_side_of_the_sensor_that_is_not_given() {
+    let place = Place::new();
+    let disc = "model train --shape 'a=ellipse radius_x=9 radius_y=9' --positions 2 --angle 0 --json --quiet --out m.npz";
+    for (given, columns, rows) in [
+        ("", 19, 19),
+        ("--columns 40", 40, 19),
+        ("--rows 40", 19, 40),
+        // The corner is at x0: of 18 cells, one begins at 3.5.
+        ("--columns 40 --x0 3:3.5:0.5", 40, 19),
+        ("--rows 40 --x0 3:3.5:0.5", 22, 40),
+    ] {
+        let sensor = &place.json(&format!("{disc} {given} --force"))["sensor"];
+        assert_eq!(
+            (&sensor["columns"], &sensor["rows"]),
+            (&columns.into(), &rows.into()),
+            "{given}"
+        );
+    }
+    // Small shapes do not make it smaller than 16.
+    let small = "model train parts.jsonl --positions 2 --angle 0:330:30 --rows 20 --json --quiet --out small.npz";
+    assert_eq!(place.json(small)["sensor"]["columns"], 16);
+}
+
+#[test]
+fn where_poses_are_cut_off_on_every_sensor_the_smallest_is_taken_and_what_helps_is_named() {
+    let place = Place::new();
+    let square =
+        "model train --shape 'a=rectangle length=3 width=3' --x0 0 --y0 0 --quiet --out m.npz";
+    let cut = |line: &str, cut: &str, remedy: &str| {
+        let message = format!("a: the {cut}; {remedy}, or allow it with --allow-cut");
+        refused(&place.run(line, ""), 1, &message);
+    };
+    // Turned, it reaches beyond the left and the top.
+    cut(
+        square,
+        "16 × 16 sensor cuts off 356 of 360 poses",
+        "use other positions",
+    );
+    let sensor = &place.json(&format!("{square} --allow-cut --json"))["sensor"];
+    assert_eq!(
+        (&sensor["columns"], &sensor["rows"]),
+        (&16.into(), &16.into())
+    );
+    let disc =
+        "model train --shape 'a=ellipse radius_x=9 radius_y=9' --angle 0 --quiet --out disc.npz";
+    for (given, cut_off, remedy) in [
+        (
+            "--columns 8",
+            "8 × 19 sensor cuts off 10,000 of 10,000 poses",
+            "use a larger sensor",
+        ),
+        (
+            "--columns 8 --rows 8 --x0 1 --y0 1",
+            "8 × 8 sensor cuts off 1 of 1 poses",
+            "use a larger sensor",
+        ),
+        (
+            "--columns 20 --rows 20 --x0 10 --y0 1",
+            "20 × 20 sensor cuts off 1 of 1 poses",
+            "use a larger sensor or other positions",
+        ),
+        (
+            "--columns 8 --rows 8 --x0 1 --y0 1 --anchor centre",
+            "8 × 8 sensor cuts off 1 of 1 poses",
+            "use a larger sensor and other positions",
+        ),
+    ] {
+        cut(&format!("{disc} {given}"), cut_off, remedy);
+    }
 }
 
 #[test]

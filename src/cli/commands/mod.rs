@@ -20,6 +20,8 @@ pub(super) mod sweep;
 
 pub(super) mod merge;
 
+pub(super) mod training_grid;
+
 pub(super) mod model;
 
 pub(super) mod noise;

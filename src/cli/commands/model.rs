@@ -22,6 +22,7 @@ use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
 use crate::cli::arguments::model::train::{ModelTarget, TrainArguments};
 use crate::cli::arguments::parameters::ShardFile;
 use crate::cli::commands::resume::{self, KEPT};
+use crate::cli::commands::training_grid::TrainingGrid;
 use crate::cli::error::CliError;
 use crate::cli::input::shape_set;
 use crate::cli::input::shapes::Shelf;
@@ -33,11 +34,9 @@ use crate::cli::threads;
 use crate::formats::value::counted;
 use crate::formats::{Name, json};
 use crate::memory::MemoryGuard;
-use crate::pose::{Anchor, Axis, GridError, Ranges, Reach, check_given};
+use crate::pose::{Anchor, Axis, Ranges};
 use crate::quote::did_you_mean;
-use crate::recognition::{
-    CellPositions, Evaluation, LEAST_SIDE, Model, NamedShape, Training, TrainingError,
-};
+use crate::recognition::{Evaluation, Model, NamedShape, Training, TrainingError};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::{
@@ -59,7 +58,8 @@ pub(crate) fn train(
 ) -> Result<String, CliError> {
     let path = path_of(&asked.to, shelf)?;
     let shapes = shape_set::read(&asked.set, shelf)?;
-    let (sensor, anchor, ranges) = grid(asked, &shapes)?;
+    let grid = TrainingGrid::of(asked, &shapes)?;
+    let (sensor, anchor, ranges) = (grid.sensor, grid.anchor, grid.ranges);
     let signals = Signals::heard().map_err(CliError::System)?;
     let stopped = &signals.stopped;
     let training = Training::new(shapes, sensor, anchor, ranges)?
@@ -79,7 +79,13 @@ pub(crate) fn train(
     let progress = Progress::new(training.poses(), asked.quiet, charset);
     let pool = threads::pool(asked.jobs)?;
     let model = pool.install(|| run(training, &memory, &progress, stopped));
-    let model = model.map_err(|error| signals.failure_or(error))?;
+    let model = model.map_err(|error| match error {
+        error @ TrainingError::Cut { .. } => CliError::Cut {
+            error,
+            remedy: grid.remedy,
+        },
+        error => signals.failure_of(error, &memory),
+    })?;
     let saved = save_model(&model, &path, asked.there.existing(), stopped);
     saved.map_err(|error| signals.failure_or(error.into()))?;
     trained(&model, &path, "written", asked, charset)
@@ -88,23 +94,20 @@ pub(crate) fn train(
 /// Runs a training until it is done, memory runs short or `stopped` becomes true.
 ///
 /// # Errors
-/// [`CliError::Memory`], or that of the training.
+/// That of the training; [`TrainingError::Stopped`] in both cases of a stop.
 fn run(
     training: Training<'_>,
     memory: &MemoryGuard,
     progress: &Progress,
     stopped: &AtomicBool,
-) -> Result<Model, CliError> {
+) -> Result<Model, TrainingError> {
     let report = |poses: u64| {
         progress.add(poses);
         !stopped.load(Ordering::Relaxed) && memory.allows()
     };
     let model = training.progress(&report).run();
     progress.finish();
-    model.map_err(|error| match error {
-        TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),
-        error => error.into(),
-    })
+    model
 }
 
 /// What is printed of a model whose file is `done`: written, or there already.
@@ -164,57 +167,6 @@ fn grid_text(sensor: &Sensor, anchor: Anchor, ranges: &Ranges) -> String {
     )
 }
 
-/// The sensor and the poses of a training: the given ones, otherwise those on which no shape is cut off.
-/// Where neither x0 nor y0 is given the anchor is the centre, since that of a shape stays where it is when the shape
-/// turns: one cell is then enough for all positions. `--positions` sets the step of ranges that are not given.
-///
-/// # Errors
-/// If no sensor of up to 64 × 64 holds all shapes in these poses, or a given value is out of range.
-fn grid(
-    asked: &TrainArguments,
-    shapes: &[NamedShape],
-) -> Result<(Sensor, Anchor, Ranges), CliError> {
-    let placed = asked.ranges[Axis::X0].is_some() || asked.ranges[Axis::Y0].is_some();
-    let usual = if placed {
-        Anchor::Corner
-    } else {
-        Anchor::Centre
-    };
-    let anchor = asked.anchor.unwrap_or(usual);
-    let (sensor, ranges) = fitting(shapes, asked, anchor)?;
-    let sensor = if let Some(sensor) = asked.sensor {
-        sensor
-    } else {
-        let (columns, rows) = (sensor.columns(), sensor.rows());
-        asked
-            .given
-            .sensor(Sensor::new(columns, rows).map_err(GridError::from)?)?
-    };
-    Ok((sensor, anchor, ranges))
-}
-
-/// The given sensor, or the smallest suitable one, and the ranges in which it cuts off no shape, if there are such
-/// ranges. The smallest sensor is square, with sides of [`LEAST_SIDE`] or more. Where not even the largest one holds
-/// the shapes, training says which poses are cut off.
-fn fitting(
-    shapes: &[NamedShape],
-    asked: &TrainArguments,
-    anchor: Anchor,
-) -> Result<(Sensor, Ranges), CliError> {
-    let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();
-    let step = asked.positions.unwrap_or(CellPositions::FINE).step();
-    let given = &asked.ranges;
-    check_given(given, &asked.sensor.unwrap_or(Sensor::LARGEST))?;
-    let reach = Reach::of_all(sources.iter().copied(), anchor, given)?;
-    if asked.sensor.is_none()
-        && let Some(fitting) = reach.smallest_sensor(&sources, given, LEAST_SIDE, step)
-    {
-        return Ok(fitting);
-    }
-    let sensor = asked.sensor.unwrap_or(Sensor::LARGEST);
-    Ok((sensor, reach.ranges(&sensor, given, step)))
-}
-
 /// The folder of the models beside the library.
 ///
 /// # Errors
@@ -257,7 +209,11 @@ impl FoundModel {
                 "train a model of fewer shapes or coarser steps (taxel model train)",
             );
             let progress = progress(training.poses());
-            run(training, &memory, &progress, &AtomicBool::new(false))
+            let model = run(training, &memory, &progress, &AtomicBool::new(false));
+            model.map_err(|error| match error {
+                TrainingError::Stopped => CliError::Memory(memory.message()),
+                error => error.into(),
+            })
         })
     }
 }

@@ -15,8 +15,8 @@ use crate::cli::error::CliError;
 use crate::formats::Name;
 use crate::memory::MemorySize;
 use crate::parameter::Parameter;
-use crate::pose::{Anchor, Axis, GivenRanges};
-use crate::recognition::CellPositions;
+use crate::pose::{Anchor, Axis, GivenRanges, SensorSides};
+use crate::recognition::{CellPositions, LEAST_SIDE};
 use crate::sensor::Sensor;
 use crate::sweep::Shard;
 
@@ -31,8 +31,8 @@ pub(crate) struct TrainArguments {
     pub(crate) ranges: GivenRanges,
     /// Positions of a cell in each direction, where its range is not given.
     pub(crate) positions: Option<CellPositions>,
-    /// The sensor, if its columns or rows are given; otherwise the smallest one, changed by the other values.
-    pub(crate) sensor: Option<Sensor>,
+    /// The given sides of the sensor. Those not given are chosen so that it cuts no shape off.
+    pub(crate) sides: SensorSides,
     /// The values of the sensor's flags.
     pub(crate) given: Given,
     /// The part of the grid to train on; `taxel merge` puts the parts together.
@@ -122,7 +122,12 @@ impl TrainArguments {
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let given = Given::of(matches);
         let sensor = given.sensor(Sensor::default())?;
-        let sized = given.has(Parameter::Columns) || given.has(Parameter::Rows);
+        let sides = SensorSides::at_least(LEAST_SIDE).with_sides_of(&sensor, |axis| {
+            given.has(match axis {
+                Axis::Y0 => Parameter::Rows,
+                _ => Parameter::Columns,
+            })
+        });
         let to = match matches.get_one::<Name>("name") {
             Some(name) => ModelTarget::Named(name.clone()),
             None => ModelTarget::File(matches.get_one("out").cloned().unwrap_or_default()),
@@ -141,7 +146,7 @@ impl TrainArguments {
             anchor: matches.get_one::<Anchor>("anchor").copied(),
             ranges,
             positions,
-            sensor: sized.then_some(sensor),
+            sides,
             given,
             shard: flags::shard_of(matches),
             jobs: flags::jobs_of(matches),
