@@ -67,6 +67,15 @@ pub enum NamedShapeError {
         /// The figure.
         figure: FigureKind,
     },
+    /// A position, an angle or a zoom.
+    #[error(
+        "{key}: a shape of a set has no pose of its own; it is touched in all poses of the grid, which 'taxel model train' \
+         takes as --x0, --y0, --angle, --zoom-x and --zoom-y"
+    )]
+    Pose {
+        /// Its key.
+        key: &'static str,
+    },
     /// A parameter that is given twice.
     #[error("{key}: given twice")]
     Twice {
@@ -85,8 +94,8 @@ fn keys(figure: FigureKind) -> String {
 /// Finds the imprint of a stored shape.
 pub type ShapeLookup<'a> = dyn Fn(&str) -> Result<Imprint, String> + 'a;
 
-/// Reads a shape of a set from a JSON object. A position, an angle or the zoom of a picture may be there and does not
-/// matter, since a set is touched in the poses of its ranges; a sensor may not.
+/// Reads a shape of a set from a JSON object. It has neither a pose nor a sensor: a set is touched in the poses of a grid, on
+/// one sensor.
 ///
 /// # Errors
 /// What is wrong with it, in one sentence.
@@ -162,8 +171,14 @@ pub fn named_shape_of_words(
     Ok(NamedShape::new(name.trim(), source(record, lookup)?))
 }
 
-/// The shape of a record, at the origin.
-fn source(mut record: Record<'_>, lookup: &ShapeLookup<'_>) -> Result<Source, RecordError> {
+/// The shape of a record without a pose, at the origin.
+fn source(mut record: Record<'_>, lookup: &ShapeLookup<'_>) -> Result<Source, NamedShapeError> {
+    let mut posed = Axis::ALL.map(Axis::parameter).into_iter();
+    let given = posed.find(|&parameter| record.values.get(parameter).is_some());
+    if let Some(parameter) = given {
+        let key = parameter.row().key;
+        return Err(NamedShapeError::Pose { key });
+    }
     if let Record {
         figure: None,
         picture: None,
@@ -175,16 +190,14 @@ fn source(mut record: Record<'_>, lookup: &ShapeLookup<'_>) -> Result<Source, Re
         values.only("imprint", &[])?;
         return Ok(Picture::at_home(*imprint).into());
     }
-    let kind = record.figure.as_deref().and_then(FigureKind::from_name);
-    // A set has all poses of its grid, so the pose that a line gives must not make its file another one.
     for axis in Axis::ALL {
         if !axis.is_zoom() {
             record.values.set(axis.parameter(), 0.0);
-        } else if kind.is_none() {
+        } else if record.figure.is_none() {
             record.values.set(axis.parameter(), 1.0);
         }
     }
-    record.source(&Sensor::LARGEST, lookup)
+    Ok(record.source(&Sensor::LARGEST, lookup)?)
 }
 
 /// A line with its name.

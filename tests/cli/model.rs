@@ -604,6 +604,47 @@ fn where_poses_are_cut_off_on_every_sensor_the_smallest_is_taken_and_what_helps_
 }
 
 #[test]
+fn a_shape_of_a_set_has_no_pose() {
+    let place = Place::new();
+    let refused_at = |line: &str, input: &str, place_and_key: &str| {
+        let message = format!(
+            "{place_and_key}: a shape of a set has no pose of its own; it is touched in all poses of the grid, which \
+             'taxel model train' takes as --x0, --y0, --angle, --zoom-x and --zoom-y"
+        );
+        refused(
+            &place.run(&format!("{line} {COARSE} --out m.npz"), input),
+            1,
+            &message,
+        );
+    };
+    let disc = r#""name":"disc","figure":"ellipse","radius_x":3,"radius_y":3"#;
+    for (shape, key) in [
+        (format!("{disc},\"angle\":90,\"x0\":900"), "x0"),
+        (format!("{disc},\"y0\":0"), "y0"),
+        (format!("{disc},\"zoom_x\":2"), "zoom_x"),
+        (
+            r##""name":"big","picture":["#.","#."],"zoom_x":3,"zoom_y":3"##.to_owned(),
+            "zoom_x",
+        ),
+        (
+            r#""name":"big","picture":"washer","angle":0"#.to_owned(),
+            "angle",
+        ),
+        (
+            r##""name":"big","imprint":["#.","#."],"zoom_y":1"##.to_owned(),
+            "zoom_y",
+        ),
+    ] {
+        let at = format!("standard input, line 1: {key}");
+        refused_at("model train -", &format!("{{{shape}}}\n"), &at);
+    }
+    let words = "model train --shape 'a=ellipse radius_x=3 radius_y=2 x0=1'";
+    refused_at(words, "", "--shape: x0");
+    // The pose of a stored shape belongs to its figure.
+    place.done(&format!("model train washer {COARSE} --out washer.npz"));
+}
+
+#[test]
 fn damaged_models_are_refused() {
     let place = Place::new();
     place.done("model train parts.jsonl --positions 2 --angle 0:330:30 --quiet --out m.npz");
@@ -838,21 +879,9 @@ fn a_built_in_set_is_meant_before_a_file_of_its_name() {
     }
 }
 
-/// A set has every pose of its grid, whatever pose its lines have.
 #[test]
-fn the_pose_of_a_line_does_not_change_a_model() {
+fn words_of_a_shape_that_say_nothing_are_refused() {
     let place = Place::new();
-    for (name, pose) in [("one", ""), ("two", r#""x0":1,"y0":2.5,"angle":33,"#)] {
-        let line = format!(r#"{{"name":"a",{pose}"figure":"hexagon","side":3}}"#);
-        place.write(&format!("{name}.jsonl"), &line);
-        place.done(&format!(
-            "model train {name}.jsonl {COARSE} --out {name}.npz"
-        ));
-    }
-    assert!(
-        place.read("one.npz") == place.read("two.npz"),
-        "the pose is in the file"
-    );
     let words = [
         ("a=hexagon side=3 side=4", "--shape: side: given twice"),
         (
