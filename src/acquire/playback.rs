@@ -155,7 +155,8 @@ pub(super) fn run(
         description,
         consumer: RefCell::new(consumer),
     };
-    let format = format_of(File::open(path).map_err(AcquireError::opening)?)?;
+    let file = File::open(path).map_err(AcquireError::opening)?;
+    let format = format_of(file, ReadOptions::default())?;
     let is_paced = options.repeat || options.speed != AcquireOptions::default().speed;
     if options.once || is_paced || !format.is_appended_to() {
         player.play(path, format)

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use crate::acquire::event::{AcquireError, AcquireOptions};
 use crate::acquire::recorder::RecorderError;
-use crate::formats::recording::{RecordingError, format_of};
+use crate::formats::recording::{ReadOptions, RecordingError, format_of};
 
 /// Where frames come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,7 +55,7 @@ impl FrameSource {
         let (Self::File(path), None) = (self, options.format) else {
             return Ok(None);
         };
-        match format_of(File::open(path)?) {
+        match format_of(File::open(path)?, ReadOptions::default()) {
             Ok(_) | Err(RecordingError::Foreign { .. }) => Ok(Some(path)),
             Err(RecordingError::Io(error)) => Err(error),
             Err(_) => Ok(None),

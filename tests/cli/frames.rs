@@ -692,6 +692,54 @@ fn a_gain_of_one_row_or_one_column_is_a_table() {
     }
 }
 
+#[test]
+fn a_column_of_numbers_is_a_recording_if_rows_and_columns_are_given() {
+    let column = "5\n6\n7\n\n1\n2\n3\n";
+    for (text, flags, expected) in [
+        (
+            column,
+            "--rows 3 --columns 1",
+            r##"[["#","#","#"],[".","#","#"]]"##,
+        ),
+        (
+            "5\n6\n1\n",
+            "--rows 1 --columns 1",
+            r##"[["#"],["#"],["."]]"##,
+        ),
+        (
+            "# grams\n\n5\r\n1\r\n",
+            "--rows 2 --columns 1",
+            r##"[["#","."]]"##,
+        ),
+    ] {
+        let expected: Vec<Value> = serde_json::from_str(expected).expect("JSON");
+        let flags = format!("{flags} --at-least 2");
+        assert_eq!(
+            imprints_of("column.csv", text.as_bytes(), &flags),
+            expected,
+            "{flags}"
+        );
+    }
+    let read =
+        |text: &str, flags: &str| taxel(&format!("frames - --all --at-least 2 {flags}"), text);
+    // Without them, nothing says that these are frames.
+    super::refused(
+        &read(column, ""),
+        1,
+        "standard input: 1 value a frame, but no rows and columns; give --rows and --columns",
+    );
+    let words = read("5\nwords\n", "").stderr;
+    assert!(
+        words.contains(": not a recording of a known format"),
+        "{words}"
+    );
+    super::refused(
+        &read(column, "--rows 2 --columns 2"),
+        1,
+        "standard input: line 1: found 1 value, expected 4",
+    );
+}
+
 /// A file in a folder of its own, and the imprints of all its frames.
 fn imprints_of(name: &str, content: &[u8], flags: &str) -> Vec<Value> {
     let folder = tempfile::tempdir().expect("a folder");

@@ -11,8 +11,8 @@ use crate::cli::input::content;
 use crate::cli::input::content::{InputError, InputSource};
 use crate::cli::input::spool::SpooledInput;
 use crate::formats::recording::{
-    ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, read,
-    read_rows, recognised_input,
+    ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, format_of,
+    read, read_rows,
 };
 use crate::imprint::Imprint;
 
@@ -150,7 +150,7 @@ impl RecordingFile {
     /// Its format, as far as its beginning tells; also that of a damaged one.
     pub(crate) fn format(&mut self) -> Option<RecordingFormat> {
         self.file.seek(SeekFrom::Start(0)).ok()?;
-        recognised_input(&mut self.file).ok()?
+        format_of(&mut self.file, self.options).ok()
     }
 
     /// The message about a damage.

@@ -12,6 +12,7 @@ use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
 use crate::formats::recording::lines::is_blank;
 #[cfg(feature = "mcap")]
 use crate::formats::recording::mcap;
+use crate::formats::recording::separator::Separator;
 use crate::formats::recording::table_layout::is_comment;
 use crate::formats::recording::{
     delimited, emed, flexitac, json_lines, npz, numpy, popu, ros_text, tekscan, xsensor, zebris,
@@ -26,8 +27,14 @@ const LOOKED_AT: usize = 1 << 16;
 /// Bytes read at a time.
 const CHUNK: usize = 1 << 16;
 
-/// The format of a recording, by its first 64 KiB; None of what is not a recording. A text of numbers counts as a table.
+/// The format of a recording, by its first 64 KiB; None of what is not a recording. A text of numbers counts as a table, but
+/// not a single column of them, which many other files are.
 pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
+    recognised_with(start, ReadOptions::default())
+}
+
+/// The same, where a single column is a table, too, if rows and columns are given.
+fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat> {
     let start = &start[..start.len().min(LOOKED_AT)];
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
     let trimmed = text.trim_ascii_start();
@@ -64,7 +71,7 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
         _ if is_ros(ros_text::without_notices(trimmed)) => RecordingFormat::Ros2,
         // Rows without the object around them: read as JSON, it says what they lack.
         _ if trimmed.starts_with(b"[[") => RecordingFormat::JsonLines,
-        _ if is_table(row) => RecordingFormat::Csv,
+        _ if is_table(row) || options.shape.is_some() && is_number(row) => RecordingFormat::Csv,
         _ => return None,
     })
 }
@@ -76,8 +83,24 @@ fn refused(start: &[u8]) -> RecordingError {
         None if is_parted_by_cr(start) => RecordingError::Foreign {
             kind: "text whose lines end in CR alone (save it with LF or CR LF)",
         },
+        None if is_column(start) => RecordingError::Shape { values: 1 },
         None => RecordingError::Unknown,
     }
+}
+
+/// Whether a text is numbers alone, one a line.
+fn is_column(text: &[u8]) -> bool {
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let lines = text.split(|&byte| byte == b'\n');
+    let mut rows = lines
+        .filter(|line| !is_blank(line) && !is_comment(line))
+        .peekable();
+    rows.peek().is_some() && rows.all(is_number)
+}
+
+/// Whether a line is a single number, or a word for a cell that is none.
+fn is_number(line: &[u8]) -> bool {
+    Separator::of(line) == Separator::Spaces && Separator::Spaces.is_numeric(line.trim_ascii())
 }
 
 /// Whether the lines of a text end in CR alone, as on the first Macintosh computers.
@@ -115,11 +138,14 @@ pub fn recognised_input(input: impl Read) -> io::Result<Option<RecordingFormat>>
 /// The format of what is read from its present place on.
 ///
 /// # Errors
-/// If it is no recording: [`RecordingError::Foreign`] of a file of another kind, else [`RecordingError::Unknown`]; or if it
-/// cannot be read.
-pub(crate) fn format_of(input: impl Read) -> Result<RecordingFormat, RecordingError> {
+/// If it is no recording: [`RecordingError::Foreign`] of a file of another kind, [`RecordingError::Shape`] of a column of
+/// numbers that may be one, else [`RecordingError::Unknown`]; or if it cannot be read.
+pub(crate) fn format_of(
+    input: impl Read,
+    options: ReadOptions,
+) -> Result<RecordingFormat, RecordingError> {
     let start = start_of(input)?;
-    recognised(&start).ok_or_else(|| refused(&start))
+    recognised_with(&start, options).ok_or_else(|| refused(&start))
 }
 
 fn start_of(input: impl Read) -> io::Result<Vec<u8>> {
@@ -139,7 +165,7 @@ pub fn read(
     sink: &mut Sink<'_>,
 ) -> Result<RecordingFormat, RecordingError> {
     input.seek(SeekFrom::Start(0))?;
-    let format = format_of(&mut input)?;
+    let format = format_of(&mut input, options)?;
     read_as(format, &mut input, options, sink)?;
     Ok(format)
 }
