@@ -740,6 +740,23 @@ fn a_column_of_numbers_is_a_recording_if_rows_and_columns_are_given() {
     );
 }
 
+#[test]
+fn a_recording_without_values_has_no_peak() {
+    let empty = "{\"frame\":[[null,null]]}\n";
+    let message = "standard input: no frame has a cell with a value, so none is the peak";
+    for (text, flags) in [
+        (empty.repeat(3), ""),
+        (empty.repeat(3), "--tare 1"),
+        ("{\"frame\":[[null,7]]}\n".to_owned(), "--crop 0,0,1x1"),
+    ] {
+        let run = taxel(
+            &format!("frames - --peak --at-least 1 --json {flags}"),
+            &text,
+        );
+        super::refused(&run, 1, message);
+    }
+}
+
 /// A file in a folder of its own, and the imprints of all its frames.
 fn imprints_of(name: &str, content: &[u8], flags: &str) -> Vec<Value> {
     let folder = tempfile::tempdir().expect("a folder");

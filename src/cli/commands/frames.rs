@@ -210,6 +210,9 @@ fn missing(choice: FrameChoice, listed: &ListedChannel) -> String {
         FrameChoice::Number(number) if listed.frames > 0 => {
             format!("no frame {number}, expected 0 to {}", listed.frames - 1)
         }
+        FrameChoice::Peak if listed.frames > 0 => {
+            "no frame has a cell with a value, so none is the peak".to_owned()
+        }
         _ => "no frames".to_owned(),
     }
 }
