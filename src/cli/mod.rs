@@ -46,7 +46,9 @@ use std::path::PathBuf;
 use arguments::definitions;
 use arguments::frames::FramesArguments;
 use arguments::model::ModelRequest;
-use arguments::request::{self, Asked, Chore, Form, Kept, Request, SweepArguments, Swept};
+use arguments::request::{
+    self, Form, Invocation, Kept, LibraryCommand, Request, SweepArguments, Swept,
+};
 use commands::export::Exported;
 use commands::frames::FramesOutput;
 use commands::naming::FrameNamer;
@@ -89,7 +91,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 /// `characters` is the character set for messages: at first that of the locale, then that of the settings, which are
 /// known only once the arguments are read.
 fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, CliError> {
-    let Asked {
+    let Invocation {
         request,
         library_named,
         settings,
@@ -167,7 +169,7 @@ impl Surroundings {
             }
             Request::Model(request) => self.model(request)?,
             Request::Frames(asked, form, kept) => self.frames(&asked, form, kept)?,
-            Request::Library(chore) => self.library(chore)?,
+            Request::Library(asked) => self.library(asked)?,
             Request::Help(text) => print(&charset.lines(&text))?,
             Request::Settings => print(&self.settings.text(charset))?,
             Request::Script(asked) => script::run(&asked, &self.settings, shelf, charset)?,
@@ -270,21 +272,25 @@ impl Surroundings {
     ///
     /// # Errors
     /// [`CliError::Shapes`] if `check` finds a damaged file, after all of them are printed.
-    fn library(&self, chore: Chore) -> Result<(), CliError> {
+    fn library(&self, asked: LibraryCommand) -> Result<(), CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
-        let text = match chore {
-            Chore::Names(which) => library::names(shelf, which)?,
-            Chore::List(json) => library::list(shelf, json, charset)?,
-            Chore::Show(name, form) => library::show(shelf, name.as_str(), form, charset)?,
-            Chore::Save(saving, what) => charset.lines(&library::save(shelf, saving, &what)?),
-            Chore::Delete(name) => charset.lines(&library::delete(shelf, name.as_str())?),
-            Chore::Restore(name) => charset.lines(&library::restore(shelf, name.as_str())?),
-            Chore::Path => {
+        let text = match asked {
+            LibraryCommand::Names(which) => library::names(shelf, which)?,
+            LibraryCommand::List(json) => library::list(shelf, json, charset)?,
+            LibraryCommand::Show(name, form) => library::show(shelf, name.as_str(), form, charset)?,
+            LibraryCommand::Save(saving, what) => {
+                charset.lines(&library::save(shelf, saving, &what)?)
+            }
+            LibraryCommand::Delete(name) => charset.lines(&library::delete(shelf, name.as_str())?),
+            LibraryCommand::Restore(name) => {
+                charset.lines(&library::restore(shelf, name.as_str())?)
+            }
+            LibraryCommand::Path => {
                 // As the system has it, so that other programs find it whatever its bytes are.
                 let folder = shelf.library()?.folder().to_owned();
                 return write(&[folder.as_os_str().as_encoded_bytes(), b"\n"].concat());
             }
-            Chore::Check(json) => {
+            LibraryCommand::Check(json) => {
                 let (text, result) = library::check(shelf, json, charset)?;
                 print(&text)?;
                 return result;

@@ -38,7 +38,7 @@ use crate::sweep::Shard;
 
 /// What the arguments ask for.
 #[derive(Clone, Debug)]
-pub(crate) struct Asked {
+pub(crate) struct Invocation {
     /// The command.
     pub(crate) request: Request,
     /// Whether `--library` is given.
@@ -80,7 +80,7 @@ pub(crate) enum Request {
     /// Answer the frames of a source as they come.
     Watch(Box<WatchArguments>),
     /// A subcommand of `taxel library`.
-    Library(Chore),
+    Library(LibraryCommand),
     /// Print the settings.
     Settings,
     /// Print completions for a shell.
@@ -129,7 +129,7 @@ pub(crate) enum NameSet {
 
 /// A subcommand of `taxel library`.
 #[derive(Clone, Debug)]
-pub(crate) enum Chore {
+pub(crate) enum LibraryCommand {
     /// List all shapes; whether as JSON.
     List(bool),
     /// Print the names of some.
@@ -187,14 +187,14 @@ pub(crate) enum Form {
 /// # Errors
 /// [`CliError::Usage`] with clap's message; [`CliError::Settings`] for the settings file; [`CliError::Range`] for
 /// values out of range.
-pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
+pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
     let mut command = groups::grouped(definitions::all());
     let matches = match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => matches,
         Err(error) if error.use_stderr() => return Err(with_tip(error).into()),
         Err(help) => {
             let none = Chosen::default();
-            return Ok(Asked {
+            return Ok(Invocation {
                 request: Request::Help(help.render().to_string()),
                 library_named: false,
                 settings: Effective::new(Loaded::default(), none, |_| None)?,
@@ -207,7 +207,7 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
         let settings = effective(Loaded::find(asked())?, &matches)?;
         let size = matches.get_one("size").copied();
         let record = matches.get_one::<PathBuf>("record").cloned();
-        return Ok(Asked {
+        return Ok(Invocation {
             request: Request::Screen(size, record),
             library_named,
             settings,
@@ -240,7 +240,7 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Asked, CliError> {
     };
     let settings = effective(loaded, own)?;
     let request = request(name, own, &mut command, &settings)?;
-    Ok(Asked {
+    Ok(Invocation {
         request,
         library_named,
         settings,
@@ -347,7 +347,7 @@ fn request(
             let asked = FramesArguments::of(own, file, settings.sensors())?;
             Request::Frames(Box::new(asked), form(own, settings)?, kept)
         }
-        "library" => Request::Library(chore(own, settings)?),
+        "library" => Request::Library(library_command(own, settings)?),
         "script" => Request::Script(Script::of(own)),
         "completions" => Request::Completions(required::<Shell>(own, "shell")?),
         "man" => Request::Man(man_folder(own, command)?),
@@ -476,26 +476,26 @@ fn man_folder(
 }
 
 /// The subcommand of `taxel library`.
-fn chore(matches: &ArgMatches, settings: &Effective) -> Result<Chore, CliError> {
+fn library_command(matches: &ArgMatches, settings: &Effective) -> Result<LibraryCommand, CliError> {
     let Some((command, own)) = matches.subcommand() else {
         // Required: there is always one.
         return Err(unread_subcommand("library"));
     };
     let name = own.try_get_one::<Name>("name").ok().flatten().cloned();
     Ok(match (command, name) {
-        ("list", _) if own.get_flag("own") => Chore::Names(NameSet::Own),
-        ("list", _) if own.get_flag("deleted") => Chore::Names(NameSet::Deleted),
-        ("list", _) if own.get_flag("names") => Chore::Names(NameSet::All),
-        ("list", _) => Chore::List(own.get_flag("json")),
-        ("show", Some(name)) => Chore::Show(name, form(own, settings)?),
+        ("list", _) if own.get_flag("own") => LibraryCommand::Names(NameSet::Own),
+        ("list", _) if own.get_flag("deleted") => LibraryCommand::Names(NameSet::Deleted),
+        ("list", _) if own.get_flag("names") => LibraryCommand::Names(NameSet::All),
+        ("list", _) => LibraryCommand::List(own.get_flag("json")),
+        ("show", Some(name)) => LibraryCommand::Show(name, form(own, settings)?),
         ("save", Some(name)) => {
             let force = own.get_flag("force");
-            Chore::Save(Saving { name, force }, what(own)?)
+            LibraryCommand::Save(Saving { name, force }, what(own)?)
         }
-        ("delete", Some(name)) => Chore::Delete(name),
-        ("restore", Some(name)) => Chore::Restore(name),
-        ("check", _) => Chore::Check(own.get_flag("json")),
-        ("path", _) => Chore::Path,
+        ("delete", Some(name)) => LibraryCommand::Delete(name),
+        ("restore", Some(name)) => LibraryCommand::Restore(name),
+        ("check", _) => LibraryCommand::Check(own.get_flag("json")),
+        ("path", _) => LibraryCommand::Path,
         (unread, _) => return Err(unread_subcommand(unread)),
     })
 }

@@ -53,8 +53,8 @@ pub(crate) fn recognise(
     let model = model.ready(&|poses| Progress::new(poses, false, charset))?;
     let recogniser = Recogniser::new(asked, &model, noise.as_ref())?;
     match input {
-        Asked::Imprint(imprint) => recogniser.answer_imprint(&imprint, charset, output),
-        Asked::Lines(input) => recogniser.answer_lines(input, output),
+        RecogniseInput::Imprint(imprint) => recogniser.answer_imprint(&imprint, charset, output),
+        RecogniseInput::Lines(input) => recogniser.answer_lines(input, output),
     }
 }
 
@@ -145,7 +145,7 @@ impl<'a> Recogniser<'a> {
     fn answer_lines(&self, input: LineInput, output: &mut dyn Write) -> Result<(), CliError> {
         let (all, others) = (AtomicU64::new(0), AtomicU64::new(0));
         let answer = |line: &[u8], text: &mut Vec<u8>| {
-            let line = Line::read(line)?;
+            let line = RecogniseLine::read(line)?;
             let answer = self.answer(&line.touches);
             let answer = answer.map_err(|error| error.to_string())?;
             all.fetch_add(1, Ordering::Relaxed);
@@ -202,7 +202,7 @@ impl<'a> Recogniser<'a> {
         &'b self,
         touches: &[Imprint],
         answer: &'b Answer,
-        line: Option<&'b Line>,
+        line: Option<&'b RecogniseLine>,
     ) -> AnswerJson<'b> {
         AnswerJson {
             model: self.model,
@@ -212,7 +212,7 @@ impl<'a> Recogniser<'a> {
             top: self.asked.top,
             asks_pose: self.asked.pose,
             pose: self.pose(touches, answer),
-            copied: line.map(Line::copied).unwrap_or_default(),
+            copied: line.map(RecogniseLine::copied).unwrap_or_default(),
         }
     }
 
@@ -264,7 +264,7 @@ fn noise(asked: &RecogniseArguments, shelf: &Shelf) -> Result<Option<Noise>, Cli
 
 /// What is to be recognised.
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
-enum Asked {
+enum RecogniseInput {
     /// One touch.
     Imprint(Imprint),
     /// Lines of JSON, not read yet.
@@ -272,9 +272,9 @@ enum Asked {
 }
 
 /// Finds out what the argument means: a shape of the library, a file or standard input; and whether that holds lines.
-fn input(what: &OsStr, shelf: &Shelf) -> Result<Asked, CliError> {
+fn input(what: &OsStr, shelf: &Shelf) -> Result<RecogniseInput, CliError> {
     let (name, input): (String, Box<dyn Read + Send>) = match shelf.locate(what)? {
-        Located::Shape(shape) => return Ok(Asked::Imprint(shape.imprint)),
+        Located::Shape(shape) => return Ok(RecogniseInput::Imprint(shape.imprint)),
         Located::File(path, file) => (path.to_string_lossy().into_owned(), Box::new(file)),
         Located::Standard => {
             let name = InputSource::Standard.name();
@@ -316,10 +316,10 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<Asked, CliError> {
     let whole = blank.chain(Cursor::new(start)).chain(input);
     if is_line {
         let read = Box::new(whole);
-        return Ok(Asked::Lines(LineInput { name, read }));
+        return Ok(RecogniseInput::Lines(LineInput { name, read }));
     }
     let content = content::read_from(whole).map_err(refused)?;
-    Ok(Asked::Imprint(*content.imprint()))
+    Ok(RecogniseInput::Imprint(*content.imprint()))
 }
 
 /// Reads a line, or as much of it as a line may have. Returns its length; 0 at the end.
@@ -400,14 +400,14 @@ fn framed(line: &[u8], frame: Option<&RawValue>) -> Result<Option<Imprint>, Stri
 }
 
 /// A line, read and checked: one touch or several, and what is copied into its answer.
-struct Line {
+struct RecogniseLine {
     /// One or more imprints, each in a matrix of its own size.
     touches: Vec<Imprint>,
     /// Keys and values that the answer repeats.
     copied: Vec<(&'static str, Box<RawValue>)>,
 }
 
-impl Line {
+impl RecogniseLine {
     /// Other keys are ignored, so that answers of `taxel frames` can be asked about as they are.
     ///
     /// # Errors
@@ -483,7 +483,11 @@ mod tests {
 
     #[test]
     fn a_line_says_what_is_wrong_with_it() {
-        let error = |line: &str| Line::read(line.as_bytes()).err().unwrap_or_default();
+        let error = |line: &str| {
+            RecogniseLine::read(line.as_bytes())
+                .err()
+                .unwrap_or_default()
+        };
         let mut text = String::new();
         for line in [
             "{}",

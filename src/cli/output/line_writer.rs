@@ -11,7 +11,7 @@ use crate::imprint::Imprint;
 const WAITING: usize = 1000;
 
 /// A line, with its end unless something is still to be added, and the imprint that this is about.
-pub(crate) type Line = (Vec<u8>, Option<Imprint>);
+pub(crate) type PendingLine = (Vec<u8>, Option<Imprint>);
 
 /// Adds to a line what takes longer, on the thread that writes.
 pub(crate) type Finish<'a> = dyn FnMut(&mut Vec<u8>, Option<&Imprint>) + 'a;
@@ -20,7 +20,7 @@ pub(crate) type Finish<'a> = dyn FnMut(&mut Vec<u8>, Option<&Imprint>) + 'a;
 #[derive(Debug)]
 pub(crate) struct LineWriter {
     /// To the thread. Sending fails once the thread has ended because of an error.
-    lines: SyncSender<Line>,
+    lines: SyncSender<PendingLine>,
     /// Returns the error of writing, or of what else it does, if there was one.
     thread: JoinHandle<Result<(), CliError>>,
     /// Lines that were given up because too many were waiting.
@@ -51,7 +51,7 @@ impl LineWriter {
     }
 
     /// Sends a line; waits if too many are waiting, or gives it up if that is allowed. False once nothing can be written.
-    pub(crate) fn send(&mut self, line: Line, may_give_up: bool) -> bool {
+    pub(crate) fn send(&mut self, line: PendingLine, may_give_up: bool) -> bool {
         if !may_give_up {
             return self.lines.send(line).is_ok();
         }
@@ -81,7 +81,7 @@ impl LineWriter {
 
 /// The receiving end.
 #[derive(Debug)]
-pub(crate) struct WaitingLines(Receiver<Line>);
+pub(crate) struct WaitingLines(Receiver<PendingLine>);
 
 impl WaitingLines {
     /// Writes all lines that come, finished, and holds none back while there are no more.
