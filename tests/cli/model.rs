@@ -315,7 +315,7 @@ fn a_training_is_taken_up_where_it_was_left() {
     let again = train(of);
     let kept = first
         .stdout
-        .replace("written: ", "kept: complete, and part of this study: ");
+        .replace("written: ", "kept, complete and part of this study: ");
     assert_eq!((again.status, again.stdout), (Some(0), kept));
     assert!(place.read("part.npz") == written);
     for (more, reason) in [

@@ -256,7 +256,7 @@ fn a_study_is_taken_up_where_it_was_left() {
     assert!(
         again
             .stderr
-            .contains("kept: complete, and part of this study: ")
+            .contains("kept, complete and part of this study: ")
     );
     let of = |run: &Run| {
         let mut answer: Value = serde_json::from_str(&run.stdout).expect("an answer");

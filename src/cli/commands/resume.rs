@@ -16,7 +16,7 @@ use crate::storage::{ArchiveFileError, load_atlas, load_model};
 use crate::sweep::{Shard, SweepResult};
 
 /// The words before the name of a file that exists already.
-pub(crate) const KEPT: &str = "kept: complete, and part of this study";
+pub(crate) const KEPT: &str = "kept, complete and part of this study";
 
 /// The atlas of a shard that was swept before; None if there is no such file.
 ///
