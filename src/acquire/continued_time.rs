@@ -8,14 +8,14 @@ use crate::formats::seconds::to_nanoseconds;
 /// come late.
 const LATE: f64 = 1.0;
 
-/// The times of frames, given their own.
+/// Continues the frames' own times over gaps.
 #[derive(Debug, Default)]
 pub(super) struct ContinuedTime {
     /// The time of the last frame that had one of its own, and when it came.
     given: Option<(f64, Instant)>,
     /// Whether there was a gap since then.
     rejoined: bool,
-    /// What is added to the frames' own times, once the source's clock began anew.
+    /// What is added to the frames' own times after the source's clock restarted.
     shift: Option<f64>,
 }
 

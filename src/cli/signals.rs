@@ -72,7 +72,7 @@ impl Signals {
     }
 
     /// The error of a training: one that was stopped says whether memory ran short or a signal came.
-    pub(crate) fn failure_of(&self, error: TrainingError, memory: &MemoryGuard) -> CliError {
+    pub(crate) fn training_failure(&self, error: TrainingError, memory: &MemoryGuard) -> CliError {
         match error {
             TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),
             TrainingError::Stopped => self.failure(),

@@ -69,8 +69,7 @@ pub enum NamedShapeError {
     },
     /// A position, an angle or a zoom.
     #[error(
-        "{key}: a shape of a set has no pose of its own; it is touched in all poses of the grid, which 'taxel model train' \
-         takes as --x0, --y0, --angle, --zoom-x and --zoom-y"
+        "{key}: a shape of a set has no pose of its own; it is touched in all poses of the grid"
     )]
     Pose {
         /// Its key.

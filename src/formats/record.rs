@@ -276,9 +276,9 @@ impl<'a> Record<'a> {
 
 /// The keys that an object may have.
 pub(crate) struct KnownKeys {
-    /// Those in the message about an unknown one.
+    /// The keys that a message about an unknown key lists.
     pub(crate) named: &'static [&'static str],
-    /// Whether those of parameters are known too.
+    /// Whether the keys of all parameters are known as well.
     pub(crate) parameters: bool,
 }
 
@@ -295,7 +295,7 @@ const SENSOR_KEYS: KnownKeys = KnownKeys {
 
 impl KnownKeys {
     /// The message about a key that is not one of these.
-    fn lack(&self, key: &str) -> String {
+    fn unknown(&self, key: &str) -> String {
         let named = self.named.iter().copied();
         let parameters = self
             .parameters
@@ -350,7 +350,7 @@ impl Values {
         known: &KnownKeys,
     ) -> Result<(), A::Error> {
         let Some(index) = PARAMETERS.iter().position(|row| row.key == key) else {
-            return Err(A::Error::custom(known.lack(key)));
+            return Err(A::Error::custom(known.unknown(key)));
         };
         let key = PARAMETERS[index].key;
         once(key, &mut self.0[index], value_of(key, map)?)

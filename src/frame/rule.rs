@@ -101,7 +101,7 @@ impl Rule {
             Self::Percent(percent) => {
                 let max = values.values().iter().copied().fold(f64::NAN, f64::max);
                 if max > 0.0 {
-                    // All of the largest value may come out above it by a rounding.
+                    // 100 % of the largest value may be rounded above that value.
                     from(values, Self::share(percent, max).min(max))
                 } else {
                     Imprint::empty(values.columns(), values.rows())

@@ -608,8 +608,7 @@ fn a_shape_of_a_set_has_no_pose() {
     let place = Place::new();
     let refused_at = |line: &str, input: &str, place_and_key: &str| {
         let message = format!(
-            "{place_and_key}: a shape of a set has no pose of its own; it is touched in all poses of the grid, which \
-             'taxel model train' takes as --x0, --y0, --angle, --zoom-x and --zoom-y"
+            "{place_and_key}: a shape of a set has no pose of its own; it is touched in all poses of the grid"
         );
         refused(
             &place.run(&format!("{line} {COARSE} --out m.npz"), input),

@@ -314,8 +314,8 @@ pub(super) fn required<T: Clone + Send + Sync + 'static>(
     })
 }
 
-/// The error for a subcommand that is defined but not read here: a mistake of ours, which must not run another one.
-pub(super) fn unread_subcommand(name: &str) -> CliError {
+/// The error for a subcommand that is defined but not handled. Such a bug must not run another subcommand.
+pub(super) fn unhandled_subcommand(name: &str) -> CliError {
     let message = format!("{name:?} is not implemented; this is a bug\n");
     clap::Error::raw(ErrorKind::InvalidSubcommand, message).into()
 }

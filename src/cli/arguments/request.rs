@@ -12,7 +12,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::parser::ValueSource;
 
 use crate::cli::arguments::definitions;
-use crate::cli::arguments::flags::{self, required, unread_subcommand};
+use crate::cli::arguments::flags::{self, required, unhandled_subcommand};
 use crate::cli::arguments::frames::FramesArguments;
 use crate::cli::arguments::groups;
 use crate::cli::arguments::model::ModelRequest;
@@ -366,7 +366,7 @@ fn request(
             let file = file.filter(|file| file.as_os_str() != "-");
             Request::Batch(file, settings.sensor(), flags::jobs_of(own))
         }
-        unread => return Err(unread_subcommand(unread)),
+        other => return Err(unhandled_subcommand(other)),
     })
 }
 
@@ -479,7 +479,7 @@ fn man_folder(
 fn library_command(matches: &ArgMatches, settings: &Effective) -> Result<LibraryCommand, CliError> {
     let Some((command, own)) = matches.subcommand() else {
         // Required: there is always one.
-        return Err(unread_subcommand("library"));
+        return Err(unhandled_subcommand("library"));
     };
     let name = own.try_get_one::<Name>("name").ok().flatten().cloned();
     Ok(match (command, name) {
@@ -496,7 +496,7 @@ fn library_command(matches: &ArgMatches, settings: &Effective) -> Result<Library
         ("restore", Some(name)) => LibraryCommand::Restore(name),
         ("check", _) => LibraryCommand::Check(own.get_flag("json")),
         ("path", _) => LibraryCommand::Path,
-        (unread, _) => return Err(unread_subcommand(unread)),
+        (other, _) => return Err(unhandled_subcommand(other)),
     })
 }
 

@@ -84,7 +84,7 @@ pub(crate) fn train(
             error,
             remedy: grid.remedy,
         },
-        error => signals.failure_of(error, &memory),
+        error => signals.training_failure(error, &memory),
     })?;
     let saved = save_model(&model, &path, asked.there.existing(), stopped);
     saved.map_err(|error| signals.failure_or(error.into()))?;

@@ -295,7 +295,7 @@ pub(crate) fn half_step(
     };
     let result = model.half_step(&report);
     progress.finish();
-    let result = result.map_err(|error| signals.failure_of(error, &memory))?;
+    let result = result.map_err(|error| signals.training_failure(error, &memory))?;
     if asked.form == EvaluationForm::Json {
         let answer = json!({
             "touches": evaluation::number(result.touches),

@@ -66,7 +66,7 @@ pub(crate) fn separate(
     let pool = threads::pool(asked.jobs)?;
     let curves = pool.install(|| curves(asked, &separation, (&sizes, &thresholds), &report));
     progress.finish();
-    let curves = curves.map_err(|error| signals.failure_of(error, &memory))?;
+    let curves = curves.map_err(|error| signals.training_failure(error, &memory))?;
     if let Some(path) = &asked.export {
         let content = match drawn_format(path) {
             Some(format) => drawing(asked.axis, &curves, asked.wanted)

@@ -39,7 +39,7 @@ impl DrawingFormat {
 
 named!(DrawingFormat, "format", DrawingFormat::ALL);
 
-/// Types with a `page`: writes it in each format. Methods of their own, so that nobody has to name a trait.
+/// Gives types with a `page` their methods for writing it. A trait would have to be imported by every caller.
 macro_rules! written {
     ($($type:ident),+) => {$(
         impl $type {

@@ -33,7 +33,7 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
     recognised_with(start, ReadOptions::default())
 }
 
-/// The same, where a single column is a table, too, if rows and columns are given.
+/// The same, but if rows and columns are given, a single column of numbers is a table too.
 fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat> {
     let start = &start[..start.len().min(LOOKED_AT)];
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
@@ -69,7 +69,7 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
         _ if has(b"SensCountX=") => RecordingFormat::Zebris,
         _ if has(b"Pict-No.:") && has(b"Matrix:") => RecordingFormat::Emed,
         _ if is_ros(ros_text::without_notices(trimmed)) => RecordingFormat::Ros2,
-        // Rows without the object around them: read as JSON, it says what they lack.
+        // Bare rows, without an object: the reader of JSON lines says what is missing.
         _ if trimmed.starts_with(b"[[") => RecordingFormat::JsonLines,
         _ if is_table(row) || options.shape.is_some() && is_number(row) => RecordingFormat::Csv,
         _ => return None,

@@ -44,7 +44,7 @@ pub struct StreamDecoder {
     first: bool,
     /// Whether the first line may lack its beginning.
     torn: bool,
-    /// The clock of the source, as the last decoder left it.
+    /// The clock of the source, from the last decoder.
     clock: SourceClock,
 }
 
@@ -353,7 +353,7 @@ impl FormatSearch {
 /// The format of text that has such a line; None if others may have it, too.
 fn form_of_line(line: &[u8], after_first: bool) -> Option<StreamFormat> {
     match line.trim_ascii() {
-        // Rows without the object around them: read as JSON, its lines say what they lack.
+        // Bare rows, without an object: the decoder of JSON lines says what is missing.
         [b'{', ..] | [b'[', b'[', ..] => Some(StreamFormat::JsonLines),
         line if line == b"---" || ros_text::begins_message(line) => Some(StreamFormat::Ros2),
         line if after_first && is_numbers(line) => Some(StreamFormat::Lines),

@@ -17,7 +17,7 @@ pub(super) struct JsonDecoder {
     line: FrameLine,
     /// Rows and columns of all frames.
     size: FrameSize,
-    /// What times count from.
+    /// Turns times into seconds since the first frame.
     pub(super) clock: SourceClock,
     /// The frame made of it.
     frame: Frame,

@@ -47,7 +47,7 @@ pub(super) struct LinesDecoder {
     rows: u16,
     /// The moment at the beginning of its first line, in seconds.
     time: Option<f64>,
-    /// What moments count from.
+    /// Turns timestamps into seconds since the first frame.
     pub(super) clock: SourceClock,
     /// Whether a row of it is wrong.
     broken: bool,

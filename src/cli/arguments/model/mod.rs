@@ -16,7 +16,7 @@ use std::ffi::OsString;
 use clap::{Arg, ArgMatches, Command};
 
 use crate::cli::arguments::flags::{
-    self, json, option, required, switch, unread_subcommand, whole,
+    self, json, option, required, switch, unhandled_subcommand, whole,
 };
 use crate::cli::arguments::help::{
     MODEL_DELETE_EXAMPLES, MODEL_EXAMPLES, MODEL_LIST_EXAMPLES, MODEL_SHOW_EXAMPLES,
@@ -66,7 +66,7 @@ impl ModelRequest {
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let Some((command, own)) = matches.subcommand() else {
             // Required: there is always one.
-            return Err(unread_subcommand("model"));
+            return Err(unhandled_subcommand("model"));
         };
         Ok(match command {
             "train" => Self::Train(Box::new(train::TrainArguments::of(own)?)),
@@ -77,7 +77,7 @@ impl ModelRequest {
             "separate" => Self::Separate(Box::new(separate::SeparateArguments::of(own)?)),
             "list" if own.get_flag("names") => Self::Names,
             "list" => Self::List(own.get_flag("json")),
-            unread => return Err(unread_subcommand(unread)),
+            other => return Err(unhandled_subcommand(other)),
         })
     }
 }
