@@ -20,8 +20,16 @@ const PAUSE: Duration = Duration::from_millis(5);
 /// A lock that is held until this is dropped.
 #[derive(Debug)]
 pub(crate) struct Lock {
-    /// Closing it releases the lock.
-    _file: File,
+    file: File,
+}
+
+impl Drop for Lock {
+    /// Closing the file would release the lock only when every copy is closed, and a child that is just being started
+    /// has a copy until its program runs.
+    fn drop(&mut self) {
+        // Where this fails, closing the file is what remains.
+        let _ = self.file.unlock();
+    }
 }
 
 /// The outcome of one attempt to lock.
@@ -59,7 +67,7 @@ impl Lock {
             }
         };
         waits.store(false, Ordering::Relaxed);
-        Ok(locked?.map(|_| Self { _file: file }))
+        Ok(locked?.map(|_| Self { file }))
     }
 
     /// Tries once to take the lock at a path.
@@ -70,7 +78,7 @@ impl Lock {
         let file = open(path)?;
         Ok(match try_lock(&file, path)? {
             // The program that held it may have removed the file: then this locks nothing.
-            Some(true) if is_at(&file, path) => LockAttempt::Free(Self { _file: file }),
+            Some(true) if is_at(&file, path) => LockAttempt::Free(Self { file }),
             Some(_) => LockAttempt::Held,
             None => LockAttempt::Unsupported,
         })
@@ -150,4 +158,22 @@ fn is_at(file: &File, path: &Path) -> bool {
 #[cfg(not(unix))]
 fn is_at(_: &File, _: &Path) -> bool {
     true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As a child has one that is just being started.
+    #[test]
+    fn a_copy_of_the_file_does_not_keep_the_lock() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = path_in(folder.path());
+        let lock = Lock::if_free(&path).expect("a lock");
+        assert!(Lock::if_free(&path).is_none());
+        let copy = lock.file.try_clone().expect("a copy");
+        drop(lock);
+        assert!(Lock::if_free(&path).is_some());
+        drop(copy);
+    }
 }
