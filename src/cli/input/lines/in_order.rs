@@ -63,8 +63,8 @@ where
     let (work, jobs_given) = channel();
     let jobs_given = Mutex::new(jobs_given);
     let begun = thread::scope(|scope| {
-        // Dropped here, which ends the workers.
-        let work = work;
+        // Dropped here, which ends the workers: after a failure, nothing that is queued for them is begun.
+        let (work, heard) = (work, heard);
         let started = (0..if jobs > 1 { jobs } else { 0 }).take_while(|_| {
             let (jobs_given, worker) = (&jobs_given, &worker);
             let events = PanicReport(events.clone());
@@ -180,7 +180,8 @@ fn hand_over<T, R, E>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+    use std::time::Duration;
 
     #[test]
     fn results_come_in_the_order_of_the_items() {
@@ -230,16 +231,34 @@ mod tests {
         assert_eq!((done, taken), (Ok(()), 10_000));
     }
 
+    /// Each worker ends what it has begun, but not what is queued for it.
     #[test]
     fn an_error_of_the_sink_ends_all() {
+        const JOBS: usize = 2;
+        let (begun, is_full) = (AtomicUsize::new(0), AtomicBool::new(false));
         // The source never ends.
+        let mut items = 0..;
         let done = in_order(
-            2,
-            || Some(1),
-            || |item| item,
-            |item| if item == 1 { Err("full") } else { Ok(()) },
+            JOBS,
+            move || items.next(),
+            || {
+                |item: u64| {
+                    begun.fetch_add(1, Ordering::SeqCst);
+                    while item > 0 && !is_full.load(Ordering::SeqCst) {
+                        thread::yield_now();
+                    }
+                    // Until the failure has come through.
+                    thread::sleep(Duration::from_millis(if item > 0 { 50 } else { 0 }));
+                }
+            },
+            |()| {
+                is_full.store(true, Ordering::SeqCst);
+                Err("full")
+            },
         );
         assert_eq!(done, Err("full"));
+        let begun = begun.into_inner();
+        assert!(begun <= 1 + JOBS, "{begun} items were begun");
     }
 
     #[test]
