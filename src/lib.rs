@@ -172,6 +172,9 @@ pub mod storage;
 #[cfg(all(feature = "acquire", unix))]
 pub mod acquire;
 
+#[cfg(all(feature = "tui", not(unix)))]
+compile_error!("the features `tui` and `cli` need a Unix-like system; on Windows use WSL");
+
 #[cfg(feature = "tui")]
 mod memory;
 

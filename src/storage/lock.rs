@@ -110,9 +110,12 @@ fn try_lock(file: &File, path: &Path) -> Result<Option<bool>, FileError> {
 /// mounted by a program of the user's report that it is not permitted (`EPERM`) or makes no sense (`EINVAL`). That the
 /// user may not open the file is another error, and reported before.
 fn is_unsupported(error: &io::Error) -> bool {
-    // The standard library has no kind for it.
-    let none_left = if cfg!(target_os = "macos") { 77 } else { 37 };
-    error.raw_os_error() == Some(none_left)
+    // The standard library has no kind for the first.
+    #[cfg(unix)]
+    let none_left = error.raw_os_error() == Some(rustix::io::Errno::NOLCK.raw_os_error());
+    #[cfg(not(unix))]
+    let none_left = false;
+    none_left
         || matches!(
             error.kind(),
             ErrorKind::Unsupported | ErrorKind::PermissionDenied | ErrorKind::InvalidInput

@@ -3,9 +3,12 @@
 //! A program that stops itself without a shell that could continue it would never come back, so the parents of the
 //! process are looked at first.
 
+#[cfg(target_os = "linux")]
 use std::fs;
 
 use rustix::process::{Signal, kill_current_process_group};
+#[cfg(not(target_os = "linux"))]
+use rustix::process::{getpgid, getsid};
 
 /// Whether anybody is there who would continue the program: a process above it, on the same terminal, that is not of
 /// its own process group. The first process of a connection has none; stopped, it would never come back.
@@ -13,6 +16,7 @@ use rustix::process::{Signal, kill_current_process_group};
 /// All is read from `/proc`, where a process, group or session that lies outside the program's PID namespace (a
 /// container's) is a plain 0: the system calls answer 0 there too, which is not a process number. A controlling terminal
 /// belongs to one session only, so it tells what the session's number could not.
+#[cfg(target_os = "linux")]
 pub(in crate::tui) fn has_shell() -> bool {
     let Some(own) = Process::read("self") else {
         return false;
@@ -32,6 +36,15 @@ pub(in crate::tui) fn has_shell() -> bool {
     false
 }
 
+/// Whether a shell is there that would continue the program: the first process of its session, in another process group.
+#[cfg(not(target_os = "linux"))]
+pub(in crate::tui) fn has_shell() -> bool {
+    match (getsid(None), getpgid(None)) {
+        (Ok(session), Ok(group)) => session != group,
+        _ => false,
+    }
+}
+
 /// Stops the whole process group, as the terminal itself would: a program that waits for this one (an editor's or a
 /// version control's) must stop too, or the shell would not notice.
 pub(in crate::tui) fn stop() -> rustix::io::Result<()> {
@@ -39,6 +52,7 @@ pub(in crate::tui) fn stop() -> rustix::io::Result<()> {
 }
 
 /// Of a process: its parent's number, its group's, and its controlling terminal's device number.
+#[cfg(target_os = "linux")]
 #[derive(Debug, PartialEq)]
 struct Process {
     /// The parent of the process.
@@ -49,6 +63,7 @@ struct Process {
     terminal: i32,
 }
 
+#[cfg(target_os = "linux")]
 impl Process {
     /// `/proc/PID/stat`.
     fn read(number: &str) -> Option<Self> {
@@ -68,7 +83,7 @@ impl Process {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, target_os = "linux"))]
 mod tests {
     use super::*;
 
@@ -87,7 +102,6 @@ mod tests {
         assert_eq!(Process::parse(""), None);
     }
 
-    #[cfg(target_os = "linux")]
     #[test]
     fn its_own_parent_is_the_one_that_the_system_names() {
         let own = Process::read("self").expect("/proc/self/stat");
