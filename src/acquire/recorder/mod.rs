@@ -138,17 +138,7 @@ impl FrameRecorder {
         self.noted(written)
     }
 
-    /// Replaces threshold, tare and marks in the description.
-    ///
-    /// # Errors
-    /// What the system reports.
-    pub fn change_view(&mut self, view: RecordedView) -> Result<(), RecorderError> {
-        self.set_view(view);
-        let written = self.write_description();
-        self.noted(written)
-    }
-
-    /// The same for a caller who writes the description itself: see [`DescriptionDraft`].
+    /// Replaces threshold, tare and marks, and returns the description that says so, for the caller to write.
     pub(crate) fn set_view(&mut self, view: RecordedView) -> DescriptionDraft {
         let RecordedView { rule, tare, marks } = view;
         (self.metadata.rule, self.metadata.tare, self.metadata.marks) = (rule, tare, marks);
