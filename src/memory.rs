@@ -103,6 +103,11 @@ impl MemoryGuard {
         }
     }
 
+    /// A guard of a search for poses: all poses of an imprint are kept until they are counted.
+    pub(crate) fn of_pose_search() -> Self {
+        Self::new(None, "train the model in coarser steps to see poses")
+    }
+
     /// Whether the work may go on. Cheap enough to be asked often.
     pub(crate) fn allows(&self) -> bool {
         let Some(allowed) = self.allowed else {

@@ -32,6 +32,7 @@ use crate::formats::json;
 use crate::formats::record::Text;
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
+use crate::memory::MemoryGuard;
 use crate::quote::{did_you_mean, shortened_message};
 use crate::recognition::{Answer, AnswerState, Evidence, Model, Noise};
 
@@ -108,7 +109,7 @@ impl<'a> Recogniser<'a> {
         let touches = [*imprint];
         let answer = self.answer(&touches)?;
         let text = if self.asked.json {
-            json::ascii(&self.json(&touches, &answer, None)) + "\n"
+            json::ascii(&self.json(&touches, &answer, None)?) + "\n"
         } else {
             let text = AnswerText {
                 model: self.model,
@@ -117,8 +118,7 @@ impl<'a> Recogniser<'a> {
                 top: self.asked.top,
                 noise: self.noise,
             };
-            let pose = self.pose(&touches, &answer);
-            let pose = match pose {
+            let pose = match self.pose(&touches, &answer)? {
                 Some(pose) => pose.text(imprint, charset),
                 None if self.asked.pose && answer.shape.is_some() => {
                     "no pose: the shape leaves this imprint in no pose of the model\n".to_owned()
@@ -152,7 +152,9 @@ impl<'a> Recogniser<'a> {
             if !self.is_expected(&answer) {
                 others.fetch_add(1, Ordering::Relaxed);
             }
-            json::extend_ascii(text, &self.json(&line.touches, &answer, Some(&line)));
+            let json = self.json(&line.touches, &answer, Some(&line));
+            let json = json.map_err(|error| error.to_string())?;
+            json::extend_ascii(text, &json);
             Ok(())
         };
         lines::answer_all(self.asked.jobs, input, output, "touch", || answer)?;
@@ -198,33 +200,45 @@ impl<'a> Recogniser<'a> {
     }
 
     /// An answer as JSON; `line` is the question, if it was one of many.
+    ///
+    /// # Errors
+    /// Those of [`Self::pose`].
     fn json<'b>(
         &'b self,
         touches: &[Imprint],
         answer: &'b Answer,
         line: Option<&'b RecogniseLine>,
-    ) -> AnswerJson<'b> {
-        AnswerJson {
+    ) -> Result<AnswerJson<'b>, CliError> {
+        Ok(AnswerJson {
             model: self.model,
             answer,
             noise: self.asked.noise,
             nearest: self.model.nearest_of(self.evidence(touches)),
             top: self.asked.top,
             asks_pose: self.asked.pose,
-            pose: self.pose(touches, answer),
+            pose: self.pose(touches, answer)?,
             copied: line.map(RecogniseLine::copied).unwrap_or_default(),
-        }
+        })
     }
 
     /// Where the shape of an answer lies in the last touch, if that is asked for. None without an answer, and if the
     /// shape does not leave that imprint.
-    fn pose(&self, touches: &[Imprint], answer: &Answer) -> Option<PoseReport> {
-        if !self.asked.pose {
-            return None;
+    ///
+    /// # Errors
+    /// [`CliError::Memory`].
+    fn pose(&self, touches: &[Imprint], answer: &Answer) -> Result<Option<PoseReport>, CliError> {
+        let (true, Some(shape), Some(touch)) = (self.asked.pose, answer.shape, touches.last())
+        else {
+            return Ok(None);
+        };
+        let memory = MemoryGuard::of_pose_search();
+        let estimate = self.model.pose_of(shape, touch, &|_| memory.allows());
+        if memory.exceeded() {
+            return Err(CliError::Memory(memory.message()));
         }
-        let (shape, touch) = (answer.shape?, touches.last()?);
-        let estimate = self.model.pose_of(shape, touch, &|_| true)?;
-        PoseReport::new(self.model, shape, touch, estimate, self.asked.pitch_mm)
+        Ok(estimate.and_then(|estimate| {
+            PoseReport::new(self.model, shape, touch, estimate, self.asked.pitch_mm)
+        }))
     }
 
     /// Whether the answer is the expected one; yes if none is.

@@ -43,12 +43,18 @@ impl LookWorker {
         };
         let Some(post) = post else {
             let progress = self.limit.count();
-            return Some(looked(Ok(find(&search, &guard(), &progress))));
+            return Some(looked(Ok(find(
+                &search,
+                &MemoryGuard::of_pose_search(),
+                &progress,
+            ))));
         };
         let stop = Arc::clone(&self.stop);
         let work = move || {
             let progress = |_: u64| !stop.load(Ordering::Relaxed);
-            post(looked(caught(|| find(&search, &guard(), &progress))));
+            post(looked(caught(|| {
+                find(&search, &MemoryGuard::of_pose_search(), &progress)
+            })));
         };
         let thread = threads::start(move || threads::run(work));
         thread.err().map(|reason| looked(Err(reason)))
@@ -64,11 +70,6 @@ impl Drop for LookWorker {
     fn drop(&mut self) {
         self.stop();
     }
-}
-
-/// The bound on the memory of a search: all poses of an imprint are kept until they are counted.
-fn guard() -> MemoryGuard {
-    MemoryGuard::new(None, "train the model in coarser steps to see poses")
 }
 
 /// Searches, and stops the sweep when `progress` says so.
