@@ -457,8 +457,11 @@ impl DiskQueue {
         let first = self.pending.pop_front()?;
         if let Some(thread) = &self.thread {
             let mut waiting = locked(&thread.desk.waiting);
-            // It may have been answered just now.
-            if thread.answers.try_recv().is_err() {
+            if waiting.requests.len() > self.pending.len() {
+                // The thread has not begun it.
+                waiting.requests.pop_front();
+            } else if thread.answers.try_recv().is_err() {
+                // It has not been answered just now.
                 waiting.turn += 1;
                 let turn = waiting.turn;
                 drop(waiting);
@@ -514,5 +517,39 @@ impl Drop for DiskQueue {
             locked(&thread.desk.waiting).is_closed = true;
             thread.desk.changed.notify_all();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Requests whose thread is not there yet, as when the system has not run it.
+    fn without_thread() -> DiskQueue {
+        let (answer, answers) = channel();
+        let desk = Arc::new(Desk {
+            waiting: Mutex::default(),
+            changed: Condvar::new(),
+            answer,
+        });
+        let mut queue = DiskQueue::new(Library::open("/nowhere".into()));
+        queue.post_to(Arc::new(|_| {}));
+        queue.thread = Some(DiskThread { desk, answers });
+        queue
+    }
+
+    #[test]
+    fn a_request_that_is_given_up_is_not_carried_out() {
+        let mut queue = without_thread();
+        for request in [DiskRequest::List, DiskRequest::Trash] {
+            assert!(queue.begin(request).is_none());
+        }
+        assert!(queue.abandon_first().is_some());
+        let desk = &queue.thread.as_ref().expect("a thread").desk;
+        assert!(queue.spawn(desk, 0));
+        let answer = queue.wait(Duration::from_secs(5));
+        let is_second = matches!(answer, Some(DiskAnswer::Library(LibraryEvent::Trash(_))));
+        assert!(is_second, "{answer:?}");
+        assert!(queue.is_idle());
     }
 }
