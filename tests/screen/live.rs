@@ -512,6 +512,19 @@ fn the_shape_is_named_by_sets_of_shapes_in_turn() {
     hides(&page, &["…", "training or"]);
 }
 
+/// No frame comes after the end, so nothing but the key can begin the search.
+#[test]
+fn the_last_imprint_of_a_source_that_has_ended_is_named() {
+    let mut page = watched(6, "+++++++");
+    page.frames(60);
+    shows(&page, &["ended"]);
+    then(
+        &mut page,
+        "n",
+        &["shape      unknown", "model      figures"],
+    );
+}
+
 #[test]
 fn a_name_that_noise_does_not_explain_is_doubted() {
     // The ring is none of the figures: as many taxels differ as flip at one in five.

@@ -14,7 +14,8 @@ use taxel::recognition::{NamedShape, Training};
 use taxel::sensor::Sensor;
 use taxel::storage::{Existing, Library, ModelCache, ModelFolder};
 use taxel::tui::app::message::Message;
-use taxel::tui::app::update::update;
+use taxel::tui::app::state::App;
+use taxel::tui::app::update::{next_work, update};
 use taxel::tui::app::worker_event::WorkerEvent;
 use taxel::tui::runtime::World;
 use taxel::tui::runtime::effect::{Effect, Work};
@@ -303,15 +304,16 @@ fn escape_stops_the_sizes_and_what_was_found_stays() {
 
 #[test]
 fn a_search_for_poses_ends_with_its_page_and_with_its_imprint() {
+    let after = |app: &mut App, message| update(app, message).or_else(|| next_work(app));
     let mut app = started(world(), "fr<Enter>r").app().clone();
-    let begun = update(&mut app, Message::Toggle);
+    let begun = after(&mut app, Message::Toggle);
     assert!(
         matches!(begun, Some(Effect::Work(Work::Look(..)))),
         "{begun:?}"
     );
     let stop = Some(Effect::Work(Work::StopLooking));
     let mut drawn_on = app.clone();
-    assert_eq!(update(&mut drawn_on, Message::Undo), stop);
-    assert_eq!(update(&mut drawn_on, Message::Toggle), None, "once");
-    assert_eq!(update(&mut app, Message::Cancel), stop);
+    assert_eq!(after(&mut drawn_on, Message::Undo), stop);
+    assert_eq!(after(&mut drawn_on, Message::Toggle), None, "once");
+    assert_eq!(after(&mut app, Message::Cancel), stop);
 }

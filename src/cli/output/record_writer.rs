@@ -6,10 +6,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::Builder;
-use std::time::Duration;
 
-/// How long the end of the program waits for the last lines.
-const PATIENCE: Duration = Duration::from_millis(1500);
+use crate::tui::runtime::threads::PATIENCE;
 
 /// Writes the file. Dropped, as by a panic, it waits for the last lines too: they tell most.
 pub(crate) struct RecordWriter(Option<RecordSink>);

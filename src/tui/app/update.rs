@@ -35,10 +35,15 @@ pub fn update(app: &mut App, message: Message) -> Option<Effect> {
     let effect = handle(app, message);
     app.read();
     app.follow(&before);
-    // A message that wants something else is followed by another one.
-    let effect = effect.or_else(|| recognise::update::follow(app));
-    let effect = effect.or_else(|| explore::work::follow(app));
-    effect.or_else(|| live::update::follow(app))
+    effect
+}
+
+/// The next piece of work that an open page needs for its present state, such as a name for the imprint it shows; None if
+/// it needs no more. The runtime asks after each message and its effects, until there is none.
+pub fn next_work(app: &mut App) -> Option<Effect> {
+    let work = recognise::update::next_work(app);
+    let work = work.or_else(|| explore::work::next_work(app));
+    work.or_else(|| live::update::next_work(app))
 }
 
 /// Handles a message without reading the document again. A count repeats what can be repeated, such as a step of the

@@ -225,8 +225,8 @@ pub(in crate::tui) fn on_estimate(app: &mut App, grid: &PoseGrid, time: Duration
     }
 }
 
-/// Has a worker find what the open page shows and is not kept for every page: the imprints of each angle.
-pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
+/// The search for what the open page shows and has not found yet: the imprints of each angle.
+pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     let Some(Dialog::Results(results)) = app.dialogs.last_mut() else {
         return None;
     };

@@ -615,30 +615,32 @@ impl Live {
 
     /// Reads the shown frame again.
     fn read(&mut self) {
-        self.error = None;
         let shown = match &self.held {
             Some(held) if self.frozen.is_none() => Some(Arc::clone(held)),
             _ => self.shown().map(|(_, frame)| frame),
         };
-        let reading = shown.map(|frame| self.processed(frame)).transpose();
-        self.reading = reading.unwrap_or_else(|error| {
-            self.error = Some(error);
-            None
-        });
+        (self.reading, self.error) = match shown {
+            Some(frame) => self.read_frame(frame),
+            None => (None, None),
+        };
     }
 
-    /// What can be said of a frame: all but the imprint where a threshold by noise has no tare to go by. That is an error
-    /// unless the tare is being made.
-    fn processed(&mut self, frame: Arc<Frame>) -> Result<LiveReading, FrameError> {
-        let reading = LiveReading::of(Arc::clone(&frame), &mut self.processing, self.layer);
-        if !matches!(reading, Err(FrameError::NoTare)) {
-            return reading;
+    /// What can be said of a frame, and what is wrong with it.
+    ///
+    /// Where a threshold by noise has no tare to go by, that is all but the imprint, and no error while the tare is being
+    /// made.
+    fn read_frame(&mut self, frame: Arc<Frame>) -> (Option<LiveReading>, Option<FrameError>) {
+        match LiveReading::of(Arc::clone(&frame), &mut self.processing, self.layer) {
+            Ok(reading) => (Some(reading), None),
+            Err(FrameError::NoTare) => {
+                let rule = self.processing.rule.take();
+                let reading = LiveReading::of(frame, &mut self.processing, self.layer);
+                self.processing.rule = rule;
+                let is_made = self.tare.progress().is_some();
+                let error = (!is_made).then_some(FrameError::NoTare);
+                (reading.ok(), error)
+            }
+            Err(error) => (None, Some(error)),
         }
-        let is_made = self.tare.progress().is_some();
-        self.error = (!is_made).then_some(FrameError::NoTare);
-        let rule = self.processing.rule.take();
-        let reading = LiveReading::of(frame, &mut self.processing, self.layer);
-        self.processing.rule = rule;
-        reading
     }
 }

@@ -271,9 +271,11 @@ fn mark(app: &mut App, page: &mut Live) {
     inform(app, format!("frame {number}: {text}"));
 }
 
-/// Has what has changed of threshold, tare and marks written into the description of the recording, whether by a key, because
-/// the frame of a mark was withdrawn, or while the recording was being begun; otherwise asks for the name of the imprint that is shown.
-pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
+/// A new description of the recording, if threshold, tare or marks have changed since the last one; otherwise the search for
+/// the name of the imprint that is shown.
+///
+/// They change by keys, by frames that take a mark with them, and while the recording is being begun.
+pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     let page = page(app).filter(|page| !page.stopped())?;
     if let Some(view) = page.take_changed_view() {
         return Some(Effect::Work(Work::Describe(Box::new(view))));

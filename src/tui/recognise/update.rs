@@ -375,13 +375,13 @@ pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepPro
     }
 }
 
-/// Lets the answer follow the matrix. Returns a search for what it does not know at once, or the work of the page of
-/// sizes.
-pub(in crate::tui) fn follow(app: &mut App) -> Option<Effect> {
-    separate::update::follow(app).or_else(|| look(app))
+/// The next work for the page of sizes, or for the answer to the imprint of the matrix.
+pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
+    separate::update::next_work(app).or_else(|| look(app))
 }
 
-/// Lets the answer follow the matrix.
+/// Shows the page the imprint of the matrix. Returns the search that its answer needs, or the end of one that it no longer
+/// needs.
 fn look(app: &mut App) -> Option<Effect> {
     let imprint = app.reading().imprint;
     let mut dialogs = app.dialogs.iter_mut();

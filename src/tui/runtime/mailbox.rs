@@ -1,8 +1,9 @@
 //! Messages from other threads, which wake the event loop.
 //!
 //! A queue, and a socket pair that the loop waits for together with the terminal and the signals. The queue is not
-//! bounded: workers send at most ten events a second and must never wait for a slow terminal. Frames do not go through it:
-//! they wait in `runtime::frame_feed`, and a message here says that some have come.
+//! bounded, since workers must never wait for a slow terminal. Little is in it: workers report their progress ten times a
+//! second, and answer what the screen has asked. Frames wait in `runtime::frame_feed`, and one message here says that some
+//! have come.
 
 use std::io::{self, Read, Write};
 use std::os::fd::{AsFd, BorrowedFd};

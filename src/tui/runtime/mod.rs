@@ -67,7 +67,7 @@ mod lock;
 
 mod slow_work;
 
-mod threads;
+pub(crate) mod threads;
 
 mod reading;
 
@@ -101,7 +101,7 @@ use crate::formats::StoredShape;
 use crate::storage::{Expected, Journal, Library, LibraryError, ModelCache, Orphan, ScratchFolder};
 use crate::tui::app::message::{Leftover, LibraryEvent, Message};
 use crate::tui::app::state::App;
-use crate::tui::app::update::update;
+use crate::tui::app::update::{next_work, update};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::key::Key;
 use crate::tui::live::message::LiveEvent;
@@ -281,8 +281,8 @@ impl World {
         })
     }
 
-    /// Updates the state by a message, performs the effect, and goes on with the answer until there is no effect left.
-    /// Returns the effect for the terminal, if there is one.
+    /// Updates the state by a message and performs its effects: answers are further messages, and the work that the open
+    /// pages then need is begun. Returns the effect for the terminal, if there is one.
     pub fn handle(&mut self, app: &mut App, message: Message) -> Option<TerminalEffect> {
         let mut terminal = None;
         if message == Message::Worker(WorkerEvent::Answered) {
@@ -290,25 +290,24 @@ impl World {
         } else {
             self.take_in(app, message);
         }
-        while let Some(mut next) = self.next_message(app) {
-            loop {
-                let answer = match update(app, next) {
-                    Some(Effect::Terminal(effect)) => {
+        while let Some(next) = self.next_message(app) {
+            let mut next = Some(next);
+            while let Some(effect) = (next.take())
+                .and_then(|message| update(app, message))
+                .or_else(|| next_work(app))
+            {
+                next = match effect {
+                    Effect::Terminal(effect) => {
                         terminal = Some(effect);
                         None
                     }
-                    Some(Effect::Library(request)) => self.perform(app, request),
-                    Some(Effect::File(request @ FileRequest::Write(..))) => {
+                    Effect::Library(request) => self.perform(app, request),
+                    Effect::File(request @ FileRequest::Write(..)) => {
                         self.change(DiskRequest::File(request))
                     }
-                    Some(Effect::File(request)) => self.read(app, DiskRequest::File(request)),
-                    Some(Effect::Work(work)) => self.work(work),
-                    None => None,
+                    Effect::File(request) => self.read(app, DiskRequest::File(request)),
+                    Effect::Work(work) => self.work(work),
                 };
-                match answer {
-                    Some(answer) => next = answer,
-                    None => break,
-                }
             }
         }
         self.journal.note(app);
@@ -412,7 +411,7 @@ impl World {
     }
 
     /// Finishes changes and recordings and writes unsaved work at once, because the program is about to end; but waits for
-    /// at most two seconds. Returns lines about what is not on the disk, because of an error or because the disk does not
+    /// [`PATIENCE`] at most. Returns lines about what is not on the disk, because of an error or because the disk does not
     /// answer.
     pub fn end(&mut self, app: &mut App) -> Vec<String> {
         let recording = self.workers.frames.stop();
@@ -431,7 +430,7 @@ impl World {
     }
 
     /// Finishes changes and writes out unsaved work and what is recorded, because the program is about to be stopped,
-    /// perhaps for ever; but waits for at most two seconds. All goes on where it is continued. Returns lines about what is
+    /// perhaps for ever; but waits for [`PATIENCE`] at most. All goes on where it is continued. Returns lines about what is
     /// not on the disk.
     pub fn flush(&mut self, app: &mut App) -> Vec<String> {
         let recording = self.workers.frames.recording();
@@ -446,7 +445,7 @@ impl World {
         lines
     }
 
-    /// Waits for changes, memories and the journal, two seconds at most, and has answers taken, that of a request that is
+    /// Waits for changes, memories and the journal, [`PATIENCE`] at most, and has answers taken, that of a request that is
     /// `done` first. Returns lines about what is not on the disk, and whether unsaved work is.
     fn write_all(
         &mut self,

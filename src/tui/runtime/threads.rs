@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 use rayon::{ThreadBuilder, ThreadPoolBuilder};
 
 /// How long the end of the program waits for the disk.
-pub(super) const PATIENCE: Duration = Duration::from_millis(1500);
+pub(crate) const PATIENCE: Duration = Duration::from_millis(1500);
 
 /// The pause between two looks at a thread that is about to end.
 const PAUSE: Duration = Duration::from_millis(5);

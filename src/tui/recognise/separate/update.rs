@@ -30,8 +30,8 @@ pub(in crate::tui::recognise) fn open(app: &mut App, request: SeparationRequest)
     app.dialogs.push(Dialog::Separate(page));
 }
 
-/// Begins what is left of the work of an open page.
-pub(in crate::tui::recognise) fn follow(app: &mut App) -> Option<Effect> {
+/// What is left of the work of the open page, unless it was begun.
+pub(in crate::tui::recognise) fn next_work(app: &mut App) -> Option<Effect> {
     let number = app.works + 1;
     let (request, known) = page(app)?.begin(number)?;
     app.works = number;

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use taxel::storage::Library;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::app::state::{App, Options};
-use taxel::tui::app::update::update;
+use taxel::tui::app::update::{next_work, update};
 use taxel::tui::keys::key::{Arrow, Key};
 use taxel::tui::keys::keymap::Keymap;
 use taxel::tui::live::message::LiveMessage;
@@ -137,7 +137,7 @@ pub(crate) fn command(bytes: &[u8]) -> bool {
             Ok(message) => {
                 let mut app = app.clone();
                 // What is wished of the world is not done here.
-                let _ = update(&mut app, message);
+                let _ = update(&mut app, message).or_else(|| next_work(&mut app));
                 is_sound(&app);
                 true
             }
