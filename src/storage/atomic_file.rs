@@ -210,7 +210,7 @@ fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileErr
 /// As for [`FinishedFile::persist`]. If one of them got no name, what was there is there again; the message says what
 /// could not be brought back.
 pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, FileError> {
-    let _turn = turn(folder_of(&first.path));
+    let _lock = lock_folder(folder_of(&first.path));
     let (path, beside) = (first.path.clone(), second.path.clone());
     let is_replaced = first.is_replaced()?;
     // Where the file system has no links, it goes without.
@@ -257,7 +257,7 @@ fn move_away(path: &Path) -> Result<OldFile, FileError> {
 /// Waits until no other program names files that belong together in a folder, for two seconds at most; the others wait as
 /// long as the file that is returned is open. The folder itself is locked, so nothing is left in it. None on a system that
 /// cannot lock a folder: the files are named all the same.
-fn turn(folder: &Path) -> Option<File> {
+fn lock_folder(folder: &Path) -> Option<File> {
     const PATIENCE: Duration = Duration::from_secs(2);
     const PAUSE: Duration = Duration::from_millis(2);
     let folder = File::open(folder).ok()?;

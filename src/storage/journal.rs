@@ -66,7 +66,7 @@ impl Journal {
         )?)
     }
 
-    /// The journal's own file, found a name for at the first use.
+    /// The journal's file; its name is chosen at the first use.
     fn file(&mut self) -> Result<PathBuf, LibraryError> {
         if let Some((path, _)) = &self.open {
             return Ok(path.clone());
@@ -111,8 +111,8 @@ pub struct Orphan {
 }
 
 impl Orphan {
-    /// The newest that wait in a library, at most 100, the oldest of them first. Work that is saved under its name just
-    /// so is cleared away. A journal that cannot be read is left alone: it may be one of a later version.
+    /// The newest that wait in a library, at most 100, the oldest of them first. Work identical to the saved shape of its
+    /// name is removed. A journal that cannot be read is left alone: it may be one of a later version.
     pub fn all(library: &Library) -> Vec<Self> {
         let journals = folder_in(library);
         // A folder that cannot be read must not keep the program from starting.

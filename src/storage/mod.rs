@@ -61,6 +61,9 @@ mod sweep_file;
 #[cfg(all(feature = "recognition", feature = "library"))]
 mod models;
 
+#[cfg(all(feature = "recognition", feature = "library"))]
+mod model_choice;
+
 pub use atomic_file::{Existing, FinishedFile, UnfinishedFile, persist_pair};
 
 pub use error::FileError;
@@ -91,3 +94,9 @@ pub use models::{
     ModelCache, ModelFolder, cached_or_trained, load_model, load_whole_model, model_hash,
     save_model,
 };
+
+#[cfg(all(feature = "recognition", feature = "library"))]
+pub use model_choice::ModelChoice;
+
+#[cfg(feature = "tui")]
+pub(crate) use model_choice::unknown_set;

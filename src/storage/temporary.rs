@@ -46,7 +46,7 @@ impl TemporaryFile {
             Some(file) => Self { file, path: None },
             None => Self::named(folder)?,
         };
-        // Where there are no locks it goes without.
+        // File systems without locks are accepted.
         let _ = made.file.try_lock();
         Ok(made)
     }

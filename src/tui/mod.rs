@@ -4,7 +4,7 @@
 //! ```text
 //! terminal   bytes -> Key
 //! keys       lookup(context, key) -> Message       one table of actions, one of default keys
-//! app        update(&mut App, Message) -> Effect   the only writer of the state
+//! app        update(&mut App, Message) -> Effect   all changes of the state
 //! runtime    perform(Effect) -> Message            touches the world; then update again
 //! app        view(&App, &mut Frame)                reads the state and draws it
 //! ```

@@ -45,7 +45,7 @@ const CAMPAIGNS: [(&str, Campaign); 12] = [
     // The longest first, so that no thread waits for it at the end.
     ("killed_at_random", random::killed),
     ("killed_at_every_call", calls::killed),
-    ("every_error_is_told", calls::refused),
+    ("every_error_is_reported", calls::refused),
     (
         "recordings_appear_with_their_description",
         recording::killed,

@@ -148,7 +148,7 @@ fn forms_begin_with_the_values_that_were_accepted_last() {
     );
     // Without reminders, as a script and a record have it, a form begins with the defaults.
     shows(
-        &started(world().forgetful(), "f"),
+        &started(world().without_reminders(), "f"),
         &["ellipse rx 4.00 ry 4.00"],
     );
 }

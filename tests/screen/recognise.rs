@@ -251,19 +251,19 @@ impl Beside {
 }
 
 #[test]
-fn an_impatient_world_stops_what_has_more_poses_than_it_waits_for() {
+fn work_with_more_poses_than_the_limit_of_a_world_is_stopped() {
     let of_eleven = "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0<Enter>";
     let stopped = "stopped before anything was complete";
-    let looks = |poses| started(untrained().impatient(poses), of_eleven);
+    let looks = |poses| started(untrained().with_pose_limit(poses), of_eleven);
     hides(&looks(11), &[stopped]);
     shows(&looks(10), &[stopped]);
     shows(
-        &started(untrained().impatient(10), "r"),
+        &started(untrained().with_pose_limit(10), "r"),
         &["training was stopped"],
     );
     let sizes = ":separate --scale 1 --positions 10 --angle 0<Enter>";
     let asked = started(world(), "r").app().clone();
-    let mut session = Session::of(asked, untrained().impatient(10), 80, 24);
+    let mut session = Session::of(asked, untrained().with_pose_limit(10), 80, 24);
     press(&mut session, sizes);
     shows(&session, &["stopped; what was found stays"]);
 }

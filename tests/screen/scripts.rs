@@ -27,10 +27,16 @@ fn settings(styles: bool, json: bool) -> ScriptOptions {
 fn output(script: &str, json: bool) -> Result<String, ScriptFailure> {
     let settings = settings(true, json);
     let mut printed = String::new();
-    run(script, &[], &settings, world().forgetful(), |text| {
-        printed.push_str(text);
-        ControlFlow::Continue(())
-    })
+    run(
+        script,
+        &[],
+        &settings,
+        world().without_reminders(),
+        |text| {
+            printed.push_str(text);
+            ControlFlow::Continue(())
+        },
+    )
     .map(|()| printed)
 }
 

@@ -43,7 +43,7 @@ use crate::storage::{
     ArchiveFileError, ModelCache, ModelFolder, UnfinishedFile, cached_or_trained, load_model,
     load_whole_model, model_hash, save_model,
 };
-use crate::tui::recognise::sets::{ModelChoice, unknown_set};
+use crate::storage::{ModelChoice, unknown_set};
 
 /// Trains a model and writes it. Returns what is printed.
 /// The path is tried before the work begins. A signal stops the training and leaves no file.
@@ -226,7 +226,7 @@ pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<FoundModel, CliError>
     found(which, shelf, &load_whole_model)
 }
 
-/// The same, where files are read in a way of one's own.
+/// Like [`find`], with another function to read files.
 fn found(
     which: &OsStr,
     shelf: &Shelf,

@@ -1,9 +1,8 @@
 //! `--resume`: resumes the work on a large study. A shard whose file is complete and belongs to the same study is not
 //! computed again.
 //!
-//! A file appears under its name only when all of it is written, so a killed shard leaves none and is computed. What is
-//! there all the same, but damaged or of another study, is refused by its name: it is never merged by mistake, and
-//! never replaced either.
+//! A file appears under its name only when all of it is written, so a killed shard leaves none and is computed. A file that
+//! is damaged or belongs to another study is refused, and the error names it: it is neither merged by mistake nor replaced.
 
 use std::path::Path;
 

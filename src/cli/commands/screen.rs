@@ -72,12 +72,13 @@ pub(crate) fn screen(
     let mut world = World::new(library).with_model_cache(ModelCache::of_user());
     if record.borrow().is_some() {
         let record = Rc::clone(&record);
-        world = world.forgetful().with_shape_log(Box::new(move |shape| {
+        let log = move |shape| {
             if let Some(record) = &mut *record.borrow_mut() {
                 let line = record.recorder.shape(shape);
                 record.writer.write(line);
             }
-        }));
+        };
+        world = world.without_reminders().with_shape_log(Box::new(log));
     }
     let first = watched.map(|request| Message::Live(LiveMessage::Watch(Arc::new(request))));
     let ended = terminal::run(app, first, world, &terminal, (sender, mailbox), &mut watch);

@@ -66,7 +66,7 @@ pub(crate) fn run(
         }),
     })?;
     let world = match shelf.named()? {
-        Some(library) => World::quiet(library),
+        Some(library) => World::for_script(library),
         None => World::scratch().map_err(CliError::Screen)?,
     };
     let running = options(asked, settings, charset);

@@ -27,8 +27,8 @@ use crate::memory::MemoryGuard;
 use crate::pose::{Axis, DecimalRange, Ranges};
 use crate::recognition::{CellPositions, Model, Separation, TrainingError};
 use crate::sensor::Sensor;
+use crate::storage::ModelChoice;
 use crate::storage::UnfinishedFile;
-use crate::tui::recognise::sets::ModelChoice;
 
 /// Sizes between two of a scan that a search looks at.
 const REFINED: u64 = 9;

@@ -129,7 +129,7 @@ pub(crate) fn tare(
     let mut seen = Matrix::filled(1, 1, f64::NAN);
     let mut failure = None;
     let view = processing.view.clone();
-    // A damage behind the frames of the tare is none of its business.
+    // Damage after the tare's frames does not matter here.
     let read = recording.read_again(&mut |event| {
         if let RecordingEvent::Frame(frame) = event
             && frame.channel == channel

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::Builder;
 
-use crate::tui::runtime::threads::PATIENCE;
+use crate::tui::runtime::work::threads::PATIENCE;
 
 /// Writes the file. Dropped, as by a panic, it waits for the last lines too: they tell most.
 pub(crate) struct RecordWriter(Option<RecordSink>);

@@ -17,7 +17,7 @@ pub(crate) enum NamedCells {
     Grid(u16, u16, Vec<usize>),
     /// Counted fields, one after the other: the first of them and how many.
     Counted(usize, usize),
-    /// Most of the cells of these rows and columns, but not all: so many of them.
+    /// Only this many of the cells of these rows and columns.
     Incomplete(u16, u16, usize),
 }
 

@@ -8,7 +8,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
-use crate::tui::compare::Comparison;
+use crate::tui::compare::page::Comparison;
 use crate::tui::explore::export::ExportDialog;
 use crate::tui::explore::filter::FilterDialog;
 use crate::tui::explore::mark::MarkDialog;
@@ -16,8 +16,8 @@ use crate::tui::explore::ranges::state::RangesForm;
 use crate::tui::explore::results::Results;
 use crate::tui::explore::running::Running;
 use crate::tui::form::state::FormDialog;
-use crate::tui::help::Help;
-use crate::tui::history::HistoryDialog;
+use crate::tui::help::page::Help;
+use crate::tui::history::page::HistoryDialog;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
@@ -27,7 +27,7 @@ use crate::tui::recognise::confusion::Confusion;
 use crate::tui::recognise::quiz::Quiz;
 use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::state::Recognition;
-use crate::tui::search::SearchDialog;
+use crate::tui::search::page::SearchDialog;
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::theme::{Role, Theme};
 

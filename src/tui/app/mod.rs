@@ -5,7 +5,7 @@
 //! message    what a key means                          worker_event: what workers report
 //! page       what the screen knows of a page            dialog: the table of pages
 //! line_prompt  pages that are one line of text
-//! state      App                                        update: the only writer of it
+//! state      App                                        update: all changes begin there
 //! change     what changes the document                mouse: what clicks and drags do
 //! quit       the end, and the question before it
 //! steps      what a step of the history did, in words

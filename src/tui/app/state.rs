@@ -1,4 +1,7 @@
-//! The state of the program. Everybody may read it; only [`crate::tui::app::update`] writes it.
+//! The state of the program.
+//!
+//! Everything may read it. Once the program runs, only what [`crate::tui::app::update`] calls changes it, so all changes
+//! happen in the order of the messages.
 
 use std::collections::VecDeque;
 
@@ -435,6 +438,12 @@ impl App {
         } else if now.imprint != before.imprint {
             self.followed = Followed::Cursor;
         }
+    }
+
+    /// Columns and rows of a page that fills the body; 0 on a screen that is too small for any.
+    pub(in crate::tui) fn body_size(&self) -> (u16, u16) {
+        self.panes()
+            .map_or((0, 0), |panes| panes.body.as_size().into())
     }
 
     /// The results that are open, perhaps under other pages.

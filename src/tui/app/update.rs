@@ -1,30 +1,25 @@
-//! The only writer of the state: a message goes in, and perhaps an effect for the runtime comes out.
+//! Every change of the state begins here: a message goes in, and perhaps an effect for the runtime comes out.
 //!
 //! The top page receives the message, or the matrix if there is none. A notice stays until the next message from the
 //! user.
 
 use crate::formats::value::counted;
-use crate::tui::app::change::{compare_with, inform, refuse, settle};
+use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
-use crate::tui::app::document::Reading;
-use crate::tui::app::message::{Endpoint, FileEvent, Message};
+use crate::tui::app::message::{FileEvent, Message};
 use crate::tui::app::mouse;
-use crate::tui::app::page::Page;
 use crate::tui::app::state::{App, Mode, Notice, RunState};
 use crate::tui::app::worker_event::WorkerEvent;
-use crate::tui::compare::Comparison;
-use crate::tui::help::Help;
-use crate::tui::history::HistoryDialog;
+use crate::tui::help::page::Help;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
-use crate::tui::keys::key::{Arrow, Key};
-use crate::tui::keys::keymap::Keymap;
+use crate::tui::keys::key::Key;
 use crate::tui::live::message::LiveMessage;
-
 use crate::tui::matrix::files;
 use crate::tui::runtime::effect::{Effect, TerminalEffect};
-use crate::tui::search::{SearchDialog, Searched};
-use crate::tui::{explore, form, live, matrix, prompt, recognise, shapes};
+use crate::tui::{
+    compare, explore, form, help, history, live, matrix, prompt, recognise, search, shapes,
+};
 
 /// No message is done more often by a count.
 const MOST_TIMES: u16 = 999;
@@ -115,7 +110,7 @@ fn take_digit(app: &mut App, digit: u16) {
     inform(app, text);
 }
 
-/// Does what a message of the user says so often, or until there is an effect.
+/// Repeats a message of the user, stopping at the first effect.
 fn repeat(app: &mut App, message: &Message, times: u16) -> Option<Effect> {
     for time in 1..=times {
         let (said, step) = (app.notice.take(), app.history.step_number());
@@ -161,7 +156,7 @@ fn perform(app: &mut App, message: Message) -> Option<Effect> {
     }
 }
 
-/// Says of a key without a meaning where the keys are listed, or in that list how to read it; of each key once.
+/// Explains a key that does nothing here, once per key: where the keys are listed or, in that list, how to scroll and search.
 fn unknown(app: &mut App, key: Key) {
     if app.unknown_keys.contains(&key) {
         return;
@@ -203,10 +198,10 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Name(name) => prompt::update::in_name(app, name, message),
         Dialog::Command(command) => prompt::update::in_command(app, command, message),
         Dialog::Question(question) => at_question(app, question, &message),
-        Dialog::Help(help) => in_help(app, help, &message),
-        Dialog::Search(dialog) => in_search(app, dialog, &message),
-        Dialog::Compare(page) => in_comparison(app, page, &message),
-        Dialog::History(list) => in_history(app, list, &message),
+        Dialog::Help(help) => help::update::in_help(app, help, &message),
+        Dialog::Search(dialog) => search::update::in_search(app, dialog, &message),
+        Dialog::Compare(page) => compare::update::in_comparison(app, page, &message),
+        Dialog::History(list) => history::update::in_history(app, list, &message),
         Dialog::Ranges(form) => explore::work::in_ranges(app, form, message),
         Dialog::Running(running) => explore::work::in_running(app, running, &message),
         Dialog::Results(results) => explore::update::in_results(app, results, message),
@@ -219,145 +214,6 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
         Dialog::Separate(page) => recognise::separate::update::in_separate(app, page, &message),
         Dialog::Live(page) => live::update::in_live(app, page, message),
     }
-}
-
-/// Shows another view of two imprints, or scrolls what does not fit.
-fn in_comparison(app: &mut App, mut page: Comparison, message: &Message) -> Option<Effect> {
-    let by = match *message {
-        Message::Scroll(lines) => Some((0, lines)),
-        Message::ScrollTo(Endpoint::First) => Some((0, i16::MIN)),
-        Message::ScrollTo(Endpoint::Last) => Some((0, i16::MAX)),
-        Message::Choose(Arrow::Left) => Some((-1, 0)),
-        Message::Choose(Arrow::Right) => Some((1, 0)),
-        _ => None,
-    };
-    if let Some(panes) = app.panes() {
-        let area = panes.area(page.slot());
-        if let Message::Field(by) = *message {
-            page.next_view(by, area.width);
-        } else if let Some(by) = by
-            && !page.scroll(by, area)
-        {
-            inform(app, "all of it is visible");
-        }
-    }
-    app.dialogs.push(Dialog::Compare(page));
-    None
-}
-
-/// Handles a message in help, which stays open unless it is closed while something was searched for.
-fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
-    let (keymap, room) = (app.keymap(), room(app));
-    let mut refused = None;
-    match *message {
-        Message::Scroll(lines) => help.scroll(lines, keymap, room),
-        Message::ScrollScreen(by) => {
-            // A line of the page before stays, to go on reading from.
-            let page = room.1.saturating_sub(1).max(1).cast_signed();
-            help.scroll(page.saturating_mul(by.into()), keymap, room);
-        }
-        Message::ScrollTo(Endpoint::First) => help.scroll(i16::MIN, keymap, room),
-        Message::ScrollTo(Endpoint::Last) => help.scroll(i16::MAX, keymap, room),
-        Message::Match(by) if !help.go_to_match(by, keymap, room) => {
-            refused = Some(no_search(keymap, Context::Help));
-        }
-        Message::Search => {
-            let dialog = SearchDialog::new(Searched::Help(help.clone()));
-            app.dialogs
-                .extend([Dialog::Help(help), Dialog::Search(dialog)]);
-            return None;
-        }
-        Message::Cancel => help.leave_search(),
-        Message::Quit => return None,
-        _ => {}
-    }
-    app.dialogs.push(Dialog::Help(help));
-    if let Some(text) = refused {
-        refuse(app, text);
-    }
-    None
-}
-
-/// The notice for the key of the next match if nothing was searched for.
-fn no_search(keymap: &Keymap, context: Context) -> String {
-    let key = keymap.label(context, &action::SEARCH);
-    format!("nothing to go to: {key} searches")
-}
-
-/// Columns and rows of a list over the whole body.
-fn room(app: &App) -> (u16, u16) {
-    app.panes()
-        .map_or((0, 0), |panes| panes.body.as_size().into())
-}
-
-/// Handles a message in the prompt: the list below follows what is typed, Enter keeps its matches, and Esc takes it back
-/// to where it was.
-fn in_search(app: &mut App, mut dialog: SearchDialog, message: &Message) -> Option<Effect> {
-    let list = match message {
-        Message::Cancel | Message::Quit => dialog.before().clone(),
-        _ => {
-            dialog.edit(message);
-            dialog.searched(app.keymap(), room(app))
-        }
-    };
-    if let Some(below) = app.dialogs.last_mut() {
-        *below = match list {
-            Searched::Help(help) => Dialog::Help(help),
-            Searched::History(list) => Dialog::History(list),
-        };
-    }
-    match message {
-        Message::Cancel | Message::Quit => {}
-        Message::Accept => {
-            if let Some(text) = dialog.unfound() {
-                refuse(app, format!("no match for {text:?}"));
-            }
-        }
-        _ => app.dialogs.push(Dialog::Search(dialog)),
-    }
-    None
-}
-
-/// Moves in the list of steps, searches in it, or goes to the state after the selected one.
-/// To compare leaves the list open below.
-fn in_history(app: &mut App, mut list: HistoryDialog, message: &Message) -> Option<Effect> {
-    match *message {
-        Message::Scroll(lines) => list.scroll(lines),
-        Message::ScrollTo(end) => list.scroll_to(end),
-        Message::Compare => {
-            let step = list.selected();
-            let state = app
-                .history
-                .after(step)
-                .map(|state| Reading::of(state).imprint);
-            app.dialogs.push(Dialog::History(list));
-            if let Some(imprint) = state {
-                compare_with(app, &format!("the state after step {step}"), &imprint);
-            }
-            return None;
-        }
-        Message::Match(by) if !list.go_to_match(by) => {
-            app.dialogs.push(Dialog::History(list));
-            refuse(app, no_search(app.keymap(), Context::History));
-            return None;
-        }
-        Message::Search => {
-            let dialog = SearchDialog::new(Searched::History(list.clone()));
-            app.dialogs
-                .extend([Dialog::History(list), Dialog::Search(dialog)]);
-            return None;
-        }
-        Message::Cancel => list.leave_search(),
-        Message::Quit => return None,
-        Message::Accept => {
-            app.history.go_to(list.selected());
-            settle(app);
-            return None;
-        }
-        _ => {}
-    }
-    app.dialogs.push(Dialog::History(list));
-    None
 }
 
 /// Handles the answer to a question. Without an answer the question stays.

@@ -16,7 +16,7 @@ use crate::sweep::SweepResult;
 use crate::touch::Plane;
 use crate::tui::explore::angles::curve::{AngleCurve, zooms_of};
 use crate::tui::explore::column::ListColumn;
-use crate::tui::explore::map::sight::MapSight;
+use crate::tui::explore::map::visible::VisibleImprints;
 use crate::tui::explore::message::{ExplorePage, Findings, Zoom, name_of};
 use crate::tui::widget::number::around;
 
@@ -43,7 +43,7 @@ pub struct Results {
     /// The zooms at which they could not be found last.
     angles_failed: Option<PoseIndex>,
     /// The imprints that the map shows.
-    map_sight: MapSight,
+    visible_imprints: VisibleImprints,
     /// How often the map was zoomed in, from its whole range on.
     closer: u8,
     /// What rows are sorted by, and whether the largest comes first.
@@ -81,7 +81,7 @@ impl Results {
             angle_curve: None,
             angles_asked: None,
             angles_failed: None,
-            map_sight: MapSight::default(),
+            visible_imprints: VisibleImprints::default(),
             closer: 0,
             order: findings.by_poses.clone(),
             findings,
@@ -195,7 +195,7 @@ impl Results {
         }
     }
 
-    /// Takes that the imprints of each angle could not be found at the zooms of a place.
+    /// Notes that the imprints of each angle could not be found at the zooms of a place.
     pub fn fail_angles(&mut self, place: PoseIndex) {
         self.angles_failed = Some(zooms_of(place));
     }
@@ -206,8 +206,8 @@ impl Results {
     }
 
     /// The imprints that the map showed last.
-    pub(super) fn map_sight(&self) -> &MapSight {
-        &self.map_sight
+    pub(super) fn visible_imprints(&self) -> &VisibleImprints {
+        &self.visible_imprints
     }
 
     /// How often the map was zoomed in.

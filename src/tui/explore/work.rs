@@ -185,9 +185,9 @@ pub(crate) fn in_ranges(
     effect
 }
 
-/// Handles a message over work in progress. To close it means to stop the work.
-/// The page stays until the worker has answered: only then it is known what is complete. To quit meanwhile means to quit:
-/// nothing else would end the program while a worker hangs, and unsaved work is offered at the next start.
+/// Handles a message over work in progress. Closing the page stops the work, and the page stays until the worker has
+/// answered: only then is it known what is complete. Quitting meanwhile ends the program: nothing else would while a worker
+/// hangs, and unsaved work is offered at the next start.
 pub(crate) fn in_running(app: &mut App, mut running: Running, message: &Message) -> Option<Effect> {
     let stops = matches!(
         message,

@@ -4,7 +4,7 @@
 
 use crate::imprint::Imprint;
 use crate::recognition::{AnswerState, Evidence, Model, Noise, UnexplainedDifference};
-use crate::tui::recognise::sets::ModelChoice;
+use crate::storage::ModelChoice;
 
 /// What a model says of an imprint.
 #[derive(Clone, Debug, PartialEq)]

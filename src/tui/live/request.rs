@@ -7,8 +7,8 @@ use crate::acquire::AcquireOptions;
 use crate::frame::{Processing, SetRule};
 use crate::recognition::Noise;
 use crate::storage::Existing;
+use crate::storage::ModelChoice;
 use crate::tui::live::history::HISTORY_BYTES;
-use crate::tui::recognise::sets::ModelChoice;
 
 /// A source of frames and the settings that the page begins with.
 #[derive(Clone, Debug)]

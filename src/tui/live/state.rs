@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::formats::recording::{ChannelInfo, FrameMark, RecordedView};
 use crate::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule, Tare};
 use crate::imprint::Imprint;
+use crate::storage::ModelChoice;
 use crate::tui::live::display::LiveDisplay;
 use crate::tui::live::history::{FrameHistory, is_same};
 use crate::tui::live::marks::FrameMarks;
@@ -20,7 +21,6 @@ use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::live::tare::{LiveTare, TareMark};
 use crate::tui::live::threshold;
-use crate::tui::recognise::sets::ModelChoice;
 
 /// Frames that a tare by key is made of, at most.
 const TARED: usize = 30;

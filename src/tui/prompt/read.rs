@@ -19,6 +19,7 @@ use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, RangeError, default_range
 use crate::quote::{did_you_mean, shortened};
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
+use crate::storage::ModelChoice;
 use crate::tui::app::document::Document;
 use crate::tui::app::message::{Message, Purpose};
 use crate::tui::app::state::App;
@@ -31,7 +32,6 @@ use crate::tui::prompt::commands::{PromptCommand, commands, find};
 use crate::tui::prompt::flags::{self, Flag};
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::request::SeparationFlags;
-use crate::tui::recognise::sets::ModelChoice;
 
 /// The message of a line.
 ///

@@ -18,7 +18,7 @@ use crate::tui::keys::keymap::Keymap;
 use crate::tui::recognise::confused::{Example, worst_cell};
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::quiz::onto;
-use crate::tui::recognise::sets::TrainedModel;
+use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::recognise::view::percent;
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};

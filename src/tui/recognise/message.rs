@@ -5,9 +5,10 @@ use std::sync::Arc;
 use crate::formats::Name;
 use crate::imprint::Imprint;
 use crate::recognition::{Nearest, PlacedSource, PoseEstimate};
+use crate::storage::ModelChoice;
 use crate::tui::recognise::separate::found::SizesFound;
 use crate::tui::recognise::separate::request::SeparationFlags;
-use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
+use crate::tui::recognise::trained::TrainedModel;
 
 /// What a key or a command asks for.
 #[derive(Clone, Debug, PartialEq)]

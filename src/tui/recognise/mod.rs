@@ -1,7 +1,7 @@
 //! Recognise: names the shape on the matrix from one touch or several, and how far that can be trusted.
 //!
 //! ```text
-//! sets        the sets of shapes that can be chosen, and how they are trained
+//! trained     a model, how well it tells its shapes apart, and examples
 //! confused    pairs of shapes that are confused, with an imprint
 //! message     what keys ask for, and what the worker reports
 //! state       the set, its model, the touches, the answer
@@ -13,7 +13,7 @@
 //! reach       the state wherever it is; imprints onto the matrix
 //! ```
 
-pub mod sets;
+pub mod trained;
 
 pub mod confused;
 

@@ -16,7 +16,7 @@ use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::recognise::message::RecogniseMessage;
-use crate::tui::recognise::sets::TrainedModel;
+use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 

@@ -2,11 +2,11 @@
 
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
+use crate::storage::ModelChoice;
 use crate::tui::app::change::begin_by;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Document;
 use crate::tui::app::state::App;
-use crate::tui::recognise::sets::ModelChoice;
 use crate::tui::recognise::state::Recognition;
 
 /// The state, wherever it is: on the page, or kept while that is closed.

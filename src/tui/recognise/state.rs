@@ -8,10 +8,11 @@ use rand_pcg::Pcg64;
 use crate::formats::Name;
 use crate::imprint::Imprint;
 use crate::recognition::{Answer, Evidence};
+use crate::storage::ModelChoice;
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::recognise::message::{Look, PoseSearch, Prepared};
 use crate::tui::recognise::separate::state::Separate;
-use crate::tui::recognise::sets::{ModelChoice, TrainedModel};
+use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::number::around;
 
 /// How far the model of the chosen set is.

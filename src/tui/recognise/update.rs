@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
 
+use crate::storage::ModelChoice;
 use crate::tui::app::change::{inform, let_go, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
@@ -20,7 +21,6 @@ use crate::tui::recognise::quiz::Quiz;
 use crate::tui::recognise::reach::{put, state};
 use crate::tui::recognise::separate;
 use crate::tui::recognise::separate::request::SeparationFlags;
-use crate::tui::recognise::sets::ModelChoice;
 use crate::tui::recognise::state::{LookStep, ModelState, NoModel, Recognition};
 use crate::tui::runtime::effect::{Effect, Work};
 
@@ -338,8 +338,8 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
     }
 }
 
-/// Takes that a training failed for a reason that nobody expected.
-/// The number is of a training or of the work on sizes; the page that waits for another number takes no notice.
+/// Handles a training that failed unexpectedly.
+/// The number is of a training or of the work on sizes; a page that waits for other work ignores it.
 pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) {
     separate::update::on_failure(app, number, reason);
     let prepared = Prepared {

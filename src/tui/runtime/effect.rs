@@ -8,6 +8,7 @@ use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::imprint::Imprint;
 use crate::pose::{PoseGrid, PoseIndex};
 use crate::recognition::SeparationPoint;
+use crate::storage::ModelChoice;
 use crate::storage::{Existing, Expected};
 use crate::tui::app::message::Purpose;
 use crate::tui::explore::message::Findings;
@@ -15,7 +16,6 @@ use crate::tui::live::naming::NamingRequest;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::message::PoseSearch;
 use crate::tui::recognise::separate::request::SeparationRequest;
-use crate::tui::recognise::sets::ModelChoice;
 
 /// An effect.
 #[derive(Clone, Debug, PartialEq)]

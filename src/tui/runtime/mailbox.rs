@@ -2,7 +2,7 @@
 //!
 //! A queue, and a socket pair that the loop waits for together with the terminal and the signals. The queue is not
 //! bounded, since workers must never wait for a slow terminal. Little is in it: workers report their progress ten times a
-//! second, and answer what the screen has asked. Frames wait in `runtime::frame_feed`, and one message here says that some
+//! second, and answer what the screen has asked. Frames wait in `runtime::frames::feed`, and one message here says that some
 //! have come.
 
 use std::io::{self, Read, Write};

@@ -1,83 +1,32 @@
 //! The runtime: performs the effects that `update` returns, and feeds the answers back as messages.
 //!
-//! Nothing else on the screen touches files or threads, but for the terminal itself. The file is long because each effect has
-//! an arm here, and ending the program waits for all of them.
+//! Apart from the terminal, only this room touches files and threads. The file is long because each effect has an arm here,
+//! and the end of the program waits for all of them.
 //! ```text
-//! effect           what update may ask for: the library, a worker, the terminal
-//! files            opens and writes files of imprints
-//! workers          sweeps and exports, each on a thread of its own
-//! progress         how workers report
-//! threads          the threads that share long work
-//! models           models for recognition: trained, read
-//! look             searches them for what an imprint may be
-//! sizes            the limit of a set in several sizes
-//! frames           a source of frames: watched, recorded
-//! script_frames    one read frame by frame, for a script
-//! frame_feed       what it has brought and the screen has not taken
-//! recording        the file that frames are recorded in
-//! naming           the shapes that left the imprints of frames
-//! disk             work with the disk, which may answer late
-//! lock             a mutex, locked whatever another thread has done
-//! slow_work        work that is waited for, and when that is said
-//! reading          what is read from it, for the page that asked
-//! source           what the name of a source of frames stands for
-//! journal_writer   unsaved work, written beside the program
-//! write_access     where files may be written
-//! leftover         unsaved work in a few words
-//! reminders        what is remembered for the next run
-//! shape_log        which stored shapes were used, for a record
-//! mailbox          messages from the workers, which wake the event loop
+//! effect      what update may ask for: the library, a worker, the terminal
+//! disk        reads and writes, in order, on a disk that may answer late
+//! work        sweeps, models and exports, each on a thread of its own
+//! frames      a source of frames: watched, recorded
+//! slow_work   work that the user waits for, and when the screen says so
+//! lock        a mutex, locked whatever another thread has done
+//! mailbox     messages from other threads, which wake the event loop
 //! ```
 
 pub mod effect;
 
-pub mod files;
+pub mod disk;
 
-pub mod workers;
-
-mod models;
-
-mod look;
-
-mod sizes;
-
-mod frame_feed;
+pub mod work;
 
 mod frames;
 
-mod script_frames;
-
-mod recording;
-
-mod source;
-
-mod naming;
-
-pub mod progress;
-
-pub mod journal_writer;
-
-pub mod mailbox;
-
-mod write_access;
-
-mod disk;
+mod slow_work;
 
 mod lock;
 
-mod slow_work;
+pub mod mailbox;
 
-pub(crate) mod threads;
-
-mod reading;
-
-mod shape_log;
-
-mod leftover;
-
-mod reminders;
-
-pub use crate::tui::runtime::progress::WorkerEventSink;
+pub use crate::tui::runtime::work::progress::WorkerEventSink;
 
 use std::collections::VecDeque;
 use std::io;
@@ -85,17 +34,20 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::tui::runtime::disk::{DiskAnswer, DiskQueue, DiskRequest, newest_orphan, not_recorded};
-use crate::tui::runtime::journal_writer::JournalWriter;
-use crate::tui::runtime::models::ModelStore;
-use crate::tui::runtime::reading::Reader;
-use crate::tui::runtime::recording::Recording;
-use crate::tui::runtime::reminders::Reminders;
-use crate::tui::runtime::shape_log::ShapeLog;
-pub use crate::tui::runtime::shape_log::ShapeSink;
-use crate::tui::runtime::threads::PATIENCE;
-use crate::tui::runtime::workers::Workers;
-use crate::tui::runtime::write_access::WriteAccess;
+use crate::tui::runtime::disk::journal_writer::JournalWriter;
+use crate::tui::runtime::disk::leftover;
+use crate::tui::runtime::disk::queue::{
+    DiskAnswer, DiskQueue, DiskRequest, newest_orphan, not_recorded,
+};
+use crate::tui::runtime::disk::reading::Reader;
+use crate::tui::runtime::disk::reminders::Reminders;
+use crate::tui::runtime::disk::shape_log::ShapeLog;
+pub use crate::tui::runtime::disk::shape_log::ShapeSink;
+use crate::tui::runtime::disk::write_access::WriteAccess;
+use crate::tui::runtime::frames::recording::Recording;
+use crate::tui::runtime::work::models::ModelStore;
+use crate::tui::runtime::work::threads::PATIENCE;
+use crate::tui::runtime::work::workers::Workers;
 
 use crate::formats::StoredShape;
 use crate::storage::{Expected, Journal, Library, LibraryError, ModelCache, Orphan, ScratchFolder};
@@ -157,7 +109,7 @@ impl World {
     }
 
     /// The same for a script: unsaved work is neither offered nor kept, so that a script does the same every time.
-    pub fn quiet(library: Library) -> Self {
+    pub fn for_script(library: Library) -> Self {
         let workers = Workers::with(ModelStore::beside(&library));
         Self {
             writer: DiskQueue::new(library.clone()),
@@ -191,7 +143,10 @@ impl World {
     ///
     /// # Errors
     /// What the system or the library refuses, in a sentence.
-    pub fn furnished(shapes: &[&StoredShape], leftovers: &[&StoredShape]) -> Result<Self, String> {
+    pub fn with_contents(
+        shapes: &[&StoredShape],
+        leftovers: &[&StoredShape],
+    ) -> Result<Self, String> {
         let folder = ScratchFolder::new().map_err(|error| error.to_string())?;
         let library = Library::open(folder.path().join("library"));
         let sentence = |error: LibraryError| error.to_string();
@@ -239,7 +194,7 @@ impl World {
 
     /// Stops each sweep and each training at once that has more poses, as a user would who does not wait for it.
     #[must_use]
-    pub fn impatient(mut self, poses: u64) -> Self {
+    pub fn with_pose_limit(mut self, poses: u64) -> Self {
         self.workers.stop_after(poses);
         self
     }
@@ -255,7 +210,7 @@ impl World {
 
     /// Remembers nothing of earlier runs, and nothing for later ones: what is recorded as a script does the same again.
     #[must_use]
-    pub fn forgetful(mut self) -> Self {
+    pub fn without_reminders(mut self) -> Self {
         self.reminders = None;
         self
     }
@@ -288,7 +243,7 @@ impl World {
         if message == Message::Worker(WorkerEvent::Answered) {
             self.collect_changes();
         } else {
-            self.take_in(app, message);
+            self.receive(app, message);
         }
         while let Some(next) = self.next_message(app) {
             let mut next = Some(next);
@@ -338,7 +293,7 @@ impl World {
     }
 
     /// Takes a message. Esc on the page that reads from the disk waits for it no longer.
-    fn take_in(&mut self, app: &App, message: Message) {
+    fn receive(&mut self, app: &App, message: Message) {
         let esc = Message::Unknown(Key::Esc);
         let leaves = matches!(message, Message::Cancel | Message::Quit) || message == esc;
         let pages = app.dialogs.len();
@@ -354,7 +309,7 @@ impl World {
     fn work(&mut self, work: Work) -> Option<Message> {
         match work {
             Work::Record(metadata) => {
-                return match self.workers.frames.begins() {
+                return match self.workers.frames.start_recording() {
                     Ok(number) => self.change(DiskRequest::BeginRecording(number, metadata)),
                     Err(refused) => Some(Message::Worker(WorkerEvent::Refused(refused.to_owned()))),
                 };
@@ -397,9 +352,9 @@ impl World {
 
     /// When to look again at what is waited for; None if nothing is.
     pub(in crate::tui) fn changes_due(&self) -> Option<Instant> {
-        let changes = self.writer.look_at().into_iter();
-        let read = self.reader.look_at().into_iter();
-        let read = read.chain(self.workers.model_look_at());
+        let changes = self.writer.next_check().into_iter();
+        let read = self.reader.next_check().into_iter();
+        let read = read.chain(self.workers.model_next_check());
         changes.chain(read).min()
     }
 
@@ -577,7 +532,7 @@ impl World {
             Err(refused) => (LiveEvent::NotRecorded(refused), None),
         };
         // The source was left meanwhile, or something else was recorded still.
-        let over = self.workers.frames.begun(number, recording);
+        let over = self.workers.frames.recording_started(number, recording);
         let ended = over.and_then(|over| self.change(DiskRequest::EndRecording(number, over)));
         self.later.extend(ended);
         Message::Worker(WorkerEvent::Live(number, event))

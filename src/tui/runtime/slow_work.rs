@@ -3,10 +3,10 @@
 use std::time::{Duration, Instant};
 
 /// After this time the screen says what is waited for.
-const SLOW: Duration = Duration::from_millis(300);
+const SLOW_AFTER: Duration = Duration::from_millis(300);
 
 /// The time after which that is looked at again.
-const AGAIN: Duration = Duration::from_millis(500);
+const RECHECK: Duration = Duration::from_millis(500);
 
 /// Work that has begun.
 #[derive(Clone, Debug)]
@@ -27,15 +27,15 @@ impl SlowWork {
     }
 
     /// When to look at it again.
-    pub(super) fn look_at(&self) -> Instant {
+    pub(super) fn next_check(&self) -> Instant {
         let now = Instant::now();
-        let slow = self.since + SLOW;
-        if slow > now { slow } else { now + AGAIN }
+        let slow = self.since + SLOW_AFTER;
+        if slow > now { slow } else { now + RECHECK }
     }
 
     /// What it does and what it waits for, if it takes long.
     pub(super) fn status(&self, what: &str) -> Option<String> {
         let text = || format!("{}: waiting for {what}", self.words);
-        (self.since.elapsed() >= SLOW).then(text)
+        (self.since.elapsed() >= SLOW_AFTER).then(text)
     }
 }

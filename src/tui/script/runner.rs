@@ -51,7 +51,7 @@ pub enum ScriptFailure {
     /// There is no folder for the script's own library, or its shapes cannot be put there.
     #[error("the script's own library: {0}")]
     World(String),
-    /// Nobody takes any more of what is printed.
+    /// The output was closed.
     #[error("stopped: the output was closed")]
     Stopped,
     /// The program ended before the script.

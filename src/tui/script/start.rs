@@ -136,9 +136,9 @@ impl<'a> ScriptStart<'a> {
     /// Why its shapes cannot be stored, in a sentence.
     pub(super) fn world(&self, own: World) -> Result<World, String> {
         let world = match &self.library {
-            Some((_, library)) => World::quiet(library.clone()),
+            Some((_, library)) => World::for_script(library.clone()),
             None if self.shapes.is_empty() && self.leftovers.is_empty() => own,
-            None => World::furnished(&self.shapes, &self.leftovers)?,
+            None => World::with_contents(&self.shapes, &self.leftovers)?,
         };
         Ok(match &self.settings.folder {
             Some(folder) => world.confined_to(folder.clone()),

@@ -5,6 +5,7 @@
 
 use crate::imprint::Imprint;
 use crate::picture::Picture;
+use crate::storage::ModelChoice;
 use crate::storage::{Expected, LibraryEntry, LoadedShape, ShapeOrigin};
 use crate::tui::app::change::{begin, begin_unsaved, compare_with, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
@@ -17,7 +18,6 @@ use crate::tui::form::state::FormDialog;
 use crate::tui::keys::action::{self, Arguments};
 use crate::tui::keys::binding::Context;
 use crate::tui::prompt::commands::wants_names;
-use crate::tui::recognise::sets::ModelChoice;
 use crate::tui::runtime::effect::{Effect, LibraryRequest};
 use crate::tui::shapes::state::ListDialog;
 

@@ -61,7 +61,7 @@ pub(in crate::tui) fn run(
     event_loop.first = first;
     let ended = catch_unwind(AssertUnwindSafe(|| {
         event_loop.run().or_else(|error| match error {
-            // Whoever finds it out first: reading, writing, or taking the terminal anew.
+            // Reading, writing or reopening the terminal may be the first to fail.
             lost if is_lost(&lost) => Ok(Outcome::Hangup),
             error => Err(error),
         })
@@ -85,7 +85,7 @@ pub(in crate::tui) fn run(
     let left = session::leave(event_loop.pacing.is_asked());
     match ended {
         Ok(Ok(Outcome::Quit)) => left.map(|()| quit),
-        // A terminal that is gone takes no leave.
+        // Nothing can be restored on a terminal that is gone.
         Ok(outcome) => outcome,
         Err(panic) => resume_unwind(panic),
     }
@@ -154,7 +154,7 @@ struct EventLoop<'a> {
     frames_due: Option<Instant>,
     /// When they were taken last.
     frames_at: Option<Instant>,
-    /// Whether the terminal has drawn them.
+    /// Limits pictures to what the terminal can draw.
     pacing: PicturePacing,
 }
 

@@ -49,9 +49,9 @@ const MOMENT: Duration = Duration::from_millis(50);
 /// The same for pasted text, the end of which is lost where the terminal does not send it.
 const PASTE_MOMENT: Duration = Duration::from_secs(1);
 
-/// Longer sequences are nothing that anybody sends.
+/// No terminal sends a longer sequence.
 const LONGEST: usize = 64;
-/// Nor more pasted text than this; the rest is dropped.
+/// Pasted text is cut at this length; the rest is dropped.
 const LONGEST_PASTE: usize = 1 << 20;
 
 /// Begins a sequence, and is the byte of a key.

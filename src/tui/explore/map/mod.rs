@@ -3,7 +3,7 @@
 //! ```text
 //! letters   a letter, colour or shade for each imprint, different ones for neighbours
 //! layout    cells, rulers, the pose at the cursor
-//! sight     the imprints in sight, kept while the same poses are
+//! visible   the imprints of the visible poses, kept while the same poses stay visible
 //! view      draws them
 //! ```
 
@@ -11,7 +11,7 @@ pub mod letters;
 
 pub mod layout;
 
-pub mod sight;
+pub mod visible;
 
 pub mod view;
 

@@ -28,7 +28,7 @@ use crate::touch::Plane;
 use crate::tui::explore::drawing::PageDrawing;
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::map::letters::{LETTERS, letter, signs};
-use crate::tui::explore::map::sight::PosesInSight;
+use crate::tui::explore::map::visible::VisiblePoses;
 use crate::tui::explore::results::Results;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
@@ -122,13 +122,13 @@ fn heading(results: &Results) -> String {
 /// The imprints of the poses in sight, row by row.
 fn ids(results: &Results, pane: &MapPane) -> Arc<[Option<u32>]> {
     let (x, y) = pane.first;
-    let poses = PosesInSight {
+    let poses = VisiblePoses {
         first: results.pose_index().with(Axis::X0, x).with(Axis::Y0, y),
         count: pane.count,
         stride: pane.stride,
     };
     let find = || sampled(results, pane.first, pane.count, pane.stride);
-    results.map_sight().of(poses, find)
+    results.visible_imprints().of(poses, find)
 }
 
 /// The imprints of a number of poses across and down, from a first one on, one in `stride` along both axes.

@@ -7,7 +7,7 @@ use crate::pose::{Axis, DecimalRange, RangeError};
 use crate::quote::shortened;
 use crate::recognition::{CellPositions, Separation, SizeAxis, TrainingError};
 use crate::tui::prompt::flags;
-use crate::tui::recognise::sets::TrainedModel;
+use crate::tui::recognise::trained::TrainedModel;
 
 /// The sizes that are looked at unless others are asked for: half as large to three times as large.
 const SIZES: &str = "0.5:3:0.1";

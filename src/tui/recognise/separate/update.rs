@@ -129,7 +129,7 @@ pub(in crate::tui::recognise) fn on_found(app: &mut App, found: SizesFound) {
     }
 }
 
-/// Takes that the work of a number failed for a reason that nobody expected.
+/// Handles work of this number that failed unexpectedly.
 pub(in crate::tui::recognise) fn on_failure(app: &mut App, number: u64, reason: &str) {
     let found = SizesFound {
         number,

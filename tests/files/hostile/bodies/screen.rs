@@ -66,7 +66,7 @@ fn world() -> World {
             }
         }
     }
-    World::quiet(Library::open(folder.join("library"))).confined_to(folder)
+    World::for_script(Library::open(folder.join("library"))).confined_to(folder)
 }
 
 /// Removes a file or a folder.
@@ -190,7 +190,7 @@ pub(crate) fn play(bytes: &[u8]) -> bool {
         text,
         &[],
         &settings,
-        world().impatient(MOST_POSES),
+        world().with_pose_limit(MOST_POSES),
         |text| {
             printed.push_str(text);
             ControlFlow::Continue(())
@@ -268,7 +268,7 @@ pub(crate) fn session(bytes: &[u8]) -> bool {
     let app = start(bytes.next().unwrap_or_default());
     let number = bytes.next().unwrap_or_default();
     let (columns, rows) = bytes.size(number / 4);
-    let world = world().impatient(MOST_POSES);
+    let world = world().with_pose_limit(MOST_POSES);
     let mut session = Session::of(app, world, columns, rows);
     for number in 0..300 {
         let Some(byte) = bytes.next() else {

@@ -1,0 +1,456 @@
+//! The two imprints, the view that is chosen, and how they are drawn.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::description::{DESCRIPTORS, Description, Descriptor, Value, main_region, regions};
+use crate::formats::value;
+use crate::formats::value::counted;
+use crate::imprint::Imprint;
+use crate::tui::app::message::Message;
+use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::widget::number::{around, narrow};
+use crate::tui::widget::theme::{Role, Theme, spelling};
+use crate::tui::widget::write;
+
+/// Columns of the row ruler.
+const RULER: u16 = 3;
+
+/// Columns between two columns of the table.
+const GAP: u16 = 2;
+
+/// What is shown in one place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ComparedView {
+    /// Which taxels are active in both, in one, in none.
+    Difference,
+    /// The first imprint.
+    First,
+    /// The second one.
+    Second,
+    /// The descriptors, where they have no room beside the others.
+    Descriptors,
+}
+
+use ComparedView::{Descriptors, Difference, First, Second};
+
+/// The views in the order of Tab.
+const VIEWS: [ComparedView; 4] = [Difference, First, Second, Descriptors];
+
+/// The views beside which the descriptors stand.
+const GRIDS: &[ComparedView] = VIEWS.split_at(3).0;
+
+/// A row of the table: the symbol of a descriptor, its values, their difference.
+type TableRow = [String; 4];
+
+/// Two imprints of one size, and what they are.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Both, brought to one size.
+    imprints: Box<[Imprint; 2]>,
+    /// What each is, for the headings.
+    names: [String; 2],
+    /// The descriptors, below a heading.
+    table: Vec<TableRow>,
+    /// The index of the view that is shown.
+    view: usize,
+    /// How many rows of the views and of the table are hidden above, where so many have no room.
+    top: u16,
+    /// How many columns of the views are hidden on the left.
+    left: u16,
+}
+
+/// Where the views and the descriptors stand.
+struct ComparedPanes {
+    /// The views.
+    views: Vec<(ComparedView, Rect)>,
+    /// The descriptors, where they are visible.
+    table: Option<Rect>,
+}
+
+/// Which taxels a view shows.
+struct ComparedWindow {
+    /// Characters of a taxel.
+    cell: u16,
+    /// The first column, and how many there are.
+    columns: (u16, u16),
+    /// The first row, and how many.
+    rows: (u16, u16),
+}
+
+impl Comparison {
+    /// Compares two imprints, given with what they are. Where one has fewer columns or rows, taxels that it does not have
+    /// count as inactive.
+    pub fn new(first: (String, &Imprint), second: (String, &Imprint)) -> Self {
+        let columns = first.1.columns().max(second.1.columns());
+        let rows = first.1.rows().max(second.1.rows());
+        let imprints = [first.1, second.1].map(|imprint| imprint.resized(columns, rows));
+        let table = table(&imprints);
+        Self {
+            imprints: Box::new(imprints),
+            names: [first.0, second.0],
+            table,
+            view: 0,
+            top: 0,
+            left: 0,
+        }
+    }
+
+    /// Shows the view that comes `by` further on, the first after the last, in an area of this many columns.
+    pub fn next_view(&mut self, by: i8, columns: u16) {
+        let views = self.views(columns);
+        self.view = around(self.view.min(views.len() - 1), by, views.len());
+    }
+
+    /// Scrolls to the right and down; negative goes back. Returns whether anything does not fit into the area.
+    pub fn scroll(&mut self, (columns, rows): (i16, i16), area: Rect) -> bool {
+        let (most_left, most_top) = self.hidden(area);
+        let moved =
+            |now: u16, by: i16, most: u16| now.min(most).saturating_add_signed(by).min(most);
+        self.left = moved(self.left, columns, most_left);
+        self.top = moved(self.top, rows, most_top);
+        (most_left, most_top) != (0, 0)
+    }
+
+    /// How many columns and rows of what is visible do not fit into the area.
+    fn hidden(&self, area: Rect) -> (u16, u16) {
+        let panes = self.panes(area);
+        let [first, _] = &*self.imprints;
+        let views = panes.views.iter().map(|&(_, area)| {
+            let window = self.window(area);
+            (
+                u16::from(first.columns()) - window.columns.1,
+                u16::from(first.rows()) - window.rows.1,
+            )
+        });
+        let table = panes.table.map(|area| (0, self.rows_beyond(area.height)));
+        let all = views.chain(table);
+        all.fold((0, 0), |most, one| (most.0.max(one.0), most.1.max(one.1)))
+    }
+
+    /// How many rows of the table do not fit below its heading in this many lines.
+    fn rows_beyond(&self, lines: u16) -> u16 {
+        narrow(self.table.len()).saturating_sub(lines)
+    }
+
+    /// Where the views and the descriptors stand in the area of the page.
+    fn panes(&self, area: Rect) -> ComparedPanes {
+        let body = write::below(area, HEADING);
+        let table = self.widths().iter().sum::<u16>() + 3 * GAP;
+        let views = self.views(body.width);
+        let view = views[self.view.min(views.len() - 1)];
+        if view == Descriptors {
+            let table = Some(body);
+            return ComparedPanes {
+                views: Vec::new(),
+                table,
+            };
+        }
+        let all = 3 * self.grid(2) + table <= body.width;
+        let shown = if all { GRIDS } else { &[view] };
+        // Taxels of two characters leave the room that the descriptors need, or those of one do.
+        let beside = if views == GRIDS { table } else { 0 };
+        let room = body.width.saturating_sub(beside).max(self.grid(1));
+        let room = room.min(body.width);
+        let mut x = body.x;
+        let views = shown.iter().map(|&view| {
+            let width = self.grid(2).min((body.x + room).saturating_sub(x));
+            let place = Rect { x, width, ..body };
+            x += width;
+            (view, place)
+        });
+        let views = views.collect();
+        ComparedPanes {
+            views,
+            table: (beside > 0).then(|| write::right_of(body, x)),
+        }
+    }
+
+    /// Which taxels a view shows in an area: two characters a taxel, or one where there is no room for two.
+    fn window(&self, area: Rect) -> ComparedWindow {
+        let [first, _] = &*self.imprints;
+        let (columns, rows) = (u16::from(first.columns()), u16::from(first.rows()));
+        let room = area.width.saturating_sub(RULER);
+        let cell = if columns * 2 <= room { 2 } else { 1 };
+        let part = |all: u16, room: u16, hidden: u16| {
+            let count = room.min(all);
+            (hidden.min(all - count), count)
+        };
+        ComparedWindow {
+            cell,
+            columns: part(columns, room / cell, self.left),
+            rows: part(rows, area.height.saturating_sub(2), self.top),
+        }
+    }
+
+    /// Columns of a view with one character a taxel, or with two.
+    fn grid(&self, characters: u16) -> u16 {
+        RULER + characters * u16::from(self.imprints[0].columns()) + 1
+    }
+
+    /// Columns of each column of the table.
+    fn widths(&self) -> [u16; 4] {
+        std::array::from_fn(|column| {
+            let widths = self.table.iter().map(|row| ascii_width(&row[column]));
+            narrow(widths.fold(0, usize::max))
+        })
+    }
+
+    /// The views that Tab shows in this many columns.
+    fn views(&self, columns: u16) -> &'static [ComparedView] {
+        let [symbol, first, second, _] = self.widths();
+        let least = symbol + first + second + 2 * GAP;
+        if self.grid(1) + least <= columns {
+            GRIDS
+        } else {
+            &VIEWS
+        }
+    }
+
+    /// The taxels in which they differ.
+    fn differing(&self) -> u32 {
+        self.imprints[0].differing(&self.imprints[1]).count()
+    }
+
+    /// Draws a view: a heading, the rulers, the taxels. Arrows in the heading say where there are more.
+    fn draw_view(&self, view: ComparedView, theme: &Theme, buffer: &mut Buffer, area: Rect) {
+        let [first, second] = &*self.imprints;
+        let window = self.window(area);
+        let (cell, (left, wide), (top, high)) = (window.cell, window.columns, window.rows);
+        let more = [
+            top > 0,
+            top + high < first.rows().into(),
+            left > 0,
+            left + wide < first.columns().into(),
+        ];
+        let arrows = more.into_iter().zip(theme.more());
+        let arrows: String = arrows
+            .filter(|(any, _)| *any)
+            .map(|(_, sign)| sign)
+            .collect();
+        let meanings: &[&str] = match view {
+            Difference => &["a: only A, b: only B", "a: A, b: B"],
+            First => &["A"],
+            Second => &["B"],
+            Descriptors => return,
+        };
+        let titles = meanings
+            .iter()
+            .map(|meaning| format!("{meaning}  {arrows}"));
+        let titles: Vec<String> = titles.map(|title| title.trim_end().to_owned()).collect();
+        let titles: Vec<&str> = titles.iter().map(String::as_str).collect();
+        let title = write::first_fitting(&titles, area.width.saturating_sub(1).into());
+        write::line(buffer, area, theme, [(title, Role::Title)]);
+        let every = if cell == 1 { 5 } else { 2 };
+        let numbers = (left..left + wide).filter(|column| column.is_multiple_of(every));
+        let numbers = numbers.map(|column| (column - left, column.to_string()));
+        // One that does not fit would touch the descriptors.
+        for (place, number) in
+            numbers.filter(|(place, number)| place * cell + narrow(number.len()) <= wide * cell)
+        {
+            let place = write::right_of(write::row(area, 1), area.x + RULER + place * cell);
+            write::line(buffer, place, theme, [(number.as_str(), Role::Quiet)]);
+        }
+        for row in top..top + high {
+            let line = write::row(area, usize::from(row - top) + 2);
+            let ruler = format!("{row:>2}");
+            write::line(buffer, line, theme, [(ruler.as_str(), Role::Quiet)]);
+            for column in left..left + wide {
+                let at = |imprint: &Imprint| {
+                    let (column, row) = (u8::try_from(column), u8::try_from(row));
+                    matches!((column, row), (Ok(column), Ok(row)) if imprint.get(column, row))
+                };
+                let (signs, role) = signs(theme, view, (at(first), at(second)));
+                let x = line.x + RULER + (column - left) * cell;
+                for (offset, sign) in (0..cell).zip(signs) {
+                    if let Some(target) = buffer.cell_mut(Position::new(x + offset, line.y)) {
+                        target.set_char(sign).set_style(theme.style(role));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Draws the descriptors of both and their differences; without these where they do not fit, since they follow from the
+    /// values. Arrows say where there are more rows.
+    fn draw_table(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) {
+        let widths = self.widths();
+        let whole = widths.iter().sum::<u16>() + 3 * GAP <= area.width;
+        let columns = if whole { 4 } else { 3 };
+        let top = usize::from(self.top.min(self.rows_beyond(area.height)));
+        let visible = usize::from(area.height).saturating_sub(1);
+        let [above, below, ..] = theme.more();
+        let more = [
+            (top > 0, above),
+            (top + visible + 1 < self.table.len(), below),
+        ];
+        let more: String = more
+            .iter()
+            .filter(|(any, _)| *any)
+            .map(|(_, sign)| sign)
+            .collect();
+        let rows = self
+            .table
+            .iter()
+            .take(1)
+            .chain(self.table.iter().skip(top + 1));
+        for (index, row) in rows.take(visible + 1).enumerate() {
+            let is_same = row[1] == row[2];
+            let roles = match (index, is_same) {
+                (0, _) => [Role::Title; 2],
+                (_, true) => [Role::Key, Role::Quiet],
+                (_, false) => [Role::Key, Role::Text],
+            };
+            let mut place = write::row(area, index);
+            for (column, width) in widths.into_iter().enumerate().take(columns) {
+                let text = match (index, column) {
+                    (0, 0) => more.as_str().into(),
+                    _ => theme.text(&row[column]),
+                };
+                let role = roles[usize::from(column > 0)];
+                write::line(buffer, place, theme, [(&*text, role)]);
+                place = write::right_of(place, place.x.saturating_add(width + GAP));
+            }
+        }
+    }
+}
+
+/// The descriptors of the main regions of two imprints, below a heading. Where nothing is active, counts and sums are 0.
+fn table(imprints: &[Imprint; 2]) -> Vec<TableRow> {
+    let described = imprints.each_ref().map(|imprint| {
+        let regions = regions(imprint);
+        let main = main_region(&regions).and_then(|main| regions.get(main));
+        main.map(Description::of)
+    });
+    let heading = ["", "A", "B", "B-A"].map(str::to_owned);
+    let rows = DESCRIPTORS.iter().map(|descriptor| {
+        let values = described.each_ref().map(|described| {
+            let described = described.as_ref();
+            described.map_or(descriptor.of_nothing, descriptor.measure)
+        });
+        let [first, second] = values.map(|value| text(descriptor, value));
+        let by = difference(values[0], values[1]);
+        let by = match by {
+            _ if first == second => "=".to_owned(),
+            Some(Value::Number(more)) if more > 0.0 => {
+                format!("+{}", text(descriptor, Value::Number(more)))
+            }
+            by => text(descriptor, by.unwrap_or(Value::None)),
+        };
+        [descriptor.symbol.to_owned(), first, second, by]
+    });
+    std::iter::once(heading).chain(rows).collect()
+}
+
+/// Columns of a text in ASCII, where it is at least as wide: what there is room for does not depend on the terminal.
+fn ascii_width(text: &str) -> usize {
+    let widths = text.chars().map(|sign| spelling(sign).map_or(1, str::len));
+    widths.sum()
+}
+
+/// The characters of a taxel in a view, and their role. A letter beside the shade says which of the two is active.
+fn signs(theme: &Theme, view: ComparedView, active: (bool, bool)) -> ([char; 2], Role) {
+    let role = |on: bool| if on { Role::Chosen } else { Role::Inactive };
+    match (view, active) {
+        (Difference, (true, false)) => (['a', 'a'], Role::Key),
+        (Difference, (false, true)) => (['b', 'b'], Role::Key),
+        (First | Difference | Descriptors, (on, _)) | (Second, (_, on)) => {
+            (theme.taxel(role(on)), role(on))
+        }
+    }
+}
+
+/// A value, or a dash.
+fn text(descriptor: &Descriptor, measured: Value) -> String {
+    let text = value::text(measured, descriptor.dimension);
+    text.unwrap_or_else(|| "–".to_owned())
+}
+
+/// The second value less the first, None for values that have no difference.
+fn difference(first: Value, second: Value) -> Option<Value> {
+    match (first, second) {
+        (Value::Count(first), Value::Count(second)) => {
+            Some(Value::Number(f64::from(second) - f64::from(first)))
+        }
+        (Value::Number(first), Value::Number(second)) => Some(Value::Number(second - first)),
+        (Value::Point(first), Value::Point(second)) => Some(Value::Point(second - first)),
+        _ => None,
+    }
+}
+
+impl Page for Comparison {
+    fn context(&self) -> Context {
+        Context::Compare
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Screen
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        _keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        write::clear(buffer, area);
+        let [first, second] = &self.names;
+        // On a narrow screen the names are cut, not the number.
+        let differ = match self.differing() {
+            0 => "alike".to_owned(),
+            1 => "1 taxel differs".to_owned(),
+            count => format!("{} differ", counted(count, "taxel")),
+        };
+        let pieces = [
+            (differ.as_str(), Role::Title),
+            ("   A: ", Role::Key),
+            (first.as_str(), Role::Text),
+            ("   B: ", Role::Key),
+            (second.as_str(), Role::Text),
+        ];
+        write::line(buffer, area, theme, pieces);
+        let panes = self.panes(area);
+        for (view, place) in panes.views {
+            self.draw_view(view, theme, buffer, place);
+        }
+        if let Some(place) = panes.table {
+            self.draw_table(theme, buffer, place);
+        }
+        None
+    }
+
+    /// A click shows the next view.
+    fn click(&self, _area: Rect, _at: Position) -> Option<Message> {
+        Some(Message::Field(1))
+    }
+
+    fn wheel(&self) -> Wheel {
+        Wheel::Rows
+    }
+
+    fn has_use_for(&self, message: &Message, area: Rect) -> bool {
+        let scrolls = matches!(
+            message,
+            Message::Scroll(_) | Message::ScrollTo(_) | Message::Choose(_)
+        );
+        !scrolls || self.hidden(area) != (0, 0)
+    }
+}
+
+/// Lines above the views.
+const HEADING: u16 = 1;
+
+/// What is compared with the matrix, cut to what a heading can hold.
+pub fn heading(what: &str) -> String {
+    let mut name: String = what.chars().take(LONGEST).collect();
+    if name.chars().count() < what.chars().count() {
+        name.push('…');
+    }
+    name
+}
+
+/// The most characters of a name in the heading.
+const LONGEST: usize = 24;

@@ -1,0 +1,254 @@
+//! The list of keys and what it shows.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::tui::app::message::Message;
+use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::keys::action;
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::{HelpLine, Keymap, help};
+use crate::tui::widget::columns::broken;
+use crate::tui::widget::found::{Search, contains, marked};
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write;
+
+/// The list of the keys of a place.
+#[derive(Clone, Debug)]
+pub struct Help {
+    /// The place whose keys are listed.
+    context: Context,
+    /// The index of the first visible line.
+    top: usize,
+    /// What is searched for, None for nothing.
+    search: Option<Search>,
+}
+
+/// The lines of the list as they are drawn, each with the index of its entry: a long entry has several.
+type Lines = Vec<(usize, HelpLine)>;
+
+impl Help {
+    /// The list of a place, from its first line on.
+    pub fn new(context: Context) -> Self {
+        Self {
+            context,
+            top: 0,
+            search: None,
+        }
+    }
+
+    /// Its lines in an area of this many columns and rows, and the index of the first visible one.
+    fn lines(&self, keymap: &Keymap, (columns, rows): (u16, u16)) -> (Lines, usize) {
+        let broken = |(entry, line)| {
+            let lines = broken_line(line, columns.into()).into_iter();
+            lines.map(move |line| (entry, line))
+        };
+        let entries = (0..).zip(help(self.context, keymap));
+        let lines: Lines = entries.flat_map(broken).collect();
+        let last_top = lines.len().saturating_sub(rows.into());
+        let top = self.top.min(last_top);
+        (lines, top)
+    }
+
+    /// Scrolls down by a number of lines, in an area of this many columns and rows.
+    pub fn scroll(&mut self, lines: i16, keymap: &Keymap, room: (u16, u16)) {
+        let (_, top) = self.lines(keymap, room);
+        self.top = top.saturating_add_signed(isize::from(lines));
+        (_, self.top) = self.lines(keymap, room);
+    }
+
+    /// Searches for a text from the first visible line on, then from the start, and goes to the first match. Answers
+    /// which match that is, counted from 1, and of how many; (0, 0) for none.
+    pub fn search(&mut self, wanted: &str, keymap: &Keymap, room: (u16, u16)) -> (usize, usize) {
+        let entries = matches(self.context, keymap, wanted);
+        let (lines, top) = self.lines(keymap, room);
+        let from = lines.get(top).map_or(0, |(entry, _)| *entry);
+        let Some(search) = Search::new(wanted, &entries, from) else {
+            return (0, 0);
+        };
+        let (entry, number) = (search.entry(), search.number(&entries));
+        self.search = Some(search);
+        self.show(entry, keymap, room);
+        number
+    }
+
+    /// Goes to the match this many further on, the first follows the last. Answers whether anything was searched for.
+    pub fn go_to_match(&mut self, by: i8, keymap: &Keymap, room: (u16, u16)) -> bool {
+        let Some(search) = &mut self.search else {
+            return false;
+        };
+        let entries = matches(self.context, keymap, search.wanted());
+        let found = search.go(search.entry(), by, &entries);
+        let entry = search.entry();
+        self.show(entry, keymap, room);
+        found
+    }
+
+    /// Forgets what was searched for.
+    pub fn leave_search(&mut self) {
+        self.search = None;
+    }
+
+    /// Which match one has come to, counted from 1, and of how many; None without a search.
+    fn number(&self, keymap: &Keymap) -> Option<(usize, usize)> {
+        let search = self.search.as_ref()?;
+        let entries = matches(self.context, keymap, search.wanted());
+        Some(search.number(&entries))
+    }
+
+    /// Scrolls, where an entry is out of sight, so that it has a third of the lines above it.
+    fn show(&mut self, entry: usize, keymap: &Keymap, room: (u16, u16)) {
+        let (lines, top) = self.lines(keymap, room);
+        let rows = usize::from(room.1);
+        let own = |(index, _): &(usize, HelpLine)| *index == entry;
+        let (first, last) = (lines.iter().position(own), lines.iter().rposition(own));
+        if let (Some(first), Some(last)) = (first, last)
+            && (first < top || last >= top + rows)
+        {
+            self.top = first.saturating_sub(rows / 3);
+            (_, self.top) = self.lines(keymap, room);
+        }
+    }
+
+    /// A line in pieces, with what is searched for marked; `here`: it is the match that one has come to, and has a sign,
+    /// for terminals that cannot reverse.
+    fn draw_line(
+        &self,
+        theme: &Theme,
+        line: &HelpLine,
+        here: bool,
+        buffer: &mut Buffer,
+        row: Rect,
+    ) {
+        let wanted = self.search.as_ref().map_or("", Search::wanted);
+        let indent = indent(row.width.into());
+        let mut pieces = Vec::new();
+        let pad;
+        match line {
+            HelpLine::Place(context) => pieces.extend(marked(context.title(), wanted, Role::Title)),
+            HelpLine::Keys(keys, text) => {
+                pieces.push((if here { "> " } else { "  " }, Role::Key));
+                pieces.extend(marked(keys, wanted, Role::Key));
+                pad = " ".repeat(indent.saturating_sub(2 + write::width(keys)));
+                pieces.push((&pad, Role::Key));
+                pieces.extend(marked(text, wanted, Role::Text));
+            }
+            HelpLine::More(text) => {
+                pad = " ".repeat(indent);
+                pieces.push((&pad, Role::Text));
+                pieces.extend(marked(text, wanted, Role::Text));
+            }
+        }
+        write::line(buffer, row, theme, pieces);
+    }
+}
+
+impl Page for Help {
+    fn context(&self) -> Context {
+        Context::Help
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Body
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        write::clear(buffer, area);
+        let (lines, top) = self.lines(keymap, area.as_size().into());
+        let here = self.search.as_ref().map(Search::entry);
+        let mut cursor = None;
+        for (index, (entry, line)) in lines.iter().skip(top).enumerate() {
+            let row = write::row(area, index);
+            let here = here == Some(*entry);
+            self.draw_line(theme, line, here, buffer, row);
+            if here && row.height > 0 && cursor.is_none() {
+                cursor = Some(Position::new(row.x, row.y));
+            }
+        }
+        cursor
+    }
+
+    fn wheel(&self) -> Wheel {
+        Wheel::Rows
+    }
+
+    fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
+        self.search.is_some() || !matches!(message, Message::Match(_))
+    }
+
+    /// Its update leaves the search first.
+    fn cancels_itself(&self) -> bool {
+        self.search.is_some()
+    }
+
+    /// Which match one has come to, and which lines are visible, where not all of them are.
+    fn remark(&self, keymap: &Keymap, body: Rect) -> Option<(String, Role)> {
+        let (lines, top) = self.lines(keymap, body.as_size().into());
+        let last = lines.len().min(top + usize::from(body.height));
+        let key = |action| keymap.label(Context::Help, action);
+        let more = match (top, last == lines.len()) {
+            (0, true) => None,
+            (_, true) => Some("the end".to_owned()),
+            (_, false) => Some(format!(
+                "more below: {}, {}",
+                key(&action::SCROLL_DOWN),
+                key(&action::SCREEN_DOWN)
+            )),
+        };
+        let visible =
+            more.map(|more| format!("lines {}-{last} of {}; {more}", top + 1, lines.len()));
+        let found = self.number(keymap);
+        let found = found.map(|(number, all)| format!("match {number} of {all}"));
+        // A second line would hide the last one of the list.
+        let (text, short) = match (found, visible) {
+            (None, None) => return None,
+            (None, Some(visible)) => (visible, format!("{last} of {}", lines.len())),
+            (Some(found), None) => (found.clone(), found),
+            (Some(found), Some(visible)) => (format!("{found}; {visible}"), found),
+        };
+        let fitting = write::first_fitting(&[&text, &short], body.width.into());
+        Some((fitting.to_owned(), Role::Key))
+    }
+}
+
+/// The entries of a place's list that have a text, in their keys or in what these do.
+fn matches(context: Context, keymap: &Keymap, wanted: &str) -> Vec<usize> {
+    let has = |line: &HelpLine| match line {
+        HelpLine::Place(context) => contains(context.title(), wanted),
+        HelpLine::Keys(keys, text) => contains(keys, wanted) || contains(text, wanted),
+        HelpLine::More(text) => contains(text, wanted),
+    };
+    let entries = (0..).zip(help(context, keymap));
+    entries
+        .filter(|(_, line)| has(line))
+        .map(|(entry, _)| entry)
+        .collect()
+}
+
+/// The column where the meaning of the keys begins: to the right of the keys, or near the left edge, under them, on a
+/// narrow screen.
+fn indent(columns: usize) -> usize {
+    /// The column of the meaning where there is room beside the keys.
+    const BESIDE: usize = 26;
+    if columns >= BESIDE + 20 { BESIDE } else { 4 }
+}
+
+/// A line of help, broken into as many as it needs.
+fn broken_line(line: HelpLine, columns: usize) -> Vec<HelpLine> {
+    let HelpLine::Keys(keys, text) = line else {
+        return vec![line];
+    };
+    let indent = indent(columns);
+    let mut pieces = broken(text, columns.saturating_sub(indent)).into_iter();
+    let beside = (keys.len() + 2 < indent).then(|| pieces.next()).flatten();
+    let first = HelpLine::Keys(keys, beside.unwrap_or(""));
+    std::iter::once(first)
+        .chain(pieces.map(HelpLine::More))
+        .collect()
+}

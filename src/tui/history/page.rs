@@ -1,0 +1,184 @@
+//! The list of steps and what it shows.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::formats::value::counted;
+use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::page::{Page, Slot, Wheel};
+use crate::tui::keys::binding::Context;
+use crate::tui::keys::keymap::Keymap;
+use crate::tui::widget::found::{Search, contains, marked};
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write;
+
+/// The list of steps.
+#[derive(Clone, Debug)]
+pub struct HistoryDialog {
+    /// What each step did, the oldest first.
+    steps: Vec<String>,
+    /// How many of them lead to the present state.
+    present: usize,
+    /// The selected row; row 0 is the state before all steps.
+    selected: usize,
+    /// What is searched for, None for nothing.
+    search: Option<Search>,
+}
+
+/// What row 0 is called.
+const START: &str = "the start";
+
+impl HistoryDialog {
+    /// The list, the present state selected.
+    pub fn new(steps: Vec<String>, present: usize) -> Self {
+        Self {
+            steps,
+            present,
+            selected: present,
+            search: None,
+        }
+    }
+
+    /// The number of steps that lead to the selected state.
+    pub fn selected(&self) -> usize {
+        self.selected
+    }
+
+    /// Selects the row `lines` further down; further up if negative.
+    pub fn scroll(&mut self, lines: i16) {
+        let to = self.selected.saturating_add_signed(lines.into());
+        self.selected = to.min(self.steps.len());
+    }
+
+    /// Selects the first or the last row.
+    pub fn scroll_to(&mut self, end: Endpoint) {
+        self.selected = match end {
+            Endpoint::First => 0,
+            Endpoint::Last => self.steps.len(),
+        };
+    }
+
+    /// Searches for a text from the selected row on, then from the start, and selects the first match. Answers which
+    /// match that is, counted from 1, and of how many; (0, 0) for none.
+    pub fn search(&mut self, wanted: &str) -> (usize, usize) {
+        let rows = self.matches(wanted);
+        let Some(search) = Search::new(wanted, &rows, self.selected) else {
+            return (0, 0);
+        };
+        self.selected = search.entry();
+        let number = search.number(&rows);
+        self.search = Some(search);
+        number
+    }
+
+    /// Selects the match this many further on, the first follows the last. Answers whether anything was searched for.
+    pub fn go_to_match(&mut self, by: i8) -> bool {
+        let Some(mut search) = self.search.take() else {
+            return false;
+        };
+        let rows = self.matches(search.wanted());
+        let found = search.go(self.selected, by, &rows);
+        self.selected = search.entry();
+        self.search = Some(search);
+        found
+    }
+
+    /// Forgets what was searched for.
+    pub fn leave_search(&mut self) {
+        self.search = None;
+    }
+
+    /// What each row says, the start first.
+    fn rows(&self) -> impl Iterator<Item = &str> {
+        std::iter::once(START).chain(self.steps.iter().map(String::as_str))
+    }
+
+    /// The rows that have a text.
+    fn matches(&self, wanted: &str) -> Vec<usize> {
+        let rows = self.rows().enumerate();
+        let having = rows.filter(|(_, text)| contains(text, wanted));
+        having.map(|(row, _)| row).collect()
+    }
+
+    /// The first visible row in an area.
+    fn first(&self, area: Rect) -> usize {
+        let visible = area.height.saturating_sub(1);
+        write::first_of(visible, self.steps.len() + 1, self.selected)
+    }
+}
+
+impl Page for HistoryDialog {
+    fn context(&self) -> Context {
+        Context::History
+    }
+
+    fn slot(&self) -> Slot {
+        Slot::Body
+    }
+
+    fn draw(
+        &self,
+        theme: &Theme,
+        _keymap: &Keymap,
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Option<Position> {
+        write::clear(buffer, area);
+        let count = format!("   {}", counted(self.steps.len() as u64, "step"));
+        let head = [("History", Role::Title), (count.as_str(), Role::Quiet)];
+        write::line(buffer, area, theme, head);
+        let first = self.first(area);
+        let visible = usize::from(area.height.saturating_sub(1));
+        let width = self.steps.len().to_string().len();
+        let wanted = self.search.as_ref().map_or("", Search::wanted);
+        let mut cursor = None;
+        for (index, text) in self.rows().enumerate().skip(first).take(visible) {
+            let row = write::row(area, index - first + 1);
+            let selected = index == self.selected;
+            // Signs beside the reversed row, for terminals that cannot reverse.
+            let sign = if selected { '>' } else { ' ' };
+            let present = if index == self.present { '*' } else { ' ' };
+            let role = if selected { Role::Focus } else { Role::Text };
+            let number = format!("{sign}{present}{index:>width$}  ");
+            let text = marked(text, wanted, role);
+            let pieces = std::iter::once((number.as_str(), role)).chain(text);
+            write::line(buffer, row, theme, pieces);
+            if selected {
+                cursor = Some(Position::new(row.x, row.y));
+            }
+        }
+        cursor
+    }
+
+    /// A click selects a row, a click on the selected row goes there.
+    fn click(&self, area: Rect, at: Position) -> Option<Message> {
+        let line = usize::from(at.y.checked_sub(area.y + 1)?);
+        let row = Some(self.first(area) + line).filter(|&row| row <= self.steps.len())?;
+        if row == self.selected {
+            return Some(Message::Accept);
+        }
+        let (to, from) = (i16::try_from(row).ok()?, i16::try_from(self.selected).ok()?);
+        Some(Message::Scroll(to - from))
+    }
+
+    fn wheel(&self) -> Wheel {
+        Wheel::Rows
+    }
+
+    fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
+        self.search.is_some() || !matches!(message, Message::Match(_))
+    }
+
+    /// Its update leaves the search first.
+    fn cancels_itself(&self) -> bool {
+        self.search.is_some()
+    }
+
+    /// Which match is selected.
+    fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
+        let search = self.search.as_ref()?;
+        let rows = self.matches(search.wanted());
+        let at = rows.iter().position(|&row| row == self.selected)?;
+        Some((format!("match {} of {}", at + 1, rows.len()), Role::Key))
+    }
+}

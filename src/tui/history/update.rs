@@ -1,0 +1,58 @@
+//! Messages over the list of steps.
+
+use crate::tui::app::change::{compare_with, refuse, settle};
+use crate::tui::app::dialog::Dialog;
+use crate::tui::app::document::Reading;
+use crate::tui::app::message::Message;
+use crate::tui::app::state::App;
+use crate::tui::history::page::HistoryDialog;
+use crate::tui::keys::binding::Context;
+use crate::tui::runtime::effect::Effect;
+use crate::tui::search::page::{SearchDialog, Searched};
+use crate::tui::search::update::no_search;
+
+/// Moves in the list of steps, searches in it, or goes to the state after the selected one.
+/// To compare leaves the list open below.
+pub(in crate::tui) fn in_history(
+    app: &mut App,
+    mut list: HistoryDialog,
+    message: &Message,
+) -> Option<Effect> {
+    match *message {
+        Message::Scroll(lines) => list.scroll(lines),
+        Message::ScrollTo(end) => list.scroll_to(end),
+        Message::Compare => {
+            let step = list.selected();
+            let state = app
+                .history
+                .after(step)
+                .map(|state| Reading::of(state).imprint);
+            app.dialogs.push(Dialog::History(list));
+            if let Some(imprint) = state {
+                compare_with(app, &format!("the state after step {step}"), &imprint);
+            }
+            return None;
+        }
+        Message::Match(by) if !list.go_to_match(by) => {
+            app.dialogs.push(Dialog::History(list));
+            refuse(app, no_search(app.keymap(), Context::History));
+            return None;
+        }
+        Message::Search => {
+            let dialog = SearchDialog::new(Searched::History(list.clone()));
+            app.dialogs
+                .extend([Dialog::History(list), Dialog::Search(dialog)]);
+            return None;
+        }
+        Message::Cancel => list.leave_search(),
+        Message::Quit => return None,
+        Message::Accept => {
+            app.history.go_to(list.selected());
+            settle(app);
+            return None;
+        }
+        _ => {}
+    }
+    app.dialogs.push(Dialog::History(list));
+    None
+}

@@ -1,0 +1,99 @@
+//! Files that the screen opens and writes: imprints in any format, shapes, drawings; sources of frames before they are watched;
+//! and paths for completion.
+
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use crate::formats::{Content, imprint_file, read_content};
+use crate::storage::{Existing, UnfinishedFile, location};
+use crate::tui::app::message::{FileEvent, OpenedFile};
+use crate::tui::runtime::disk::write_access::WriteAccess;
+use crate::tui::runtime::effect::FileRequest;
+use crate::tui::runtime::frames::source;
+
+/// No file is read further than one byte after this: it is refused then.
+const MOST: u64 = imprint_file::MAX_BYTES as u64;
+
+/// No more paths are offered.
+const MOST_PATHS: usize = 500;
+
+/// Performs a request.
+pub(in crate::tui) fn perform(request: FileRequest, access: &WriteAccess) -> FileEvent {
+    match request {
+        FileRequest::Open(name) => match open(&name) {
+            Ok(file) => FileEvent::Opened(name, file),
+            Err(reason) => FileEvent::Failed(format!("{name}: {reason}")),
+        },
+        FileRequest::Write(name, content, existing) => match access.path(&name, existing) {
+            Ok(path) => write(path, name, content, existing),
+            Err(refused) => FileEvent::Failed(refused),
+        },
+        FileRequest::Source(request) => match source::readable(&request.source, access) {
+            Ok(_) => FileEvent::Source(request),
+            Err(refused) => FileEvent::Failed(refused),
+        },
+        FileRequest::Paths(start) => FileEvent::Paths(paths(&start)),
+    }
+}
+
+/// A shape, or an imprint in any format.
+fn open(name: &str) -> Result<OpenedFile, String> {
+    let path = location::below_home(name).ok_or("no home folder, so ~ cannot be used")?;
+    let sentence = |error: std::io::Error| error.to_string();
+    let kind = fs::metadata(&path).map_err(sentence)?;
+    if !kind.is_file() {
+        return Err("not a regular file".to_owned());
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(&path).map_err(sentence)?;
+    file.take(MOST + 1)
+        .read_to_end(&mut bytes)
+        .map_err(sentence)?;
+    match read_content(&bytes) {
+        Ok(Content::Shape(shape)) => Ok(OpenedFile::Shape(Box::new(shape))),
+        Ok(Content::Imprint(imprint)) => Ok(OpenedFile::Imprint(Box::new(imprint))),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// Writes a file as a whole or not at all.
+fn write(path: PathBuf, name: String, content: Vec<u8>, existing: Existing) -> FileEvent {
+    let written = UnfinishedFile::new(&path, existing).and_then(|mut file| {
+        file.write(&content)?;
+        file.finish()?.persist()
+    });
+    match written {
+        Ok(()) => {
+            // Where that is not known, the path as it was given.
+            let whole = std::path::absolute(&path).unwrap_or(path);
+            FileEvent::Written(whole.to_string_lossy().into_owned())
+        }
+        Err(error) if error.exists() && existing == Existing::Kept => {
+            FileEvent::Exists(name, content)
+        }
+        Err(error) => FileEvent::Failed(error.to_string()),
+    }
+}
+
+/// The paths that begin like this, as they are typed; folders end in a slash. Hidden ones are offered where a dot was
+/// typed.
+fn paths(start: &str) -> Vec<String> {
+    let (folder, typed) = start
+        .rfind('/')
+        .map_or(("", start), |slash| start.split_at(slash + 1));
+    let place = if folder.is_empty() { "./" } else { folder };
+    let entries = location::below_home(place).map(fs::read_dir);
+    let Some(Ok(entries)) = entries else {
+        return Vec::new();
+    };
+    let offered = entries.flatten().filter_map(|entry| {
+        let name = entry.file_name().into_string().ok()?;
+        let fits = name.starts_with(typed) && (typed.starts_with('.') || !name.starts_with('.'));
+        let slash = if Path::is_dir(&entry.path()) { "/" } else { "" };
+        fits.then(|| format!("{folder}{name}{slash}"))
+    });
+    let mut paths: Vec<String> = offered.take(MOST_PATHS).collect();
+    paths.sort_unstable();
+    paths
+}

@@ -1,0 +1,258 @@
+//! Writes unsaved work to the journal on a separate thread, so that no key waits for a disk.
+//!
+//! ```text
+//!             Persist                400 ms, or Flush
+//! Nothing ------------> Since(shape) -----------------> written: Nothing
+//!    ^                       ^                          error:   Failed(shape), reported once
+//!    |  Clear                |  Persist                    |
+//!    +---- any               +-----------------------------+  tried again with the next change
+//! ```
+//! Changes within the interval are written together, the last one only. The thread sleeps while there is nothing to
+//! write.
+
+use std::cell::Cell;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use crate::formats::StoredShape;
+use crate::storage::{Journal, Orphan};
+use crate::tui::app::state::App;
+use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::runtime::work::progress::WorkerEventSink;
+use crate::tui::runtime::work::threads::{self, PATIENCE};
+
+/// Changes are gathered for this time before they are written, so a crash loses less than a second of work.
+const GATHER: Duration = Duration::from_millis(400);
+
+/// The program's end of the channel to the thread.
+#[derive(Debug)]
+pub(in crate::tui) struct JournalWriter {
+    /// The requests. None for a writer that writes nothing, and while it is dropped.
+    notes: Option<Sender<JournalRequest>>,
+    /// The thread, until it is joined.
+    thread: Option<JoinHandle<()>>,
+    /// The work that was noted last.
+    last: Option<StoredShape>,
+    /// Why there is no thread, where the system gives none.
+    refused: Option<String>,
+    /// Whether the disk has not answered in time: then the program ends without it.
+    hangs: Cell<bool>,
+}
+
+/// A request to the thread.
+enum JournalRequest {
+    /// Keep this unsaved work.
+    Persist(Box<StoredShape>),
+    /// Keep this work of a program that crashed, and then take it out of that one's journal.
+    Adopt(Box<Orphan>),
+    /// There is no unsaved work any more.
+    Clear,
+    /// Write now; the answer is whether everything is written.
+    Flush(Sender<bool>),
+    /// Where errors are reported.
+    ReportTo(WorkerEventSink),
+}
+
+impl JournalWriter {
+    /// Starts a thread that writes to a journal.
+    pub(in crate::tui) fn new(journal: Journal) -> Self {
+        let (notes, inbox) = channel();
+        let writer = JournalThread {
+            journal,
+            pending: Pending::Nothing,
+            adopted: Vec::new(),
+            post: None,
+            reported: false,
+        };
+        match threads::start(move || writer.run(&inbox)) {
+            Ok(thread) => Self {
+                notes: Some(notes),
+                thread: Some(thread),
+                last: None,
+                refused: None,
+                hangs: Cell::new(false),
+            },
+            Err(reason) => {
+                let mut idle = Self::idle();
+                idle.refused = Some(reason);
+                idle
+            }
+        }
+    }
+
+    /// One that writes nothing, for scripts.
+    pub(in crate::tui) fn idle() -> Self {
+        Self {
+            notes: None,
+            thread: None,
+            last: None,
+            refused: None,
+            hangs: Cell::new(false),
+        }
+    }
+
+    /// Reports errors to `post` from now on.
+    pub(in crate::tui) fn report_to(&self, post: WorkerEventSink) {
+        if let Some(reason) = &self.refused {
+            let message = format!("unsaved work cannot be kept: {reason}");
+            post(WorkerEvent::Refused(message));
+        }
+        self.send(JournalRequest::ReportTo(post));
+    }
+
+    /// Notes the unsaved work if it has changed. Called after every message; the comparison is one shape with another.
+    pub(in crate::tui) fn note(&mut self, app: &App) {
+        let work = app.unsaved_work();
+        if work == self.last {
+            return;
+        }
+        if let Some(shape) = work {
+            self.persist(shape);
+        } else {
+            self.last = None;
+            self.send(JournalRequest::Clear);
+        }
+    }
+
+    /// Keeps unsaved work, even if it was noted before.
+    pub(in crate::tui) fn persist(&mut self, shape: StoredShape) {
+        self.last = Some(shape.clone());
+        self.send(JournalRequest::Persist(Box::new(shape)));
+    }
+
+    /// Keeps the work of a program that crashed, in place of that one's journal.
+    pub(in crate::tui) fn adopt(&mut self, orphan: Orphan) {
+        self.last = Some(orphan.shape.clone());
+        self.send(JournalRequest::Adopt(Box::new(orphan)));
+    }
+
+    /// Sends a request to the thread, if there is one.
+    fn send(&self, note: JournalRequest) {
+        if let Some(notes) = &self.notes {
+            // The thread ends only after this end of the channel.
+            let _ = notes.send(note);
+        }
+    }
+
+    /// Waits until everything is written, but not for ever: a disk may hang. False if it is not written.
+    fn flush(&self) -> bool {
+        self.written(PATIENCE)
+    }
+
+    /// Writes everything, waiting for at most `patience`. False if it is not written by then.
+    pub(in crate::tui) fn written(&self, patience: Duration) -> bool {
+        let (done, written) = channel();
+        self.send(JournalRequest::Flush(done));
+        let answer = written.recv_timeout(patience);
+        self.hangs.set(answer == Err(RecvTimeoutError::Timeout));
+        answer.unwrap_or(false)
+    }
+}
+
+impl Drop for JournalWriter {
+    fn drop(&mut self) {
+        if self.thread.is_some() && !self.hangs.get() {
+            self.flush();
+        }
+        self.notes = None;
+        // One that hangs ends with the program.
+        if let Some(thread) = self.thread.take().filter(|_| !self.hangs.get()) {
+            // A panic of the thread has been reported.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Work that is not in the journal yet.
+enum Pending {
+    /// Everything is written.
+    Nothing,
+    /// Waiting for further changes since then.
+    Since(Box<StoredShape>, Instant),
+    /// Could not be written. It is tried again with the next change or the next flush, not by the clock: a full disk may
+    /// have room by then.
+    Failed(Box<StoredShape>),
+}
+
+/// The thread's end: gathers changes for a moment, then writes the latest.
+struct JournalThread {
+    /// Where it writes to.
+    journal: Journal,
+    /// What is still to be written.
+    pending: Pending,
+    /// Work of programs that crashed, which stays in their journals until it is written here.
+    adopted: Vec<Orphan>,
+    /// Where errors are reported.
+    post: Option<WorkerEventSink>,
+    /// Whether the present error has been reported: once is enough.
+    reported: bool,
+}
+
+impl JournalThread {
+    /// Serves requests until the program drops its end of the channel.
+    fn run(mut self, inbox: &Receiver<JournalRequest>) {
+        loop {
+            let note = match &self.pending {
+                Pending::Since(_, since) => {
+                    inbox.recv_timeout(GATHER.saturating_sub(since.elapsed()))
+                }
+                _ => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
+            };
+            match note {
+                Ok(JournalRequest::Persist(shape)) => {
+                    let since = match self.pending {
+                        Pending::Since(_, since) => since,
+                        _ => Instant::now(),
+                    };
+                    self.pending = Pending::Since(shape, since);
+                }
+                Ok(JournalRequest::Adopt(orphan)) => {
+                    self.pending = Pending::Since(Box::new(orphan.shape.clone()), Instant::now());
+                    self.adopted.push(*orphan);
+                    self.write();
+                }
+                Ok(JournalRequest::Clear) => {
+                    self.pending = Pending::Nothing;
+                    self.journal.clear();
+                }
+                Ok(JournalRequest::Flush(done)) => {
+                    // The program may have stopped waiting.
+                    let _ = done.send(self.write());
+                }
+                Ok(JournalRequest::ReportTo(post)) => self.post = Some(post),
+                Err(RecvTimeoutError::Timeout) => {
+                    self.write();
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    self.write();
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Writes what is pending, and returns whether everything is written. A shape that cannot be written stays pending.
+    fn write(&mut self) -> bool {
+        let pending = std::mem::replace(&mut self.pending, Pending::Nothing);
+        let (Pending::Since(shape, _) | Pending::Failed(shape)) = pending else {
+            return true;
+        };
+        match self.journal.keep(&shape) {
+            Ok(()) => {
+                self.reported = false;
+                self.adopted.drain(..).for_each(Orphan::discard);
+            }
+            Err(error) => {
+                self.pending = Pending::Failed(shape);
+                if let Some(post) = self.post.as_ref().filter(|_| !self.reported) {
+                    post(WorkerEvent::Refused(format!(
+                        "unsaved work cannot be kept: {error}"
+                    )));
+                    self.reported = true;
+                }
+            }
+        }
+        matches!(self.pending, Pending::Nothing)
+    }
+}

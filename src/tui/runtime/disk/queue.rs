@@ -1,0 +1,561 @@
+//! Disk requests, handled one after the other on a separate thread, so that no key waits for a disk or for the lock of
+//! another program.
+//!
+//! ```text
+//! request -> thread -> answer within QUICK: handled at once, before the next key
+//!                      later: a message wakes the loop, keys go on meanwhile; the screen says what is waited for
+//! ```
+//! Without a receiver of events, as in a script, a request is carried out at once.
+
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::Builder;
+use std::time::{Duration, Instant};
+
+use crate::formats::recording::{RecordedView, RecordingMetadata};
+use crate::formats::{Name, StoredShape};
+use crate::storage::{
+    Expected, Library, LibraryError, LoadedShape, Orphan, RememberedFile, UNNAMED,
+};
+use crate::tui::app::message::{FileEvent, LibraryEvent, Purpose};
+use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::live::message::LiveEvent;
+use crate::tui::runtime::disk::files;
+use crate::tui::runtime::disk::write_access::WriteAccess;
+use crate::tui::runtime::effect::FileRequest;
+use crate::tui::runtime::frames::recording::Recording;
+use crate::tui::runtime::lock::locked;
+use crate::tui::runtime::slow_work::SlowWork;
+use crate::tui::runtime::work::models::ModelStore;
+use crate::tui::runtime::work::progress::WorkerEventSink;
+
+/// How long a key waits for an answer. Nearly all come within it, so that the next key finds the work done.
+const QUICK: Duration = Duration::from_millis(100);
+
+/// What the disk is wanted for.
+#[derive(Debug)]
+pub(in crate::tui::runtime) enum DiskRequest {
+    /// Save a shape.
+    Store(Box<StoredShape>, Expected),
+    /// Look whether the shape of that name can be deleted.
+    Deletable(String),
+    /// Delete it.
+    Remove(String),
+    /// Restore the shape that was deleted last, of that name or of any.
+    Restore(Option<String>),
+    /// Move unsaved work of a program that crashed to the trash, and look for more of it.
+    ThrowAway(Box<Orphan>),
+    /// Read or write a file, or list some.
+    File(FileRequest),
+    /// List the shapes of the library.
+    List,
+    /// List the deleted ones.
+    Trash,
+    /// List the names of stored models.
+    Models(ModelStore),
+    /// Read the shapes of these names.
+    Read(Vec<String>),
+    /// Read one, and what for.
+    Named(Purpose, String),
+    /// Remember lines for the next run.
+    Remember(RememberedFile, Vec<String>),
+    /// Create a file and record the frames of the source of that number in it.
+    BeginRecording(u64, Box<RecordingMetadata>),
+    /// Write threshold, tare and marks into the description of a recording of the source of that number.
+    DescribeRecording(u64, Arc<Recording>, Box<RecordedView>),
+    /// Write out all that waits of a recording of the source of that number.
+    FlushRecording(u64, Arc<Recording>),
+    /// Finish a recording of the source of that number.
+    EndRecording(u64, Arc<Recording>),
+}
+
+/// What became of a request.
+#[derive(Debug)]
+pub(in crate::tui::runtime) enum DiskAnswer {
+    /// The shape was saved, and this is the stamp of its file; or it was not, and this is what is in its way.
+    Stored(
+        Box<StoredShape>,
+        Result<u64, LibraryError>,
+        Option<Box<LoadedShape>>,
+    ),
+    /// The shape of that name was deleted.
+    Removed(Result<String, LibraryError>),
+    /// A shape was restored: its name.
+    Restored(Result<String, LibraryError>),
+    /// The work is in the trash under that name; and the next one, and how many there are.
+    ThrownAway(Result<String, LibraryError>, Option<(Box<Orphan>, usize)>),
+    /// What became of a file.
+    File(FileEvent),
+    /// What was read in the library.
+    Library(LibraryEvent),
+    /// It failed by a fault of this program.
+    Panicked {
+        /// Whether a shape was to be saved.
+        was_save: bool,
+    },
+    /// Frames of the source of that number can be recorded in the file of that name, or not.
+    Recording(u64, Result<(String, Arc<Recording>), String>),
+    /// What is to be said on the page of a source.
+    Live(u64, LiveEvent),
+    /// No answer is wanted.
+    Nothing,
+}
+
+impl DiskRequest {
+    /// What it does, in a few words for a message.
+    fn words(&self) -> String {
+        match self {
+            Self::Store(shape, _) => format!("Saving {}", shape.name),
+            Self::Deletable(name) => format!("Looking for {name}"),
+            Self::Remove(name) => format!("Deleting {name}"),
+            Self::Restore(Some(name)) => format!("Restoring {name}"),
+            Self::Restore(None) => "Restoring a shape".to_owned(),
+            Self::ThrowAway(_) => "Moving it to the trash".to_owned(),
+            Self::File(FileRequest::Write(name, ..)) => format!("Writing {name}"),
+            Self::File(FileRequest::Open(name)) => format!("Opening {name}"),
+            Self::File(FileRequest::Source(request)) => format!("Opening {}", request.name()),
+            Self::File(FileRequest::Paths(_)) => "Listing files".to_owned(),
+            Self::List => "Listing the shapes".to_owned(),
+            Self::Trash => "Listing the deleted shapes".to_owned(),
+            Self::Models(_) => "Listing the models".to_owned(),
+            Self::Read(_) => "Reading the shapes".to_owned(),
+            Self::Named(Purpose::Load, name) => format!("Loading {name}"),
+            Self::Named(_, name) => format!("Reading {name}"),
+            Self::Remember(..) => "Remembering it".to_owned(),
+            Self::BeginRecording(..) => "Starting a recording".to_owned(),
+            Self::DescribeRecording(_, recording, _) => {
+                format!("Describing {}", recording.path().display())
+            }
+            Self::FlushRecording(_, recording) | Self::EndRecording(_, recording) => {
+                format!("Saving {}", recording.path().display())
+            }
+        }
+    }
+
+    /// Whether it makes an earlier request needless: of two descriptions of a recording only the later one stays.
+    fn replaces(&self, earlier: &Self) -> bool {
+        match (self, earlier) {
+            (Self::DescribeRecording(_, own, _), Self::DescribeRecording(_, other, _)) => {
+                Arc::ptr_eq(own, other)
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether it needs the lock of the library, which another program may hold.
+    fn locks(&self) -> bool {
+        matches!(
+            self,
+            Self::Store(..) | Self::Remove(_) | Self::Restore(_) | Self::ThrowAway(_)
+        )
+    }
+
+    /// Carries it out.
+    fn perform(self, library: &Library, access: &WriteAccess) -> DiskAnswer {
+        match self {
+            Self::Store(shape, expected) => {
+                let stored = library.save(&shape, expected);
+                let in_the_way = match &stored {
+                    Err(LibraryError::Exists { .. } | LibraryError::Changed { .. }) => {
+                        library.load(shape.name.as_str()).ok()
+                    }
+                    _ => None,
+                };
+                DiskAnswer::Stored(shape, stored, in_the_way.map(Box::new))
+            }
+            Self::Remove(name) => DiskAnswer::Removed(library.delete(&name)),
+            Self::Restore(name) => DiskAnswer::Restored(restore(library, name)),
+            Self::ThrowAway(orphan) => throw_away(library, *orphan),
+            Self::File(request) => DiskAnswer::File(files::perform(request, access)),
+            Self::List => {
+                let listed = library.list();
+                DiskAnswer::Library(LibraryEvent::List(listed.map_err(sentence)))
+            }
+            Self::Trash => {
+                let deleted = library.in_trash();
+                DiskAnswer::Library(LibraryEvent::Trash(deleted.map_err(sentence)))
+            }
+            Self::Models(store) => {
+                let names = store.names().into_iter();
+                let names = names.map(|name| name.to_string()).collect();
+                DiskAnswer::Library(LibraryEvent::Models(names))
+            }
+            Self::Read(names) => {
+                let read = names.into_iter().map(|name| {
+                    let loaded = library.load(&name).map_err(sentence);
+                    (name, loaded)
+                });
+                DiskAnswer::Library(LibraryEvent::Read(read.collect()))
+            }
+            Self::Named(purpose, name) => {
+                let loaded = library.load(&name).map(Box::new);
+                DiskAnswer::Library(LibraryEvent::Named(purpose, loaded.map_err(sentence)))
+            }
+            Self::Deletable(name) => {
+                let found = library.deletable(&name).map_err(sentence);
+                DiskAnswer::Library(LibraryEvent::Deletable(found))
+            }
+            Self::Remember(file, lines) => {
+                file.write(&lines);
+                DiskAnswer::Nothing
+            }
+            Self::BeginRecording(number, metadata) => {
+                DiskAnswer::Recording(number, Recording::in_free_file(access, &metadata))
+            }
+            Self::DescribeRecording(number, of, view) => written(number, of.describe(*view)),
+            Self::FlushRecording(number, recording) => written(number, recording.flush().map(drop)),
+            Self::EndRecording(number, recording) => {
+                let ended = recording.finish();
+                ended.map_or(DiskAnswer::Nothing, |event| DiskAnswer::Live(number, event))
+            }
+        }
+    }
+}
+
+/// What became of a recording of the source of that number to which something was written: a failure ends it.
+fn written(number: u64, written: Result<(), String>) -> DiskAnswer {
+    let failed = |reason| DiskAnswer::Live(number, LiveEvent::NotRecorded(reason));
+    written.map_or_else(failed, |()| DiskAnswer::Nothing)
+}
+
+/// A line about a recording that could not be finished or written on, if the answer says so.
+pub(in crate::tui::runtime) fn not_recorded(answer: &DiskAnswer) -> Option<String> {
+    match answer {
+        DiskAnswer::Live(_, LiveEvent::NotFinished(reason) | LiveEvent::NotRecorded(reason)) => {
+            Some(format!("{reason}\n"))
+        }
+        _ => None,
+    }
+}
+
+/// An error of the library in a sentence.
+#[expect(clippy::needless_pass_by_value, reason = "for `map_err`")]
+fn sentence(error: LibraryError) -> String {
+    error.to_string()
+}
+
+/// Restores the shape that was deleted last, of that name or of any.
+fn restore(library: &Library, name: Option<String>) -> Result<String, LibraryError> {
+    name.map_or_else(|| library.restore_last(), |name| library.restore(&name))
+}
+
+/// Moves unsaved work to the trash. Other work is looked for only after this succeeds; otherwise the same work would be
+/// offered again without end.
+fn throw_away(library: &Library, orphan: Orphan) -> DiskAnswer {
+    let mut shape = orphan.shape.clone();
+    if let Ok(name) = Name::new(UNNAMED) {
+        shape = shape.renamed(name);
+    }
+    let thrown = library.throw_away(&shape);
+    let mut next = None;
+    if thrown.is_ok() {
+        orphan.discard();
+        next = newest_orphan(library);
+    }
+    DiskAnswer::ThrownAway(thrown, next)
+}
+
+/// The newest unsaved work, and how much there is. The others are offered after it, or by other programs.
+pub(in crate::tui::runtime) fn newest_orphan(library: &Library) -> Option<(Box<Orphan>, usize)> {
+    let mut all = Orphan::all(library);
+    let count = all.len();
+    all.pop().map(|newest| (Box::new(newest), count))
+}
+
+/// The requests under way.
+#[derive(Debug)]
+pub(in crate::tui::runtime) struct DiskQueue {
+    /// The library that is read or changed.
+    library: Library,
+    /// Where files may be written.
+    pub(in crate::tui::runtime) access: Arc<WriteAccess>,
+    /// What is shared with the thread, once there is one.
+    thread: Option<DiskThread>,
+    /// The requests without an answer; the first is being carried out.
+    pending: VecDeque<PendingRequest>,
+    /// Where the thread says that it has an answer; None without a thread.
+    post: Option<Post>,
+}
+
+/// A request without an answer.
+#[derive(Debug)]
+struct PendingRequest {
+    /// What it does, and since when.
+    work: SlowWork,
+    /// Whether it needs the lock of the library.
+    locks: bool,
+}
+
+/// A sink of events, which has no text of its own.
+struct Post(WorkerEventSink);
+
+impl std::fmt::Debug for Post {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Post")
+    }
+}
+
+/// The screen's end of the thread that carries out requests.
+#[derive(Debug)]
+struct DiskThread {
+    shared: Arc<SharedQueue>,
+    /// What became of them, in their order.
+    answers: Receiver<DiskAnswer>,
+}
+
+/// What both ends share: the requests that wait for the thread.
+#[derive(Debug)]
+struct SharedQueue {
+    waiting: Mutex<WaitingRequests>,
+    /// Notified when that changes.
+    changed: Condvar,
+    /// Used under the lock of `waiting`, and only by the thread of the present generation.
+    answer: Sender<DiskAnswer>,
+}
+
+/// The requests that no thread has begun.
+#[derive(Debug, Default)]
+struct WaitingRequests {
+    requests: VecDeque<DiskRequest>,
+    /// The number of the present thread. It alone takes requests and gives answers: those before it hang.
+    generation: u64,
+    /// Whether no more requests come.
+    is_closed: bool,
+}
+
+impl SharedQueue {
+    /// Carries out requests, as the thread of this generation, until another thread takes over or no more come.
+    fn work(
+        &self,
+        generation: u64,
+        library: &Library,
+        access: &WriteAccess,
+        post: &WorkerEventSink,
+    ) {
+        while let Some(request) = self.next(generation) {
+            let was_save = matches!(request, DiskRequest::Store(..));
+            let made = catch_unwind(AssertUnwindSafe(|| request.perform(library, access)));
+            let made = made.unwrap_or(DiskAnswer::Panicked { was_save });
+            let waiting = locked(&self.waiting);
+            if waiting.generation != generation || self.answer.send(made).is_err() {
+                return;
+            }
+            drop(waiting);
+            post(WorkerEvent::Answered);
+        }
+    }
+
+    /// Waits for the next request; None when no more come, or another generation takes them.
+    fn next(&self, generation: u64) -> Option<DiskRequest> {
+        let mut waiting = locked(&self.waiting);
+        while waiting.generation == generation {
+            if let Some(request) = waiting.requests.pop_front() {
+                return Some(request);
+            }
+            if waiting.is_closed {
+                break;
+            }
+            let woken = self.changed.wait(waiting);
+            waiting = woken.unwrap_or_else(PoisonError::into_inner);
+        }
+        None
+    }
+}
+
+impl DiskQueue {
+    /// Requests to a library, carried out at once.
+    pub(in crate::tui::runtime) fn new(library: Library) -> Self {
+        Self {
+            library,
+            access: Arc::default(),
+            thread: None,
+            pending: VecDeque::new(),
+            post: None,
+        }
+    }
+
+    /// Has requests carried out on a thread.
+    pub(in crate::tui::runtime) fn post_to(&mut self, post: WorkerEventSink) {
+        self.post = Some(Post(post));
+    }
+
+    /// Carries out a request, or has it carried out. Returns the answer if it comes within a moment.
+    pub(in crate::tui::runtime) fn ask(&mut self, request: DiskRequest) -> Option<DiskAnswer> {
+        if let Some(answer) = self.begin(request) {
+            return Some(answer);
+        }
+        // Behind another one it takes long.
+        let is_first = self.pending.len() == 1;
+        is_first.then(|| self.wait(QUICK)).flatten()
+    }
+
+    /// Gives a request to the thread. Without one, carries it out and returns the answer.
+    pub(in crate::tui::runtime) fn begin(&mut self, request: DiskRequest) -> Option<DiskAnswer> {
+        self.start();
+        let Some(thread) = &self.thread else {
+            return Some(request.perform(&self.library, &self.access));
+        };
+        // Keys that repeat change a threshold more often than a disk can write.
+        if let Some(last) = locked(&thread.shared.waiting).requests.back_mut()
+            && request.replaces(last)
+        {
+            *last = request;
+            return None;
+        }
+        self.pending.push_back(PendingRequest {
+            work: SlowWork::new(request.words()),
+            locks: request.locks(),
+        });
+        locked(&thread.shared.waiting).requests.push_back(request);
+        thread.shared.changed.notify_all();
+        None
+    }
+
+    /// Starts the thread if one is wanted and none runs. Without a thread, requests are carried out at once.
+    fn start(&mut self) {
+        if self.thread.is_some() || self.post.is_none() {
+            return;
+        }
+        let (answer, answers) = channel();
+        let shared = Arc::new(SharedQueue {
+            waiting: Mutex::default(),
+            changed: Condvar::new(),
+            answer,
+        });
+        if self.spawn(&shared, 0) {
+            self.thread = Some(DiskThread { shared, answers });
+        }
+    }
+
+    /// Starts the thread of a generation. Returns whether the system gave one.
+    fn spawn(&self, shared: &Arc<SharedQueue>, generation: u64) -> bool {
+        let Some(Post(post)) = &self.post else {
+            return false;
+        };
+        let (shared, library) = (Arc::clone(shared), self.library.clone());
+        let (access, post) = (Arc::clone(&self.access), Arc::clone(post));
+        let body = move || shared.work(generation, &library, &access, &post);
+        Builder::new().spawn(body).is_ok()
+    }
+
+    /// The next answer, if there is one within `time`.
+    pub(in crate::tui::runtime) fn wait(&mut self, time: Duration) -> Option<DiskAnswer> {
+        let answer = self.thread.as_ref()?.answers.recv_timeout(time).ok()?;
+        self.pending.pop_front();
+        Some(answer)
+    }
+
+    /// Whether every request has its answer.
+    pub(in crate::tui::runtime) fn is_idle(&self) -> bool {
+        self.pending.is_empty()
+    }
+
+    /// How many requests have no answer.
+    pub(in crate::tui::runtime) fn len(&self) -> usize {
+        self.pending.len()
+    }
+
+    /// Waits for the first of them no longer. Its thread ends when the disk lets it, and another one carries out the
+    /// others. Returns what the first one does.
+    pub(in crate::tui::runtime) fn abandon_first(&mut self) -> Option<String> {
+        let first = self.pending.pop_front()?;
+        if let Some(thread) = &self.thread {
+            let mut waiting = locked(&thread.shared.waiting);
+            if waiting.requests.len() > self.pending.len() {
+                // The thread has not begun it.
+                waiting.requests.pop_front();
+            } else if thread.answers.try_recv().is_err() {
+                // It has not been answered just now.
+                waiting.generation += 1;
+                let generation = waiting.generation;
+                drop(waiting);
+                if !self.spawn(&thread.shared, generation) {
+                    // Requests are carried out at once from now on; these are lost.
+                    (self.thread, self.pending) = (None, VecDeque::new());
+                }
+            }
+        }
+        Some(first.work.words)
+    }
+
+    /// When to look again at what is waited for; None if nothing is.
+    pub(in crate::tui::runtime) fn next_check(&self) -> Option<Instant> {
+        Some(self.pending.front()?.work.next_check())
+    }
+
+    /// What the first request waits for, if it takes long.
+    pub(in crate::tui::runtime) fn status(&self) -> Option<String> {
+        let first = self.pending.front()?;
+        let what = if self.waits_for_lock() {
+            "another taxel to release the library"
+        } else {
+            "the disk"
+        };
+        first.work.status(what)
+    }
+
+    /// Whether the first request waits for another program rather than for the disk.
+    fn waits_for_lock(&self) -> bool {
+        let locks = self.pending.front().is_some_and(|first| first.locks);
+        locks && self.library.waits_for_lock()
+    }
+
+    /// What may not be done when the program ends now, a line each.
+    pub(in crate::tui::runtime) fn left(&self) -> Vec<String> {
+        let why = if self.waits_for_lock() {
+            "another program holds the library"
+        } else {
+            "the disk does not answer"
+        };
+        let lines = self.pending.iter().map(|request| &request.work.words);
+        lines
+            .map(|words| format!("{words}: not done yet, because {why}\n"))
+            .collect()
+    }
+}
+
+impl Drop for DiskQueue {
+    /// The thread ends when it has carried out what was asked for.
+    fn drop(&mut self) {
+        if let Some(thread) = &self.thread {
+            locked(&thread.shared.waiting).is_closed = true;
+            thread.shared.changed.notify_all();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Requests whose thread is not there yet, as when the system has not run it.
+    fn without_thread() -> DiskQueue {
+        let (answer, answers) = channel();
+        let shared = Arc::new(SharedQueue {
+            waiting: Mutex::default(),
+            changed: Condvar::new(),
+            answer,
+        });
+        let mut queue = DiskQueue::new(Library::open("/nowhere".into()));
+        queue.post_to(Arc::new(|_| {}));
+        queue.thread = Some(DiskThread { shared, answers });
+        queue
+    }
+
+    #[test]
+    fn a_request_that_is_given_up_is_not_carried_out() {
+        let mut queue = without_thread();
+        for request in [DiskRequest::List, DiskRequest::Trash] {
+            assert!(queue.begin(request).is_none());
+        }
+        assert!(queue.abandon_first().is_some());
+        let shared = &queue.thread.as_ref().expect("a thread").shared;
+        assert!(queue.spawn(shared, 0));
+        let answer = queue.wait(Duration::from_secs(5));
+        let is_second = matches!(answer, Some(DiskAnswer::Library(LibraryEvent::Trash(_))));
+        assert!(is_second, "{answer:?}");
+        assert!(queue.is_idle());
+    }
+}

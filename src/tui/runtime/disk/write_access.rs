@@ -1,0 +1,141 @@
+//! Where the program may write files.
+//!
+//! On a terminal a person names the file and answers when it exists. A script does both itself, and may come from a
+//! stranger: it may write below its own folder only, no hidden files, and replaces only files that it has written itself.
+//! `taxel script --allow-outside` lifts that.
+
+use std::path::{Component, Path, PathBuf};
+use std::sync::Mutex;
+
+use crate::storage::{Existing, location};
+use crate::tui::runtime::lock::locked;
+
+/// Where files may be written.
+#[derive(Debug, Default)]
+pub(in crate::tui) struct WriteAccess {
+    /// The folder that a script is confined to; None for anywhere.
+    folder: Option<PathBuf>,
+    /// The files that it has been allowed to write.
+    written: Mutex<Vec<PathBuf>>,
+}
+
+impl WriteAccess {
+    /// Below this folder only.
+    pub(in crate::tui::runtime) fn below(folder: PathBuf) -> Self {
+        Self {
+            folder: Some(folder),
+            written: Mutex::default(),
+        }
+    }
+
+    /// Whether it is a script's, which may be a stranger's.
+    pub(in crate::tui::runtime) fn is_confined(&self) -> bool {
+        self.folder.is_some()
+    }
+
+    /// The path for a file of that name, which may begin with `~/`. For a script, a relative one is below its folder.
+    ///
+    /// # Errors
+    /// A sentence with the name, if the file may not be written.
+    pub(in crate::tui::runtime) fn path(
+        &self,
+        name: &str,
+        existing: Existing,
+    ) -> Result<PathBuf, String> {
+        let Some(folder) = &self.folder else {
+            return location::below_home(name)
+                .ok_or_else(|| format!("{name}: no home folder, so ~ cannot be used"));
+        };
+        let path = inside(folder, name).ok_or_else(|| {
+            format!(
+                "{name}: without --allow-outside, a script writes only below its folder, and no hidden files"
+            )
+        })?;
+        // A thread that panicked here has added a path or not.
+        let mut written = locked(&self.written);
+        if existing == Existing::Replaced && path.exists() && !written.contains(&path) {
+            return Err(format!(
+                "{name}: existed before the script; without --allow-outside, a script replaces only its own files"
+            ));
+        }
+        if existing == Existing::Kept && !path.exists() {
+            written.push(path.clone());
+        }
+        Ok(path)
+    }
+}
+
+/// The path of a file below a folder, links resolved; None if it is elsewhere or hidden.
+fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
+    let folder = folder.canonicalize().ok()?;
+    let path = folder.join(name);
+    let parent = path.parent()?.canonicalize().ok()?;
+    let path = parent.join(path.file_name()?);
+    let below = path.strip_prefix(&folder).ok()?;
+    let visible = |component: Component<'_>| match component {
+        Component::Normal(name) => !name.as_encoded_bytes().starts_with(b"."),
+        _ => false,
+    };
+    let names = below.components();
+    (names.clone().next().is_some() && names.clone().all(visible)).then_some(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_script_writes_below_its_folder_only() {
+        let outside = tempfile::tempdir().expect("a folder");
+        let folder = outside.path().join("own");
+        for path in ["own/deeper", "own/.hidden"] {
+            fs::create_dir_all(outside.path().join(path)).expect("made");
+        }
+        #[cfg(unix)]
+        std::os::unix::fs::symlink(outside.path(), folder.join("link")).expect("linked");
+        let access = WriteAccess::below(folder.clone());
+        let absolute = folder.join("a.csv");
+        let absolute = absolute.to_str().expect("text");
+        for name in [
+            "a.csv",
+            "./a.csv",
+            "deeper/a.csv",
+            "deeper/../a.csv",
+            absolute,
+        ] {
+            assert!(access.path(name, Existing::Kept).is_ok(), "{name}");
+        }
+        for name in [
+            "",
+            "..",
+            "../a.csv",
+            "deeper/../../a.csv",
+            "~/a.csv",
+            "/a.csv",
+            ".a.csv",
+            ".hidden/a.csv",
+            "link/a.csv",
+            "nowhere/a.csv",
+        ] {
+            let refused = access.path(name, Existing::Kept).expect_err(name);
+            assert!(refused.contains("--allow-outside"), "{refused}");
+        }
+    }
+
+    #[test]
+    fn a_script_replaces_its_own_files_only() {
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join("theirs.csv"), "").expect("written");
+        let access = WriteAccess::below(folder.path().to_owned());
+        let own = access.path("own.csv", Existing::Kept).expect("free");
+        fs::write(own, "").expect("written");
+        assert!(access.path("own.csv", Existing::Replaced).is_ok());
+        assert!(
+            access.path("theirs.csv", Existing::Kept).is_ok(),
+            "refused when it is written"
+        );
+        let refused = access.path("theirs.csv", Existing::Replaced);
+        assert!(refused.is_err_and(|message| message.contains("before the script")));
+    }
+}

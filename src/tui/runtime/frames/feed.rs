@@ -1,0 +1,525 @@
+//! The frames of a source that the screen has not taken yet, and their recording.
+//!
+//! ```text
+//! acquire -> take_in -> Recording: every frame
+//!                    -> Pending: frames, bounded in bytes, and how the source is -> take -> FrameBatch
+//! ```
+//! The thread that reads the source adds frames, and the screen's thread takes them; neither waits long for the other.
+
+use std::mem::take;
+use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, acquire};
+use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
+use crate::formats::value::decimal;
+use crate::frame::Frame;
+use crate::storage::Existing;
+use crate::tui::live::history::bytes_of;
+use crate::tui::live::message::{FrameBatch, ProvisionalChange, RecordedFrames, SourceState};
+use crate::tui::live::request::WatchRequest;
+use crate::tui::runtime::frames::recording::Recording;
+use crate::tui::runtime::frames::source;
+use crate::tui::runtime::lock::locked;
+use crate::tui::runtime::work::progress::caught;
+
+/// What has come and was not taken yet.
+#[derive(Debug, Default)]
+pub(in crate::tui::runtime) struct FrameFeed {
+    /// Held for as long as it takes to add or to take frames, never while a file is written.
+    pending: Mutex<Pending>,
+    /// The recording. Its lock is held only briefly, so a slow disk holds up the source and nothing else.
+    recording: Mutex<Option<Arc<Recording>>>,
+}
+
+/// What the screen takes at its next turn. It is swapped out under a short lock, so that the source hardly waits.
+#[derive(Debug, Default)]
+struct Pending {
+    /// The frames, and how the source is.
+    batch: FrameBatch,
+    /// The memory that those frames take.
+    bytes: usize,
+    /// Whether there is something that was not taken yet.
+    is_new: bool,
+    /// The channels so far, and which of them is watched.
+    channels: ChannelChoice,
+    /// When the last frame came, by its time.
+    last_time: Option<f64>,
+    /// For how long the source was lost since then; None where it was not.
+    gap: Option<Duration>,
+}
+
+impl FrameFeed {
+    /// What comes of the channel that is asked for.
+    pub(in crate::tui::runtime) fn of(request: &WatchRequest) -> Self {
+        let feed = Self::default();
+        locked(&feed.pending).channels = ChannelChoice::new(request.options.channel.as_deref());
+        feed
+    }
+
+    /// What is recorded in.
+    pub(in crate::tui::runtime) fn recording(&self) -> Option<Arc<Recording>> {
+        locked(&self.recording).clone()
+    }
+
+    /// Records in this from now on. Returns what was recorded in before.
+    pub(in crate::tui::runtime) fn begin(
+        &self,
+        recording: Arc<Recording>,
+    ) -> Option<Arc<Recording>> {
+        locked(&self.recording).replace(recording)
+    }
+
+    /// Notes that frames are recorded.
+    pub(in crate::tui::runtime) fn note_begun(&self) {
+        let status = &mut locked(&self.pending).batch.status;
+        status.recorded = Some(RecordedFrames::default());
+        status.record_error = None;
+    }
+
+    /// Goes on with what was recorded in before, if anything was, and notes how it is.
+    pub(in crate::tui::runtime) fn go_on_with(&self, recording: Option<Arc<Recording>>) {
+        *locked(&self.recording) = recording;
+        let recorded = self.recorded(Recording::tick);
+        locked(&self.pending).note(recorded);
+    }
+
+    /// Records no more. Returns what was recorded in.
+    pub(in crate::tui::runtime) fn end(&self) -> Option<Arc<Recording>> {
+        let recording = locked(&self.recording).take()?;
+        locked(&self.pending).batch.status.recorded = None;
+        Some(recording)
+    }
+
+    /// Notes that the source cannot be read, and why.
+    pub(in crate::tui::runtime) fn fail(&self, reason: String) {
+        self.change(|pending| pending.batch.status.state = SourceState::Failed(reason));
+    }
+
+    /// Whether there is something to take.
+    pub(in crate::tui::runtime) fn has_new(&self) -> bool {
+        locked(&self.pending).is_new
+    }
+
+    /// Writes to it, if there is one. Returns how many frames are recorded then.
+    fn recorded(
+        &self,
+        write: impl FnOnce(&Recording) -> Result<Option<RecordedFrames>, String>,
+    ) -> Result<Option<RecordedFrames>, String> {
+        let recording = self.recording();
+        recording.map_or(Ok(None), |recording| write(&recording))
+    }
+
+    /// Creates the file of the recording that is asked for together with the source.
+    pub(in crate::tui::runtime) fn begin_recording(
+        &self,
+        request: &WatchRequest,
+        existing: Option<Existing>,
+    ) -> Result<(), String> {
+        let (Some(recording), Some(existing)) = (self.recording(), existing) else {
+            return Ok(());
+        };
+        let metadata = RecordingMetadata {
+            source: request.source.to_string_lossy().into_owned(),
+            rule: request.rule,
+            ..RecordingMetadata::default()
+        };
+        source::named(&request.source)
+            .refuse_as_target(recording.path())
+            .map_err(|error| error.to_string())?;
+        recording.begin(existing, &metadata)?;
+        self.note_begun();
+        Ok(())
+    }
+
+    /// Reads a source to its end; a panic counts as an error of the source. `fresh` is called when there is something to take where there was nothing.
+    pub(in crate::tui::runtime) fn run(
+        &self,
+        source: &FrameSource,
+        request: &WatchRequest,
+        options: &AcquireOptions,
+        stop: &AtomicBool,
+        fresh: &mut dyn FnMut(&Self) -> ControlFlow<()>,
+    ) {
+        let mut wanted = ControlFlow::Continue(());
+        let mut consumer = |event: AcquireEvent<'_>| {
+            let is_time = matches!(event, AcquireEvent::Tick(_) | AcquireEvent::Silent { .. });
+            // A script has no clock: the time between its frames is its own, not a silence of the source.
+            if is_time && options.once {
+                return ControlFlow::Continue(());
+            }
+            if self.take_in(event, request) {
+                wanted = fresh(self);
+            }
+            wanted
+        };
+        let ended = caught(|| acquire(source, options, stop, &mut consumer));
+        let ended = ended.and_then(|ended| ended.map_err(|error| error.to_string()));
+        if wanted.is_break() {
+            return;
+        }
+        let state = match ended {
+            Ok(()) => SourceState::Ended,
+            Err(reason) => SourceState::Failed(reason),
+        };
+        if self.change(|pending| pending.batch.status.state = state) {
+            let _ = fresh(self);
+        }
+        // Nothing comes any more that would have the rest written, and the page may stay open for long. Said after the end
+        // of the source: a disk may hang.
+        let written = self.recorded(Recording::flush);
+        if written.is_err() && self.change(|pending| pending.note(written)) {
+            let _ = fresh(self);
+        }
+    }
+
+    /// Changes what is to be taken; true if there was nothing to take before.
+    fn change(&self, change: impl FnOnce(&mut Pending)) -> bool {
+        let mut pending = locked(&self.pending);
+        change(&mut pending);
+        !std::mem::replace(&mut pending.is_new, true)
+    }
+
+    /// Takes what there is; None if nothing is new.
+    pub(in crate::tui::runtime) fn take(&self) -> Option<FrameBatch> {
+        let mut pending = locked(&self.pending);
+        if !take(&mut pending.is_new) {
+            return None;
+        }
+        pending.bytes = 0;
+        Some(FrameBatch {
+            frames: take(&mut pending.batch.frames),
+            provisional: take(&mut pending.batch.provisional),
+            status: pending.batch.status.clone(),
+        })
+    }
+
+    /// Records a frame of the channel that is watched, and shows it. Returns whether the screen must be woken.
+    fn take_frame(&self, frame: &Frame, time: Option<f64>, request: &WatchRequest) -> bool {
+        if !locked(&self.pending).channels.takes(frame.channel) {
+            return false;
+        }
+        // An error ends the recording; the frames go on being shown.
+        let recorded = self.recorded(|own| own.add(frame, time));
+        let mut own = frame.clone();
+        own.time = time;
+        self.change(|pending| {
+            pending.note(recorded);
+            pending.note_time(time);
+            pending.push(Arc::new(own), request.history_bytes);
+        })
+    }
+
+    /// Notes what a source reports. True if it is to be shown and there was nothing before it.
+    fn take_in(&self, event: AcquireEvent<'_>, request: &WatchRequest) -> bool {
+        let state = |state: SourceState| self.change(|pending| pending.batch.status.state = state);
+        match event {
+            AcquireEvent::Channel(info) => self.change(|pending| pending.add_channel(info)),
+            AcquireEvent::Frame { frame, time } => self.take_frame(frame, time, request),
+            AcquireEvent::Provisional(frame) => {
+                let shown = ProvisionalChange::Shown(Arc::new(frame.clone()));
+                self.change(|pending| pending.batch.provisional = shown)
+            }
+            AcquireEvent::Withdrawn => {
+                self.change(|pending| pending.batch.provisional = ProvisionalChange::Gone)
+            }
+            AcquireEvent::Tick(counts) => {
+                let written = self.recorded(Recording::tick);
+                let mut pending = locked(&self.pending);
+                let status = &mut pending.batch.status;
+                let is_new = status.lost != counts.dropped || written.is_err();
+                status.lost = counts.dropped;
+                status.sample.clone_from(&counts.sample);
+                pending.note(written);
+                is_new && !std::mem::replace(&mut pending.is_new, true)
+            }
+            AcquireEvent::Silent {
+                bytes_per_second,
+                counts,
+            } => {
+                let what = counts.silence(bytes_per_second);
+                state(SourceState::Silent(format!("no frame for 2 s: {what}")))
+            }
+            AcquireEvent::Absent(error) => {
+                let name = request.source.to_string_lossy();
+                let text = format!("waiting for {name}, trying again each second: {error}");
+                state(SourceState::Lost(text))
+            }
+            AcquireEvent::Lost(error) => self.change(|pending| {
+                pending.gap.get_or_insert_default();
+                let text = format!("lost: {error}; trying again each second");
+                pending.batch.status.state = SourceState::Lost(text);
+            }),
+            AcquireEvent::Note(note) => self.change(|pending| {
+                let first = &mut pending.batch.status.note;
+                first.get_or_insert_with(|| note.to_string());
+            }),
+            AcquireEvent::Back { gap } => self.change(|pending| {
+                pending.batch.status.state = pending.back_after(gap);
+            }),
+            AcquireEvent::Anew(how) => state(SourceState::Silent(how.to_string())),
+            AcquireEvent::Ended(counts) => self.change(|pending| {
+                pending.batch.status.lost = counts.dropped;
+                pending.batch.status.sample.clone_from(&counts.sample);
+            }),
+            _ => false,
+        }
+    }
+}
+
+impl Pending {
+    /// Adds a channel.
+    fn add_channel(&mut self, info: &ChannelInfo) {
+        if self.channels.add(info) {
+            self.batch.status.channel = Some(Arc::new(info.clone()));
+        }
+        self.batch.status.channels = self.channels.names().len();
+    }
+
+    /// Notes that the source is there after a time, and returns how it is now.
+    fn back_after(&mut self, time: Duration) -> SourceState {
+        let Some(gap) = &mut self.gap else {
+            return SourceState::Waiting;
+        };
+        *gap += time;
+        let seconds = decimal(gap.as_secs_f64(), 1);
+        SourceState::Silent(format!("back after {seconds} s; no frame yet"))
+    }
+
+    /// Notes the time of a frame, which ends a gap.
+    fn note_time(&mut self, time: Option<f64>) {
+        let before = std::mem::replace(&mut self.last_time, time);
+        if let (Some(gap), Some((before, now))) = (self.gap.take(), before.zip(time)) {
+            let gaps = &mut self.batch.status.gaps;
+            gaps.count += 1;
+            gaps.waited += gap.as_secs_f64();
+            gaps.missing += now - before;
+        }
+    }
+
+    /// Adds a frame; the oldest go where nobody takes them and there is no memory for more.
+    /// Half of them go at once, so that a full buffer does not move all frames for each new one. At least one stays.
+    fn push(&mut self, frame: Arc<Frame>, most: usize) {
+        self.batch.status.state = SourceState::Live;
+        self.batch.provisional = ProvisionalChange::Gone;
+        self.bytes += bytes_of(&frame);
+        self.batch.frames.push(frame);
+        if self.bytes > most && self.batch.frames.len() > 1 {
+            let half = self.batch.frames.len() / 2;
+            let dropped = self.batch.frames.drain(..half);
+            self.bytes -= dropped.map(|frame| bytes_of(&frame)).sum::<usize>();
+            self.batch.status.overflowed += half as u64;
+        }
+    }
+
+    /// Notes how a recording is.
+    fn note(&mut self, recorded: Result<Option<RecordedFrames>, String>) {
+        match recorded {
+            Ok(recorded) => self.batch.status.recorded = recorded,
+            Err(error) => {
+                self.batch.status.recorded = None;
+                self.batch.status.record_error = Some(error);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::stream::StreamCounts;
+    use crate::tui::live::state::Live;
+
+    /// What a page shows after an event of its source: the number of the frame.
+    fn after(page: &mut Live, feed: &FrameFeed, event: AcquireEvent<'_>) -> Option<u64> {
+        feed.take_in(event, &WatchRequest::new("none"));
+        if let Some(batch) = feed.take() {
+            page.take(&batch);
+        }
+        page.reading().map(|reading| reading.frame.number)
+    }
+
+    #[test]
+    fn a_panic_of_the_reader_is_an_error_of_the_source() {
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        std::fs::write(&file, "r0c0,r0c1\n1,2\n").expect("written");
+        let (feed, request) = (FrameFeed::default(), WatchRequest::new("none"));
+        let source = FrameSource::File(file.path().to_owned());
+        let mut sound = false;
+        feed.run(
+            &source,
+            &request,
+            &AcquireOptions::default(),
+            &AtomicBool::new(false),
+            &mut |_| {
+                assert!(std::mem::replace(&mut sound, true), "a bug");
+                ControlFlow::Continue(())
+            },
+        );
+        let batch = feed.take().expect("a state");
+        assert!(matches!(batch.status.state, SourceState::Failed(_)));
+    }
+
+    #[test]
+    fn a_provisional_frame_is_shown_until_it_is_withdrawn() {
+        let feed = FrameFeed::default();
+        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
+        let mut frame = Frame::new(2, 2);
+        let mut counts = StreamCounts::default();
+        let shown = after(&mut page, &feed, AcquireEvent::Provisional(&frame));
+        assert_eq!(shown, Some(0));
+        // Of what was lost before it.
+        counts.dropped = 3;
+        let shown = after(&mut page, &feed, AcquireEvent::Tick(&counts));
+        assert_eq!((shown, page.status().lost), (Some(0), 3));
+        let shown = after(&mut page, &feed, AcquireEvent::Withdrawn);
+        assert_eq!(shown, None, "there is no other frame");
+        let time = None;
+        let whole = AcquireEvent::Frame {
+            frame: &frame.clone(),
+            time,
+        };
+        assert_eq!(after(&mut page, &feed, whole), Some(0));
+        frame.number = 1;
+        let shown = after(&mut page, &feed, AcquireEvent::Provisional(&frame));
+        assert_eq!(shown, Some(1));
+        assert_eq!(page.mark(), Ok((1, true)));
+        let shown = after(&mut page, &feed, AcquireEvent::Withdrawn);
+        assert_eq!(shown, Some(0));
+        assert!(page.marks().is_empty(), "the frame is gone, so its mark is");
+        // The mark of one that is confirmed remains.
+        after(&mut page, &feed, AcquireEvent::Provisional(&frame));
+        assert_eq!(page.mark(), Ok((1, true)));
+        let whole = AcquireEvent::Frame {
+            frame: &frame,
+            time,
+        };
+        assert_eq!(after(&mut page, &feed, whole), Some(1));
+        assert!(page.is_marked());
+    }
+
+    #[test]
+    fn a_mark_does_not_pass_to_the_frame_that_comes_in_place_of_a_withdrawn_one() {
+        let feed = FrameFeed::default();
+        let request = WatchRequest::new("none");
+        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
+        let [first, mut second] = [Frame::new(2, 2), Frame::new(2, 2)];
+        second.values_mut()[0] = 9.0;
+        let whole = AcquireEvent::Frame {
+            frame: &second,
+            time: None,
+        };
+        page.set_recording(Some("a.npy".to_owned()));
+        for event in [AcquireEvent::Provisional(&second), whole] {
+            after(&mut page, &feed, AcquireEvent::Provisional(&first));
+            assert_eq!(page.mark(), Ok((0, true)));
+            let view = page.take_changed_view().expect("it was marked");
+            assert_eq!(view.marks.len(), 1);
+            // Both before the page takes anything.
+            feed.take_in(AcquireEvent::Withdrawn, &request);
+            assert_eq!(after(&mut page, &feed, event), Some(0));
+            assert!(!page.is_marked() && page.marks().is_empty());
+            // The description of the recording has the mark until then.
+            assert!(page.take_changed_view().is_some());
+        }
+    }
+
+    #[test]
+    fn a_held_peak_does_not_begin_with_a_frame_that_may_be_withdrawn() {
+        let feed = FrameFeed::default();
+        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
+        let [mut first, mut garbled] = [Frame::new(2, 2), Frame::new(2, 2)];
+        first.values_mut().fill(1.0);
+        garbled.values_mut()[0] = 9.0;
+        let whole = AcquireEvent::Frame {
+            frame: &first,
+            time: None,
+        };
+        after(&mut page, &feed, whole);
+        after(&mut page, &feed, AcquireEvent::Provisional(&garbled));
+        assert!(page.hold_peak());
+        after(&mut page, &feed, AcquireEvent::Withdrawn);
+        assert_eq!(
+            page.reading().and_then(|reading| Some(reading.max?.0)),
+            Some(1.0)
+        );
+    }
+
+    #[test]
+    fn the_gap_of_a_lost_connection_is_reported_with_the_first_frame_after_it() {
+        let feed = FrameFeed::default();
+        let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
+        let (frame, gap) = (Frame::new(2, 2), Duration::from_secs(2));
+        let at = |time| AcquireEvent::Frame {
+            frame: &frame,
+            time: Some(time),
+        };
+        let error = std::io::Error::other("cut");
+        // Waited for before it was there at all: nothing is missing.
+        for event in [
+            AcquireEvent::Absent(&error),
+            AcquireEvent::Back { gap },
+            at(0.0),
+        ] {
+            after(&mut page, &feed, event);
+        }
+        assert_eq!(page.trouble(), None);
+        // Lost again before a frame came: one gap.
+        for _ in 0..2 {
+            after(&mut page, &feed, AcquireEvent::Lost(&error));
+            let lost = page.trouble().expect("it is lost");
+            assert!(lost.starts_with("lost: cut;"), "{lost}");
+            after(&mut page, &feed, AcquireEvent::Back { gap });
+        }
+        assert_eq!(
+            page.trouble().as_deref(),
+            Some("back after 4 s; no frame yet")
+        );
+        after(&mut page, &feed, at(5.5));
+        let once = "the connection was lost for 4 s; 5.5 s of frames are missing";
+        assert_eq!(page.trouble().as_deref(), Some(once));
+        // It stays until the user has seen it.
+        after(&mut page, &feed, at(5.6));
+        assert_eq!(page.trouble().as_deref(), Some(once));
+        for event in [
+            AcquireEvent::Lost(&error),
+            AcquireEvent::Back { gap },
+            at(8.0),
+        ] {
+            after(&mut page, &feed, event);
+        }
+        let twice = "the connection was lost 2 times, for 6 s in all; 7.9 s of frames are missing";
+        assert_eq!(page.trouble().as_deref(), Some(twice));
+        page.see_gaps();
+        assert_eq!(page.trouble(), None);
+        assert_eq!(page.status().gaps.count, 2);
+    }
+
+    #[test]
+    fn frames_of_other_channels_are_not_shown_before_the_one_that_is_asked_for() {
+        let mut request = WatchRequest::new("none");
+        request.options.channel = Some("right".to_owned());
+        let feed = FrameFeed::of(&request);
+        for (index, name) in ["left", "right"].into_iter().enumerate() {
+            let info = ChannelInfo {
+                name: Some(name.to_owned()),
+                ..ChannelInfo::default()
+            };
+            feed.take_in(AcquireEvent::Channel(&info), &request);
+            let mut frame = Frame::new(2, 2);
+            frame.channel = index;
+            let (frame, time) = (&frame, None);
+            feed.take_in(AcquireEvent::Frame { frame, time }, &request);
+        }
+        let batch = feed.take().expect("a frame");
+        let channels = batch.frames.iter().map(|frame| frame.channel);
+        assert_eq!(channels.collect::<Vec<_>>(), [1]);
+        let channel = batch.status.channel.expect("the one that is asked for");
+        assert_eq!(
+            (channel.name.as_deref(), batch.status.channels),
+            (Some("right"), 2)
+        );
+    }
+}

@@ -1,0 +1,197 @@
+//! The file to which frames are recorded while they are watched.
+//!
+//! ```text
+//! begin    creates the file            the source's thread, or the one of the disk
+//! add      each frame                  the source's thread
+//! tick     what has waited             the source's thread
+//! flush    all that waits, synced      the source's thread at its end; the one of the disk before the program is stopped
+//! describe threshold, tare, marks      the one of the disk
+//! finish   the rest, synced            the one of the disk
+//! ```
+//! A disk may hang in each of them, so none is called on the screen's thread.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+
+use crate::acquire::{FrameRecorder, RecorderError, name_description};
+use crate::formats::recording::{RecordedView, RecordingMetadata};
+use crate::frame::Frame;
+use crate::storage::Existing;
+use crate::tui::live::message::{LiveEvent, RecordedFrames};
+use crate::tui::runtime::disk::write_access::WriteAccess;
+use crate::tui::runtime::lock::locked;
+
+/// A file that is recorded in, shared by the source's thread and the one that finishes it.
+#[derive(Debug)]
+pub(in crate::tui::runtime) struct Recording {
+    /// The file.
+    path: PathBuf,
+    /// Held for as long as the disk takes to write a description, and then before `recorder`: of two the later stays.
+    description: Mutex<()>,
+    /// Held for as long as the disk takes to write frames.
+    recorder: Mutex<RecorderState>,
+}
+
+/// How far a recording is.
+#[derive(Debug)]
+enum RecorderState {
+    /// The file has not been created yet.
+    New,
+    /// Frames are written.
+    Open(Box<FrameRecorder>),
+    /// It is finished or has failed.
+    Closed,
+}
+
+impl Recording {
+    /// A recording whose file has not been created yet.
+    pub(in crate::tui::runtime) fn new(path: PathBuf) -> Arc<Self> {
+        Arc::new(Self {
+            path,
+            description: Mutex::default(),
+            recorder: Mutex::new(RecorderState::New),
+        })
+    }
+
+    /// Begins one in the first file `touch-1.npy`, `touch-2.npy` … that is not there. Returns its name, too.
+    ///
+    /// # Errors
+    /// Why there is none, in a sentence.
+    pub(in crate::tui::runtime) fn in_free_file(
+        access: &WriteAccess,
+        metadata: &RecordingMetadata,
+    ) -> Result<(String, Arc<Self>), String> {
+        for name in (1..10_000).map(|number| format!("touch-{number}.npy")) {
+            let path = access.path(&name, Existing::Kept)?;
+            if path.exists() || path.with_extension("json").exists() {
+                continue;
+            }
+            let recording = Self::new(path);
+            recording.begin(Existing::Kept, metadata)?;
+            return Ok((name, recording));
+        }
+        Err("10,000 recordings are here already; move some elsewhere".to_owned())
+    }
+
+    /// The file.
+    pub(in crate::tui::runtime) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Creates the file, unless the recording was finished before it could begin.
+    ///
+    /// # Errors
+    /// What the system refuses, in a sentence.
+    pub(in crate::tui::runtime) fn begin(
+        &self,
+        existing: Existing,
+        metadata: &RecordingMetadata,
+    ) -> Result<(), String> {
+        let mut state = locked(&self.recorder);
+        if !matches!(*state, RecorderState::New) {
+            return Ok(());
+        }
+        *state = RecorderState::Closed;
+        let recorder = FrameRecorder::create(&self.path, existing, metadata);
+        let recorder = recorder.map_err(|error| error.to_string())?;
+        *state = RecorderState::Open(Box::new(recorder));
+        Ok(())
+    }
+
+    /// Adds a frame. Returns how many are recorded, None where none are any more.
+    ///
+    /// # Errors
+    /// A sentence. The recording ends then; what is in it so far stays.
+    pub(in crate::tui::runtime) fn add(
+        &self,
+        frame: &Frame,
+        time: Option<f64>,
+    ) -> Result<Option<RecordedFrames>, String> {
+        self.write(|recorder| recorder.add(frame, time))
+    }
+
+    /// Writes out what has waited for long enough. Returns how many frames are recorded.
+    ///
+    /// # Errors
+    /// A sentence. The recording ends then.
+    pub(in crate::tui::runtime) fn tick(&self) -> Result<Option<RecordedFrames>, String> {
+        self.write(FrameRecorder::tick)
+    }
+
+    /// Writes out all that waits, and syncs it. Returns how many frames are recorded.
+    ///
+    /// # Errors
+    /// A sentence. The recording ends then.
+    pub(in crate::tui::runtime) fn flush(&self) -> Result<Option<RecordedFrames>, String> {
+        self.write(FrameRecorder::flush)
+    }
+
+    /// Writes threshold, tare and marks into the description, in place of those before. Frames are added meanwhile.
+    ///
+    /// # Errors
+    /// A sentence. The recording ends then.
+    pub(in crate::tui::runtime) fn describe(&self, view: RecordedView) -> Result<(), String> {
+        let one_at_a_time = locked(&self.description);
+        let Some(draft) = self.open(|recorder| recorder.set_view(view)) else {
+            return Ok(());
+        };
+        let written = draft.prepare().and_then(|file| {
+            let file = self.open(|recorder| recorder.take_description(file));
+            file.flatten().map_or(Ok(()), name_description)
+        });
+        drop(one_at_a_time);
+        written.map_err(|error| {
+            self.open(|recorder| recorder.note_failure(&error));
+            self.close();
+            error.to_string()
+        })
+    }
+
+    /// Does something with the recorder that needs no disk, if frames are recorded still.
+    fn open<T>(&self, act: impl FnOnce(&mut FrameRecorder) -> T) -> Option<T> {
+        match &mut *locked(&self.recorder) {
+            RecorderState::Open(recorder) => Some(act(recorder)),
+            _ => None,
+        }
+    }
+
+    /// Writes something, if frames are recorded still. Returns how many are recorded then.
+    fn write(
+        &self,
+        write: impl FnOnce(&mut FrameRecorder) -> Result<(), RecorderError>,
+    ) -> Result<Option<RecordedFrames>, String> {
+        let mut state = locked(&self.recorder);
+        let RecorderState::Open(recorder) = &mut *state else {
+            return Ok(None);
+        };
+        let written = write(recorder);
+        let recorded = RecordedFrames {
+            frames: recorder.frames(),
+            left_out: recorder.left_out(),
+        };
+        drop(state);
+        written.map(|()| Some(recorded)).map_err(|error| {
+            self.close();
+            error.to_string()
+        })
+    }
+
+    /// Finishes it. None where nothing is recorded any more: that has been said.
+    pub(in crate::tui::runtime) fn finish(&self) -> Option<LiveEvent> {
+        Some(match self.close()? {
+            Ok(frames) => LiveEvent::Recorded(self.path.to_string_lossy().into_owned(), frames),
+            Err(error) => LiveEvent::NotFinished(error.to_string()),
+        })
+    }
+
+    /// Ends it; what is in the file so far stays. Returns how many frames that are, None where it was ended before. Of a
+    /// recording that has failed the first error is the one that is reported, not what this returns.
+    fn close(&self) -> Option<Result<u64, RecorderError>> {
+        let before = std::mem::replace(&mut *locked(&self.recorder), RecorderState::Closed);
+        let RecorderState::Open(recorder) = before else {
+            return None;
+        };
+        let _one_at_a_time = locked(&self.description);
+        Some(recorder.finish())
+    }
+}

@@ -1,0 +1,143 @@
+//! Reads a source of frames for a script, which has no clock: a frame comes when it is asked for.
+//!
+//! ```text
+//! script           thread
+//! next  -- more -> reads on                 the file stays open between two requests,
+//!       <- batch - waits                    so a recording is read once
+//! ```
+//! Only one of the two runs at a time, so a script does the same every time.
+
+use std::ops::ControlFlow;
+use std::panic::resume_unwind;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
+
+use crate::acquire::FrameSource;
+use crate::tui::live::message::FrameBatch;
+use crate::tui::live::request::WatchRequest;
+use crate::tui::runtime::frames::feed::FrameFeed;
+use crate::tui::runtime::frames::recording::Recording;
+use crate::tui::runtime::work::threads;
+
+/// A source that is read from its beginning.
+#[derive(Clone, Debug)]
+pub(in crate::tui::runtime) struct ScriptSource {
+    /// The source.
+    pub(in crate::tui::runtime) source: FrameSource,
+    /// How it is read.
+    pub(in crate::tui::runtime) request: Arc<WatchRequest>,
+    /// Takes in what it brings.
+    pub(in crate::tui::runtime) feed: Arc<FrameFeed>,
+    /// How many of its frames were taken before: these are skipped.
+    pub(in crate::tui::runtime) skipped: usize,
+    /// What the frames after these are recorded in.
+    pub(in crate::tui::runtime) recording: Option<Arc<Recording>>,
+}
+
+impl ScriptSource {
+    /// Reads it to its end, or until `take` breaks off.
+    pub(in crate::tui::runtime) fn read(
+        &self,
+        take: &mut dyn FnMut(FrameBatch) -> ControlFlow<()>,
+    ) {
+        let mut options = self.request.options.clone();
+        (options.once, options.repeat) = (true, false);
+        // What is skipped was recorded before.
+        let record_from = |seen: usize| {
+            if seen == self.skipped {
+                self.feed.go_on_with(self.recording.clone());
+            }
+        };
+        let mut seen = 0;
+        record_from(seen);
+        let never = AtomicBool::new(false);
+        let (source, request) = (&self.source, &self.request);
+        self.feed
+            .run(source, request, &options, &never, &mut |feed| {
+                let Some(batch) = feed.take() else {
+                    return ControlFlow::Continue(());
+                };
+                let frames = batch.frames.len();
+                seen += frames;
+                if frames > 0 {
+                    record_from(seen);
+                }
+                if seen > self.skipped || frames == 0 {
+                    return take(batch);
+                }
+                ControlFlow::Continue(())
+            });
+        if seen < self.skipped {
+            // It has become shorter.
+            self.feed.go_on_with(self.recording.clone());
+        }
+    }
+}
+
+/// A source that stays open.
+#[derive(Debug)]
+pub(in crate::tui::runtime) struct ScriptReader {
+    /// Lets the thread read on; dropped to end it.
+    more: Option<Sender<()>>,
+    /// What the thread has read.
+    batches: Receiver<FrameBatch>,
+    /// The thread, until it is joined.
+    thread: Option<JoinHandle<()>>,
+}
+
+impl ScriptReader {
+    /// Opens a source on a thread of its own.
+    ///
+    /// # Errors
+    /// A sentence, where the system gives no thread.
+    pub(in crate::tui::runtime) fn open(source: ScriptSource) -> Result<Self, String> {
+        let (more, wanted) = channel();
+        let (sender, batches) = channel();
+        let is_wanted = move || match wanted.recv() {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        };
+        let thread = threads::start(move || {
+            if is_wanted().is_break() {
+                return;
+            }
+            source.read(&mut |batch| match sender.send(batch) {
+                Ok(()) => is_wanted(),
+                Err(_) => ControlFlow::Break(()),
+            });
+        })?;
+        Ok(Self {
+            more: Some(more),
+            batches,
+            thread: Some(thread),
+        })
+    }
+
+    /// What comes next; None at the end of the source.
+    pub(in crate::tui::runtime) fn next(&mut self) -> Option<FrameBatch> {
+        let more = self.more.as_ref()?;
+        // A thread that has ended sends nothing either.
+        let _ = more.send(());
+        if let Ok(batch) = self.batches.recv() {
+            return Some(batch);
+        }
+        self.more = None;
+        if let Some(Err(panic)) = self.thread.take().map(JoinHandle::join) {
+            // As if it were read on this thread.
+            resume_unwind(panic);
+        }
+        None
+    }
+}
+
+impl Drop for ScriptReader {
+    fn drop(&mut self) {
+        self.more = None;
+        // It waits for a request, so it ends at once, and has closed the file then.
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}

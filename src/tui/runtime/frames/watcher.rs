@@ -1,0 +1,358 @@
+//! Watches a source of frames on a separate thread, so that neither a key nor a slow terminal holds it up.
+//!
+//! ```text
+//! acquire -> Recording: every frame
+//!         -> FrameFeed: what has not been taken yet, bounded in bytes -> at most 30 times a second -> Arrived
+//! ```
+//! Without a receiver of events, as in a script, nothing is watched: frames are read when they are asked for.
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use crate::storage::Existing;
+use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::live::message::{FrameBatch, LiveEvent};
+use crate::tui::live::request::WatchRequest;
+use crate::tui::runtime::disk::write_access::WriteAccess;
+use crate::tui::runtime::frames::feed::FrameFeed;
+use crate::tui::runtime::frames::recording::Recording;
+use crate::tui::runtime::frames::script::{ScriptReader, ScriptSource};
+use crate::tui::runtime::frames::source;
+use crate::tui::runtime::work::progress::WorkerEventSink;
+use crate::tui::runtime::work::threads;
+
+/// The source that is watched.
+#[derive(Debug, Default)]
+pub(in crate::tui::runtime) struct FrameWatcher {
+    /// None before the first source and after the page was closed.
+    watched: Option<Watched>,
+    /// The thread of the last source, which may still read it after it was stopped.
+    thread: Option<JoinHandle<()>>,
+}
+
+/// A source with the thread that reads it. The thread ends by itself when `stop` is set or the source ends.
+#[derive(Debug)]
+struct Watched {
+    /// The number of the piece of work, which its events carry.
+    number: u64,
+    /// What was asked for: the source, the channel, how frames are read.
+    request: Arc<WatchRequest>,
+    /// Shared with the thread that reads the source.
+    feed: Arc<FrameFeed>,
+    /// Set to end that thread.
+    stop: Arc<AtomicBool>,
+    /// Frames that a script has taken.
+    taken: usize,
+    /// Where the next one comes from, while the source is open for a script.
+    reader: Option<ScriptReader>,
+    /// Whether a file is being created for a recording.
+    is_starting: bool,
+}
+
+/// How long a source waits until the thread of the one before has closed that: it may be the same serial line, which only
+/// one can open, or the same pipe, whose bytes it would take.
+const CLOSE_TIMEOUT: Duration = Duration::from_millis(500);
+
+impl FrameWatcher {
+    /// Watches a source, recorded in a file if one is given. Returns an event where that cannot be begun. The source
+    /// before has to be stopped first.
+    pub(in crate::tui::runtime) fn watch(
+        &mut self,
+        number: u64,
+        request: Arc<WatchRequest>,
+        write: Option<(PathBuf, Existing)>,
+        post: Option<WorkerEventSink>,
+    ) -> Option<WorkerEvent> {
+        let watched = Watched {
+            number,
+            request: Arc::clone(&request),
+            feed: Arc::new(FrameFeed::of(&request)),
+            stop: Arc::default(),
+            taken: 0,
+            reader: None,
+            is_starting: false,
+        };
+        let feed = Arc::clone(&watched.feed);
+        let existing = write.map(|(path, existing)| {
+            feed.begin(Recording::new(path));
+            existing
+        });
+        let Some(post) = post else {
+            self.watched = Some(watched);
+            let refused = feed.begin_recording(&request, existing).err()?;
+            return Some(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
+        };
+        let stop = Arc::clone(&watched.stop);
+        let before = self.thread.take();
+        let thread = threads::start(move || {
+            if let Some(before) = before {
+                threads::wait_until_finished(&before, CLOSE_TIMEOUT);
+            }
+            // Before the first frame: each one is wanted. Not on the screen's thread: the disk may hang.
+            if let Err(refused) = feed.begin_recording(&request, existing) {
+                post(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
+            }
+            let source = source::named(&request.source);
+            let post = || post(WorkerEvent::Live(number, LiveEvent::Waiting));
+            let mut options = request.options.clone();
+            options.waits = true;
+            feed.run(&source, &request, &options, &stop, &mut |_| {
+                post();
+                ControlFlow::Continue(())
+            });
+        });
+        let thread = thread.map(|thread| self.thread = Some(thread));
+        if let Err(reason) = thread {
+            let recording = watched.feed.end();
+            watched.feed.fail(reason.clone());
+            self.watched = Some(watched);
+            recording?;
+            return Some(WorkerEvent::Live(number, LiveEvent::NotRecorded(reason)));
+        }
+        self.watched = Some(watched);
+        None
+    }
+
+    /// Takes no more frames. Returns the recording, which is to be finished, and the number of the source.
+    pub(in crate::tui::runtime) fn stop(&mut self) -> Option<(u64, Arc<Recording>)> {
+        let recording = self.end_recording();
+        if let Some(watched) = self.watched.take() {
+            watched.stop.store(true, Ordering::Relaxed);
+        }
+        recording
+    }
+
+    /// Notes that a file is being created for a recording of the source. Returns the number of the source.
+    ///
+    /// # Errors
+    /// A sentence if there is no source, or if another recording of it is starting.
+    pub(in crate::tui::runtime) fn start_recording(&mut self) -> Result<u64, &'static str> {
+        let watched = self.watched.as_mut().ok_or("no source is watched")?;
+        if std::mem::replace(&mut watched.is_starting, true) {
+            return Err("a recording is already starting");
+        }
+        Ok(watched.number)
+    }
+
+    /// Notes that the file is there, or cannot be created. From now on each frame of that source goes into it. Returns the
+    /// recording to finish: the new one if its source is gone, otherwise the one that it replaces.
+    pub(in crate::tui::runtime) fn recording_started(
+        &mut self,
+        number: u64,
+        recording: Option<Arc<Recording>>,
+    ) -> Option<Arc<Recording>> {
+        let watched = self.watched.as_mut();
+        let Some(watched) = watched.filter(|watched| watched.number == number) else {
+            return recording;
+        };
+        watched.is_starting = false;
+        let before = watched.feed.begin(recording?);
+        watched.feed.note_begun();
+        before
+    }
+
+    /// Records no more frames. Returns the recording, which is to be finished, and the number of the source.
+    pub(in crate::tui::runtime) fn end_recording(&self) -> Option<(u64, Arc<Recording>)> {
+        let watched = self.watched.as_ref()?;
+        Some((watched.number, watched.feed.end()?))
+    }
+
+    /// The number of the source, and what is recorded of it; None where nothing is.
+    pub(in crate::tui::runtime) fn recording(&self) -> Option<(u64, Arc<Recording>)> {
+        let watched = self.watched.as_ref()?;
+        Some((watched.number, watched.feed.recording()?))
+    }
+
+    /// Whether there is something to take.
+    pub(in crate::tui::runtime) fn has_new(&self) -> bool {
+        let watched = self.watched.as_ref();
+        watched.is_some_and(|watched| watched.feed.has_new())
+    }
+
+    /// Takes all that has come; None if nothing has.
+    pub(in crate::tui::runtime) fn take(&self) -> Option<WorkerEvent> {
+        let watched = self.watched.as_ref()?;
+        let batch = watched.feed.take()?;
+        Some(WorkerEvent::Live(
+            watched.number,
+            LiveEvent::Arrived(Arc::new(batch)),
+        ))
+    }
+
+    /// Reads the next frames of the source, up to `count`, each as an event; for scripts, which have no clock.
+    pub(in crate::tui::runtime) fn next(
+        &mut self,
+        count: usize,
+        access: &WriteAccess,
+    ) -> Vec<WorkerEvent> {
+        let Some(watched) = &mut self.watched else {
+            return Vec::new();
+        };
+        let number = watched.number;
+        let batches = watched.next(count, access).into_iter();
+        let events = batches.map(|batch| LiveEvent::Arrived(Arc::new(batch)));
+        events
+            .map(|event| WorkerEvent::Live(number, event))
+            .collect()
+    }
+}
+
+impl Watched {
+    /// Reads the next frames, up to `count`. A source that has ended is read anew from its start, as it may have grown; what
+    /// was taken is skipped then.
+    fn next(&mut self, count: usize, access: &WriteAccess) -> Vec<FrameBatch> {
+        let mut batches = Vec::new();
+        let mut reader = match self.reader.take() {
+            Some(reader) => reader,
+            None => match self.open(access) {
+                Ok(source) => match ScriptReader::open(source.clone()) {
+                    Ok(reader) => reader,
+                    // Without threads, the source is read anew each time.
+                    Err(_) => return self.next_of(&source, count),
+                },
+                Err(reason) => {
+                    self.feed.fail(reason);
+                    return self.feed.take().into_iter().collect();
+                }
+            },
+        };
+        let end = self.taken + count;
+        while self.taken < end {
+            let Some(batch) = reader.next() else {
+                return batches;
+            };
+            self.taken += batch.frames.len();
+            batches.push(batch);
+        }
+        self.reader = Some(reader);
+        batches
+    }
+
+    /// The same of a source that is read from its start on this thread.
+    fn next_of(&mut self, source: &ScriptSource, count: usize) -> Vec<FrameBatch> {
+        let (mut batches, end) = (Vec::new(), self.taken + count);
+        source.read(&mut |batch| {
+            self.taken += batch.frames.len();
+            batches.push(batch);
+            if self.taken < end {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        });
+        batches
+    }
+
+    /// The source from its start on, with a feed that takes over the recording.
+    ///
+    /// # Errors
+    /// Why it cannot be read, in a sentence.
+    fn open(&mut self, access: &WriteAccess) -> Result<ScriptSource, String> {
+        let source = source::readable(&self.request.source, access)?;
+        let recording = self.feed.recording();
+        self.feed = Arc::new(FrameFeed::of(&self.request));
+        Ok(ScriptSource {
+            source,
+            request: Arc::clone(&self.request),
+            feed: Arc::clone(&self.feed),
+            skipped: self.taken,
+            recording,
+        })
+    }
+}
+
+impl Drop for FrameWatcher {
+    fn drop(&mut self) {
+        // At the end of a script. On a terminal it has been finished before.
+        if let Some((_, recording)) = self.stop() {
+            let _ = recording.finish();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::recording::RecordingMetadata;
+    use crate::tui::runtime::disk::write_access::WriteAccess;
+
+    #[test]
+    fn a_recording_that_another_one_comes_after_is_finished() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let write = Some((folder.path().join("a.npy"), Existing::Kept));
+        let request = Arc::new(WatchRequest::new("none"));
+        let mut watcher = FrameWatcher::default();
+        assert_eq!(watcher.start_recording(), Err("no source is watched"));
+        assert_eq!(watcher.watch(7, request, write, None), None);
+        assert_eq!(watcher.start_recording(), Ok(7));
+        let already = "a recording is already starting";
+        assert_eq!(watcher.start_recording(), Err(already));
+        let access = WriteAccess::below(folder.path().to_owned());
+        let metadata = RecordingMetadata::default();
+        let next = Recording::in_free_file(&access, &metadata).map(|(_, next)| next);
+        let over = watcher
+            .recording_started(7, next.ok())
+            .expect("the one before");
+        assert!(over.path().ends_with("a.npy"));
+        assert_eq!(
+            over.finish(),
+            Some(LiveEvent::Recorded(over.path().to_string_lossy().into(), 0))
+        );
+    }
+
+    /// A recording of frames of 2 × 2, each full of its own number.
+    fn frames(numbers: std::ops::Range<u32>) -> String {
+        let line = |number| format!("{number},{number},{number},{number}\n");
+        let lines = numbers.map(line).collect::<String>();
+        "S0_0,S0_1,S1_0,S1_1\n".to_owned() + &lines
+    }
+
+    /// The numbers in the frames of events, `None` for an event without one.
+    fn numbers(events: &[WorkerEvent]) -> Vec<Option<f64>> {
+        let number = |event: &WorkerEvent| {
+            let WorkerEvent::Live(7, LiveEvent::Arrived(batch)) = event else {
+                panic!("{event:?}");
+            };
+            Some(batch.frames.first()?.values()[0])
+        };
+        events.iter().map(number).collect()
+    }
+
+    #[test]
+    fn a_script_reads_a_source_once_and_again_from_its_end_where_it_has_grown() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.csv");
+        std::fs::write(&path, frames(0..6)).expect("written");
+        let access = WriteAccess::below(folder.path().to_owned());
+        let request = Arc::new(WatchRequest::new(path.clone()));
+        let mut watcher = FrameWatcher::default();
+        assert_eq!(watcher.watch(7, Arc::clone(&request), None, None), None);
+        let mut taken = Vec::new();
+        let mut take = |watcher: &mut FrameWatcher, count| {
+            let found = numbers(&watcher.next(count, &access));
+            let frames = found.iter().flatten().count();
+            taken.extend(found.into_iter().flatten());
+            frames
+        };
+        assert_eq!(take(&mut watcher, 2), 2);
+        // It is open: what its name stands for meanwhile does not matter.
+        let aside = folder.path().join("b.csv");
+        std::fs::rename(&path, &aside).expect("renamed");
+        assert_eq!([take(&mut watcher, 1), take(&mut watcher, 9)], [1, 3]);
+        std::fs::write(&path, frames(0..8)).expect("written");
+        assert_eq!([take(&mut watcher, 1), take(&mut watcher, 9)], [1, 1]);
+        assert_eq!(taken, (0..8).map(f64::from).collect::<Vec<_>>());
+        // The same without a thread.
+        let mut watched = watcher.watched.take().expect("it is watched");
+        watched.taken = 3;
+        let source = watched.open(&access).expect("it is there");
+        let batches = watched.next_of(&source, 2);
+        let firsts = batches.iter().filter_map(|batch| batch.frames.first());
+        let firsts: Vec<f64> = firsts.map(|frame| frame.values()[0]).collect();
+        assert_eq!((firsts, watched.taken), (vec![3.0, 4.0], 5));
+    }
+}

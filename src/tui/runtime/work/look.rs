@@ -1,0 +1,169 @@
+//! Searches models for what an imprint may be: the nearest imprint of the set, and the poses that leave it.
+//!
+//! ```text
+//! Look(number, search)  -> Looked, also after StopLooking: the screen waits for it before it begins the next
+//! ```
+//! The nearest imprint is found soon. Its poses take a sweep of the whole grid, and are not kept in the model.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::memory::MemoryGuard;
+use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::recognise::message::{Look, PoseSearch, RecognitionEvent};
+use crate::tui::runtime::work::progress::{PoseLimit, WorkerEventSink, caught};
+use crate::tui::runtime::work::threads;
+
+/// Outlines of poses that are drawn at most; more cannot be told apart over a matrix.
+const POSES: usize = 13;
+
+/// The search in progress.
+#[derive(Debug, Default)]
+pub(in crate::tui::runtime) struct LookWorker {
+    /// Set to stop it.
+    stop: Arc<AtomicBool>,
+    /// When a search that is done at once is stopped.
+    pub(in crate::tui::runtime) limit: PoseLimit,
+}
+
+impl LookWorker {
+    /// Begins a search on a thread of its own, in place of the one before. If there is no receiver, searches at once and
+    /// returns the event.
+    pub(in crate::tui::runtime) fn look(
+        &mut self,
+        number: u64,
+        search: Box<PoseSearch>,
+        post: Option<WorkerEventSink>,
+    ) -> Option<WorkerEvent> {
+        self.stop();
+        self.stop = Arc::default();
+        let looked = move |found: Result<Look, String>| {
+            let event = RecognitionEvent::Looked(number, found.map(Box::new));
+            WorkerEvent::Recognition(event)
+        };
+        let Some(post) = post else {
+            let progress = self.limit.count();
+            return Some(looked(Ok(find(
+                &search,
+                &MemoryGuard::of_pose_search(),
+                &progress,
+            ))));
+        };
+        let stop = Arc::clone(&self.stop);
+        let work = move || {
+            let progress = |_: u64| !stop.load(Ordering::Relaxed);
+            post(looked(caught(|| {
+                find(&search, &MemoryGuard::of_pose_search(), &progress)
+            })));
+        };
+        let thread = threads::start(move || threads::run(work));
+        thread.err().map(|reason| looked(Err(reason)))
+    }
+
+    /// Stops the search in progress.
+    pub(in crate::tui::runtime) fn stop(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Drop for LookWorker {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+/// Searches, and stops the sweep when `progress` says so.
+fn find(
+    search: &PoseSearch,
+    memory: &MemoryGuard,
+    progress: &(dyn Fn(u64) -> bool + Sync),
+) -> Look {
+    let model = &search.trained.model;
+    let nearest = model.nearest(&search.imprint);
+    let within = |poses| progress(poses) && memory.allows();
+    let found = nearest.as_ref().and_then(|nearest| {
+        let shape = search.named.unwrap_or(nearest.shape);
+        let (pose, poses) = model.poses_of(shape, &nearest.imprint, POSES, &within)?;
+        Some(((shape, pose), poses))
+    });
+    let (pose, poses) = match found {
+        Some((pose, poses)) => (Some(pose), poses),
+        None => (None, Vec::new()),
+    };
+    Look {
+        nearest,
+        pose,
+        poses,
+        refused: memory.exceeded().then(|| memory.message()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::channel;
+    use std::time::Duration;
+
+    use super::*;
+    use crate::memory::MemorySize;
+    use crate::storage::ModelChoice;
+    use crate::tui::recognise::trained::TrainedModel;
+
+    fn search() -> PoseSearch {
+        let touch = "........\n.######.\n.######.\n........";
+        PoseSearch {
+            trained: Arc::new(TrainedModel::of_a_bar(ModelChoice::Figures)),
+            imprint: touch.parse().expect("an imprint"),
+            named: Some(0),
+        }
+    }
+
+    fn found(event: Option<WorkerEvent>) -> Look {
+        match event {
+            Some(WorkerEvent::Recognition(RecognitionEvent::Looked(7, Ok(look)))) => *look,
+            event => panic!("{event:?}"),
+        }
+    }
+
+    #[test]
+    fn a_search_that_is_stopped_says_so_without_its_poses() {
+        let mut worker = LookWorker::default();
+        let whole = found(worker.look(7, Box::new(search()), None));
+        assert!(whole.pose.is_some() && whole.refused.is_none());
+        worker.limit = PoseLimit(Some(0));
+        let stopped = found(worker.look(7, Box::new(search()), None));
+        assert_eq!((stopped.pose, stopped.nearest), (None, whole.nearest));
+    }
+
+    #[test]
+    fn the_next_search_stops_the_one_before() {
+        let (post, events) = channel();
+        let post: WorkerEventSink = Arc::new(move |event| {
+            // The test may be over.
+            let _ = post.send(event);
+        });
+        let mut worker = LookWorker::default();
+        assert_eq!(
+            worker.look(7, Box::new(search()), Some(Arc::clone(&post))),
+            None
+        );
+        let first = Arc::clone(&worker.stop);
+        assert_eq!(worker.look(7, Box::new(search()), Some(post)), None);
+        assert!(first.load(Ordering::Relaxed) && !worker.stop.load(Ordering::Relaxed));
+        for _ in 0..2 {
+            let event = events.recv_timeout(Duration::from_secs(60));
+            assert!(found(event.ok()).nearest.is_some());
+        }
+        let last = Arc::clone(&worker.stop);
+        drop(worker);
+        assert!(last.load(Ordering::Relaxed), "nothing is left behind");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_search_that_needs_too_much_memory_keeps_the_nearest_imprint_and_says_why() {
+        let small = MemoryGuard::new(Some(MemorySize(1)), "less");
+        let look = find(&search(), &small, &|_| true);
+        assert!(look.pose.is_none() && look.nearest.is_some());
+        assert!(look.refused.is_some_and(|why| why.contains("more memory")));
+    }
+}

@@ -1,0 +1,25 @@
+//! Long work, on threads of its own.
+//!
+//! ```text
+//! workers    sweeps, exports and all that follows
+//! progress   how workers report
+//! threads    the threads that share long work
+//! models     models for recognition: trained, read
+//! look       searches them for what an imprint may be
+//! sizes      the limit of a set in several sizes
+//! naming     the shapes that left the imprints of frames
+//! ```
+
+pub mod workers;
+
+pub mod progress;
+
+pub(crate) mod threads;
+
+pub(super) mod models;
+
+pub(super) mod look;
+
+pub(super) mod sizes;
+
+pub(super) mod naming;

@@ -1,0 +1,279 @@
+//! Models for recognition: trained or read.
+//!
+//! ```text
+//! Prepare(number, set)  -> Begun, Progress …, then Prepared: the model, or why there is none
+//! ```
+//! Reading from a disk that hangs cannot be stopped. The thread is left to itself, and `GivenUp` says so.
+//!
+//! A built-in set is trained once; the cache keeps its model, if the world has one. A stored model is read from the folder
+//! beside the library, any other from its file. Training goes on while a sweep begins, and stops only on request.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::Instant;
+
+use crate::formats::Name;
+use crate::memory::MemoryGuard;
+use crate::quote::shortened;
+use crate::recognition::{Model, TrainingError};
+use crate::storage::{
+    Library, ModelCache, ModelFolder, cached_or_trained, load_whole_model, location,
+};
+use crate::storage::{ModelChoice, unknown_set};
+use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::recognise::message::{Prepared, RecognitionEvent};
+use crate::tui::recognise::trained::TrainedModel;
+use crate::tui::runtime::lock::locked;
+use crate::tui::runtime::slow_work::SlowWork;
+use crate::tui::runtime::work::progress::{
+    PoseLimit, ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
+};
+
+/// Where models are.
+#[derive(Clone, Debug, Default)]
+pub(in crate::tui::runtime) struct ModelStore {
+    /// The user's own.
+    folder: Option<ModelFolder>,
+    /// Those that can be trained again.
+    cache: Option<ModelCache>,
+}
+
+impl ModelStore {
+    /// The models beside a library, without a cache.
+    pub(in crate::tui::runtime) fn beside(library: &Library) -> Self {
+        Self {
+            folder: Some(ModelFolder::beside(library.folder())),
+            cache: None,
+        }
+    }
+
+    /// Keeps trained models in a cache.
+    pub(in crate::tui::runtime) fn keep_in(&mut self, cache: ModelCache) {
+        self.cache = Some(cache);
+    }
+
+    /// The names of the user's models; none of a folder that cannot be read.
+    pub(in crate::tui::runtime) fn names(&self) -> Vec<Name> {
+        let names = |folder: &ModelFolder| folder.names().into_iter().flatten();
+        self.folder.iter().flat_map(names).collect()
+    }
+
+    /// Reads or trains the model of a set. `begins` is called with the number of poses before a training, which it may
+    /// refuse; `progress` during it, as by a sweep.
+    pub(in crate::tui::runtime) fn model(
+        &self,
+        choice: &ModelChoice,
+        begins: &dyn Fn(u64) -> bool,
+        progress: &(dyn Fn(u64) -> bool + Sync),
+    ) -> Result<Model, String> {
+        let training = match (choice.training(), choice) {
+            (Some(training), _) => training.map_err(|error| error.to_string())?,
+            (None, ModelChoice::Stored(name)) => return self.stored(name),
+            (None, ModelChoice::File(path)) => return self.file(path),
+            (None, _) => return Err(format!("{choice} cannot be trained")),
+        };
+        cached_or_trained(self.cache.as_ref(), training, |training| {
+            if !begins(training.poses()) {
+                return Err("training was stopped".to_owned());
+            }
+            let memory = MemoryGuard::new(
+                None,
+                "take fewer shapes or coarser steps, or train it in shards on the command line (taxel model train --shard)",
+            );
+            let within = |poses| progress(poses) && memory.allows();
+            training
+                .progress(&within)
+                .run()
+                .map_err(|error| match error {
+                    TrainingError::Stopped if memory.exceeded() => memory.message(),
+                    TrainingError::Stopped => "training was stopped".to_owned(),
+                    error => error.to_string(),
+                })
+        })
+    }
+
+    /// Reads one of the user's models.
+    fn stored(&self, name: &Name) -> Result<Model, String> {
+        let folder = self.folder.as_ref();
+        let folder = folder.ok_or_else(|| format!("there is no model {name}"))?;
+        self.load(name.as_str(), &folder.file(name))
+    }
+
+    /// Reads a model from a file anywhere, whose path may begin with `~`.
+    fn file(&self, path: &Path) -> Result<Model, String> {
+        let text = path.to_string_lossy();
+        let below_home = path.to_str().and_then(location::below_home);
+        let path = below_home.unwrap_or_else(|| path.to_owned());
+        // To open a pipe waits, and to open a serial line may reset its device.
+        if path.metadata().is_ok_and(|kind| !kind.is_file()) {
+            return Err(format!("{}: not a regular file", shortened(&text)));
+        }
+        self.load(&text, &path)
+    }
+
+    /// Reads a model, which the user called `name`.
+    fn load(&self, name: &str, path: &Path) -> Result<Model, String> {
+        load_whole_model(path).map_err(|error| {
+            if error.is_missing() {
+                unknown_set(name, &self.names())
+            } else {
+                error.to_string()
+            }
+        })
+    }
+
+    /// The file that a choice means: as on the command line, a name that no model has may be that of a file in the working
+    /// folder.
+    fn located(&self, choice: ModelChoice) -> ModelChoice {
+        let ModelChoice::Stored(name) = &choice else {
+            return choice;
+        };
+        let folder = self.folder.as_ref();
+        let is_stored = folder.is_some_and(|folder| folder.file(name).exists());
+        let path = Path::new(name.as_str());
+        if is_stored || !path.exists() {
+            return choice;
+        }
+        ModelChoice::File(path.to_owned())
+    }
+}
+
+/// What a thread reads from the disk at the moment. The screen's thread looks at it.
+#[derive(Clone, Debug, Default)]
+struct ModelReading(Arc<Mutex<Option<SlowWork>>>);
+
+impl ModelReading {
+    /// Notes that something is read from now on.
+    fn begin(&self, words: &str) {
+        *locked(&self.0) = Some(SlowWork::new(words.to_owned()));
+    }
+
+    /// Notes that nothing is read any more. Returns what was.
+    fn end(&self) -> Option<SlowWork> {
+        locked(&self.0).take()
+    }
+}
+
+/// The thread that prepares a model.
+#[derive(Debug, Default)]
+pub(in crate::tui::runtime) struct ModelWorker {
+    /// Where models are.
+    pub(in crate::tui::runtime) store: ModelStore,
+    /// When a training that is done at once is stopped.
+    pub(in crate::tui::runtime) limit: PoseLimit,
+    /// The number of the work.
+    number: u64,
+    /// What it reads.
+    reading: ModelReading,
+    /// Set to stop the training in progress.
+    stop: Arc<AtomicBool>,
+    /// The training in progress.
+    thread: Option<JoinHandle<()>>,
+}
+
+impl ModelWorker {
+    /// Prepares a model on a thread of its own, or at once if there is no receiver; then the event is returned.
+    pub(in crate::tui::runtime) fn prepare(
+        &mut self,
+        number: u64,
+        choice: ModelChoice,
+        post: Option<WorkerEventSink>,
+    ) -> Option<WorkerEvent> {
+        self.stop();
+        self.stop = Arc::default();
+        self.reading = ModelReading::default();
+        self.number = number;
+        let (store, stop) = (self.store.clone(), Arc::clone(&self.stop));
+        let reading = self.reading.clone();
+        let Some(post) = post else {
+            let begins = |poses| self.limit.allows(poses);
+            let calls: Calls<'_> = (&begins, &|_| true);
+            let event = prepare(&store, number, choice, &reading, calls);
+            return Some(WorkerEvent::Recognition(event));
+        };
+        reading.begin(&format!("Reading {choice}"));
+        let thread = on_a_thread(number, &post, move |post| {
+            let clock = ProgressReporter::new(number, post);
+            let begins = |poses| {
+                reading.end();
+                post(WorkerEvent::Recognition(RecognitionEvent::Begun(
+                    number, poses,
+                )));
+                true
+            };
+            let progress = |poses| proceed(poses, &stop, Some(&clock));
+            let event = guarded(number, || {
+                let calls: Calls<'_> = (&begins, &progress);
+                WorkerEvent::Recognition(prepare(&store, number, choice, &reading, calls))
+            });
+            reading.end();
+            post(event);
+        });
+        match thread {
+            Ok(thread) => self.thread = Some(thread),
+            Err(refused) => {
+                self.reading.end();
+                return Some(refused);
+            }
+        }
+        None
+    }
+
+    /// Stops the training in progress.
+    pub(in crate::tui::runtime) fn stop(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+
+    /// The same on request. What is being read is waited for no longer, and the event that says so is returned.
+    pub(in crate::tui::runtime) fn give_up(&mut self) -> Option<WorkerEvent> {
+        self.stop();
+        let read = std::mem::take(&mut self.reading).end()?;
+        self.thread = None;
+        let event = RecognitionEvent::GivenUp(self.number, read.words);
+        Some(WorkerEvent::Recognition(event))
+    }
+
+    /// What is read, if that takes long.
+    pub(in crate::tui::runtime) fn status(&self) -> Option<String> {
+        let status = locked(&self.reading.0).as_ref()?.status("the disk")?;
+        Some(status + "; Esc gives up")
+    }
+
+    /// When to look at that again; None if nothing is read.
+    pub(in crate::tui::runtime) fn next_check(&self) -> Option<Instant> {
+        locked(&self.reading.0).as_ref().map(SlowWork::next_check)
+    }
+
+    /// Stops for good. Returns the thread, which ends by itself.
+    pub(in crate::tui::runtime) fn end(&mut self) -> Option<JoinHandle<()>> {
+        self.stop();
+        self.thread.take()
+    }
+}
+
+/// What is called with the number of poses before a training, and returns whether to begin it; and with those that are
+/// done during it, as by a sweep.
+type Calls<'a> = (&'a dyn Fn(u64) -> bool, &'a (dyn Fn(u64) -> bool + Sync));
+
+/// Reads a model from the cache or trains it, and evaluates it. The event also has the names of stored models, which
+/// may have changed.
+fn prepare(
+    store: &ModelStore,
+    number: u64,
+    choice: ModelChoice,
+    reading: &ModelReading,
+    (begins, progress): Calls<'_>,
+) -> RecognitionEvent {
+    let choice = store.located(choice);
+    let model = store.model(&choice, begins, progress);
+    reading.begin("Listing the models");
+    let stored = store.names();
+    reading.end();
+    RecognitionEvent::Prepared(Box::new(Prepared {
+        number,
+        stored,
+        trained: model.map(|model| Arc::new(TrainedModel::new(choice, model))),
+    }))
+}

@@ -1,0 +1,198 @@
+//! Names the imprints of frames, on a thread of its own: it reads or trains the model, then answers one imprint after the
+//! other.
+//!
+//! ```text
+//! begin(set, noise)  -> the thread prepares the model
+//! name(imprint)      -> Named, or NotNamed: why there is no model
+//! ```
+//! Without a receiver of events, as in a script, an imprint is answered at once.
+
+use std::cell::OnceCell;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
+
+use crate::imprint::Imprint;
+use crate::recognition::Model;
+use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::live::message::LiveEvent;
+use crate::tui::live::naming::{NamedImprint, NamingRequest};
+use crate::tui::runtime::work::models::ModelStore;
+use crate::tui::runtime::work::progress::{PoseLimit, WorkerEventSink, caught};
+use crate::tui::runtime::work::threads;
+
+/// A model that is asked on the thread that waits for its answer.
+#[derive(Debug)]
+struct OwnModel {
+    /// Where the model is read from.
+    store: ModelStore,
+    /// What was asked for.
+    naming: NamingRequest,
+    /// The model, or why there is none.
+    model: OnceCell<Result<Model, String>>,
+}
+
+/// Names imprints by the model that was chosen last.
+#[derive(Debug, Default)]
+pub(in crate::tui::runtime) struct ShapeNamer {
+    /// The number of the source whose frames are named.
+    number: u64,
+    /// What is named by, where there is no thread; the model is prepared when the first imprint comes.
+    here: Option<OwnModel>,
+    /// When a training there is stopped.
+    pub(in crate::tui::runtime) limit: PoseLimit,
+    /// The way to the thread; dropped to end it. None without a thread.
+    imprints: Option<Sender<Imprint>>,
+    /// Set to break off a training, and to say nothing any more.
+    stop: Arc<AtomicBool>,
+    /// Waited for at the end of the program, so that a model is written as a whole.
+    thread: Option<JoinHandle<()>>,
+}
+
+impl ShapeNamer {
+    /// Prepares a model in place of the one before. Events carry the number of the source whose frames are named, and that
+    /// of the request.
+    pub(in crate::tui::runtime) fn begin(
+        &mut self,
+        number: u64,
+        store: ModelStore,
+        naming: NamingRequest,
+        post: Option<WorkerEventSink>,
+    ) {
+        self.end();
+        self.number = number;
+        self.stop = Arc::default();
+        let stop = Arc::clone(&self.stop);
+        let Some(post) = post else {
+            self.here = Some(OwnModel {
+                store,
+                naming,
+                model: OnceCell::new(),
+            });
+            return;
+        };
+        let (imprints, waiting) = channel::<Imprint>();
+        self.imprints = Some(imprints);
+        let by = naming.number;
+        let refused = Arc::clone(&post);
+        let work = move || {
+            let say = |event| {
+                // Nobody waits for what a model says that was given up.
+                if !stop.load(Ordering::Relaxed) {
+                    post(WorkerEvent::Live(number, event));
+                }
+            };
+            let ended = caught(|| answer(&store, &naming, &waiting, &stop, &say));
+            if let Err(reason) = ended.flatten() {
+                say(LiveEvent::NotNamed(by, reason));
+            }
+        };
+        let thread = threads::start(move || threads::run(work));
+        match thread {
+            Ok(thread) => self.thread = Some(thread),
+            Err(reason) => {
+                refused(WorkerEvent::Live(number, LiveEvent::NotNamed(by, reason)));
+            }
+        }
+    }
+
+    /// Answers an imprint: at once, or later by an event.
+    pub(in crate::tui::runtime) fn name(&self, imprint: &Imprint) -> Option<WorkerEvent> {
+        if let Some(imprints) = &self.imprints {
+            // A thread that has ended has said why.
+            let _ = imprints.send(*imprint);
+            return None;
+        }
+        let own = self.here.as_ref()?;
+        let NamingRequest {
+            number,
+            choice,
+            noise,
+        } = &own.naming;
+        let train = || {
+            own.store
+                .model(choice, &|poses| self.limit.allows(poses), &|_| true)
+        };
+        let event = match own.model.get_or_init(train) {
+            Ok(model) => {
+                let named = NamedImprint::new(model, imprint, noise.as_ref());
+                LiveEvent::Named(*number, Box::new(named))
+            }
+            Err(reason) => LiveEvent::NotNamed(*number, reason.clone()),
+        };
+        Some(WorkerEvent::Live(self.number, event))
+    }
+
+    /// Names nothing any more. Returns the thread, which ends by itself.
+    pub(in crate::tui::runtime) fn leave(&mut self) -> Option<JoinHandle<()>> {
+        let thread = self.thread.take();
+        self.end();
+        thread
+    }
+
+    /// Names nothing any more. The thread ends by itself: an answer under way is not waited for.
+    pub(in crate::tui::runtime) fn end(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        self.imprints = None;
+        self.here = None;
+        self.thread = None;
+    }
+}
+
+/// Prepares a model, and names imprints by it until there are no more.
+///
+/// # Errors
+/// Why there is no model.
+fn answer(
+    store: &ModelStore,
+    naming: &NamingRequest,
+    imprints: &Receiver<Imprint>,
+    stop: &AtomicBool,
+    say: &dyn Fn(LiveEvent),
+) -> Result<(), String> {
+    let progress = |_: u64| !stop.load(Ordering::Relaxed);
+    let model = store.model(&naming.choice, &|_| true, &progress)?;
+    while let Ok(imprint) = imprints.recv() {
+        let named = NamedImprint::new(&model, &imprint, naming.noise.as_ref());
+        say(LiveEvent::Named(naming.number, Box::new(named)));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+    use crate::storage::ModelChoice;
+    use crate::tui::runtime::lock::locked;
+
+    #[test]
+    fn a_training_that_is_given_up_says_nothing() {
+        let events = Arc::new(Mutex::new(Vec::new()));
+        let posted = Arc::clone(&events);
+        let post: WorkerEventSink = Arc::new(move |event| locked(&posted).push(event));
+        let mut namer = ShapeNamer::default();
+        let naming = |number, choice| NamingRequest {
+            number,
+            choice,
+            noise: None,
+        };
+        let store = ModelStore::default();
+        let figures = naming(1, ModelChoice::Figures);
+        namer.begin(7, store.clone(), figures, Some(Arc::clone(&post)));
+        let given_up = namer.leave().expect("a thread");
+        let missing = ModelChoice::File("no/such.taxel".into());
+        namer.begin(7, store, naming(2, missing), Some(post));
+        let next = namer.thread.take().expect("a thread");
+        for thread in [given_up, next] {
+            thread.join().expect("no panic");
+        }
+        let events = locked(&events);
+        let [WorkerEvent::Live(7, LiveEvent::NotNamed(2, reason))] = &events[..] else {
+            panic!("{events:?}");
+        };
+        assert!(reason.contains("no/such.taxel"), "{reason}");
+    }
+}

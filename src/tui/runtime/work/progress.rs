@@ -1,0 +1,122 @@
+//! How workers report: events from any thread, progress now and then, a panic as an event.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::explore::message::SweepProgress;
+use crate::tui::runtime::work::threads;
+
+/// Takes events of workers, from any thread.
+pub type WorkerEventSink = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
+
+/// Minimum interval between progress events.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
+
+/// Counts poses of several threads and sends progress events.
+pub(in crate::tui::runtime) struct ProgressReporter<'a> {
+    /// The number of the work, which its events carry.
+    number: u64,
+    /// Where events are sent.
+    post: &'a WorkerEventSink,
+    /// When the work began.
+    start: Instant,
+    /// Poses done.
+    poses: AtomicU64,
+    /// When progress was sent last.
+    last: Mutex<Instant>,
+}
+
+impl<'a> ProgressReporter<'a> {
+    /// Progress of work that begins now.
+    pub(in crate::tui::runtime) fn new(number: u64, post: &'a WorkerEventSink) -> Self {
+        let start = Instant::now();
+        Self {
+            number,
+            post,
+            start,
+            poses: AtomicU64::new(0),
+            last: Mutex::new(start),
+        }
+    }
+
+    /// Counts poses that are done.
+    fn add(&self, poses: u64) {
+        let poses = self.poses.fetch_add(poses, Ordering::Relaxed) + poses;
+        // A thread that finds the lock taken leaves the report to the other one.
+        if let Ok(mut last) = self.last.try_lock()
+            && last.elapsed() >= PROGRESS_INTERVAL
+        {
+            *last = Instant::now();
+            let elapsed = self.start.elapsed();
+            (self.post)(WorkerEvent::Progress(
+                self.number,
+                SweepProgress { poses, elapsed },
+            ));
+        }
+    }
+}
+
+/// Does a piece of work on a thread of its own, which gets the number and the sink of its events.
+///
+/// # Errors
+/// The event that says so, where the system gives no thread.
+pub(in crate::tui::runtime) fn on_a_thread(
+    number: u64,
+    post: &WorkerEventSink,
+    work: impl FnOnce(&WorkerEventSink) + Send + 'static,
+) -> Result<JoinHandle<()>, WorkerEvent> {
+    let own = Arc::clone(post);
+    let thread = threads::start(move || threads::run(|| work(&own)));
+    thread.map_err(|message| WorkerEvent::Failed(number, message))
+}
+
+/// Turns a panic into an event; without it the program would wait for ever.
+pub(in crate::tui::runtime) fn guarded(
+    number: u64,
+    work: impl FnOnce() -> WorkerEvent,
+) -> WorkerEvent {
+    caught(work).unwrap_or_else(|message| WorkerEvent::Failed(number, message))
+}
+
+/// Turns a panic into an error.
+///
+/// # Errors
+/// A sentence, where it panics.
+pub(in crate::tui::runtime) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    let done = catch_unwind(AssertUnwindSafe(work));
+    done.map_err(|_| "the work failed; this is a bug".to_owned())
+}
+
+/// How many poses a piece of work may have that is done at once; None for any number.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::tui::runtime) struct PoseLimit(pub(in crate::tui::runtime) Option<u64>);
+
+impl PoseLimit {
+    /// Whether work with this number of poses is begun.
+    pub(in crate::tui::runtime) fn allows(self, poses: u64) -> bool {
+        self.0.is_none_or(|most| poses <= most)
+    }
+
+    /// For work whose poses are not counted beforehand: is called with the number of poses done since the last call, and
+    /// returns whether to go on.
+    pub(in crate::tui::runtime) fn count(self) -> impl Fn(u64) -> bool + Sync {
+        let done = AtomicU64::new(0);
+        move |poses| self.allows(done.fetch_add(poses, Ordering::Relaxed) + poses)
+    }
+}
+
+/// Counts poses that are done, and returns whether to go on.
+pub(in crate::tui::runtime) fn proceed(
+    poses: u64,
+    stop: &AtomicBool,
+    clock: Option<&ProgressReporter<'_>>,
+) -> bool {
+    if let Some(clock) = clock {
+        clock.add(poses);
+    }
+    !stop.load(Ordering::Relaxed)
+}

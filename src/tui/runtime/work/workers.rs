@@ -1,0 +1,380 @@
+//! Long work: sweeps and exports. On threads of their own if there is a receiver for their events, otherwise at once,
+//! before the next message, as scripts want it.
+//!
+//! ```text
+//! Measure(grid)        -> Estimate         best of several short runs, stopped by the next piece of work
+//! Sweep(number, grid)  -> Progress …, then Swept, also after Stop, with what is complete
+//! Angles(results, …)   -> Angles: what was found, or why that failed
+//! Write(number, …)     -> Progress …, then Written, Exists or Failed; after Stop no file stays
+//! ```
+//! When the program ends, a running sweep ends with it; an export is stopped first, so that no partial file stays. A
+//! panic of a worker becomes an event, too.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use crate::memory::MemoryGuard;
+use crate::pose::{PoseGrid, PoseIndex};
+use crate::storage::{ArchiveFileError, AtlasFile, Existing, ModelCache, PoseFile, is_poses};
+use crate::sweep::{Sweep, SweepResult, TimingSample};
+use crate::tui::app::worker_event::WorkerEvent;
+use crate::tui::explore::angles::curve::AngleCurve;
+use crate::tui::explore::message::Findings;
+use crate::tui::live::naming::NamingRequest;
+use crate::tui::runtime::disk::write_access::WriteAccess;
+use crate::tui::runtime::effect::Work;
+use crate::tui::runtime::frames::watcher::FrameWatcher;
+use crate::tui::runtime::work::look::LookWorker;
+use crate::tui::runtime::work::models::{ModelStore, ModelWorker};
+use crate::tui::runtime::work::naming::ShapeNamer;
+use crate::tui::runtime::work::progress::{
+    PoseLimit, ProgressReporter, WorkerEventSink, caught, guarded, on_a_thread, proceed,
+};
+use crate::tui::runtime::work::sizes::SizeWorker;
+use crate::tui::runtime::work::threads;
+
+/// How long the end of the program waits for files that are being written.
+const WRITING: Duration = Duration::from_millis(400);
+
+/// An estimate is the best of all runs within this time.
+const MEASURED: Duration = Duration::from_millis(30);
+
+/// The work in progress, and how to stop it.
+#[derive(Default)]
+pub(in crate::tui) struct Workers {
+    /// None: work is done at once.
+    post: Option<WorkerEventSink>,
+    /// Set to stop the work in progress.
+    stop: Arc<AtomicBool>,
+    /// Set to stop the estimate in progress.
+    measuring: Arc<AtomicBool>,
+    /// The thread that writes a file.
+    writing: Option<JoinHandle<()>>,
+    /// Prepares models.
+    models: ModelWorker,
+    /// Searches them.
+    look: LookWorker,
+    /// Looks at sizes of a set.
+    sizes: SizeWorker,
+    /// Watches a source of frames.
+    pub(in crate::tui::runtime) frames: FrameWatcher,
+    /// Names the imprints of its frames.
+    namer: ShapeNamer,
+    /// Where files may be written.
+    pub(in crate::tui::runtime) access: Arc<WriteAccess>,
+    /// When work that is done at once is stopped.
+    limit: PoseLimit,
+}
+
+impl std::fmt::Debug for Workers {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Workers")
+            .field("beside", &self.post.is_some())
+            .finish_non_exhaustive()
+    }
+}
+
+impl Workers {
+    /// Workers that do their work at once, with these models.
+    pub(in crate::tui::runtime) fn with(models: ModelStore) -> Self {
+        let mut workers = Self::default();
+        workers.models.store = models;
+        workers
+    }
+
+    /// Has work done on threads of their own.
+    pub(in crate::tui::runtime) fn post_to(&mut self, post: WorkerEventSink) {
+        self.post = Some(post);
+    }
+
+    /// Stops work that is done at once after this many poses.
+    pub(in crate::tui::runtime) fn stop_after(&mut self, poses: u64) {
+        self.limit = PoseLimit(Some(poses));
+        self.models.limit = self.limit;
+        self.look.limit = self.limit;
+        self.sizes.limit = self.limit;
+        self.namer.limit = self.limit;
+    }
+
+    /// Keeps trained models in a cache.
+    pub(in crate::tui::runtime) fn keep_models(&mut self, cache: ModelCache) {
+        self.models.store.keep_in(cache);
+    }
+
+    /// Where models are.
+    pub(in crate::tui::runtime) fn model_store(&self) -> ModelStore {
+        self.models.store.clone()
+    }
+
+    /// The model that is read from the disk, if that takes long.
+    pub(in crate::tui::runtime) fn model_status(&self) -> Option<String> {
+        self.models.status()
+    }
+
+    /// When to look at that again; None if none is read.
+    pub(in crate::tui::runtime) fn model_next_check(&self) -> Option<Instant> {
+        self.models.next_check()
+    }
+
+    /// Begins a piece of work. Without threads, does it and returns its last event.
+    pub(in crate::tui) fn perform(&mut self, work: Work) -> Option<WorkerEvent> {
+        threads::prepare();
+        match work {
+            Work::Stop => {
+                self.stop.store(true, Ordering::Relaxed);
+                None
+            }
+            Work::Measure(grid) => self.measure(grid),
+            Work::Sweep(number, grid) => self.sweep(number, grid),
+            Work::Angles(findings, place) => self.angles(findings, place),
+            Work::Write(number, findings, name, existing) => {
+                match self.access.path(&name, existing) {
+                    Ok(path) => self.write(number, findings, (name, path), existing),
+                    Err(refused) => Some(WorkerEvent::Failed(number, refused)),
+                }
+            }
+            Work::Prepare(number, choice) => {
+                self.look.stop();
+                self.models.prepare(number, choice, self.post.clone())
+            }
+            Work::StopPreparing => self.models.give_up(),
+            Work::Separate(number, request, known) => {
+                self.sizes.look(number, request, known, self.post.clone())
+            }
+            Work::StopSeparating => {
+                self.sizes.stop();
+                None
+            }
+            Work::Look(number, search) => self.look.look(number, search, self.post.clone()),
+            Work::StopLooking => {
+                self.look.stop();
+                None
+            }
+            work => self.perform_live(work),
+        }
+    }
+
+    /// Work about a source of frames.
+    fn perform_live(&mut self, work: Work) -> Option<WorkerEvent> {
+        match work {
+            Work::Watch {
+                number,
+                request,
+                write,
+                naming,
+            } => {
+                self.name_by(number, naming);
+                let post = self.post.clone();
+                self.frames.watch(number, request, write, post)
+            }
+            Work::NameBy(number, naming) => {
+                self.name_by(number, naming);
+                None
+            }
+            Work::Name(imprint) => self.namer.name(&imprint),
+            Work::StopWatching => {
+                self.namer.end();
+                None
+            }
+            _ => None,
+        }
+    }
+
+    /// Prepares the model that names the imprints of frames.
+    fn name_by(&mut self, number: u64, naming: Option<Box<NamingRequest>>) {
+        match naming {
+            Some(naming) => {
+                let store = self.models.store.clone();
+                self.namer.begin(number, store, *naming, self.post.clone());
+            }
+            None => self.namer.end(),
+        }
+    }
+
+    /// Estimates the time of a sweep, on a thread of its own; without a receiver nobody waits for it.
+    fn measure(&mut self, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
+        self.measuring.store(true, Ordering::Relaxed);
+        let post = self.post.clone()?;
+        self.measuring = Arc::default();
+        let stop = Arc::clone(&self.measuring);
+        let work = move || {
+            if let Some(time) = measure(&grid, &stop) {
+                post(WorkerEvent::Estimate(grid, time));
+            }
+        };
+        let reason = threads::start(move || threads::run(work)).err()?;
+        Some(WorkerEvent::Refused(format!(
+            "the time of the sweep cannot be measured: {reason}"
+        )))
+    }
+
+    /// Sweeps a grid, on a thread of its own if there is a receiver.
+    fn sweep(&mut self, number: u64, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
+        let stop = self.begin();
+        let Some(post) = self.post.clone() else {
+            return Some(if self.limit.allows(grid.poses()) {
+                sweep(number, &grid, &|_| true)
+            } else {
+                WorkerEvent::Failed(number, "stopped before anything was complete".to_owned())
+            });
+        };
+        let thread = on_a_thread(number, &post, move |post| {
+            let clock = ProgressReporter::new(number, post);
+            let progress = |poses| proceed(poses, &stop, Some(&clock));
+            post(guarded(number, || sweep(number, &grid, &progress)));
+        });
+        thread.err()
+    }
+
+    /// Finds the imprints of each angle, on a thread of its own if there is a receiver and the system has one to give.
+    fn angles(&self, findings: Arc<Findings>, place: PoseIndex) -> Option<WorkerEvent> {
+        let run = move || {
+            let curve = caught(|| Arc::new(AngleCurve::of(&findings.sweep, place)));
+            WorkerEvent::Angles(findings, place, curve)
+        };
+        let beside = self.post.clone().is_some_and(|post| {
+            let run = run.clone();
+            threads::start(move || threads::run(|| post(run()))).is_ok()
+        });
+        (!beside).then(run)
+    }
+
+    /// Writes what was found to a file, on a thread of its own if there is a receiver.
+    fn write(
+        &mut self,
+        number: u64,
+        findings: Arc<Findings>,
+        (name, path): (String, PathBuf),
+        existing: Existing,
+    ) -> Option<WorkerEvent> {
+        let stop = self.begin();
+        let run = move |clock: Option<&ProgressReporter<'_>>| {
+            write(number, &findings, (&name, &path), existing, &stop, clock)
+        };
+        let Some(post) = self.post.clone() else {
+            return Some(run(None));
+        };
+        let thread = on_a_thread(number, &post, move |post| {
+            let clock = ProgressReporter::new(number, post);
+            post(guarded(number, || run(Some(&clock))));
+        });
+        match thread {
+            Ok(thread) => self.writing = Some(thread),
+            Err(refused) => return Some(refused),
+        }
+        None
+    }
+
+    /// Stops the work in progress and returns the stop flag of the next.
+    fn begin(&mut self) -> Arc<AtomicBool> {
+        self.stop.store(true, Ordering::Relaxed);
+        self.measuring.store(true, Ordering::Relaxed);
+        self.stop = Arc::default();
+        Arc::clone(&self.stop)
+    }
+}
+
+impl Drop for Workers {
+    fn drop(&mut self) {
+        self.begin();
+        // Files are removed where they are half-written, models are written to the cache as a whole; but a disk may hang.
+        let threads = [self.writing.take(), self.models.end(), self.namer.leave()];
+        let end = Instant::now() + WRITING;
+        for thread in threads.into_iter().flatten() {
+            threads::wait_until_finished(&thread, end.saturating_duration_since(Instant::now()));
+        }
+    }
+}
+
+/// Estimates the time of a sweep; None if it was stopped.
+fn measure(grid: &PoseGrid, stop: &AtomicBool) -> Option<Duration> {
+    let sample = TimingSample::of(grid);
+    let begun = Instant::now();
+    let mut best = f64::INFINITY;
+    while !best.is_finite() || begun.elapsed() < MEASURED {
+        let start = Instant::now();
+        Sweep::new(&sample.grid).run();
+        best = best.min(start.elapsed().as_secs_f64());
+        if stop.load(Ordering::Relaxed) {
+            return None;
+        }
+    }
+    Duration::try_from_secs_f64(best * sample.times).ok()
+}
+
+/// Sweeps a grid and sends what was found, also after a stop.
+fn sweep(number: u64, grid: &PoseGrid, progress: &(dyn Fn(u64) -> bool + Sync)) -> WorkerEvent {
+    let memory = MemoryGuard::new(
+        None,
+        "take coarser steps, or sweep it in shards on the command line (taxel sweep --shard)",
+    );
+    if let Err(message) = memory.check(grid) {
+        return WorkerEvent::Failed(number, message);
+    }
+    let progress = |poses: u64| progress(poses) && memory.allows();
+    let result = Sweep::new(grid).progress(&progress).run();
+    if memory.exceeded() {
+        // What was found is given up: there is no memory to show it.
+        return WorkerEvent::Failed(number, memory.message());
+    }
+    WorkerEvent::Swept(number, Arc::new(Findings::new(result)))
+}
+
+/// Writes the results to a file and sends whether that worked.
+fn write(
+    number: u64,
+    findings: &Findings,
+    (name, path): (&str, &Path),
+    existing: Existing,
+    stop: &AtomicBool,
+    clock: Option<&ProgressReporter<'_>>,
+) -> WorkerEvent {
+    let result = &findings.sweep;
+    let written = if is_poses(path) {
+        write_poses(result, path, existing, stop, clock)
+    } else {
+        match AtlasFile::new(path) {
+            Ok(file) => file.write(result, existing, stop).map(|()| true),
+            Err(expected) => return WorkerEvent::Failed(number, format!("{name}: {expected}")),
+        }
+    };
+    match written {
+        Ok(true) => {
+            // Where that is not known, the path as it was given.
+            let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+            WorkerEvent::Written(number, whole.to_string_lossy().into_owned())
+        }
+        Err(error) if error.exists() && existing == Existing::Kept => {
+            WorkerEvent::Exists(number, name.to_owned())
+        }
+        Err(error) if !stop.load(Ordering::Relaxed) => {
+            WorkerEvent::Failed(number, error.to_string())
+        }
+        _ => WorkerEvent::Failed(number, "stopped; nothing was written".to_owned()),
+    }
+}
+
+/// Sweeps the grid again, because the numbers of its poses are not kept. Returns whether it was completed.
+fn write_poses(
+    result: &SweepResult,
+    path: &Path,
+    existing: Existing,
+    stop: &AtomicBool,
+    clock: Option<&ProgressReporter<'_>>,
+) -> Result<bool, ArchiveFileError> {
+    let mut file = PoseFile::new(path, &result.grid, existing)?;
+    // A full disk ends the work, too, but is reported as an error.
+    let full = AtomicBool::new(false);
+    let progress = |poses: u64| proceed(poses, stop, clock) && !full.load(Ordering::Relaxed);
+    let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &full);
+    let sweep = Sweep::new(&result.grid).progress(&progress).rows(&mut take);
+    let complete = sweep.run().complete();
+    let whole = file.finish()?;
+    if complete {
+        whole.persist()?;
+    }
+    Ok(complete)
+}

@@ -1,0 +1,10 @@
+//! The search in help and in the history: a prompt at the bottom of the list, which follows as you type.
+//!
+//! ```text
+//! Search: undo   1 of 3          which match is in sight, of how many
+//! Search: unod   no match        the list stays where it was
+//! ```
+
+pub mod page;
+
+pub mod update;
