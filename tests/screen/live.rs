@@ -512,6 +512,32 @@ fn the_shape_is_named_by_sets_of_shapes_in_turn() {
     hides(&page, &["…", "training or"]);
 }
 
+/// The error of a source names flags that can be typed behind it.
+#[test]
+fn a_source_is_named_with_the_flags_of_the_command_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("two by three.csv");
+    std::fs::write(&file, "1,2,3,4,5,9\n1,2,3,4,5,8\n1,2,3,4,5,7\n").expect("written");
+    let line =
+        |flags: &str| format!(":watch {}{flags}<Enter>", file.display()).replace(' ', "<Space>");
+    let mut page = session(&line(""));
+    page.frames(1);
+    shows(&page, &["give --rows and --columns"]);
+    then(&mut page, "<Esc>", &[]);
+    then(&mut page, &line(" --rows 2 --columns 3 --at-least 4"), &[]);
+    page.frames(3);
+    shows(
+        &page,
+        &["two by three.csv", "frame 2", "threshold  4", "peak       7 at 2, 1"],
+    );
+    then(&mut page, "<Esc>", &[]);
+    then(
+        &mut page,
+        &line(" --rows 2"),
+        &["! --rows and --columns go together"],
+    );
+}
+
 /// No frame comes after the end, so nothing but the key can begin the search.
 #[test]
 fn the_last_imprint_of_a_source_that_has_ended_is_named() {

@@ -123,7 +123,7 @@ impl Arguments {
             Self::Model => "MODEL",
             Self::Sizes => "--scale 0.5:3:0.1 ...",
             Self::Seed => "NUMBER",
-            Self::FrameSource => "SOURCE",
+            Self::FrameSource => "SOURCE --baud 9600 ...",
         }
     }
 
@@ -349,7 +349,7 @@ actions! {
         "sensor" Arguments::Sensor, "Sensor: columns, rows, threshold, pitch";
         "separate" Arguments::Sizes, "the error against the size of the shapes";
         "turn" Arguments::Degrees, "turn the shape right; negative degrees: left";
-        "watch" Arguments::FrameSource, "Watch: the frames of a sensor, live or recorded";
+        "watch" Arguments::FrameSource, "Watch: frames, live or recorded";
         "write" Arguments::File(FilePurpose::Write), "write an imprint, shape or drawing, by file extension";
     }
 }

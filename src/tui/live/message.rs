@@ -6,6 +6,7 @@ use crate::formats::recording::ChannelInfo;
 use crate::formats::value::decimal;
 use crate::frame::Frame;
 use crate::tui::keys::key::Arrow;
+use crate::tui::live::named_source::NamedSource;
 use crate::tui::live::naming::NamedImprint;
 use crate::tui::live::request::WatchRequest;
 
@@ -16,8 +17,8 @@ pub enum LiveMessage {
     Open,
     /// To watch a source.
     Watch(Arc<WatchRequest>),
-    /// To watch the source of that name, with the user's settings.
-    Source(String),
+    /// To watch a source that was named at the prompt, if it can be read.
+    Source(NamedSource),
     /// To subtract the median of the frames up to the one that is shown.
     Tare,
     /// To take nothing off.

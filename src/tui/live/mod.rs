@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! request          which source, and how its frames are looked at
+//! named_source     what stands after `:watch`: a source and flags
 //! message          what keys ask for, and what the source reports
 //! history          the frames that have come, as many as fit into some memory
 //! naming           what a model says of the imprint
@@ -21,6 +22,8 @@
 //! ```
 
 pub mod request;
+
+pub mod named_source;
 
 pub mod message;
 

@@ -19,6 +19,7 @@ use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::message::{LiveEvent, LiveMessage};
+use crate::tui::live::named_source::NamedSource;
 use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::live::state::Live;
@@ -30,15 +31,15 @@ use crate::tui::runtime::effect::{Effect, FileRequest, Work};
 pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
     match asked {
         LiveMessage::Watch(request) => Some(watch(app, request)),
-        LiveMessage::Source(name) => Some(look(app, name)),
+        LiveMessage::Source(source) => Some(look(app, source)),
         LiveMessage::Open => open(app),
         _ => None,
     }
 }
 
-/// Has a source looked at with the settings of the program; it is watched if it can be read.
-fn look(app: &App, name: &str) -> Effect {
-    let request = app.watch_settings.for_source(name);
+/// Has a source looked at; it is watched if it can be read.
+fn look(app: &App, source: &NamedSource) -> Effect {
+    let request = source.request(&app.watch_settings);
     Effect::File(FileRequest::Source(Arc::new(request)))
 }
 
@@ -224,7 +225,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             inform(app, text);
             return Some(Effect::Work(Work::NameBy(page.number(), naming)));
         }
-        LiveMessage::Source(name) => return Some(look(app, name)),
+        LiveMessage::Source(source) => return Some(look(app, source)),
         LiveMessage::Open | LiveMessage::Watch(_) => {}
     }
     None

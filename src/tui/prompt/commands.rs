@@ -23,6 +23,7 @@ use crate::tui::app::message::Message;
 use crate::tui::keys::action::{ACTIONS, Action, Arguments};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::default_keys::DEFAULT_KEYS;
+use crate::tui::live::named_source::{NamedSource, flags_start};
 use crate::tui::prompt::flags::{is_given, lacks_value};
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::request::SeparationFlags;
@@ -166,8 +167,11 @@ fn begun(line: &str) -> Option<(PromptCommand, &str)> {
 
 /// The arguments of a line if they are the name of a shape, which completion has to know the names of.
 pub fn wants_names(line: &str) -> Option<Arguments> {
-    let (command, _) = begun(line)?;
-    command.arguments.filter(|arguments| arguments.is_name())
+    let (command, rest) = begun(line)?;
+    let arguments = command.arguments.filter(|arguments| arguments.is_name())?;
+    // The name of a source ends where its flags begin.
+    let has_flags = arguments == Arguments::FrameSource && flags_start(rest).is_some();
+    (!has_flags).then_some(arguments)
 }
 
 /// The line with its last word, or the name at its end, completed as far as all candidates agree, and the candidates.
@@ -243,6 +247,14 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
         }
         (Some(Arguments::Sizes), said) => {
             words(SeparationFlags::NAMES.map(str::to_owned).to_vec(), said)
+        }
+        (Some(Arguments::FrameSource), said) => {
+            let is_flag = |word: &&str| word.starts_with("--");
+            let flags = said.iter().position(is_flag).unwrap_or(said.len());
+            words(
+                NamedSource::FLAGS.map(str::to_owned).to_vec(),
+                &said[flags..],
+            )
         }
         (_, []) => {
             let words = command.words.iter().filter(|(word, _)| !word.is_empty());
@@ -373,6 +385,8 @@ mod tests {
             ("load WASP", "load Wasp", 1),
             ("load my s", "load my shape", 1),
             ("load x", "load x", 0),
+            ("watch a b.csv --ba", "watch a b.csv --baud ", 1),
+            ("watch a --baud 9600 --ba", "watch a --baud 9600 --ba", 0),
             ("nothing x", "nothing x", 0),
         ] {
             let (line_now, found) = completed(line);

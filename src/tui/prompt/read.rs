@@ -5,6 +5,7 @@
 //! sensor --columns 32 --rows 32          only what changes
 //! explore --x0 5:5.99:0.01 --anchor centre
 //! open ~/mask.csv      write drawing.svg
+//! watch run 2.csv --rows 4 --columns 5   a name, then flags
 //! load my shape                          names may contain spaces, and are never quoted
 //! cursor 3 4      move 0.5 -1      turn 15
 //! ```
@@ -28,6 +29,7 @@ use crate::tui::explore::work::explored;
 use crate::tui::keys::action::{self, Arguments, FilePurpose};
 use crate::tui::keys::binding::Context;
 use crate::tui::live::message::LiveMessage;
+use crate::tui::live::named_source::NamedSource;
 use crate::tui::prompt::commands::{PromptCommand, commands, find};
 use crate::tui::prompt::flags::{self, Flag};
 use crate::tui::recognise::message::RecogniseMessage;
@@ -104,7 +106,10 @@ fn with_arguments(
             Ok(Message::Recognise(RecogniseMessage::Separate(flags)))
         }
         (Arguments::Seed, _) => seed(rest),
-        (Arguments::FrameSource, _) => Ok(Message::Live(LiveMessage::Source(rest.to_owned()))),
+        (Arguments::FrameSource, _) => {
+            let source = NamedSource::read(rest)?;
+            Ok(Message::Live(LiveMessage::Source(source)))
+        }
         (Arguments::Degrees, _) => degrees(rest),
         (Arguments::Taxel, [column, row]) => taxel(column, row, &app.shown().sensor),
         (Arguments::Distance, [dx, dy]) => distance(dx, dy).ok_or_else(unexpected),

@@ -24,6 +24,7 @@ use crate::tui::app::view::draw;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::key::{Key, KeyError, parse};
 use crate::tui::live::message::{LiveEvent, LiveMessage, SourceState};
+use crate::tui::live::named_source::NamedSource;
 use crate::tui::live::state::Live;
 use crate::tui::live::update::last_page;
 use crate::tui::runtime::World;
@@ -122,7 +123,7 @@ impl Session {
     pub fn watch(&mut self, name: &str) -> Result<(), String> {
         let number = |app: &App| last_page(app).map(Live::number);
         let before = number(&self.app);
-        self.send(Message::Live(LiveMessage::Source(name.to_owned())));
+        self.send(Message::Live(LiveMessage::Source(NamedSource::new(name))));
         if number(&self.app) != before {
             return Ok(());
         }

@@ -16,6 +16,7 @@ use taxel::tui::app::update::{next_work, update};
 use taxel::tui::keys::key::{Arrow, Key};
 use taxel::tui::keys::keymap::Keymap;
 use taxel::tui::live::message::LiveMessage;
+use taxel::tui::live::named_source::NamedSource;
 use taxel::tui::prompt::commands::complete;
 use taxel::tui::prompt::read::read as read_command;
 use taxel::tui::runtime::World;
@@ -319,7 +320,9 @@ fn act(session: &mut Session, byte: u8, bytes: &mut Bytes<'_>) {
         0xf0..0xf2 => session.send(Message::Redraw),
         0xf2..0xf4 => {
             let recording = folder().join(FILES[0].0).display().to_string();
-            session.send(Message::Live(LiveMessage::Source(recording)));
+            session.send(Message::Live(LiveMessage::Source(NamedSource::new(
+                recording,
+            ))));
         }
         0xf4..0xf8 => {
             let _ = session.frames((byte - 0xf3).into());

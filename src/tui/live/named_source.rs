@@ -1,0 +1,196 @@
+//! What stands after `:watch`: a source, then flags as on the command line.
+//!
+//! ```text
+//! watch /dev/ttyACM0 --baud 921600
+//! watch grip 2.csv --rows 4 --columns 5 --at-least 10     a name may contain spaces
+//! ```
+
+use std::fmt;
+
+use crate::formats::stream::StreamFormat;
+use crate::frame::{FrameError, Rule, RuleOrigin, SetRule};
+use crate::parameter::{UnknownName, number};
+use crate::quote::shortened;
+use crate::tui::live::request::WatchRequest;
+use crate::tui::prompt::flags;
+
+/// A source of frames and how to read it. What is not given is as the user's settings say.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NamedSource {
+    /// Its name: a path, `tcp://HOST:PORT`, or `-` for standard input.
+    name: String,
+    rows: Option<u16>,
+    columns: Option<u16>,
+    format: Option<StreamFormat>,
+    baud: Option<u32>,
+    channel: Option<String>,
+    speed: Option<f64>,
+    rule: Option<Rule>,
+}
+
+impl NamedSource {
+    /// The flags, for completion.
+    pub const FLAGS: [&'static str; 8] = [
+        "--rows",
+        "--columns",
+        "--format",
+        "--baud",
+        "--channel",
+        "--speed",
+        "--at-least",
+        "--percent",
+    ];
+
+    /// A source without flags.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..Self::default()
+        }
+    }
+
+    /// Reads a name, and the flags after it, each followed by its value.
+    ///
+    /// # Errors
+    /// What is wrong with them, in a sentence.
+    pub fn read(text: &str) -> Result<Self, String> {
+        let (name, rest) = text.split_at(flags_start(text).unwrap_or(text.len()));
+        let mut source = Self::new(name.trim());
+        let words: Vec<&str> = rest.split_whitespace().collect();
+        let known = |flag: &str| Self::FLAGS.into_iter().find(|own| *own == flag);
+        for (flag, _, value) in flags::read(&words, &Self::FLAGS, known)? {
+            source.take(flag, value)?;
+        }
+        if source.rows.is_some() != source.columns.is_some() {
+            return Err("--rows and --columns go together".to_owned());
+        }
+        Ok(source)
+    }
+
+    /// Takes the value of one flag.
+    fn take(&mut self, flag: &str, text: &str) -> Result<(), String> {
+        let refused = |expected: &dyn fmt::Display| {
+            format!("{flag} takes {expected}, found {}", shortened(text))
+        };
+        let side = || {
+            let side = text.parse().ok().filter(|side| (1..=512).contains(side));
+            side.ok_or_else(|| refused(&"a whole number from 1 to 512"))
+        };
+        match flag {
+            "--rows" => self.rows = Some(side()?),
+            "--columns" => self.columns = Some(side()?),
+            "--format" => {
+                let format = text.parse();
+                self.format = Some(format.map_err(|error: UnknownName| error.to_string())?);
+            }
+            "--baud" => {
+                let baud = text.parse().ok();
+                let baud = baud.filter(|baud| (50..=20_000_000).contains(baud));
+                self.baud = Some(baud.ok_or_else(|| refused(&"a number from 50 to 20000000"))?);
+            }
+            "--channel" => self.channel = Some(text.to_owned()),
+            "--speed" => {
+                let speed = number::read(text).filter(|speed| *speed > 0.0 && *speed <= 1e6);
+                self.speed =
+                    Some(speed.ok_or_else(|| refused(&"a number above 0, up to 1000000"))?);
+            }
+            _ if self.rule.is_some() => {
+                return Err("--at-least and --percent do not go together".to_owned());
+            }
+            _ => {
+                let value = number::read(text).ok_or_else(|| refused(&"a number"))?;
+                let rule = match flag {
+                    "--percent" => Rule::percent(value),
+                    _ => Rule::at_least(value),
+                };
+                self.rule = Some(rule.map_err(|error| match error {
+                    FrameError::Rule { allowed, .. } => refused(&format!("a number {allowed}")),
+                    error => format!("{flag}: {error}"),
+                })?);
+            }
+        }
+        Ok(())
+    }
+
+    /// The request for this source; `settings` says what is not given.
+    pub fn request(&self, settings: &WatchRequest) -> WatchRequest {
+        let mut request = settings.for_source(&self.name);
+        let options = &mut request.options;
+        options.shape = self.rows.zip(self.columns).or(options.shape);
+        options.format = self.format.or(options.format);
+        options.baud = self.baud.unwrap_or(options.baud);
+        options.channel = self.channel.clone().or(options.channel.take());
+        options.speed = self.speed.unwrap_or(options.speed);
+        if let Some(rule) = self.rule {
+            let least = request.rule.as_ref().map_or(0, |set| set.least);
+            let from = RuleOrigin::Flag;
+            request.rule = Some(SetRule { rule, least, from });
+        }
+        request
+    }
+}
+
+/// Where the flags begin in what stands after `:watch`.
+pub(in crate::tui) fn flags_start(text: &str) -> Option<usize> {
+    text.find(" --").map(|blank| blank + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_may_have_spaces_and_flags_follow_it() {
+        let settings = WatchRequest::new("");
+        let request = |text: &str| NamedSource::read(text).map(|source| source.request(&settings));
+        let whole = request(
+            "my run.csv --rows 4 --columns=5 --baud 9600 --at-least 10 --channel left --speed 0.5",
+        );
+        let whole = whole.expect("flags");
+        assert_eq!(whole.source, "my run.csv");
+        let options = &whole.options;
+        assert_eq!((options.shape, options.baud), (Some((4, 5)), 9600));
+        assert_eq!(
+            (options.channel.as_deref(), options.speed),
+            (Some("left"), 0.5)
+        );
+        let rule = whole.rule.expect("a rule");
+        assert_eq!(rule.rule, Rule::at_least(10.0).expect("in range"));
+        let plain = request("a--b.csv").expect("no flags");
+        assert_eq!(
+            (plain.source.to_str(), plain.rule),
+            (Some("a--b.csv"), None)
+        );
+        for (text, error) in [
+            ("x --rows 4", "--rows and --columns go together"),
+            (
+                "x --rows 0 --columns 4",
+                "--rows takes a whole number from 1 to 512, found 0",
+            ),
+            (
+                "x --at-least 1 --percent 2",
+                "--at-least and --percent do not go together",
+            ),
+            (
+                "x --percent 200",
+                "--percent takes a number above 0, up to 100, found 200",
+            ),
+            (
+                "x --speed 0",
+                "--speed takes a number above 0, up to 1000000, found 0",
+            ),
+            ("x --baud", "--baud needs a value"),
+            (
+                "x --format line",
+                "format \"line\" is unknown, expected one of lines, jsonl, ros2, flexitac, matsense",
+            ),
+        ] {
+            assert_eq!(request(text).expect_err(text), error);
+        }
+        let unknown = request("x --at-last 3").expect_err("unknown");
+        assert!(
+            unknown.ends_with("did you mean \"--at-least\"?"),
+            "{unknown}"
+        );
+    }
+}
