@@ -528,7 +528,12 @@ fn a_source_is_named_with_the_flags_of_the_command_line() {
     page.frames(3);
     shows(
         &page,
-        &["two by three.csv", "frame 2", "threshold  4", "peak       7 at 2, 1"],
+        &[
+            "two by three.csv",
+            "frame 2",
+            "threshold  4",
+            "peak       7 at 2, 1",
+        ],
     );
     then(&mut page, "<Esc>", &[]);
     then(

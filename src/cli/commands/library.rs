@@ -28,7 +28,7 @@ use crate::formats::name::folded;
 use crate::formats::{Name, StoredShape, json};
 use crate::quote::shortened_message;
 use crate::sensor::Sensor;
-use crate::storage::{Library, LibraryEntry, LoadedShape, ShapeOrigin};
+use crate::storage::{Library, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin};
 
 /// A line of the list: a shape of the library.
 struct ListLine {
@@ -57,16 +57,18 @@ struct ShapeSummary {
 }
 
 impl ListLine {
-    /// Reads a shape.
-    fn of(library: &Library, entry: LibraryEntry) -> Self {
-        let found = library.load(&entry.name);
-        Self {
-            found: found
-                .map(ShapeSummary::of)
-                .map_err(|error| shortened_message(&error.to_string())),
+    /// Reads a shape; None if another program has deleted it since the folder was listed.
+    fn of(library: &Library, entry: LibraryEntry) -> Option<Self> {
+        let found = match library.load(&entry.name) {
+            Ok(loaded) => Ok(ShapeSummary::of(loaded)),
+            Err(LibraryError::Unknown { .. }) => return None,
+            Err(error) => Err(shortened_message(&error.to_string())),
+        };
+        Some(Self {
+            found,
             name: entry.name,
             origin: entry.origin,
-        }
+        })
     }
 
     /// The word in the column `origin`.
@@ -125,7 +127,7 @@ impl Serialize for ListLine {
 fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
     let entries = library.list()?;
     let line = |entry| ListLine::of(library, entry);
-    let lines = || Ok(entries.into_par_iter().map(line).collect());
+    let lines = || Ok(entries.into_par_iter().filter_map(line).collect());
     threads::on_all_cores(lines)
 }
 
@@ -330,4 +332,22 @@ pub(crate) fn check(
         _ => Err(CliError::Shapes { broken, shapes }),
     };
     Ok((text, result))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shape_that_is_deleted_meanwhile_is_not_listed() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let library = Library::open(folder.path().to_owned());
+        let entry = |name: &str| LibraryEntry {
+            name: name.to_owned(),
+            origin: ShapeOrigin::Own,
+        };
+        assert!(ListLine::of(&library, entry("gone")).is_none());
+        std::fs::write(folder.path().join("bad.json"), "{").expect("written");
+        assert!(ListLine::of(&library, entry("bad")).is_some());
+    }
 }
