@@ -996,6 +996,13 @@ fn flags_that_would_be_ignored_are_refused() {
         "model confusion figures --force",
         "model confusion figures --touches 10",
         "model separate figures --scale 1 --force",
+        "model confusion figures --dead 4 --test half-step",
+        "model confusion figures --dead 4 --matrix 16x16 --touches 50 --pairs",
+        "model confusion figures --dead 4 --classifier knn",
+        "model confusion figures --neighbours 3 --greedy",
+        "model confusion figures --force --pairs",
+        "library list --own --json",
+        "library list --deleted --json",
     ] {
         misused(line, "the following required arguments were not provided");
     }

@@ -15,8 +15,8 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgGroup, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    anchor, force, jobs, json, memory, name, name_or_path, npy, of_sensor, option, parse_name,
-    quiet, range, replace, resume, sensor, sensor_of_imprints, shard, switch, what,
+    alone, anchor, force, jobs, json, memory, name, name_or_path, npy, of_sensor, option,
+    parse_name, quiet, range, replace, resume, sensor, sensor_of_imprints, shard, switch, what,
 };
 use crate::cli::arguments::help::{
     ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
@@ -336,12 +336,13 @@ fn library() -> Command {
         Command::new(name).about(about).after_help(examples)
     };
     let names = switch("names", "Print only the names, one per line").conflicts_with("json");
-    let own = switch("own", "With --names: only your own shapes").requires("names");
+    let own = switch("own", "With --names: only your own shapes").requires("with_names");
     let deleted = switch("deleted", "With --names: only those in the trash")
-        .requires("names")
+        .requires("with_names")
         .conflicts_with("own");
     let list =
         command("list", "List all shapes", LIST_EXAMPLES).args([names, own, deleted, json()]);
+    let list = list.group(alone("with_names", "names"));
     let show = command("show", "Show a shape and describe it", SHOW_EXAMPLES)
         .arg(name("Name of the shape"))
         .args(of_sensor(&[Parameter::Pitch]))
@@ -415,5 +416,83 @@ pub(crate) fn list(names: impl Iterator<Item = String>, word: &str) -> String {
         Some((last, [])) => last.clone(),
         Some((last, others)) => format!("{} {word} {last}", others.join(", ")),
         None => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::builder::NonEmptyStringValueParser;
+    use clap::error::{ContextKind, ContextValue, ErrorKind};
+    use clap::{Arg, Command, Error};
+
+    /// The commands without subcommands of their own, each of whose arguments takes any text.
+    fn innermost(command: &Command) -> Vec<Command> {
+        let own: Vec<_> = command.get_subcommands().collect();
+        if own.is_empty() {
+            let any = |arg: Arg| {
+                let takes = arg.get_action().takes_values();
+                let any = NonEmptyStringValueParser::new();
+                if takes { arg.value_parser(any) } else { arg }
+            };
+            return vec![command.clone().mut_args(any)];
+        }
+        own.into_iter().flat_map(innermost).collect()
+    }
+
+    /// How an argument is given, with some value.
+    fn given(arg: &Arg) -> Vec<String> {
+        let flag = arg.get_long().map(|long| format!("--{long}"));
+        let short = arg.get_short().map(|short| format!("-{short}"));
+        let value = arg.get_action().takes_values().then(|| "1".to_owned());
+        flag.or(short).into_iter().chain(value).collect()
+    }
+
+    /// The command with these arguments, and what it requires in any case.
+    fn parsed(command: &Command, args: &[&Arg]) -> Result<(), Error> {
+        let is_given = |id: &clap::Id| args.iter().any(|arg| arg.get_id() == id);
+        let mut all = args.to_vec();
+        let required = |arg: &&Arg| arg.is_required_set() && !is_given(arg.get_id());
+        all.extend(command.get_arguments().filter(required));
+        let groups = command.get_groups().filter(|group| group.is_required_set());
+        for group in groups {
+            let own: Vec<_> = group.get_args().collect();
+            if !own.iter().any(|id| is_given(id)) {
+                let is_first = |arg: &&Arg| own.first() == Some(&arg.get_id());
+                all.extend(command.get_arguments().find(is_first));
+            }
+        }
+        let line = all.into_iter().flat_map(given);
+        let line = std::iter::once("taxel".to_owned()).chain(line);
+        command.clone().try_get_matches_from(line).map(|_| ())
+    }
+
+    /// clap waives that a flag requires another where a third excludes that other: the flag would be ignored.
+    #[test]
+    fn a_flag_that_needs_another_is_refused_without_it_whatever_else_is_given() {
+        let mut needy = 0;
+        for command in innermost(&super::all()) {
+            for arg in command.get_arguments() {
+                let alone = parsed(&command, &[arg]).err();
+                let alone =
+                    alone.filter(|error| error.kind() == ErrorKind::MissingRequiredArgument);
+                let Some(ContextValue::Strings(missing)) = alone
+                    .as_ref()
+                    .and_then(|error| error.get(ContextKind::InvalidArg))
+                else {
+                    continue;
+                };
+                needy += 1;
+                let missing = missing.join(" ");
+                for other in command.get_arguments() {
+                    let is_missing = other.get_long().is_some_and(|flag| missing.contains(flag));
+                    let (name, own, other_id) = (command.get_name(), arg.get_id(), other.get_id());
+                    assert!(
+                        is_missing || parsed(&command, &[arg, other]).is_err(),
+                        "{name}: {own} needs {missing}, but is accepted with {other_id} alone"
+                    );
+                }
+            }
+        }
+        assert!(needy > 30, "{needy}");
     }
 }

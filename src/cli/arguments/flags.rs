@@ -13,7 +13,7 @@ use std::str::FromStr;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::error::ErrorKind;
-use clap::{Arg, ArgAction, ArgMatches};
+use clap::{Arg, ArgAction, ArgGroup, ArgMatches};
 
 use crate::cli::arguments::parameters;
 use crate::cli::error::CliError;
@@ -35,6 +35,12 @@ pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
 /// A flag with a value, `--NAME VALUE`. Without a parser of its own the value is a text.
 pub(super) fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value).help(help)
+}
+
+/// A group of one flag, for others that require it but would accept, by themselves, what it excludes. clap waives a required
+/// flag where one is given that excludes it, and would ignore the others; it does not waive a required group.
+pub(super) fn alone(group: &'static str, flag: &'static str) -> ArgGroup {
+    ArgGroup::new(group).arg(flag)
 }
 
 /// A parser of the name of something stored, of a file or of another source, which is not empty.

@@ -248,7 +248,10 @@ pub(crate) fn rules() -> [Arg; 6] {
         )
         .requires("high")
         .conflicts_with_all(others("low")),
-        value("high", "B", "Active at B or more").requires("low"),
+        // clap waives that --low is required where another rule excludes it.
+        value("high", "B", "Active at B or more")
+            .requires("low")
+            .conflicts_with_all(others("low")),
         value(
             "deviations",
             "K",

@@ -100,6 +100,11 @@ pub(super) fn command() -> Command {
         .args(questions())
         .group(ArgGroup::new("descriptors").args(["given", "greedy"]))
         .group(ArgGroup::new("of").args(["greedy", "pairs", "classifier", "noise", "test"]))
+        .groups([
+            flags::alone("with_classifier", "classifier"),
+            flags::alone("with_noise", "noise"),
+            flags::alone("with_export", "export"),
+        ])
         .group(
             ArgGroup::new("not_given")
                 .args(["greedy", "pairs", "test"])
@@ -160,7 +165,7 @@ fn of_classifiers() -> [Arg; 3] {
     .map(|(name, help)| {
         option(name, "N", help)
             .value_parser(whole::<u32>(1..))
-            .requires("classifier")
+            .requires("with_classifier")
     })
 }
 
@@ -171,7 +176,7 @@ fn output() -> [Arg; 5] {
         .conflicts_with_all(["greedy", "pairs", "test"]);
     let csv = switch("csv", "Print comma-separated values")
         .conflicts_with_all(["json", "greedy", "pairs", "test"]);
-    let force = replace().requires("export");
+    let force = replace().requires("with_export");
     [export, force, json(), quiet(), csv]
 }
 
@@ -189,14 +194,12 @@ fn noisy() -> [Arg; 5] {
         "Also test with N dead taxels, drawn anew for\neach touch; default 0",
     )
     .value_delimiter(',')
-    .value_parser(whole::<u32>(0..=4095))
-    .requires("noise");
+    .value_parser(whole::<u32>(0..=4095));
     let touches = option("touches", "N", "Noisy touches of each shape; default 1000")
-        .value_parser(whole::<u64>(1..=1_000_000_000))
-        .requires("noise");
+        .value_parser(whole::<u64>(1..=1_000_000_000));
     let matrix = option("matrix", "CxR", "Size of the sensor; default the model's")
-        .value_parser(parse_matrix)
-        .requires("noise");
+        .value_parser(parse_matrix);
+    let [dead, touches, matrix] = [dead, touches, matrix].map(|arg| arg.requires("with_noise"));
     let test = option(
         "test",
         "half-step",
