@@ -169,7 +169,7 @@ impl GivenDescriptors {
 
     /// Draws noisy touches as [`Model::recognition_rate`] does and names them by these descriptors alone: by the shape
     /// that has their values most often without noise. Values that no shape has without noise get no name, which counts
-    /// as wrong. None if `progress` stops it.
+    /// as wrong. None if `progress` stops it, or if no imprint fits on the sensor of the touches.
     ///
     /// ```
     /// use taxel::recognition::{GivenDescriptors, GridSteps, Noise, NoisyTouches, Training, equal_figures};

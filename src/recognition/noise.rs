@@ -295,6 +295,20 @@ impl Model {
             .position(|&touches| touches == 0)
     }
 
+    /// Returns, for each shape of the set, how many of its poses leave an imprint that does not fit on a matrix of some columns
+    /// and rows. [`Self::recognition_rate`] draws no such touches.
+    pub fn poses_too_large(&self, (columns, rows): (u8, u8)) -> Vec<u64> {
+        let mut too_large = vec![0; self.shapes().len()];
+        for (own, poses) in self.index().boxes().iter().zip(self.poses_by_box()) {
+            if own.width > columns || own.height > rows {
+                for (sum, poses) in too_large.iter_mut().zip(poses) {
+                    *sum += poses;
+                }
+            }
+        }
+        too_large
+    }
+
     /// The touches of each shape on a matrix of some columns and rows: its poses, in every place where they fit.
     fn touches_on(&self, size: (u8, u8)) -> Vec<u64> {
         let mut totals = vec![0; self.shapes().len()];

@@ -247,8 +247,12 @@ impl Model {
     /// Draws touches of each shape, names the shape of each as `assumed` says, and counts. The dead taxels of `assumed` are
     /// left out, and so are those that are drawn for each touch.
     ///
+    /// An imprint lies in any place on the sensor of the touches where all of it fits. Those that fit nowhere are not drawn:
+    /// the rate is that of the others ([`Self::poses_too_large`] counts them), and a shape none of whose imprints fits has no
+    /// touches.
+    ///
     /// `progress` is called with the number of touches done since the last call, and stops it by returning `false`; then
-    /// there is no result.
+    /// there is no result. There is none without any touch either.
     ///
     /// ```
     /// use taxel::recognition::{GridSteps, Noise, NoisyTouches, Training, equal_figures};
@@ -340,7 +344,8 @@ impl Model {
         }
         let weights = self.shapes().iter().map(|shape| shape.weight);
         let rates: Vec<(u32, ShapeRate)> = weights.zip(rates).collect();
-        (!stopped.into_inner()).then(|| RecognitionRate::of(&rates))
+        let rate = RecognitionRate::of(&rates);
+        (!stopped.into_inner() && rate.touches > 0).then_some(rate)
     }
 
     /// A key in a random place, with random flips.
@@ -529,6 +534,29 @@ mod tests {
         let claimed = claimed.sum::<f64>() / count;
         assert!(claimed > 0.0);
         assert!((found / claimed - 1.0).abs() < 0.3, "{found} {claimed}");
+    }
+
+    /// The bar leaves 5 taxels, or 6 where it lies between two.
+    #[test]
+    fn touches_that_fit_nowhere_are_left_out_and_counted() {
+        let sensor = Sensor::default();
+        let bar = Figure::rectangle(5.2, 1.0).on(&sensor).expect("in range");
+        let shapes = [NamedShape::new("bar", bar)];
+        let range = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges::new(["5:5.9:0.1", "5", "0", "1", "1"].map(range));
+        let training = Training::new(shapes, sensor, Anchor::Corner, ranges);
+        let model = training.expect("a set").run().expect("not stopped");
+        let too_large = [5, 6, 7].map(|columns| model.poses_too_large((columns, 1)));
+        assert_eq!(too_large, [vec![3], vec![0], vec![0]]);
+        assert_eq!(model.poses_too_large((16, 0)), [10]);
+        let noise = Noise::new(0.0).expect("in range");
+        let rate = |columns| {
+            let sensor = Sensor::new(columns, 1).expect("in range");
+            let touches = NoisyTouches::new(&sensor, noise, 10, 0);
+            let rate = model.recognition_rate(&touches, &noise, &|_| true);
+            rate.map(|rate| rate.touches)
+        };
+        assert_eq!((rate(5), rate(4), rate(1)), (Some(10), None, None));
     }
 
     #[test]

@@ -1043,6 +1043,17 @@ fn what_cannot_work_is_refused_with_its_reason() {
     ] {
         refused(&place.run(line, ""), 1, message);
     }
+    place.done(&format!("model train rectangles.jsonl {COARSE} --out r.npz"));
+    let noisy = "model confusion r.npz --noise 0 --touches 5 --matrix 6x6 --json";
+    let run = place.run(noisy, "");
+    let said = "left out, because they do not fit on 6 × 6: ";
+    assert!(run.stderr.contains(said), "{}", run.stderr);
+    assert!(
+        run.stderr.contains(" % of the poses of c, "),
+        "{}",
+        run.stderr
+    );
+    assert_eq!(place.run(&format!("{noisy} --quiet"), "").stderr, "");
     place.write("there.csv", "kept");
     let run = place.run("model confusion parts --export there.csv", "");
     assert_eq!(run.status, Some(1), "{}", run.stderr);

@@ -36,6 +36,7 @@ use crate::formats::{LinePlot, json};
 use crate::memory::MemoryGuard;
 use crate::recognition::{
     GivenDescriptors, MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate, TouchesUntil,
+    share,
 };
 use crate::sensor::Sensor;
 
@@ -65,6 +66,9 @@ pub(crate) fn degradation(
     let signals = Signals::heard().map_err(CliError::System)?;
     let sensor = matrix(model, asked.size)?;
     check_dead(&asked.dead, &sensor)?;
+    if let Some(text) = left_out(model, &sensor).filter(|_| !all_asked.quiet) {
+        crate::cli::note(&text, charset);
+    }
     let values: Vec<f64> = asked.noise.values().collect();
     let each = asked.touches * model.shapes().len() as u64;
     let all = each * values.len() as u64 * asked.dead.len() as u64;
@@ -149,6 +153,30 @@ fn matrix(model: &Model, size: Option<(u8, u8)>) -> Result<Sensor, CliError> {
             rows,
         }),
     }
+}
+
+/// Says of which shapes not all imprints fit on the matrix, and of how many of their poses; None if all fit.
+fn left_out(model: &Model, sensor: &Sensor) -> Option<String> {
+    /// Shapes that are named.
+    const NAMED: usize = 3;
+    let (columns, rows) = (sensor.columns(), sensor.rows());
+    let too_large = model.poses_too_large((columns, rows));
+    let all = model.poses();
+    let shapes = model.shapes().iter().zip(too_large);
+    let mut shapes: Vec<_> = shapes.filter(|(_, poses)| *poses > 0).collect();
+    shapes.sort_by_key(|(_, poses)| std::cmp::Reverse(*poses));
+    let named = shapes.iter().take(NAMED).map(|(shape, poses)| {
+        let part = percent(share((*poses).into(), all.into()));
+        format!("{part} of the poses of {}", shape.name)
+    });
+    let named = named.collect::<Vec<_>>().join(", ");
+    let more = match shapes.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        1 => " and some of another shape".to_owned(),
+        more => format!(" and some of {more} other shapes"),
+    };
+    (!shapes.is_empty())
+        .then(|| format!("left out, because they do not fit on {columns} × {rows}: {named}{more}"))
 }
 
 /// The descriptors that are known, measured in the steps that are asked for; None for the whole imprint.
