@@ -48,7 +48,8 @@ pub struct FlipReport {
     pub repeated: u64,
     /// In how many of these cases it differed in between.
     pub flips: u64,
-    /// The probability that a taxel flips; None without three frames, or if it seems to be ½ or more.
+    /// The probability that a taxel flips. None if [`Self::repeated`] is 0, as without three frames, or if the probability
+    /// seems to be ½ or more.
     pub noise: Option<f64>,
     /// The standard error of that, if flips are independent of each other.
     pub standard_error: Option<f64>,

@@ -478,6 +478,32 @@ fn the_noise_of_a_recording_is_reported() {
     assert!(run.stdout.contains("stuck on: 4,4\n"), "{}", run.stdout);
     let written = std::fs::read_to_string(&mask).expect("it is written");
     assert_eq!(written, ".....\n.....\n.....\n.....\n....#\n");
+    // Values that change at random flip too often for any noise below a half; with two frames nothing can be told.
+    let mut state = 1_u32;
+    let mut random = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        9 * (state >> 31)
+    };
+    let mut flipping = String::new();
+    for number in 0..60 {
+        let values = [number % 2 * 9, random(), random()];
+        flipping += &format!("{{\"frame\":[{values:?}]}}\n");
+    }
+    let line = "frames - --noise-report --at-least 5";
+    let run = taxel(line, flipping.clone());
+    assert!(
+        run.stdout.contains("\nnoise 0.5 or more: "),
+        "{}",
+        run.stdout
+    );
+    let run = taxel(&format!("{line} --json"), flipping);
+    assert!(answers(&run)[0]["noise"].is_null(), "{}", run.stdout);
+    let run = taxel(line, "{\"frame\":[[9,0]]}\n".repeat(2));
+    assert!(
+        run.stdout.contains("\ntoo few frames to tell"),
+        "{}",
+        run.stdout
+    );
     // What says nothing of many frames is refused, not ignored.
     for flag in ["--save mask", "--model figures", "--heat"] {
         let line = format!("frames - --noise-report --at-least 5 {flag}");

@@ -17,6 +17,7 @@ use crate::imprint::Imprint;
 struct NoiseJson {
     frames: u64,
     cells: u32,
+    /// Null where it cannot be told, or would be ½ or more.
     noise: Option<f64>,
     standard_error: Option<f64>,
     flips: u64,
@@ -112,7 +113,14 @@ pub(crate) fn text(found: &FlipReport) -> String {
                 grouped(found.repeated)
             );
         }
-        _ => text += "too few frames to tell how often taxels flip\n",
+        _ if found.repeated == 0 => text += "too few frames to tell how often taxels flip\n",
+        _ => {
+            text += &format!(
+                "noise 0.5 or more: {} of {} states that were the same before and after differ in between\n",
+                grouped(found.flips),
+                grouped(found.repeated)
+            );
+        }
     }
     for (what, stuck) in [
         ("stuck on", &found.stuck_on),
