@@ -23,9 +23,10 @@ pub enum Job {
     Describe(Imprint),
 }
 
-/// The keys of a line, without those of the rule for a frame.
+/// The keys of a line.
 const JOB_KEYS: KnownKeys = KnownKeys {
     named: &["figure", "picture", "imprint", "frame", "sensor"],
+    others: &RULE_KEYS,
     parameters: true,
 };
 
@@ -139,13 +140,14 @@ impl JobLine<'_> {
             figure: None,
             picture: None,
             imprint: None,
-            sensor: None,
             values,
+            ..
         } = &self.record
         else {
             return Err(RecordError::Which(KEYS).into());
         };
         values.only("frame", &[])?;
+        self.record.no_sensor("frame")?;
         self.rule.imprint(frame).map_err(JobError::Frame)
     }
 

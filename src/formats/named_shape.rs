@@ -213,6 +213,7 @@ struct Line<'a> {
 /// The keys of a line.
 const LINE_KEYS: KnownKeys = KnownKeys {
     named: &["name", "weight", "figure", "picture", "imprint"],
+    others: &[],
     parameters: true,
 };
 

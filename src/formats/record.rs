@@ -278,6 +278,8 @@ impl<'a> Record<'a> {
 pub(crate) struct KnownKeys {
     /// The keys that a message about an unknown key lists.
     pub(crate) named: &'static [&'static str],
+    /// More of them, listed behind those.
+    pub(crate) others: &'static [&'static str],
     /// Whether the keys of all parameters are known as well.
     pub(crate) parameters: bool,
 }
@@ -285,31 +287,38 @@ pub(crate) struct KnownKeys {
 /// Those of a record by itself.
 const RECORD_KEYS: KnownKeys = KnownKeys {
     named: &["figure", "picture", "imprint", "sensor"],
+    others: &[],
     parameters: true,
 };
 /// Those of a sensor.
 const SENSOR_KEYS: KnownKeys = KnownKeys {
     named: &["columns", "rows", "threshold", "pitch_mm"],
+    others: &[],
     parameters: false,
 };
 
 impl KnownKeys {
     /// The message about a key that is not one of these.
     fn unknown(&self, key: &str) -> String {
-        let named = self.named.iter().copied();
+        let mut named = [self.named, self.others].concat();
         let parameters = self
             .parameters
             .then(|| PARAMETERS.iter().map(|row| row.key));
-        let meant = did_you_mean(key, named.chain(parameters.into_iter().flatten()));
-        let (last, rest) = match (self.parameters, self.named) {
-            (false, [rest @ .., last]) => (*last, rest),
-            (_, named) => ("a parameter", named),
-        };
-        format!(
-            "unknown key {:?}, expected {} or {last}{meant}",
-            shortened(key),
-            rest.join(", ")
-        )
+        let parameters = parameters.into_iter().flatten();
+        let meant = did_you_mean(key, named.iter().copied().chain(parameters));
+        if self.parameters {
+            named.push("a parameter");
+        }
+        let mut text = format!("unknown key {:?}, expected ", shortened(key));
+        for (index, name) in named.iter().enumerate() {
+            text += match index {
+                0 => "",
+                index if index + 1 == named.len() => " or ",
+                _ => ", ",
+            };
+            text += name;
+        }
+        text + &meant
     }
 }
 

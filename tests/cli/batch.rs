@@ -113,10 +113,10 @@ fn bad_lines_are_answered_in_their_places() {
             "15: column 19: imprint: found the string \\\"washer\\\", expected rows of '#' and '.'",
         ),
         error(
-            "16: column 26: unknown key \\\"sied\\\", expected figure, picture, imprint, frame, sensor or a parameter; did you mean \\\"side\\\"?",
+            "16: column 26: unknown key \\\"sied\\\", expected figure, picture, imprint, frame, sensor, at_least, percent, low, high, least or a parameter; did you mean \\\"side\\\"?",
         ),
         error(
-            "17: column 13: unknown key \\\"parameters\\\", expected figure, picture, imprint, frame, sensor or a parameter",
+            "17: column 13: unknown key \\\"parameters\\\", expected figure, picture, imprint, frame, sensor, at_least, percent, low, high, least or a parameter",
         ),
         error(
             "18: column 35: sensor: unknown key \\\"colums\\\", expected columns, rows, threshold or pitch_mm; did you mean \\\"columns\\\"?",
@@ -240,6 +240,8 @@ fn a_frame_with_a_threshold_is_described() {
         "{\"frame\":[[0,30],[null,31]]}\n",
         "{\"frame\":[[0,30]],\"at_least\":30,\"imprint\":[\"#\"]}\n",
         "{\"imprint\":[\"#\"],\"least\":2}\n",
+        "{\"frame\":[[0,30]],\"at_least\":30,\"sensor\":{\"columns\":2,\"rows\":1}}\n",
+        "{\"frame\":[[0,30]],\"deviations\":1}\n",
     );
     let run = taxel("batch", input);
     let lines: Vec<&str> = run.stdout.lines().collect();
@@ -258,5 +260,14 @@ fn a_frame_with_a_threshold_is_described() {
         lines[3].contains("a threshold belongs to a frame"),
         "{}",
         lines[3]
+    );
+    assert_eq!(
+        lines[4],
+        "{\"error\":\"line 5: sensor: not a value of a frame\"}"
+    );
+    assert!(
+        lines[5].contains("at_least, percent, low, high, least or a parameter"),
+        "{}",
+        lines[5]
     );
 }

@@ -374,13 +374,16 @@ fn has(text: &[u8], word: &[u8]) -> bool {
 /// Why a line with none of its keys, or with two, is refused.
 const ONE_KEY: &str = "expected exactly one of the keys frame (with values), imprint, touches";
 
+/// Why a line whose imprint is null is refused.
+const NO_IMPRINT: &str = "imprint: null, as of a frame without a threshold; set one where the frame is read, such as --at-least";
+
 /// The keys of a line that mean something; others are ignored.
 #[derive(Deserialize)]
 #[serde(expecting = "an object with an imprint, touches or a frame")]
 struct LineKeys<'a> {
-    /// One touch: a text for each row, `#` for an active taxel.
-    #[serde(borrow)]
-    imprint: Option<Vec<Text<'a>>>,
+    /// One touch.
+    #[serde(borrow, default, deserialize_with = "given")]
+    imprint: Option<RowsOrNull<'a>>,
     /// Several touches of one shape.
     #[serde(borrow)]
     touches: Option<Vec<Vec<Text<'a>>>>,
@@ -397,9 +400,16 @@ struct LineKeys<'a> {
     channel: Option<Box<RawValue>>,
 }
 
+/// A text for each row, `#` for an active taxel; null of a frame without a threshold.
+#[derive(Deserialize)]
+#[serde(transparent)]
+struct RowsOrNull<'a>(#[serde(borrow)] Option<Vec<Text<'a>>>);
+
 /// Any value of a key that is there, null too.
-fn given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Box<RawValue>>, D::Error> {
-    Deserialize::deserialize(deserializer).map(Some)
+fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error> {
+    T::deserialize(deserializer).map(Some)
 }
 
 /// The values of a frame, in place of an imprint; then `frame` is not a number.
@@ -440,11 +450,14 @@ impl RecogniseLine {
         };
         let framed = framed(line, keys.frame.as_deref())?;
         let touches = match (&keys.imprint, &keys.touches) {
-            (None, None) if framed.is_some() => framed.into_iter().collect(),
+            (None | Some(RowsOrNull(None)), None) if framed.is_some() => {
+                framed.into_iter().collect()
+            }
             _ if framed.is_some() => {
                 return Err(ONE_KEY.to_owned());
             }
-            (Some(rows), None) => vec![imprint("imprint", rows)?],
+            (Some(RowsOrNull(Some(rows))), None) => vec![imprint("imprint", rows)?],
+            (Some(RowsOrNull(None)), None) => return Err(NO_IMPRINT.to_owned()),
             (None, Some(touches)) if !touches.is_empty() => {
                 let numbered = touches.iter().enumerate();
                 numbered
@@ -508,6 +521,8 @@ mod tests {
             "{\"imprint\":[\"##\",\"#\"]}",
             "{\"touches\":[[\"##\"],[\"x\"]]}",
             "{\"touches\":[]}",
+            "{\"frame\":3,\"rule\":null,\"imprint\":null}",
+            "{\"imprint\":null,\"touches\":[[\"##\"]]}",
         ] {
             let _ = writeln!(text, "{}", error(line));
         }
@@ -516,7 +531,10 @@ mod tests {
             "expected exactly one of the keys frame (with values), imprint, touches\n\
              imprint: row 2 has 1 character, expected 2 as in the first row\n\
              touches, number 2: row 1, column 1: found 'x', expected '#' or '.'\n\
-             touches: empty, expected at least one\n"
+             touches: empty, expected at least one\n\
+             imprint: null, as of a frame without a threshold; set one where the frame is read, such as \
+             --at-least\n\
+             expected exactly one of the keys frame (with values), imprint, touches\n"
         );
     }
 }
