@@ -130,6 +130,11 @@ fn the_smallest_size_that_reaches_an_error_is_found() {
         text.contains("no scale that was tried has an error of at most 0\n"),
         "{text}"
     );
+    let table = place.done(&format!("{line} --csv"));
+    let run = place.run(&format!("{line} --want 0.1 --csv"), "");
+    assert_eq!(run.stdout, table);
+    let said = format!("an error of at most 0.1 is first reached at scale {scale}:");
+    assert!(run.stderr.starts_with(&said), "{}", run.stderr);
     let never = place.json(&format!("{line} --want 0 --json"));
     assert!(never["want"][0]["smallest"].is_null());
     let text = place.done(&format!("{line} --want 0.9"));

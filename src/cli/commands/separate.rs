@@ -79,6 +79,13 @@ pub(crate) fn separate(
             crate::cli::note(&written(path), charset);
         }
     }
+    if let (EvaluationForm::Csv, Some(wanted)) = (asked.form, asked.wanted) {
+        // The table has no place for it. It is an answer rather than a note, so --quiet does not suppress it.
+        let found = separation::all_found(asked.axis, &asked.sizes, &curves, wanted);
+        for line in found.lines() {
+            crate::cli::note(line, charset);
+        }
+    }
     Ok(match asked.form {
         EvaluationForm::Json => separation::json_text(asked.axis, &curves, asked.wanted),
         EvaluationForm::Csv => csv(asked.axis, &curves),

@@ -78,14 +78,27 @@ pub(crate) fn text(
     }
     if let Some(wanted) = wanted {
         text.push('\n');
-        for curve in curves {
-            if curves.len() > 1 {
-                let _ = write!(text, "threshold {}: ", short(curve.threshold));
-            }
-            text += &found(axis, sizes, curve, wanted);
-        }
+        text += &all_found(axis, sizes, curves, wanted);
     }
     charset.lines(&text)
+}
+
+/// What a search has found, in a sentence or more for each threshold.
+pub(crate) fn all_found(
+    axis: SizeAxis,
+    sizes: &DecimalRange,
+    curves: &[SeparationCurve],
+    wanted: f64,
+) -> String {
+    let sentences = curves.iter().map(|curve| {
+        let found = found(axis, sizes, curve, wanted);
+        if curves.len() > 1 {
+            format!("threshold {}: {found}", short(curve.threshold))
+        } else {
+            found
+        }
+    });
+    sentences.collect()
 }
 
 /// What a search has found, and how it looked.
