@@ -211,13 +211,13 @@ impl Bounds {
         })
     }
 
-    /// A single taxel.
+    /// A single taxel; no taxel beyond column or row 254.
     pub fn of_taxel(column: u8, row: u8) -> Self {
         Self {
             left: column,
             top: row,
-            right: column + 1,
-            bottom: row + 1,
+            right: column.saturating_add(1),
+            bottom: row.saturating_add(1),
         }
     }
 
@@ -231,9 +231,11 @@ impl Bounds {
         self.top..self.bottom
     }
 
-    /// Returns the number of its taxels.
+    /// Returns the number of its taxels; 0 where its sides are the wrong way round.
     pub fn area(&self) -> u32 {
-        u32::from(self.right - self.left) * u32::from(self.bottom - self.top)
+        let columns = self.right.saturating_sub(self.left);
+        let rows = self.bottom.saturating_sub(self.top);
+        u32::from(columns) * u32::from(rows)
     }
 }
 
@@ -410,3 +412,20 @@ impl fmt::Display for ImprintError {
 }
 
 impl std::error::Error for ImprintError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_bounds_are_too_odd_to_be_measured() {
+        let bounds = Bounds {
+            left: 5,
+            top: 0,
+            right: 2,
+            bottom: 9,
+        };
+        assert_eq!((bounds.area(), Bounds::of_taxel(255, 0).area()), (0, 0));
+        assert_eq!(Bounds::of_taxel(254, 0).area(), 1);
+    }
+}

@@ -8,15 +8,20 @@ use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 
 /// How a threshold is set. Comparisons include the threshold itself; a cell without a value is never active.
+///
+/// Only its functions make one, since they check the numbers. To read one, match with `..`, as in `Rule::AtLeast(value, ..)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Rule {
     /// Active at this value or more, in the sensor's unit.
+    #[non_exhaustive]
     AtLeast(f64),
     /// Active at this percentage of the frame's largest value or more; no taxel is active if that value is 0 or less.
+    #[non_exhaustive]
     Percent(f64),
     /// Active at `high` or more. A cell of at least `low` is active if an 8-connected path of such cells joins it to
     /// one of at least `high`.
+    #[non_exhaustive]
     Hysteresis {
         /// The lower threshold.
         low: f64,
@@ -24,6 +29,7 @@ pub enum Rule {
         high: f64,
     },
     /// Active at this many standard deviations of the cell's own noise above its tare, or more.
+    #[non_exhaustive]
     Noise(f64),
 }
 

@@ -62,7 +62,8 @@ impl<'a> Evidence<'a> {
         }
     }
 
-    /// Rejects an answer that is less probable.
+    /// Rejects an answer that is less probable than this, from 0 to 1. With 0 or less, or NaN, none is rejected; with more than
+    /// 1, all are.
     #[must_use]
     pub fn reject_below(self, probability: f64) -> Self {
         Self {

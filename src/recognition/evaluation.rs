@@ -131,10 +131,11 @@ impl Evaluation {
         share(self.touches - self.right, self.touches)
     }
 
-    /// Returns the recall of a shape: the share of its touches that get its name.
-    pub fn recall(&self, shape: usize) -> f64 {
-        let right = self.confusion.get(shape, shape);
-        share(right, self.confusion.touches_of(shape))
+    /// Returns the recall of a shape: the share of its touches that get its name; None if it has no touch, as no shape beyond
+    /// the last one has.
+    pub fn recall(&self, shape: usize) -> Option<f64> {
+        let touches = self.confusion.touches_of(shape);
+        (touches > 0).then(|| share(self.confusion.get(shape, shape), touches))
     }
 
     /// Returns the precision of a shape: the share of the touches with its name that are really its own; None if no
@@ -250,7 +251,8 @@ mod tests {
         assert_eq!((limit.touches, limit.right), (SHAPES.into(), 1));
         assert_eq!(limit.worst_pairs().len(), usize::from(SHAPES) - 1);
         assert_eq!(limit.worst_pairs()[0], (0, 1, 1));
-        assert_eq!((limit.recall(0), limit.recall(1)), (1.0, 0.0));
+        assert_eq!((limit.recall(0), limit.recall(1)), (Some(1.0), Some(0.0)));
+        assert_eq!((limit.recall(1_000_000), limit.precision(1_000_000)), (None, None));
         let precisions: Vec<Option<f64>> = (0..SHAPES.into())
             .map(|shape| limit.precision(shape))
             .collect();

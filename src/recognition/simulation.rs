@@ -370,8 +370,9 @@ impl Model {
         noise.dead().map_or(touch, |dead| touch.without(dead))
     }
 
-    /// Draws touches of each shape until some shape is as probable as `until`, `runs` times, and gives the number of touches
-    /// for each shape, in the order of the set. None if `progress` stopped it.
+    /// Draws touches of each shape until some shape is as probable as `until` (0 to 1), `runs` times, and gives the number of
+    /// touches for each shape, in the order of the set. None if `progress` stopped it. No run reaches more than 1 or NaN;
+    /// every run reaches 0 or less with its first touch.
     pub fn touches_until(
         &self,
         until: f64,

@@ -146,7 +146,10 @@ fn four_rectangles_are_confused_as_published() {
     );
     assert_eq!(format!("{:.4}", limit.information_bits), "1.2066");
     assert_eq!(limit.prior_bits, 2.0);
-    assert_eq!((limit.recall(3), limit.precision(3)), (1.0, Some(1.0)));
+    assert_eq!(
+        (limit.recall(3), limit.precision(3)),
+        (Some(1.0), Some(1.0))
+    );
     assert_eq!(limit.worst_pairs()[0], (0, 2, 1_307_096 + 572_156));
     assert_eq!(
         limit.keys_of_one_shape,
@@ -434,7 +437,7 @@ fn two_names_for_one_shape_can_never_be_told_apart() {
     assert_eq!(model.never_certain(), [0, 1]);
     assert_eq!(model.pair_errors()[0][1], 0.5);
     let limit = Evaluation::of(&model);
-    assert_eq!((limit.recall(1), limit.precision(1)), (0.0, None));
+    assert_eq!((limit.recall(1), limit.precision(1)), (Some(0.0), None));
     let bar: Imprint = ".....\n.###.\n.###.\n.....".parse().expect("an imprint");
     let answer = model.recognise(Evidence::of(&[bar]));
     assert_eq!(
@@ -474,7 +477,7 @@ fn a_shard_without_a_pose_has_numbers_all_the_same() {
     let limit = Evaluation::of(&model);
     assert_eq!(
         (limit.accuracy(), limit.error(), limit.recall(0)),
-        (0.0, 0.0, 0.0)
+        (0.0, 0.0, None)
     );
     assert!(model.never_certain().is_empty());
 }

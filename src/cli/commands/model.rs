@@ -295,9 +295,9 @@ pub(crate) fn show(
             weight => format!(", weight {weight}"),
         };
         text += &format!("  {}: {}{weight}", shape.name, described(shape));
-        if model.poses() > 0 {
+        if let Some(recall) = limit.recall(index) {
             text += ", recognised in ";
-            text += &evaluation::percent(limit.recall(index));
+            text += &evaluation::percent(recall);
         }
         text.push('\n');
     }

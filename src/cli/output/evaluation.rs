@@ -219,7 +219,9 @@ pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
         for (column, width) in widths.iter().enumerate() {
             let _ = write!(text, " {:>width$}", cell(row, column));
         }
-        let _ = writeln!(text, "  {:>7}", percent(evaluation.recall(row)));
+        let recall = evaluation.recall(row);
+        let recall = recall.map_or_else(|| "–".to_owned(), percent);
+        let _ = writeln!(text, "  {recall:>7}");
     }
     let _ = write!(text, "{:1$}", "", numbers + 1);
     let _ = write!(text, "{:<1$}", "precision", name.max(9));
