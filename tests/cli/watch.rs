@@ -267,6 +267,13 @@ fn a_file_of_another_kind_is_no_stream() {
 }
 
 #[test]
+fn only_a_serial_line_has_a_speed() {
+    let run = taxel("watch - --baud 9600", stream(0..3));
+    let message = "--baud has no effect on standard input: it is for serial lines";
+    super::refused(&run, 2, message);
+}
+
+#[test]
 fn frames_of_another_size_do_not_end_it() {
     let wide = "1 2 3\n\n".repeat(5);
     let input = stream(0..3) + &wide + &stream(3..7);

@@ -31,6 +31,8 @@ pub(crate) struct WatchArguments {
     pub(crate) source: OsString,
     /// How it is read: format, rows and columns, baud rate, speed and repetition.
     pub(crate) options: AcquireOptions,
+    /// Whether `--baud` is given, which only a serial line has.
+    pub(crate) baud_named: bool,
     /// From values to the imprint.
     pub(crate) processing: ProcessingArguments,
     pub(crate) naming: NamingArguments,
@@ -126,6 +128,7 @@ impl WatchArguments {
         Ok(Self {
             source,
             options,
+            baud_named: matches.contains_id("baud"),
             processing,
             naming: NamingArguments::of(matches),
             write: matches.get_one::<PathBuf>("write").cloned(),

@@ -154,9 +154,17 @@ pub(crate) fn watch(
     })
 }
 
-/// Refuses flags that mean nothing for a source: of playing for a stream, and a channel that a recording does not have.
+/// Refuses flags that mean nothing for a source: of a line for others, of playing for a stream, and a channel that a recording
+/// does not have.
 fn check(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
     let usual = AcquireOptions::default();
+    if asked.baud_named && !matches!(source, FrameSource::Serial(_)) {
+        let (flag, reason) = (
+            "baud",
+            format!("on {}: it is for serial lines", source.name()),
+        );
+        return Err(CliError::Unused { flag, reason });
+    }
     // One that cannot be read is reported when it is watched.
     if matches!(source.recording(&asked.options), Ok(None)) {
         for (flag, is_given) in [
