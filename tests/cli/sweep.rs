@@ -46,6 +46,7 @@ fn the_summary_has_the_numbers_of_the_paper_s_ring() {
     let expected = [
         "poses",
         "ranges",
+        "shard",
         "distinct",
         "distinct_shifts",
         "distinct_symmetry",

@@ -120,6 +120,7 @@ impl Serialize for SweepSummary<'_> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("poses", &result.poses)?;
         map.serialize_entry("ranges", &GridRanges(&result.grid))?;
+        map.serialize_entry("shard", &result.shard.to_string())?;
         map.serialize_entry("distinct", &result.atlas.len())?;
         map.serialize_entry("distinct_shifts", &self.classes.0)?;
         map.serialize_entry("distinct_symmetry", &self.classes.1)?;
