@@ -284,7 +284,7 @@ fn merge() -> Command {
             atlas()
                 .long("out")
                 .alias("atlas")
-                .help("Write the atlas (.csv, .jsonl, .npz) or the model (.npz)")
+                .help("Write the atlas (.csv, .jsonl, .npz) or the model\n(.npz); --atlas means the same")
                 .required(true),
             replace(),
             memory(),

@@ -277,6 +277,9 @@ filling, cg_cd, cg_cd_direction. CG-CD at full precision is more of a
 fingerprint than a measurement: --round cg_cd=0.01 shows what it is worth when
 measured.
 
+--noise tests touches in random places on the sensor. Imprints that do not fit
+on a smaller --matrix are left out, and standard error says how many.
+
 Classifiers: z measures the distance to the mean of each shape in standard
 deviations; diagonal, lda and qda fit Gaussians with diagonal, common and own
 covariance; knn takes the shape of the nearest touches, template that of the
@@ -300,7 +303,7 @@ standard error lists them. With --pitch, a taxel of a stored shape is 1 mm; the
 shape's own pitch and threshold are ignored. --want scans from the smallest size
 upwards, then in tenths of the step before the first size that reaches the
 error. The error is not monotonic, so --want also reports how many larger sizes
-miss it again.
+miss it again. With --csv, standard error says what --want has found.
 
 Examples:
   taxel model separate parts --scale 0.5:2:0.1 --positions 20
@@ -322,13 +325,14 @@ Examples:
 /// `taxel recognise`: input and answers.
 pub(crate) const RECOGNISE_EXAMPLES: &str = "\
 Reads an imprint in any format that 'taxel describe' reads, or lines of JSON,
-each {\"imprint\":[\"..##\",...]} or, for several touches of one shape,
-{\"touches\":[[...],[...]]}. Each line gets one line in return, which copies
-frame, label, time and channel; other keys are ignored. An imprint at the rim
-may be cut off and is never 'certain'. With --noise, even an imprint that no
-shape leaves gets an answer: it is compared with every key in every place on the
-matrix. With --expect, the exit status is 3 if the answer is another shape, or
-is tied, rejected or unknown.
+each {\"imprint\":[\"..##\",...]}, {\"touches\":[[...],[...]]} for several touches
+of one shape, or {\"frame\":[[0,12],...],\"at_least\":10} for the values of a
+sensor with a threshold as for 'taxel batch'. Each line gets one line in return,
+which copies label, time, channel and the number of a frame; other keys are
+ignored. An imprint at the rim may be cut off and is never 'certain'. With
+--noise, even an imprint that no shape leaves gets an answer: it is compared
+with every key in every place on the matrix. With --expect, the exit status is 3
+if the answer is another shape, or is tied, rejected or unknown.
 
 Built-in models: 'figures', the seven figures in their default sizes;
 'figures-30', the same at about 30 cells each; 'shapes', those that come with
