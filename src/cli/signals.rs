@@ -49,7 +49,7 @@ impl Signals {
     ///
     /// # Errors
     /// If the system does not allow it.
-    pub(crate) fn heard() -> io::Result<Self> {
+    pub(crate) fn catch() -> io::Result<Self> {
         let (stopped, last) = (Arc::default(), Arc::default());
         for (index, &(signal, status)) in STOPPING.iter().enumerate() {
             if signal == SIGHUP && hangup_is_ignored() {

@@ -27,7 +27,7 @@ pub(crate) fn short(value: f64) -> String {
 }
 
 /// A value of the axis with its unit.
-pub(crate) fn said(axis: SizeAxis, value: f64) -> String {
+pub(crate) fn size_label(axis: SizeAxis, value: f64) -> String {
     match axis {
         SizeAxis::Pitch => format!("pitch {} mm", short(value)),
         _ => format!("scale {}", short(value)),
@@ -71,7 +71,7 @@ pub(crate) fn drawing(axis: SizeAxis, curves: &[SeparationCurve], wanted: Option
             .map(|point| (point.threshold, point.error()))
             .collect();
         let size = curves[0].points[0].value;
-        let plot = LinePlot::new("threshold", "error").with_curve(&said(axis, size), &points);
+        let plot = LinePlot::new("threshold", "error").with_curve(&size_label(axis, size), &points);
         return with_wanted(plot, wanted, &points);
     }
     let label = match axis {

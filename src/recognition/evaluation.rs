@@ -252,7 +252,10 @@ mod tests {
         assert_eq!(limit.worst_pairs().len(), usize::from(SHAPES) - 1);
         assert_eq!(limit.worst_pairs()[0], (0, 1, 1));
         assert_eq!((limit.recall(0), limit.recall(1)), (Some(1.0), Some(0.0)));
-        assert_eq!((limit.recall(1_000_000), limit.precision(1_000_000)), (None, None));
+        assert_eq!(
+            (limit.recall(1_000_000), limit.precision(1_000_000)),
+            (None, None)
+        );
         let precisions: Vec<Option<f64>> = (0..SHAPES.into())
             .map(|shape| limit.precision(shape))
             .collect();

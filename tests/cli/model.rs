@@ -1043,7 +1043,9 @@ fn what_cannot_work_is_refused_with_its_reason() {
     ] {
         refused(&place.run(line, ""), 1, message);
     }
-    place.done(&format!("model train rectangles.jsonl {COARSE} --out r.npz"));
+    place.done(&format!(
+        "model train rectangles.jsonl {COARSE} --out r.npz"
+    ));
     let noisy = "model confusion r.npz --noise 0 --touches 5 --matrix 6x6 --json";
     let run = place.run(noisy, "");
     let said = "left out, because they do not fit on 6 × 6: ";

@@ -386,7 +386,8 @@ impl Selection {
         if let Form::Table(_) = output.form {
             lines.extend(without_pitch);
         }
-        let instead = keep(&imprint, heat, frame, &titles[0], pitch, output, &mut lines)?;
+        let instead =
+            save_and_export(&imprint, heat, frame, &titles[0], pitch, output, &mut lines)?;
         let text = match (instead, output.form) {
             (Some(content), _) => content,
             (None, Form::Json(_)) => {
@@ -523,7 +524,7 @@ fn cell_size(
 ///
 /// # Errors
 /// Those of the library and of the file.
-fn keep(
+fn save_and_export(
     imprint: &Imprint,
     heat: Option<&Matrix<f64>>,
     frame: &Frame,

@@ -159,7 +159,7 @@ pub(crate) fn merge(
     } else {
         let result = sweeps(&parts, &memory)?;
         // Until here nothing is written, so a signal may simply end the program.
-        let signals = Signals::heard().map_err(CliError::System)?;
+        let signals = Signals::catch().map_err(CliError::System)?;
         let summary = leave(&result, start, wanted, None, charset, &signals)?;
         (result.atlas.len(), summary)
     };
@@ -234,7 +234,7 @@ fn models(parts: &[Part], memory: &MemoryGuard) -> Result<Model, CliError> {
 
 /// Writes a merged model, and returns what is printed.
 fn leave_model(model: &Model, wanted: &Wanted) -> Result<String, CliError> {
-    let signals = Signals::heard().map_err(CliError::System)?;
+    let signals = Signals::catch().map_err(CliError::System)?;
     if let Some(file) = &wanted.atlas {
         let saved = save_model(
             model,

@@ -63,7 +63,7 @@ pub(crate) fn degradation(
     charset: Charset,
 ) -> Result<String, CliError> {
     let given = given_of(asked, all_asked);
-    let signals = Signals::heard().map_err(CliError::System)?;
+    let signals = Signals::catch().map_err(CliError::System)?;
     let sensor = matrix(model, asked.size)?;
     check_dead(&asked.dead, &sensor)?;
     if let Some(text) = left_out(model, &sensor).filter(|_| !all_asked.quiet) {
@@ -313,7 +313,7 @@ pub(crate) fn half_step(
     asked: &ConfusionArguments,
     charset: Charset,
 ) -> Result<String, CliError> {
-    let signals = Signals::heard().map_err(CliError::System)?;
+    let signals = Signals::catch().map_err(CliError::System)?;
     let memory = MemoryGuard::new(None, "test a model of fewer shapes or coarser steps");
     let poses = model.poses() * model.shapes().len() as u64;
     let progress = Progress::new(poses, asked.quiet, charset);
@@ -356,7 +356,7 @@ pub(crate) fn touches(
 ) -> Result<String, CliError> {
     let model = model::find(&asked.model, shelf)?;
     let model = model.ready(&|poses| Progress::new(poses, asked.quiet, charset))?;
-    let signals = Signals::heard().map_err(CliError::System)?;
+    let signals = Signals::catch().map_err(CliError::System)?;
     let all = asked.runs * model.shapes().len() as u64;
     let progress = Progress::counting("runs", all, asked.quiet, charset);
     let report = |runs: u64| {

@@ -29,8 +29,8 @@ pub(crate) fn atlas(
     let Some(found) = whole(path, load_atlas(path))? else {
         return Ok(None);
     };
-    let own = Poses::of(&found.grid, found.shard);
-    if let Some(difference) = own.difference(&Poses::of(grid, shard)) {
+    let own = StudyGrid::of(&found.grid, found.shard);
+    if let Some(difference) = own.difference(&StudyGrid::of(grid, shard)) {
         return Err(foreign(path, &difference));
     }
     if found.grid.source() != grid.source() {
@@ -56,13 +56,13 @@ pub(crate) fn model(
         return Ok(None);
     };
     let grid = &training.grids()[0];
-    let own = Poses {
+    let own = StudyGrid {
         sensor: *found.sensor(),
         anchor: found.anchor(),
         ranges: *found.ranges(),
         shard: found.shard(),
     };
-    if let Some(difference) = own.difference(&Poses::of(grid, shard)) {
+    if let Some(difference) = own.difference(&StudyGrid::of(grid, shard)) {
         return Err(foreign(path, &difference));
     }
     let (mut shapes, asked) = (found.shapes().iter(), training.shapes());
@@ -119,14 +119,14 @@ fn foreign(path: &Path, reason: &str) -> CliError {
 
 /// Which poses a shard was to take, without the shapes.
 #[derive(Clone, Copy, Debug)]
-struct Poses {
+struct StudyGrid {
     sensor: Sensor,
     anchor: Anchor,
     ranges: Ranges,
     shard: Shard,
 }
 
-impl Poses {
+impl StudyGrid {
     fn of(grid: &PoseGrid, shard: Shard) -> Self {
         Self {
             sensor: *grid.sensor(),

@@ -48,7 +48,7 @@ pub(crate) fn separate(
         None => vec![usual],
     };
     let sizes = fitting(asked, &separation, &thresholds)?;
-    let signals = Signals::heard().map_err(CliError::System)?;
+    let signals = Signals::catch().map_err(CliError::System)?;
     if let Some(path) = &asked.export {
         drop(UnfinishedFile::new(path, asked.existing)?);
     }

@@ -118,7 +118,7 @@ pub(crate) fn sweep(
     charset: Charset,
 ) -> Result<String, CliError> {
     let start = Instant::now();
-    let signals = Signals::heard().map_err(CliError::System)?;
+    let signals = Signals::catch().map_err(CliError::System)?;
     let stopped = &signals.stopped;
     if let Some(file) = &wanted.atlas {
         if wanted.there == ShardFile::Resumed

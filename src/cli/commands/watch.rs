@@ -103,7 +103,7 @@ pub(crate) fn watch(
     note: &mut dyn FnMut(&str),
 ) -> Result<u8, CliError> {
     let source = FrameSource::new(&asked.source);
-    let signals = Signals::heard().map_err(CliError::System)?;
+    let signals = Signals::catch().map_err(CliError::System)?;
     let processing = processing::processing(&asked.processing)?;
     let rule = asked.processing.set_rule();
     let metadata = RecordingMetadata {

@@ -18,7 +18,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{number, percent, percent_fine};
 use crate::cli::output::plot;
 use crate::formats::json;
-use crate::formats::separation::{SeparationCurve, said, short};
+use crate::formats::separation::{SeparationCurve, short, size_label};
 use crate::formats::value::grouped;
 use crate::pose::DecimalRange;
 use crate::recognition::{SeparationPoint, SizeAxis};
@@ -117,7 +117,10 @@ fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &SeparationCurve, wanted: 
         SizeAxis::Pitch => "downwards",
         _ => "upwards",
     };
-    let (place, error) = (said(axis, smallest.point.value), smallest.point.error());
+    let (place, error) = (
+        size_label(axis, smallest.point.value),
+        smallest.point.error(),
+    );
     let mut text = format!(
         "an error of at most {wanted} is first reached at {place}: {}\n",
         percent_fine(error)

@@ -1,6 +1,6 @@
 //! What messages do on the page of sizes.
 
-use crate::formats::separation::said;
+use crate::formats::separation::size_label;
 use crate::storage::Existing;
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::Dialog;
@@ -103,7 +103,7 @@ fn put_example(app: &mut App, page: &Separate) -> bool {
     };
     let own = *page.request().trained.model.sensor();
     let (sensor, imprint) = onto(&imprint, app.history.present().sensor, own);
-    let size = said(page.request().axis, size);
+    let size = size_label(page.request().axis, size);
     put(
         app,
         sensor,

@@ -15,7 +15,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::separation::{said, short};
+use crate::formats::separation::{short, size_label};
 use crate::formats::value::{decimal, grouped};
 use crate::recognition::{SizeAxis, SmallestSize};
 use crate::tui::app::message::Message;
@@ -234,7 +234,7 @@ impl Separate {
         let line = |index| write::row(panes.detail, index);
         write::line(buffer, line(0), theme, [(wanted.as_str(), Role::Title)]);
         let Some(size) = self.selected() else { return };
-        let place = said(self.request().axis, size.point.value);
+        let place = size_label(self.request().axis, size.point.value);
         let Some(worst) = &size.worst else {
             let text = format!("{place}: no shape is taken for another one");
             write::line(buffer, line(1), theme, [(text.as_str(), Role::Text)]);
@@ -269,7 +269,7 @@ impl Separate {
             }
             Some(None) => format!("no size that was tried has an error of at most {wanted}"),
             Some(Some(smallest)) => {
-                let place = said(axis, smallest.point.value);
+                let place = size_label(axis, smallest.point.value);
                 let found = format!("at most {wanted} first at {place}{}", tried(smallest));
                 match smallest.missed_again {
                     0 => found,

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::formats::separation::said;
+use crate::formats::separation::size_label;
 use crate::memory::MemoryGuard;
 use crate::recognition::{SeparationPoint, SmallestSize, TrainingError};
 use crate::tui::app::worker_event::WorkerEvent;
@@ -96,7 +96,7 @@ fn scan(
             error => format!("{place}: {error}"),
         }
     };
-    let place = |value| sentence(said(request.axis, value));
+    let place = |value| sentence(size_label(request.axis, value));
     let set = request
         .separation()
         .map_err(sentence("the set".to_owned()))?;
