@@ -104,12 +104,14 @@ named!(FigureKind, "figure", &FigureKind::ALL);
 /// let sensor = Sensor::default();
 /// let ring = Figure::ellipse(4.0, 4.0).at(1.99, 1.47).thickness(2.0).on(&sensor)?;
 /// assert_eq!(ring.to_string(), "ellipse rx 4.00 ry 4.00 at 1.99, 1.47, 0°, wall 2.00");
+/// let hexagon = Figure::hexagon(3.0).on(&sensor)?;
+/// assert!(format!("{hexagon:?}").contains("sizes: [3.0], x0: 0.0"));
 ///
 /// let error = Figure::hexagon(16.5).on(&sensor).unwrap_err();
 /// assert_eq!(error.to_string(), "side: 16.5 is above 16 (allowed: above 0, up to 16)");
 /// # Ok::<(), ParameterError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct Figure {
     kind: FigureKind,
     /// The values of `kind.sizes()`; the second is unused where there is only one.
@@ -473,6 +475,28 @@ impl Figure {
             format!(" {} {}", parameter.row().short, parameter.format(size))
         });
         self.kind.name().to_owned() + &sizes.collect::<String>()
+    }
+}
+
+impl fmt::Debug for Figure {
+    /// With the sizes that it has only.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            kind,
+            sizes,
+            x0,
+            y0,
+            angle,
+            thickness,
+        } = self;
+        f.debug_struct("Figure")
+            .field("kind", kind)
+            .field("sizes", &&sizes[..kind.sizes().len()])
+            .field("x0", x0)
+            .field("y0", y0)
+            .field("angle", angle)
+            .field("thickness", thickness)
+            .finish()
     }
 }
 

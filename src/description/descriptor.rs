@@ -13,7 +13,20 @@ use crate::description::chain::{ChainSteps, OutlineCounts};
 use crate::description::region::{Region, RegionKind};
 use crate::imprint::{Bounds, Imprint};
 
-/// The counts and sums of one region, from which every descriptor follows.
+/// The counts and sums of one region, from which every descriptor follows. Coordinates and lengths are in cell sides,
+/// directions in degrees counter-clockwise from +x as seen on the screen.
+///
+/// ```
+/// use taxel::description::Description;
+/// use taxel::prelude::*;
+///
+/// let imprint: Imprint = ".##.\n####\n".parse()?;
+/// let regions = regions(&imprint);
+/// let own = Description::of(main_region(&regions).expect("something is active"));
+/// assert_eq!((own.na, own.area(), own.filling(), own.side_ratio()), (6, 8, 0.75, 2.0));
+/// assert_eq!(own.cg_cd_direction(), Some(90.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Description {
@@ -75,7 +88,39 @@ impl Description {
         )
     }
 
-    fn diagonals(&self) -> [f64; 2] {
+    /// P, the length of the outline.
+    pub fn p(&self) -> f64 {
+        self.steps.length()
+    }
+
+    /// F = P²/NAE.
+    pub fn f(&self) -> f64 {
+        self.p() * self.p() / f64::from(self.nae)
+    }
+
+    /// The number of taxels of the circumscribed rectangle.
+    pub fn area(&self) -> u32 {
+        self.rect.area()
+    }
+
+    /// The longer side of the rectangle divided by the shorter one.
+    pub fn side_ratio(&self) -> f64 {
+        let sides = self.sides();
+        sides.max_element() / sides.min_element()
+    }
+
+    /// NA divided by the area of the rectangle, above 0 up to 1.
+    pub fn filling(&self) -> f64 {
+        f64::from(self.na) / f64::from(self.area())
+    }
+
+    /// The distance of CG and CD.
+    pub fn cg_cd(&self) -> f64 {
+        self.cg().distance(self.cd())
+    }
+
+    /// The directions of the rectangle's two diagonals, 0 to below 180 degrees.
+    pub fn diagonals(&self) -> [f64; 2] {
         let sides = self.sides();
         let rising = libm::atan2(sides.y, sides.x).to_degrees();
         [rising, 180.0 - rising]
@@ -121,22 +166,17 @@ impl Description {
         )
     }
 
-    fn roundness(&self) -> Value {
-        let length = self.steps.length();
-        if length > 0.0 {
-            Value::Number(4.0 * PI * f64::from(self.nae) / (length * length))
-        } else {
-            Value::None
-        }
+    /// 4π·NAE/P²; None of a single taxel, whose P is 0.
+    pub fn roundness(&self) -> Option<f64> {
+        let length = self.p();
+        (length > 0.0).then(|| 4.0 * PI * f64::from(self.nae) / (length * length))
     }
 
-    fn cg_cd_direction(&self) -> Value {
+    /// The direction from CG to CD, above −180 up to 180 degrees; None if they are less than 1e-9 apart.
+    pub fn cg_cd_direction(&self) -> Option<f64> {
         let way = self.cd() - self.cg();
-        if way.length() < 1e-9 {
-            return Value::None;
-        }
         // Upwards is counter-clockwise; 0 − y rather than −y, whose zero would be negative and point to −180.
-        Value::Number(libm::atan2(0.0 - way.y, way.x).to_degrees())
+        (way.length() >= 1e-9).then(|| libm::atan2(0.0 - way.y, way.x).to_degrees())
     }
 }
 
@@ -176,6 +216,22 @@ pub enum Value {
     Pair([f64; 2]),
     /// A rectangle of whole taxels.
     Rect(Bounds),
+}
+
+impl Value {
+    /// Returns the number of a count or a number; None of what is none or several.
+    ///
+    /// ```
+    /// use taxel::description::Value;
+    /// assert_eq!((Value::Count(3).number(), Value::None.number()), (Some(3.0), None));
+    /// ```
+    pub fn number(self) -> Option<f64> {
+        match self {
+            Self::Count(count) => Some(count.into()),
+            Self::Number(number) => Some(number),
+            _ => None,
+        }
+    }
 }
 
 /// What a descriptor's number measures, and so how it converts to millimetres.
@@ -442,7 +498,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         "P",
         "outline length",
         Dimension::Length,
-        |d| Value::Number(d.steps.length()),
+        |d| Value::Number(d.p()),
         |d| Some(whole([d.steps.straight, d.steps.diagonal])),
     ),
     Descriptor::new(
@@ -450,7 +506,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         "F",
         "P²/NAE",
         Dimension::Ratio,
-        |d| Value::Number(d.steps.length() * d.steps.length() / f64::from(d.nae)),
+        |d| Value::Number(d.f()),
         |d| Some(d.exact_compactness()),
     ),
     Descriptor::new(
@@ -458,7 +514,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         "Round",
         "4π·NAE/P²",
         Dimension::Ratio,
-        Description::roundness,
+        |d| d.roundness().map_or(Value::None, Value::Number),
         |d| (d.steps != ChainSteps::default()).then(|| d.exact_compactness()),
     )
     .not_in_answers(),
@@ -488,8 +544,8 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         "Area",
         "rectangle's taxels",
         Dimension::Area,
-        |d| Value::Count(d.rect.area()),
-        |d| Some(whole([d.rect.area()])),
+        |d| Value::Count(d.area()),
+        |d| Some(whole([d.area()])),
     )
     .zero_of_nothing(Value::Count(0)),
     Descriptor::new(
@@ -506,10 +562,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         "Ratio",
         "long / short side",
         Dimension::Ratio,
-        |d| {
-            let sides = d.sides();
-            Value::Number(sides.max_element() / sides.min_element())
-        },
+        |d| Value::Number(d.side_ratio()),
         |d| {
             let [width, height] = d.whole_sides();
             direction([width.max(height), width.min(height)])
@@ -520,15 +573,15 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         "Fill",
         "NA/Area",
         Dimension::Share,
-        |d| Value::Number(f64::from(d.na) / f64::from(d.rect.area())),
-        |d| Some(ratios([i64::from(d.na), 0], i64::from(d.rect.area()))),
+        |d| Value::Number(d.filling()),
+        |d| Some(ratios([i64::from(d.na), 0], i64::from(d.area()))),
     ),
     Descriptor::new(
         "cg_cd",
         "CG-CD",
         "distance CG to CD",
         Dimension::Length,
-        |d| Value::Number(d.cg().distance(d.cd())),
+        |d| Value::Number(d.cg_cd()),
         |d| {
             let [x, y] = d.exact_cg_to_cd();
             let unit = 2 * i64::from(d.na);
@@ -540,7 +593,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         "dir",
         "direction CG to CD",
         Dimension::Direction,
-        Description::cg_cd_direction,
+        |d| d.cg_cd_direction().map_or(Value::None, Value::Number),
         |d| direction(d.exact_cg_to_cd()),
     )
     .of_orientation(true),
