@@ -4,6 +4,8 @@
 //! The ranges of a figure's lengths and positions scale with the larger side of the sensor, so the sensor checks,
 //! parses and steps values: `sensor.check(Parameter::X0, 1.99)`.
 
+use std::fmt;
+
 use crate::parameter::{Parameter, ParameterError, Range, Unit, number};
 use crate::quote::shortened;
 
@@ -25,6 +27,7 @@ pub const SENSOR_PARAMETERS: [Parameter; 4] = [
 /// use taxel::prelude::*;
 /// let sensor = Sensor::new(12, 8)?.with(Parameter::Threshold, 0.7)?;
 /// assert_eq!((sensor.columns(), sensor.rows(), sensor.threshold()), (12, 8, 0.7));
+/// assert_eq!(sensor.to_string(), "12 × 8 with threshold 0.7 and pitch 1 mm");
 /// let error = sensor.check(Parameter::X0, 12.5).unwrap_err();
 /// assert_eq!(error.to_string(), "x0: 12.5 is above 12 (allowed: -12 to 12)");
 /// # Ok::<(), ParameterError>(())
@@ -46,6 +49,21 @@ impl Default for Sensor {
             threshold: 0.5,
             pitch_mm: 1.0,
         }
+    }
+}
+
+impl fmt::Display for Sensor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            columns,
+            rows,
+            threshold,
+            pitch_mm,
+        } = self;
+        write!(
+            f,
+            "{columns} × {rows} with threshold {threshold} and pitch {pitch_mm} mm"
+        )
     }
 }
 

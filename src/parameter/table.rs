@@ -2,6 +2,7 @@
 
 use crate::parameter::number;
 use crate::parameter::range::{Bound, Range};
+use crate::parameter::unknown_name::named;
 
 /// A quantity that a user can set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -40,6 +41,11 @@ pub enum Parameter {
 }
 
 impl Parameter {
+    /// Its name: its key, as in files.
+    fn name(self) -> &'static str {
+        self.row().key
+    }
+
     /// Returns its row of [`PARAMETERS`].
     pub fn row(self) -> &'static ParameterRow {
         &PARAMETERS[self as usize]
@@ -162,6 +168,15 @@ pub struct ParameterRow {
     pub(super) high: Bound,
     pub(super) decimals: Decimals,
 }
+
+named!(
+    Parameter,
+    "parameter",
+    &PARAMETERS
+        .iter()
+        .map(|row| row.parameter)
+        .collect::<Vec<_>>()
+);
 
 impl ParameterRow {
     /// Returns what is allowed on a sensor with this larger side, wherever the value comes from.

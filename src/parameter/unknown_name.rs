@@ -89,6 +89,7 @@ mod tests {
     use crate::description::RegionKind;
     use crate::figure::FigureKind;
     use crate::formats::imprint_file::ImprintFormat;
+    use crate::parameter::PARAMETERS;
 
     fn are_read_as_written<T>(all: &[T])
     where
@@ -106,6 +107,8 @@ mod tests {
         are_read_as_written(&FigureKind::ALL);
         are_read_as_written(&[RegionKind::Exterior, RegionKind::Hole]);
         are_read_as_written(ImprintFormat::ALL);
+        let parameters = PARAMETERS.iter().map(|row| row.parameter);
+        are_read_as_written(&parameters.collect::<Vec<_>>());
         assert_eq!(format!("{:>8}", FigureKind::Hexagon), " hexagon");
     }
 }

@@ -1,6 +1,7 @@
 //! The answer to one touch, or to several of one shape.
 
 use crate::imprint::Imprint;
+use crate::parameter::named;
 use crate::recognition::model::{Model, add_log_counts};
 use crate::recognition::nearest::Nearest;
 use crate::recognition::noise::{Method, NEGLIGIBLE, Noise};
@@ -22,6 +23,15 @@ pub enum AnswerState {
 }
 
 impl AnswerState {
+    /// All of them, those that say most first.
+    pub const ALL: [Self; 5] = [
+        Self::Certain,
+        Self::Likely,
+        Self::Tied,
+        Self::Rejected,
+        Self::Unknown,
+    ];
+
     /// Returns its name in JSON and on the screen.
     pub const fn name(self) -> &'static str {
         match self {
@@ -33,6 +43,8 @@ impl AnswerState {
         }
     }
 }
+
+named!(AnswerState, "state", &AnswerState::ALL);
 
 /// The evidence: imprints of one shape in independent poses, how often taxels fail, and the least probability that is
 /// enough for an answer.

@@ -16,6 +16,7 @@ use rayon::prelude::*;
 
 use crate::atlas::{feature_values, features};
 use crate::description::{Description, Descriptor, Value};
+use crate::parameter::named;
 use crate::recognition::confusion::ConfusionMatrix;
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::given::{GivenTable, ShapeDescriptor};
@@ -71,6 +72,8 @@ impl Classifier {
             .find(|classifier| classifier.name() == name)
     }
 }
+
+named!(Classifier, "classifier", &Classifier::ALL);
 
 /// What classifiers may use, and how much of it.
 #[derive(Clone, Debug, PartialEq)]

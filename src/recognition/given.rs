@@ -90,6 +90,12 @@ impl std::str::FromStr for ShapeDescriptor {
     }
 }
 
+impl std::fmt::Display for ShapeDescriptor {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.key())
+    }
+}
+
 /// A descriptor measured in steps only: values are rounded to the nearest multiple of the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding {
@@ -114,6 +120,12 @@ impl std::str::FromStr for Rounding {
             descriptor: descriptor.parse()?,
             step,
         })
+    }
+}
+
+impl std::fmt::Display for Rounding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}={}", self.descriptor, self.step)
     }
 }
 

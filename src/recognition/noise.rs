@@ -18,6 +18,7 @@ use std::fmt;
 
 use crate::imprint::Imprint;
 use crate::index::wide;
+use crate::parameter::named;
 use crate::recognition::model::{Model, float};
 use crate::recognition::scan::{Observed, shift_count};
 
@@ -177,6 +178,9 @@ pub enum Method {
 }
 
 impl Method {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Exact, Self::OneFlip, Self::Scan];
+
     /// Returns its name in JSON.
     pub const fn name(self) -> &'static str {
         match self {
@@ -186,6 +190,8 @@ impl Method {
         }
     }
 }
+
+named!(Method, "method", &Method::ALL);
 
 /// For each shape, how many touches lie at each distance from an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,8 +5,8 @@
 //! shape is touched with its centre in one cell and at the angles asked for, on a sensor that cuts nothing off, as in a training.
 
 use crate::figure::Figure;
-use crate::parameter::Parameter;
 use crate::parameter::number::to_decimals;
+use crate::parameter::{Parameter, named};
 use crate::pose::{
     Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach, SensorSides,
 };
@@ -31,6 +31,9 @@ pub enum SizeAxis {
 }
 
 impl SizeAxis {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Scale, Self::Pitch];
+
     /// Returns its name in JSON and in tables.
     pub const fn name(self) -> &'static str {
         match self {
@@ -56,6 +59,8 @@ impl SizeAxis {
         }
     }
 }
+
+named!(SizeAxis, "axis", &SizeAxis::ALL);
 
 /// A set of shapes whose limit is computed at several sizes.
 ///

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use taxel::prelude::*;
 use taxel::recognition::{
     AnswerState, Classifier, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
-    ImprintKey, Model, ModelError, ModelMerge, ModelParts, NamedShape, Rounding, ShapeCount,
-    Training, TrainingError, greedy,
+    ImprintKey, Method, Model, ModelError, ModelMerge, ModelParts, NamedShape, Rounding,
+    ShapeCount, ShapeDescriptor, SizeAxis, Training, TrainingError, greedy,
 };
 use taxel::sweep::Shard;
 
@@ -539,4 +539,17 @@ fn sets_and_descriptors_that_make_no_sense_are_refused() {
     for text in ["cg_cd", "cg_cd=0", "cg_cd=-1", "cg_cd=x", "cg_cd=nan"] {
         assert!(text.parse::<Rounding>().is_err(), "{text}");
     }
+}
+
+#[test]
+fn names_of_recognition_are_read_as_they_are_written() {
+    fn is_read<T: Copy + ToString + std::str::FromStr + PartialEq>(all: &[T]) -> bool {
+        all.iter()
+            .all(|one| one.to_string().parse().ok() == Some(*one))
+    }
+    assert!(is_read(&Classifier::ALL) && is_read(&AnswerState::ALL));
+    assert!(is_read(&Method::ALL) && is_read(&SizeAxis::ALL));
+    assert!(is_read(&ShapeDescriptor::all().collect::<Vec<_>>()));
+    let rounding: Rounding = "cg_cd=0.01".parse().expect("a step");
+    assert_eq!(rounding.to_string(), "cg_cd=0.01");
 }

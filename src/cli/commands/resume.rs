@@ -146,22 +146,11 @@ impl StudyGrid {
             unlike(axis.name(), own.to_string(), asked.to_string())
         };
         unlike("shard", self.shard.to_string(), asked.shard.to_string())
-            .or_else(|| unlike("sensor", sensor(&self.sensor), sensor(&asked.sensor)))
+            .or_else(|| unlike("sensor", self.sensor.to_string(), asked.sensor.to_string()))
             .or_else(|| {
                 let (own, asked) = (self.anchor.name(), asked.anchor.name());
                 unlike("anchor", own.to_owned(), asked.to_owned())
             })
             .or_else(|| Axis::ALL.into_iter().find_map(axis))
     }
-}
-
-/// A sensor in a few words: `16 × 16 with threshold 0.5 and pitch 1 mm`.
-fn sensor(sensor: &Sensor) -> String {
-    format!(
-        "{} × {} with threshold {} and pitch {} mm",
-        sensor.columns(),
-        sensor.rows(),
-        sensor.threshold(),
-        sensor.pitch_mm()
-    )
 }

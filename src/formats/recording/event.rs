@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 
 use crate::formats::recording::description::{FrameMark, RecordingMetadata};
 use crate::frame::{Frame, Rule, RuleOrigin, SetRule, Tare, View};
+use crate::parameter::named;
 use crate::parameter::number::counted;
 #[cfg(feature = "tui")]
 use crate::parameter::number::short;
@@ -40,6 +41,22 @@ pub enum RecordingFormat {
 }
 
 impl RecordingFormat {
+    /// All of them.
+    pub const ALL: [Self; 12] = [
+        Self::Tekscan,
+        Self::Xsensor,
+        Self::Emed,
+        Self::Zebris,
+        Self::Csv,
+        Self::Npy,
+        Self::Npz,
+        Self::JsonLines,
+        Self::Popu,
+        Self::Ros2,
+        Self::Mcap,
+        Self::Flexitac,
+    ];
+
     /// Its name in answers.
     pub fn name(self) -> &'static str {
         match self {
@@ -68,11 +85,7 @@ impl RecordingFormat {
     }
 }
 
-impl fmt::Display for RecordingFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
+named!(RecordingFormat, "format", &RecordingFormat::ALL);
 
 /// What is known beforehand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
