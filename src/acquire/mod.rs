@@ -19,6 +19,8 @@ mod growing_file;
 
 mod followed_file;
 
+mod frame_rate;
+
 mod event;
 
 mod continued_time;
@@ -32,6 +34,8 @@ mod run;
 mod recorder;
 
 pub use event::{AcquireError, AcquireEvent, AcquireOptions};
+#[cfg(feature = "tui")]
+pub(crate) use frame_rate::FrameRate;
 pub use growing_file::ReadAnew;
 #[cfg(feature = "tui")]
 pub(crate) use recorder::name_description;

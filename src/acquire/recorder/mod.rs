@@ -15,7 +15,6 @@ mod record_array;
 
 mod description;
 
-use std::collections::VecDeque;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -27,13 +26,13 @@ pub use description::description_beside;
 pub(crate) use description::name_description;
 pub use error::RecorderError;
 
+use crate::acquire::frame_rate::FrameRate;
 use crate::formats::recording::{RecordedView, RecordingMetadata};
-use crate::formats::seconds::usual_step;
 use crate::frame::Frame;
 use crate::storage::{Existing, FinishedFile, UnfinishedFile, persist_pair};
 
-/// The step is that of the last frames, this many at most.
-const MOST_STEPS: usize = 4096;
+/// The rate is that of the last bursts, this many at most: several minutes.
+const MOST_BURSTS: usize = 4096;
 
 /// Writes frames to a file, until [`Self::finish`] ends the recording and says what went wrong.
 ///
@@ -67,10 +66,8 @@ pub struct FrameRecorder {
     left_out: u64,
     /// What went wrong first.
     reason: Option<String>,
-    /// The time of the last frame.
-    last_time: Option<f64>,
-    /// The times between the last frames.
-    steps: VecDeque<f64>,
+    /// How often frames come.
+    rate: FrameRate,
 }
 
 /// Whether array and description have their names.
@@ -121,8 +118,7 @@ impl FrameRecorder {
             names: Names::Waiting(array, description),
             left_out: 0,
             reason: None,
-            last_time: None,
-            steps: VecDeque::with_capacity(MOST_STEPS),
+            rate: FrameRate::over(MOST_BURSTS),
             array: RecordArray::new(file),
         })
     }
@@ -227,11 +223,7 @@ impl FrameRecorder {
             return Ok(());
         }
         if let Some(time) = time {
-            if self.steps.len() == MOST_STEPS {
-                self.steps.pop_front();
-            }
-            let last = self.last_time.replace(time);
-            self.steps.extend(last.map(|last| time - last));
+            self.rate.add(time);
         }
         let added = self.array.add(frame, time);
         added.map_err(|error| self.refused(error))
@@ -280,11 +272,8 @@ impl FrameRecorder {
         let synced = self.array.end();
         let synced = synced.map_err(|error| self.refused(error));
         let synced = self.noted(synced);
-        if let Some(step) = usual_step(self.steps.make_contiguous())
-            && self.metadata.seconds_per_frame.is_none()
-        {
-            self.metadata.seconds_per_frame = Some(step);
-        }
+        let stated = self.metadata.seconds_per_frame;
+        self.metadata.seconds_per_frame = stated.or_else(|| self.rate.seconds_per_frame());
         self.metadata.ended = Some(true);
         self.metadata.ended_by = self.reason.take();
         let described = self

@@ -3,14 +3,14 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use crate::formats::seconds::usual_step;
+use crate::acquire::FrameRate;
 use crate::frame::Frame;
 
 /// The memory for values, in bytes, unless another one is set.
 pub const HISTORY_BYTES: usize = 32 << 20;
 
-/// Frames that the rate is computed from, at most.
-const RATED: usize = 32;
+/// Bursts that the rate is computed from, at most: two seconds of a fast source.
+const RATED: usize = 20;
 
 /// The bytes that a frame counts for.
 pub(in crate::tui) fn bytes_of(frame: &Frame) -> usize {
@@ -38,6 +38,8 @@ pub struct FrameHistory {
     bytes: usize,
     /// No more than these are kept, but for the newest frame.
     most: usize,
+    /// How often frames come.
+    rate: FrameRate,
 }
 
 impl FrameHistory {
@@ -48,11 +50,16 @@ impl FrameHistory {
             first: 0,
             bytes: 0,
             most,
+            rate: FrameRate::over(RATED),
         }
     }
 
     /// Adds the newest frame; the oldest ones go where there is no memory for them. The newest one always stays.
     pub fn push(&mut self, frame: Arc<Frame>) {
+        match frame.time {
+            Some(time) => self.rate.add(time),
+            None => self.rate = FrameRate::over(RATED),
+        }
         self.bytes += bytes_of(&frame);
         self.frames.push_back(frame);
         while self.bytes > self.most && self.frames.len() > 1 {
@@ -91,12 +98,9 @@ impl FrameHistory {
         numbers.filter_map(|number| self.get(number))
     }
 
-    /// Frames a second, by the times of the last ones; None if they have no times, or all the same.
+    /// Frames a second, by the times of the last ones; None if they have no times, or came all at once.
     pub fn rate(&self) -> Option<f64> {
-        let frames = self.back_from(self.newest()?, RATED);
-        let times: Vec<f64> = frames.map_while(|frame| frame.time).collect();
-        let steps = times.windows(2).map(|pair| pair[0] - pair[1]);
-        usual_step(&mut steps.collect::<Vec<f64>>()).map(f64::recip)
+        self.rate.seconds_per_frame().map(f64::recip)
     }
 }
 
@@ -140,7 +144,7 @@ mod tests {
             time += 0.25;
             push(Some(time))
         });
-        assert_eq!(faster.take(RATED).last(), Some(Some(4.0)));
+        assert_eq!(faster.take(RATED + 1).last(), Some(Some(4.0)));
         assert_eq!(push(None), None, "the newest frame has no time");
     }
 }
