@@ -19,13 +19,15 @@ SHAPES = ["--shape", "disc=ellipse radius_x=3 radius_y=3", "--shape", "bar=recta
 
 
 def made_up(stream, frames=24, side=16):
-    """Writes frames of 16 x 16 values from 0 to 100: a disc that wanders, then a bar."""
-    for frame in range(frames):
+    """Writes frames of 16 x 16 values from 0 to 100: no contact, then a disc that wanders, then a bar."""
+    for frame in range(-1, frames):
         x, y = 5 + 0.2 * frame, 8.03 - 0.1 * frame
         disc = frame < frames // 2
 
         def pressed(column, row):
             right, down = column + 0.5 - x, row + 0.5 - y
+            if frame < 0:
+                return False
             return right**2 + down**2 <= 9 if disc else abs(right) <= 4.5 and abs(down) <= 1
 
         for row in range(side):
@@ -39,7 +41,7 @@ def main(source):
         model = os.path.join(folder, "model.npz")
         train = [TAXEL, "model", "train", *SHAPES, "--positions", "20", "--angle", "0:355:5", "--out", model, "--quiet"]
         subprocess.run(train, check=True, stdout=subprocess.DEVNULL)
-        watch = [TAXEL, "watch", source or "-", "--json", "--at-least", "40", "--model", model]
+        watch = [TAXEL, "watch", source or "-", "--json", "--at-least", "10", "--model", model]
         if source is None:
             watch += ["--format", "lines", "--once"]
         with subprocess.Popen(watch, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as taxel:
@@ -49,9 +51,12 @@ def main(source):
                 frame = json.loads(line)
                 if not frame["imprint"]:
                     continue
-                named, region = frame["recognition"], frame["regions"][0] if frame["regions"] else None
-                place = "nothing" if region is None else "at {:.1f}, {:.1f}".format(*region["cg"])
-                print(f"frame {frame['frame']}: {frame['na']} taxels {place}: {named['answer']} ({named['state']})", flush=True)
+                named = frame["recognition"]
+                if named is None:  # no active taxel
+                    print(f"frame {frame['frame']}: no contact", flush=True)
+                    continue
+                place = "{:.1f}, {:.1f}".format(*frame["regions"][0]["cg"])
+                print(f"frame {frame['frame']}: {frame['na']} taxels at {place}: {named['answer']} ({named['state']})", flush=True)
         return taxel.returncode
 
 

@@ -72,6 +72,14 @@ fn frames_are_named_as_they_come() {
             .count()
     };
     assert_eq!((of("disc"), of("bar")), (12, 12), "{printed}");
+    assert!(printed.starts_with("frame 0: no contact\n"), "{printed}");
+    // A recording that begins and ends without contact.
+    let recording = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/recording.csv");
+    let Some(printed) = printed_with("live.py", "json", &[recording]) else {
+        return;
+    };
+    assert!(printed.contains(": no contact\n"), "{printed}");
+    assert!(printed.contains(" taxels at "), "{printed}");
 }
 
 #[test]
