@@ -222,10 +222,10 @@ fn a_source_that_is_silent_has_no_rate() {
     let mut page = watched(3, "");
     shows(&page, &["rate       10/s"]);
     let mut batch = FrameBatch::default();
-    batch.status.state = SourceState::Silent("no frame for 2 s".to_owned());
+    batch.status.state = SourceState::Silent("no frame for more than 2 s".to_owned());
     let event = LiveEvent::Arrived(Arc::new(batch));
     page.send(Message::Worker(WorkerEvent::Live(1, event)));
-    shows(&page, &["! no frame for 2 s", "rate       –"]);
+    shows(&page, &["! no frame for more than 2 s", "rate       –"]);
     page.frames(1);
     shows(&page, &["frame 3", "rate       10/s"]);
 }

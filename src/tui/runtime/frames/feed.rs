@@ -240,7 +240,10 @@ impl FrameFeed {
                 counts,
             } => {
                 let what = counts.silence(bytes_per_second);
-                state(SourceState::Silent(format!("no frame for 2 s: {what}")))
+                // Words that stay true while the silence lasts: a page on which nothing changes sends nothing.
+                state(SourceState::Silent(format!(
+                    "no frame for more than 2 s: {what}"
+                )))
             }
             AcquireEvent::Absent(error) => {
                 let name = request.source.to_string_lossy();
