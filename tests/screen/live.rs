@@ -315,6 +315,38 @@ fn a_narrow_title_keeps_what_is_not_usual() {
 }
 
 #[test]
+fn a_narrow_title_says_that_maxima_are_shown_and_that_frames_are_recorded() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a-recording-of-the-left-hand.npy");
+    let values: Vec<f64> = (0..5 * 48 * 48).map(f64::from).collect();
+    std::fs::write(&path, array("(5, 48, 48)", false, &values)).expect("written");
+    let world = world().confined_to(folder.path().to_owned());
+    let mut page = started(world, &format!(":watch {}<Enter>", path.display()));
+    page.frames(2);
+    then(&mut page, "r", &["recording in touch-1.npy"]);
+    then(&mut page, "p", &["peak held"]);
+    page.frames(1);
+    for (size, title) in [
+        (
+            (80, 24),
+            "a-recording-of-the-left…  frame 2  recording  peak held  columns 0-47, rows 8-47",
+        ),
+        (
+            (60, 20),
+            "a-recording-of-the-left-…  frame 2  recording  peak held",
+        ),
+        ((40, 12), "a-recording-of-t…  recording  peak held"),
+    ] {
+        page.resize(size.0, size.1);
+        let screen = page.screen();
+        assert_eq!(screen.lines().nth(1), Some(title), "{screen}");
+    }
+    // A frozen frame is shown as it came.
+    page.resize(60, 20);
+    then(&mut page, "<Space>", &["frozen", "recording"]);
+}
+
+#[test]
 fn the_peak_of_each_cell_is_held() {
     let mut page = watched(1, "p");
     page.frames(7);

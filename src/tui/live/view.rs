@@ -33,6 +33,11 @@ use crate::tui::widget::write;
 /// Columns of the names of numbers.
 const LABEL: usize = 11;
 
+/// Columns that the name of the source keeps in the title when something of rank 2 to 4 is left out, and when something of
+/// rank 1 is shortened. It is shortened first: the user knows what was typed.
+const SHORT_NAME: usize = 16;
+const SHORTEST_NAME: usize = 4;
+
 /// The descriptors that are shown.
 const SHOWN: [&str; 5] = ["na", "nae", "p", "f", "cg"];
 
@@ -179,9 +184,16 @@ fn of_state(live: &Live) -> Vec<TitlePiece> {
         Some(0) => say(1, "frozen".to_owned(), Role::Focus),
         Some(back) => {
             let behind = counted(back, "frame");
-            say(1, format!("frozen, {behind} behind"), Role::Focus);
+            pieces.push(TitlePiece {
+                short: Some("  frozen".to_owned()),
+                ..TitlePiece::new(1, &format!("frozen, {behind} behind"), Role::Focus)
+            });
         }
         None => {}
+    }
+    let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, &text, role));
+    if live.recording().name().is_some() {
+        say(1, "recording".to_owned(), Role::Focus);
     }
     match (&live.status().state, live.stopped()) {
         (_, true) => say(3, "stopped".to_owned(), Role::Quiet),
@@ -197,7 +209,9 @@ fn of_state(live: &Live) -> Vec<TitlePiece> {
         say(4, format!("tare: {}", tare(live)), Role::Focus);
     }
     if live.holds_peak() {
-        say(4, "peak held".to_owned(), Role::Focus);
+        // A frame that is frozen is shown as it came.
+        let rank = if live.frozen().is_none() { 1 } else { 4 };
+        say(rank, "peak held".to_owned(), Role::Focus);
     }
     if live.is_marked() {
         say(4, "marked".to_owned(), Role::Focus);
@@ -228,23 +242,34 @@ impl TitlePiece {
     }
 }
 
-/// The title in a number of columns. The state of the source, such as that it is frozen, stays longest; then the name is
-/// shortened.
+/// The title in a number of columns. What tells how to read the numbers, such as that they are frozen or maxima, and that
+/// they are recorded, stays longest; then the name is shortened.
 fn fitting_title(mut pieces: Vec<TitlePiece>, room: usize, theme: &Theme) -> Vec<TitlePiece> {
-    let width = |pieces: &[TitlePiece]| -> usize {
-        let widths = pieces.iter().map(|piece| write::width(&piece.text));
-        widths.sum()
+    let width = |pieces: &[TitlePiece], name: usize| -> usize {
+        let mut widths = pieces.iter().map(|piece| write::width(&piece.text));
+        let name = widths.next().map_or(0, |own| own.min(name));
+        name + widths.sum::<usize>()
     };
-    while width(&pieces) > room
-        && let Some(last) = (1..pieces.len()).max_by_key(|&index| pieces[index].rank)
-        && pieces[last].rank > 1
-    {
+    while let Some(last) = (1..pieces.len()).max_by_key(|&index| {
+        let piece = &pieces[index];
+        (piece.rank, piece.short.is_some())
+    }) {
+        let rank = pieces[last].rank;
+        let name = match rank {
+            ..=1 => SHORTEST_NAME,
+            2..=4 => SHORT_NAME,
+            _ => usize::MAX,
+        };
+        if width(&pieces, name) <= room {
+            break;
+        }
         match pieces[last].short.take() {
             Some(short) => pieces[last].text = short,
-            None => drop(pieces.remove(last)),
+            None if rank > 1 => drop(pieces.remove(last)),
+            None => break,
         }
     }
-    let others = width(&pieces[1..]);
+    let others = width(&pieces, 0);
     if let Some(name) = pieces.first_mut() {
         let room = room.saturating_sub(others);
         name.text = write::fitted(&name.text, room, theme).into_owned();
