@@ -431,6 +431,29 @@ fn why_lines_of_json_are_no_frames_is_said() {
 }
 
 #[test]
+fn noise_and_greetings_before_the_first_frame_do_not_decide_the_format() {
+    let frames: String = (1..5).map(|n| format!("1 2\r\n3 {n}\r\n\r\n")).collect();
+    for greeting in [
+        &b"\xf8\x80 3\r\n"[..],
+        b"\x82l\xeel\x8c rl\r\nready\r\n\r\n",
+        "Gr\u{f6}\u{df}e 2\u{d7}2\r\n\r\n".as_bytes(),
+    ] {
+        let input = [greeting, frames.as_bytes()].concat();
+        for shape in ["", "--rows 2 --columns 2"] {
+            let run = taxel(&format!("watch - --once --at-least 4 {shape}"), &input);
+            assert_eq!(run.status, Some(0), "{}", run.stderr);
+            let sums = lines(&run.stdout);
+            let last = sums.last().expect("a frame");
+            assert_eq!((sums.len() >= 3, &last["sum"]), (true, &10.into()));
+        }
+    }
+    for input in [&b"\xff\xfe\xfd\xfc"[..], b"hello\nworld\n"] {
+        let said = refused("watch - --once", input);
+        assert!(said.contains("--format"), "{said}");
+    }
+}
+
+#[test]
 fn what_is_wrong_with_a_recording_is_called_by_its_name() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();

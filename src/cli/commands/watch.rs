@@ -546,12 +546,9 @@ impl Watcher<'_> {
     /// What cannot be decoded without rows and columns is an error.
     fn shaped(&self, counts: &StreamCounts) -> Result<(), CliError> {
         match counts.unshaped.filter(|_| counts.frames == 0) {
-            Some(0) if counts.unknown => Err(CliError::Recording {
-                name: self.name.clone(),
-                error: RecordingError::Unknown,
-            }),
+            Some(0) if counts.unknown => Err(self.unknown()),
             Some(0) => Err(self.refused(
-                "the stream does not state the size of a frame; give --rows and --columns",
+                "the stream does not state the size of a frame; give --rows and --columns, and --format if it is text",
             )),
             Some(values) => Err(CliError::Recording {
                 name: self.name.clone(),
@@ -562,6 +559,19 @@ impl Watcher<'_> {
             )),
             None => Ok(()),
         }
+    }
+
+    /// That the source has no known format: of recordings for a file, of streams for anything else.
+    fn unknown(&self) -> CliError {
+        if let FrameSource::File(_) = FrameSource::new(&self.asked.source) {
+            let name = self.name.clone();
+            let error = RecordingError::Unknown;
+            return CliError::Recording { name, error };
+        }
+        self.refused(
+            "not a stream of a known format: expected lines of numbers, JSON lines, ros2 topic echo, FlexiTac or MatSense; \
+             --format names one",
+        )
     }
 
     /// Notes how many frames have been dropped if there are more than at the last time, with the bytes of the last one.
@@ -586,13 +596,12 @@ impl Watcher<'_> {
         self.shaped(counts)?;
         self.report_dropped(counts);
         if counts.frames == 0 {
-            let name = self.name.clone();
             if counts.bytes == 0 {
+                let name = self.name.clone();
                 return Err(CliError::Empty { name });
             }
             if counts.unknown {
-                let error = RecordingError::Unknown;
-                return Err(CliError::Recording { name, error });
+                return Err(self.unknown());
             }
             let bytes = counted(counts.bytes, "byte");
             return Err(self.refused(&match &counts.reason {

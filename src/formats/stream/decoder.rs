@@ -6,26 +6,16 @@
 //! size: the frames are the same however the stream is cut. What is dropped is counted in [`StreamCounts`], with a
 //! sample of it.
 
-use crate::formats::recording::{moment, ros_text};
 use crate::formats::stream::documents::{JsonDecoder, RosDecoder};
 use crate::formats::stream::event::{StreamCounts, StreamFormat, StreamOptions, StreamSink};
 use crate::formats::stream::flexitac::FlexitacDecoder;
+use crate::formats::stream::format_search::{FormatSearch, MARK, is_numbers};
 use crate::formats::stream::lines::LinesDecoder;
 use crate::formats::stream::matsense::MatsenseDecoder;
-use crate::formats::stream::numbers;
 use crate::formats::stream::source_clock::SourceClock;
 
 /// A line of 512 × 512 values is shorter.
 const LONGEST_LINE: usize = 8 << 20;
-
-/// Bytes in which text must have the end of a line, otherwise it is not a known stream.
-const LOOKED_AT: usize = 1 << 16;
-
-/// Bytes in which two markers of the largest frames are found.
-const MARKERS_IN: usize = 3 * (512 * 512 + 2) + 3;
-
-/// What some programs put before a text.
-const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Decodes a stream, piece by piece.
 #[derive(Debug)]
@@ -257,117 +247,6 @@ impl StreamDecoder {
     }
 }
 
-/// The search for the format of a stream. It goes on where it was when more bytes come, and the answer does not depend on
-/// the pieces in which they arrive.
-///
-/// Bytes that are not text are `FlexiTac` if two markers are a frame apart, otherwise `MatSense`. The format of text
-/// is decided by the first line that only one format can have: an object, what `ros2 topic echo` prints, or numbers. The
-/// first line may be the end of another one, so numbers in it decide nothing. Text without such a line is numbers, too.
-#[derive(Clone, Debug, Default)]
-struct FormatSearch {
-    /// Up to where the bytes have been looked at.
-    seen: usize,
-    /// Where the line begins that is not ended there.
-    line: usize,
-    /// Whether another line was before it.
-    after_first: bool,
-    /// Whether the bytes are not text.
-    is_binary: bool,
-    /// Up to where no marker is followed by another one.
-    unmarked: usize,
-}
-
-impl FormatSearch {
-    /// The format of what begins with these bytes; None if more are needed.
-    fn format(
-        &mut self,
-        bytes: &[u8],
-        shape: Option<(u16, u16)>,
-        ended: bool,
-    ) -> Option<StreamFormat> {
-        if bytes.len() < MARK.len() && MARK.starts_with(bytes) && !ended {
-            return None;
-        }
-        if self.seen == 0 && bytes.starts_with(MARK) {
-            (self.seen, self.line) = (MARK.len(), MARK.len());
-        }
-        let looked_at = &bytes[..bytes.len().min(LOOKED_AT)];
-        while let Some(&byte) = looked_at.get(self.seen)
-            && !self.is_binary
-        {
-            self.seen += 1;
-            if byte == b'\n' {
-                let line = &looked_at[self.line..self.seen];
-                if let Some(format) = form_of_line(line, self.after_first) {
-                    return Some(format);
-                }
-                (self.line, self.after_first) = (self.seen, true);
-            }
-            self.is_binary = !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | b' '..=b'~');
-        }
-        if self.is_binary {
-            // Large frames need more bytes than text does.
-            return self.form_of_bytes(bytes, shape, ended);
-        }
-        let ended = ended || looked_at.len() == LOOKED_AT;
-        let last = || form_of_line(&looked_at[self.line..], self.after_first);
-        ended.then(|| last().unwrap_or(StreamFormat::Lines))
-    }
-
-    /// The format of bytes that are not text.
-    fn form_of_bytes(
-        &mut self,
-        bytes: &[u8],
-        shape: Option<(u16, u16)>,
-        ended: bool,
-    ) -> Option<StreamFormat> {
-        let has_marker = |bytes: &[u8], at: usize| bytes.get(at..at + 2) == Some(&[0xaa, 0x55]);
-        let Some((rows, columns)) = shape else {
-            let known = ended || bytes.len() >= 2;
-            return known.then_some(if has_marker(bytes, 0) {
-                StreamFormat::Flexitac
-            } else {
-                StreamFormat::Matsense
-            });
-        };
-        let period = usize::from(rows) * usize::from(columns) + 2;
-        // In two frames and a half a marker and the next would have been found.
-        let enough = (3 * period + 3).min(MARKERS_IN);
-        let ended = ended || bytes.len() >= enough;
-        let bytes = &bytes[..bytes.len().min(enough)];
-        let pair = |at: usize| has_marker(bytes, at) && has_marker(bytes, at + period);
-        // From there on, the second marker may still come.
-        let looked_at = bytes.len().saturating_sub(period + 1);
-        if (self.unmarked..looked_at).any(pair) {
-            return Some(StreamFormat::Flexitac);
-        }
-        self.unmarked = self.unmarked.max(looked_at);
-        ended.then_some(if bytes.len() < enough && has_marker(bytes, 0) {
-            StreamFormat::Flexitac
-        } else {
-            StreamFormat::Matsense
-        })
-    }
-}
-
-/// The format of text that has such a line; None if others may have it, too.
-fn form_of_line(line: &[u8], after_first: bool) -> Option<StreamFormat> {
-    match line.trim_ascii() {
-        // Bare rows, without an object: the decoder of JSON lines says what is missing.
-        [b'{', ..] | [b'[', b'[', ..] => Some(StreamFormat::JsonLines),
-        line if line == b"---" || ros_text::begins_message(line) => Some(StreamFormat::Ros2),
-        line if after_first && is_numbers(line) => Some(StreamFormat::Lines),
-        _ => None,
-    }
-}
-
-/// Whether a line holds numbers only, at least one; a moment may stand before them.
-fn is_numbers(line: &[u8]) -> bool {
-    let line = moment::leading(line).map_or(line, |(_, numbers)| numbers);
-    let mut values = Vec::new();
-    numbers::read(line, &mut values, usize::MAX).is_some() && !values.is_empty()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -392,13 +271,6 @@ mod tests {
                 assert_eq!(decoder.counts().frames, whole, "{joined}");
             }
         }
-        // Bytes without a marker are judged at last.
-        let shape = Some((512, 512));
-        let bytes = vec![7; MARKERS_IN];
-        let mut search = FormatSearch::default();
-        assert_eq!(search.format(&bytes[1..], shape, false), None);
-        let found = search.format(&bytes, shape, false);
-        assert_eq!(found, Some(StreamFormat::Matsense));
     }
 
     #[test]
@@ -421,40 +293,6 @@ mod tests {
                 decoder.finish(&mut sink);
                 let counts = decoder.counts();
                 assert_eq!((counts.frames, counts.dropped), (frames, 0), "{text}");
-            }
-        }
-    }
-
-    /// A search that went on piece by piece, and one that begins anew, give the same answer after each byte.
-    #[test]
-    fn the_form_does_not_depend_on_the_pieces() {
-        let markers = [&b"\x01\x02\xaa\x55"[..], &[9; 6], b"\xaa\x55", &[9; 9]].concat();
-        let streams: [&[u8]; 9] = [
-            b"",
-            b"\xef\xbb\xbf1 2\n3 4\n",
-            b"\xef\xbb",
-            b"version 1\n\n1 2\n",
-            b"1 2\n\n\n{\"t\":1}\n",
-            b"7]\ndata: 1\n",
-            b"1 2\n3 \xff4\n5 6\n",
-            b"ab\xaa\x55c",
-            &markers,
-        ];
-        for stream in streams {
-            for shape in [None, Some((2, 3))] {
-                let mut search = FormatSearch::default();
-                for end in 0..=stream.len() {
-                    let found = search.format(&stream[..end], shape, false);
-                    let anew = |ended| FormatSearch::default().format(&stream[..end], shape, ended);
-                    assert_eq!(found, anew(false), "{end} of {stream:?}");
-                    if found.is_some() {
-                        assert_eq!(found, anew(true), "{end} of {stream:?}");
-                        break;
-                    }
-                    // The input may end here.
-                    let found = search.clone().format(&stream[..end], shape, true);
-                    assert_eq!(found, anew(true), "{end} of {stream:?}");
-                }
             }
         }
     }

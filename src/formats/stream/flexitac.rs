@@ -15,7 +15,7 @@ use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::frame::Frame;
 
 /// What stands before each frame.
-const MARKER: [u8; 2] = [0xaa, 0x55];
+pub(super) const MARKER: [u8; 2] = [0xaa, 0x55];
 
 /// A decoder of frames behind markers.
 #[derive(Debug)]

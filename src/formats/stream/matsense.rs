@@ -35,7 +35,7 @@ enum Framing {
 }
 
 /// Parts bytes into frames of one format.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Parts {
     /// The format.
     framing: Framing,
@@ -154,7 +154,7 @@ impl Parts {
 }
 
 /// A decoder of frames with an end.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct MatsenseDecoder {
     /// Those that it may still be.
     candidates: Vec<(Parts, Vec<Vec<u8>>)>,
@@ -206,6 +206,17 @@ impl MatsenseDecoder {
                 self.decide(index, counts, sink);
             }
         }
+    }
+
+    /// Whether frames of the right length have decided which format it is.
+    pub(super) fn is_sure(&self) -> bool {
+        self.candidates.len() == 1
+    }
+
+    /// Whether there was a frame of the right length.
+    pub(super) fn has_frames(&self) -> bool {
+        let waiting = |(_, frames): &(Parts, Vec<Vec<u8>>)| !frames.is_empty();
+        self.is_sure() || self.candidates.iter().any(waiting)
     }
 
     /// The candidate that has frames enough; None before, and once it is decided.

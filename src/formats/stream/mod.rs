@@ -37,6 +37,8 @@ mod flexitac;
 
 mod matsense;
 
+mod format_search;
+
 mod decoder;
 
 pub use decoder::StreamDecoder;

@@ -1,0 +1,296 @@
+//! The search for the format of a stream, byte by byte, so that the answer does not depend on the pieces in which they
+//! arrive.
+//!
+//! - Text has the format of the first line that only one format can have: an object, what `ros2 topic echo` prints, or
+//!   numbers. The first line may be the end of another one, so numbers in it decide nothing.
+//! - Bytes that are not text may be noise before it, such as what a board sends while it starts, or a greeting in UTF-8. So
+//!   they have a format only once frames of it are found: `FlexiTac` if two markers are a frame apart, `MatSense` if frames
+//!   of the right length end as they should. Until then, two lines of one format in a row make them text.
+//!
+//! What shows none of this is taken for numbers, if it is text, and otherwise for `MatSense`: its decoder counts what it
+//! drops.
+
+use crate::formats::recording::{moment, ros_text};
+use crate::formats::stream::event::StreamFormat;
+use crate::formats::stream::flexitac::MARKER;
+use crate::formats::stream::matsense::MatsenseDecoder;
+use crate::formats::stream::numbers;
+
+/// Bytes of text in which a line must end, otherwise it is not a known stream.
+const LOOKED_AT: usize = 1 << 16;
+
+/// Bytes after which what is still not text is no noise before it.
+const NOISE: usize = 1 << 12;
+
+/// Bytes in which two markers of the largest frames are found.
+const MARKERS_IN: usize = 3 * (512 * 512 + 2) + 3;
+
+/// What some programs put before a text.
+pub(super) const MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// The search for the format of a stream. It goes on where it was when more bytes come.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FormatSearch {
+    /// Up to where the bytes have been looked at.
+    seen: usize,
+    /// Where the line begins that is not ended there.
+    line: usize,
+    /// Whether another line was before it.
+    after_first: bool,
+    /// Behind the last byte that is not of text; 0 where all are.
+    text_from: usize,
+    /// The format that the last line shows, among bytes that are not all text.
+    shown: Option<StreamFormat>,
+    /// A decoder that is tried on bytes that are not all text, if rows and columns are known.
+    trial: Option<MatsenseDecoder>,
+}
+
+impl FormatSearch {
+    /// The format of what begins with these bytes; None if more are needed.
+    pub(super) fn format(
+        &mut self,
+        bytes: &[u8],
+        shape: Option<(u16, u16)>,
+        ended: bool,
+    ) -> Option<StreamFormat> {
+        if bytes.len() < MARK.len() && MARK.starts_with(bytes) && !ended {
+            return None;
+        }
+        if self.seen == 0 && bytes.starts_with(MARK) {
+            (self.seen, self.line) = (MARK.len(), MARK.len());
+        }
+        while self.seen < bytes.len() {
+            self.seen += 1;
+            let found = self.after_byte(&bytes[..self.seen], shape);
+            if found.is_some() {
+                return found;
+            }
+        }
+        ended.then(|| self.at_end(bytes, shape))
+    }
+
+    /// The format once the last of these bytes is known.
+    fn after_byte(&mut self, bytes: &[u8], shape: Option<(u16, u16)>) -> Option<StreamFormat> {
+        let &byte = bytes.last()?;
+        let was_text = self.text_from == 0;
+        if !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | b' '..=b'~') {
+            self.text_from = bytes.len();
+        } else if byte == b'\n'
+            && let Some(format) = self.after_line(bytes)
+        {
+            return Some(format);
+        }
+        if self.text_from > 0 {
+            let new = if was_text {
+                bytes
+            } else {
+                &bytes[bytes.len() - 1..]
+            };
+            if let Some(format) = self.in_bytes(bytes, new, shape) {
+                return Some(format);
+            }
+        }
+        let is_long = bytes.len() - self.text_from >= LOOKED_AT;
+        is_long.then(|| self.of_open_line(bytes).unwrap_or(StreamFormat::Lines))
+    }
+
+    /// The format once the line is known that these bytes end with.
+    fn after_line(&mut self, bytes: &[u8]) -> Option<StreamFormat> {
+        let line = bytes[self.line..].trim_ascii();
+        let is_text = self.text_from <= self.line;
+        let form = form_of_line(line, self.after_first).filter(|_| is_text);
+        (self.line, self.after_first) = (bytes.len(), true);
+        if self.text_from == 0 || form.is_some() && form == self.shown {
+            return form;
+        }
+        if !line.is_empty() {
+            self.shown = form;
+        }
+        None
+    }
+
+    /// The format of bytes that are not all text, of which the last ones are new.
+    fn in_bytes(
+        &mut self,
+        bytes: &[u8],
+        new: &[u8],
+        shape: Option<(u16, u16)>,
+    ) -> Option<StreamFormat> {
+        let enough = shape.map_or(0, bytes_enough);
+        match shape {
+            None if bytes == MARKER => return Some(StreamFormat::Flexitac),
+            None => {}
+            Some(shape) => {
+                let before = bytes.len().checked_sub(period(shape));
+                if bytes.ends_with(&MARKER)
+                    && before.is_some_and(|end| bytes[..end].ends_with(&MARKER))
+                {
+                    return Some(StreamFormat::Flexitac);
+                }
+                let trial = self
+                    .trial
+                    .get_or_insert_with(|| MatsenseDecoder::new(shape, false));
+                trial.push(new, &mut Default::default(), &mut |_| ());
+                // Until then, bytes behind markers could still show that.
+                if bytes.len() >= enough && trial.is_sure() {
+                    return Some(StreamFormat::Matsense);
+                }
+            }
+        }
+        (self.text_from >= NOISE.max(enough)).then_some(StreamFormat::Matsense)
+    }
+
+    /// The format of a line that is not ended.
+    fn of_open_line(&self, bytes: &[u8]) -> Option<StreamFormat> {
+        let line = &bytes[self.line..];
+        form_of_line(line, self.after_first).filter(|_| self.text_from <= self.line)
+    }
+
+    /// The format of an input that has ended.
+    fn at_end(&self, bytes: &[u8], shape: Option<(u16, u16)>) -> StreamFormat {
+        let text = self.of_open_line(bytes).or(self.shown);
+        if self.text_from == 0 {
+            return text.unwrap_or(StreamFormat::Lines);
+        }
+        let is_short = shape.is_some_and(|shape| bytes.len() < bytes_enough(shape));
+        if is_short && bytes.starts_with(&MARKER) {
+            return StreamFormat::Flexitac;
+        }
+        let has_frames = self.trial.as_ref().is_some_and(MatsenseDecoder::has_frames);
+        text.filter(|_| !has_frames)
+            .unwrap_or(StreamFormat::Matsense)
+    }
+}
+
+/// Bytes from a marker to the next.
+fn period((rows, columns): (u16, u16)) -> usize {
+    MARKER.len() + usize::from(rows) * usize::from(columns)
+}
+
+/// Bytes in which a marker and the next would have been found: two frames and a half.
+fn bytes_enough(shape: (u16, u16)) -> usize {
+    (3 * period(shape) + 3).min(MARKERS_IN)
+}
+
+/// The format of text that has such a line; None if others may have it, too.
+fn form_of_line(line: &[u8], after_first: bool) -> Option<StreamFormat> {
+    match line.trim_ascii() {
+        // Bare rows, without an object: the decoder of JSON lines says what is missing.
+        [b'{', ..] | [b'[', b'[', ..] => Some(StreamFormat::JsonLines),
+        line if line == b"---" || ros_text::begins_message(line) => Some(StreamFormat::Ros2),
+        line if after_first && is_numbers(line) => Some(StreamFormat::Lines),
+        _ => None,
+    }
+}
+
+/// Whether a line holds numbers only, at least one; a moment may stand before them.
+pub(super) fn is_numbers(line: &[u8]) -> bool {
+    let line = moment::leading(line).map_or(line, |(_, numbers)| numbers);
+    let mut values = Vec::new();
+    numbers::read(line, &mut values, usize::MAX).is_some() && !values.is_empty()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The format of a whole input.
+    fn found(bytes: &[u8], shape: Option<(u16, u16)>) -> Option<StreamFormat> {
+        FormatSearch::default().format(bytes, shape, true)
+    }
+
+    #[test]
+    fn bytes_before_a_text_do_not_make_it_bytes() {
+        for noise in [
+            &b"\xf8\x80 3\r\n"[..],
+            b"\x82l\xeel\x8c\x1c\x8c\xfc\x00\x8e\x8e rl\r\nready\r\n\r\n",
+            "Größe 2×2\r\n\r\n".as_bytes(),
+            &[0xff; 300],
+        ] {
+            for (text, format) in [
+                ("1 2\r\n3 1\r\n\r\n", StreamFormat::Lines),
+                ("1,2,3,1\n1,2,3,2\n", StreamFormat::Lines),
+                ("{\"frame\":[[1,2]]}\n", StreamFormat::JsonLines),
+                ("---\ndata: [1, 2]\n---\n", StreamFormat::Ros2),
+            ] {
+                for shape in [None, Some((2, 2))] {
+                    let stream = [noise, b"\n", text.repeat(40).as_bytes()].concat();
+                    let mut search = FormatSearch::default();
+                    assert_eq!(search.format(&stream, shape, false), Some(format), "{text}");
+                    // A few lines are enough at the end of the input.
+                    let stream = [noise, b"\n", text.as_bytes()].concat();
+                    assert_eq!(found(&stream, shape), Some(format), "{text}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn bytes_have_a_format_once_their_frames_are_found() {
+        let shape = Some((2, 2));
+        let flexitac = b"\xaa\x55\x01\x02\x03\x04".repeat(9);
+        let matsense = b"\x01\x02\x03\x04\xff".repeat(9);
+        // Cells that look like numbers in lines.
+        let digits = b"\xff\n1\n2".repeat(9);
+        for (stream, format) in [
+            (flexitac, StreamFormat::Flexitac),
+            (matsense, StreamFormat::Matsense),
+            (digits, StreamFormat::Matsense),
+        ] {
+            for noise in [&b""[..], b"\xf8 boot\r\n", "Größe 2×2\r\n".as_bytes()] {
+                let stream = [noise, &stream].concat();
+                let found = FormatSearch::default().format(&stream, shape, false);
+                assert_eq!(found, Some(format), "{stream:?}");
+            }
+        }
+        // Without rows and columns, what goes on not to be text is not text.
+        let mut search = FormatSearch::default();
+        assert_eq!(search.format(&[0xff; NOISE - 1], None, false), None);
+        let found = search.format(&[0xff; NOISE], None, false);
+        assert_eq!(found, Some(StreamFormat::Matsense));
+    }
+
+    #[test]
+    fn bytes_without_a_marker_are_judged_at_last() {
+        let shape = Some((512, 512));
+        let bytes = vec![7; MARKERS_IN];
+        let mut search = FormatSearch::default();
+        assert_eq!(search.format(&bytes[1..], shape, false), None);
+        let found = search.format(&bytes, shape, false);
+        assert_eq!(found, Some(StreamFormat::Matsense));
+    }
+
+    /// A search that went on piece by piece, and one that begins anew, give the same answer after each byte.
+    #[test]
+    fn the_form_does_not_depend_on_the_pieces() {
+        let markers = [&b"\x01\x02\xaa\x55"[..], &[9; 6], b"\xaa\x55", &[9; 9]].concat();
+        let streams: [&[u8]; 9] = [
+            b"",
+            b"\xef\xbb\xbf1 2\n3 4\n",
+            b"\xef\xbb",
+            b"version 1\n\n1 2\n",
+            b"1 2\n\n\n{\"t\":1}\n",
+            b"7]\ndata: 1\n",
+            b"1 2\n3 \xff4\n5 6\n",
+            b"ab\xaa\x55c",
+            &markers,
+        ];
+        for stream in streams {
+            for shape in [None, Some((2, 3))] {
+                let mut search = FormatSearch::default();
+                for end in 0..=stream.len() {
+                    let found = search.format(&stream[..end], shape, false);
+                    let anew = |ended| FormatSearch::default().format(&stream[..end], shape, ended);
+                    assert_eq!(found, anew(false), "{end} of {stream:?}");
+                    if found.is_some() {
+                        assert_eq!(found, anew(true), "{end} of {stream:?}");
+                        break;
+                    }
+                    // The input may end here.
+                    let found = search.clone().format(&stream[..end], shape, true);
+                    assert_eq!(found, anew(true), "{end} of {stream:?}");
+                }
+            }
+        }
+    }
+}
