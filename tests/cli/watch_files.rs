@@ -454,6 +454,22 @@ fn noise_and_greetings_before_the_first_frame_do_not_decide_the_format() {
 }
 
 #[test]
+fn why_lines_of_numbers_are_no_frames_is_said() {
+    let timed = "50,1,2,3,1\n100,1,2,3,2\n150,1,2,3,3\n";
+    let said = refused("watch - --once --rows 2 --columns 2", timed);
+    let expected = "35 bytes but no frame; the last line: 5 numbers, expected 4 for a frame of 2 x 2, or 2 for a row";
+    assert!(said.contains(expected), "{said}");
+    for (line, text) in [
+        ("watch - --once", "1,2\r3,4\r\r5,6\r7,8\r"),
+        ("watch - --once --rows 2 --columns 2", "1,2,3,4\r5,6,7,8\r"),
+    ] {
+        let said = refused(line, text);
+        let expected = "bytes but no frame; the last line: ends in CR alone, expected LF or CR LF";
+        assert!(said.contains(expected), "{said}");
+    }
+}
+
+#[test]
 fn what_is_wrong_with_a_recording_is_called_by_its_name() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();

@@ -104,7 +104,7 @@ fn is_number(line: &[u8]) -> bool {
 }
 
 /// Whether the lines of a text end in CR alone, as on the first Macintosh computers.
-fn is_parted_by_cr(text: &[u8]) -> bool {
+pub(crate) fn is_parted_by_cr(text: &[u8]) -> bool {
     let ends_before = text.iter().rev().skip(1).any(|&byte| byte == b'\r');
     ends_before && !text.contains(&b'\n') && !text.contains(&0)
 }

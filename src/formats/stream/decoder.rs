@@ -6,6 +6,7 @@
 //! size: the frames are the same however the stream is cut. What is dropped is counted in [`StreamCounts`], with a
 //! sample of it.
 
+use crate::formats::recording::is_parted_by_cr;
 use crate::formats::stream::documents::{JsonDecoder, RosDecoder};
 use crate::formats::stream::event::{StreamCounts, StreamFormat, StreamOptions, StreamSink};
 use crate::formats::stream::flexitac::FlexitacDecoder;
@@ -161,6 +162,12 @@ impl StreamDecoder {
     pub fn finish(&mut self, sink: &mut StreamSink<'_>) {
         self.look(true, sink);
         let torn = std::mem::take(&mut self.bytes);
+        if self.first && is_parted_by_cr(&torn) {
+            self.counts.drop_frames(1, &torn);
+            let reason = "ends in CR alone, expected LF or CR LF";
+            self.counts.reason = Some(reason.to_owned());
+            return;
+        }
         let torn = self.without_mark(&torn);
         match &mut self.state {
             State::Lines(decoder) => decoder.finish(torn, &mut self.counts, sink),

@@ -8,6 +8,7 @@
 //! 7 3
 //!
 //! 2024-05-01 12:00:00.25,0,12,7,3     a moment at the beginning of a frame's first line is its time
+//! # frame 7       a comment, wherever it stands
 //! ```
 //! Of a stream from its beginning, such as a file, the first block may be a frame, or the end of one: its rows and columns
 //! are those of all frames unless the next two blocks agree on more rows. It is provisional until then.
@@ -21,6 +22,7 @@ use crate::formats::stream::numbers;
 use crate::formats::stream::size::FrameSize;
 use crate::formats::stream::source_clock::SourceClock;
 use crate::frame::{Frame, MAX_FRAME_SIDE};
+use crate::parameter::number::counted;
 
 /// The most values of a frame.
 const MOST: usize = 512 * 512;
@@ -53,6 +55,8 @@ pub(super) struct LinesDecoder {
     broken: bool,
     /// What that row looks like.
     broken_row: Vec<u8>,
+    /// How many numbers it has; None if there is anything else in it, or nothing is wrong with it.
+    broken_count: Option<usize>,
     /// Whether there was an empty line.
     parted: bool,
     /// What the lines are, as far as is known.
@@ -93,6 +97,7 @@ impl LinesDecoder {
             clock,
             broken: false,
             broken_row: Vec::new(),
+            broken_count: None,
             parted: false,
             kind: match shape {
                 Some((1, _)) => LineKind::Frame,
@@ -110,8 +115,12 @@ impl LinesDecoder {
         counts: &mut StreamCounts,
         sink: &mut StreamSink<'_>,
     ) {
-        if line.trim_ascii().is_empty() {
+        let trimmed = line.trim_ascii();
+        if trimmed.is_empty() {
             self.boundary(counts, sink);
+            return;
+        }
+        if trimmed.starts_with(b"#") {
             return;
         }
         let (moment, line) = match moment::leading(line) {
@@ -151,8 +160,9 @@ impl LinesDecoder {
         {
             self.values.truncate(before);
             self.size.pass_torn();
+            self.broken_count = read.and(Some(count));
             if std::mem::replace(&mut self.begun, true) {
-                counts.drop_frames(1, line);
+                self.lose(1, line, counts);
             }
             return;
         }
@@ -170,6 +180,7 @@ impl LinesDecoder {
             if !self.broken {
                 self.broken_row.clear();
                 self.broken_row.extend(line.iter().take(64));
+                self.broken_count = read.and(Some(count));
             }
             self.broken = true;
             // None of a size that has been met is as high.
@@ -180,6 +191,7 @@ impl LinesDecoder {
         } else if self.rows == 1 {
             self.broken_row.clear();
             self.broken_row.extend(line.iter().take(64));
+            self.broken_count = None;
         }
     }
 
@@ -188,7 +200,7 @@ impl LinesDecoder {
         if self.rows > 0 && self.begun {
             // Without an empty line so far, those before it were frames, too.
             let lost = if self.parted { 1 } else { self.rows };
-            counts.drop_frames(lost.into(), &self.broken_row);
+            self.lose(lost.into(), &self.broken_row, counts);
         }
         self.kind = LineKind::Frame;
         self.size.pass_torn();
@@ -204,12 +216,29 @@ impl LinesDecoder {
         self.parted && count.is_some() && count == columns
     }
 
+    /// Counts frames that are dropped, with a sample, and why if rows and columns were named and a line has another number of
+    /// numbers.
+    fn lose(&self, frames: u64, sample: &[u8], counts: &mut StreamCounts) {
+        counts.drop_frames(frames, sample);
+        let named = self.size.named().zip(self.broken_count);
+        counts.reason = named.map(|((rows, columns), found)| {
+            let found = counted(found as u64, "number");
+            let cells = u32::from(rows) * u32::from(columns);
+            match rows {
+                1 => format!("{found}, expected {cells}"),
+                _ => format!(
+                    "{found}, expected {cells} for a frame of {rows} x {columns}, or {columns} for a row"
+                ),
+            }
+        });
+    }
+
     /// Counts a broken line at once where no empty line parts frames, as far as is known.
     fn give_up(&mut self, line: &[u8], counts: &mut StreamCounts) {
         let is_full = |(rows, _)| self.rows > rows;
         if self.size.named().is_some_and(is_full) || self.rows > MAX_FRAME_SIDE {
             if self.begun {
-                counts.drop_frames(1, line);
+                self.lose(1, line, counts);
             }
             self.clear();
             self.begun = true;
@@ -232,7 +261,7 @@ impl LinesDecoder {
             self.block(own, counts, sink);
         } else {
             self.size.pass_torn();
-            counts.drop_frames(1, &self.broken_row);
+            self.lose(1, &self.broken_row, counts);
         }
         self.clear();
     }
@@ -325,6 +354,7 @@ impl LinesDecoder {
         if !torn.trim_ascii().is_empty() {
             self.rows = self.rows.saturating_add(1);
             self.broken = true;
+            self.broken_count = None;
             self.broken_row = torn.iter().take(64).copied().collect();
         }
         // Lines and nothing else: of frames, or rows of a single one.
@@ -465,6 +495,35 @@ mod tests {
         // The comma may be a decimal sign.
         let unclear = "12:00:00,125 1 2 3 4\n";
         assert_eq!(times(unclear, Some((2, 2))), (Vec::new(), 1));
+    }
+
+    #[test]
+    fn comments_cost_no_frame() {
+        let frame = "# frame 7\n1 2\n # rows\n3 4\n\n";
+        assert_eq!(decoded(&frame.repeat(4), None), (vec![(2, 2, 1.0); 4], 0));
+        let lines = "# two frames\n1,2,3,4\n# and one\n1,2,3,4\n";
+        let found = (vec![(2, 2, 1.0); 2], 0);
+        assert_eq!(decoded(lines, Some((2, 2))), found);
+    }
+
+    #[test]
+    fn a_line_of_another_length_is_said_to_be_one_where_rows_and_columns_were_named() {
+        let reason = |text: &str, shape| {
+            let mut decoder = LinesDecoder::new(shape, true, SourceClock::default());
+            let mut counts = StreamCounts::default();
+            for line in text.lines() {
+                decoder.line(line.as_bytes(), &mut counts, &mut |_| ());
+            }
+            decoder.finish(b"", &mut counts, &mut |_| ());
+            counts.reason
+        };
+        let timed = "50,1,2,3,1\n100,1,2,3,2\n150,1,2,3,3\n";
+        let expected = "5 numbers, expected 4 for a frame of 2 x 2, or 2 for a row";
+        assert_eq!(reason(timed, Some((2, 2))).as_deref(), Some(expected));
+        let expected = "5 numbers, expected 4";
+        assert_eq!(reason(timed, Some((1, 4))).as_deref(), Some(expected));
+        assert_eq!(reason("1 2\n1\n\n", None), None);
+        assert_eq!(reason("1 x\n1 2\n\n", Some((2, 2))), None);
     }
 
     #[test]
