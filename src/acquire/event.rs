@@ -59,9 +59,9 @@ pub enum AcquireEvent<'a> {
     Frame {
         /// The frame.
         frame: &'a Frame,
-        /// Its time in seconds: its own, or, from a device, a pipe or a connection, that of its arrival since the first
-        /// frame; None otherwise. After a gap the time goes on growing, even if the source's own clock restarted; if a
-        /// recording is repeated, times begin again.
+        /// Its time in seconds: its own, or that of its arrival since the first frame that arrived; None of a frame that was in
+        /// a file already. After a gap the time goes on growing, even if the source's own clock restarted; if a recording is
+        /// repeated, times begin again.
         time: Option<f64>,
     },
     /// A frame that is shown but not kept, until what follows it confirms it.

@@ -22,9 +22,15 @@ pub(super) struct Growth {
     /// Its bytes when it was opened.
     length: u64,
     has_grown: Cell<bool>,
+    has_caught_up: Cell<bool>,
 }
 
 impl Growth {
+    /// Whether all that was in it has been read, so that what comes now arrives.
+    pub(super) fn has_caught_up(&self) -> bool {
+        self.has_caught_up.get()
+    }
+
     /// Whether it has become longer since it was opened, or is another file by now.
     pub(super) fn has_grown(&self) -> bool {
         if !self.has_grown.get() {
@@ -71,6 +77,7 @@ pub(super) fn open(path: &Path) -> io::Result<(GrowingFile, Growth)> {
         length: file.metadata()?.len(),
         file: file.try_clone()?,
         has_grown: Cell::new(false),
+        has_caught_up: Cell::new(false),
     };
     Ok((GrowingFile::new(path, file), growth))
 }
@@ -115,6 +122,7 @@ impl Read for FollowedFile<'_> {
             if !self.growth.has_grown() && !self.growth.was_just_changed() {
                 break;
             }
+            self.growth.has_caught_up.set(true);
             if (self.waiting)().is_break() {
                 self.end = Some(FollowEnd::Stopped);
             }

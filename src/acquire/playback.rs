@@ -16,6 +16,7 @@ use crate::formats::recording::{
     ChannelChoice, ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingFormat,
     RecordingInput, RecordingMetadata, RecordingNote, format_of, read_as, recognised_input,
 };
+use crate::formats::seconds::to_nanoseconds;
 use crate::formats::stream::StreamCounts;
 use crate::frame::Frame;
 
@@ -186,6 +187,21 @@ struct Round<'a> {
     times: ContinuedTime,
     /// Whether the file grows, if it is followed.
     growth: Option<&'a Growth>,
+    /// When the first frame arrived that has no time of its own.
+    first_arrival: Option<Instant>,
+}
+
+impl Round<'_> {
+    /// The time of a frame, given its own: that of its arrival if it has none and was not in the file before.
+    fn time_of(&mut self, own: Option<f64>) -> Option<f64> {
+        let now = Instant::now();
+        if let Some(own) = own {
+            return Some(self.times.of(own, now));
+        }
+        self.growth.filter(|growth| growth.has_caught_up())?;
+        let first = *self.first_arrival.get_or_insert(now);
+        Some(to_nanoseconds((now - first).as_secs_f64()))
+    }
 }
 
 impl Player<'_, '_> {
@@ -284,7 +300,7 @@ impl Player<'_, '_> {
                     let own = frame.time;
                     let given_up =
                         !self.options.once && pace.wait(frame, self.stop, consumer).is_break();
-                    let time = own.map(|own| round.times.of(own, Instant::now()));
+                    let time = round.time_of(own);
                     if round.first > 0 {
                         renumbered.copy_from(frame);
                         renumbered.number += round.first;
@@ -328,7 +344,6 @@ fn description_of(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::seconds::to_nanoseconds;
 
     #[test]
     fn only_frames_of_the_channel_that_is_watched_are_waited_for() {

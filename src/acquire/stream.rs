@@ -28,7 +28,7 @@ const TICK: Duration = Duration::from_millis(100);
 struct StreamClock {
     /// Whether a frame without a time of its own has that of its arrival.
     timed: bool,
-    /// When the first frame came.
+    /// When the first such frame came.
     first: Option<Instant>,
     last_frame: Instant,
     last_tick: Instant,
@@ -44,7 +44,7 @@ impl StreamClock {
     fn new(source: &FrameSource, options: &AcquireOptions) -> Self {
         let now = Instant::now();
         Self {
-            // The time of arrival means nothing for a file.
+            // What is in a file already has arrived at some other time.
             timed: !options.once && !matches!(source, FrameSource::File(_)),
             first: None,
             last_frame: now,
@@ -82,6 +82,8 @@ pub(super) fn run(
     while !stop.load(Ordering::Relaxed) {
         let lost = match input.read(&mut bytes) {
             Ok(ReadOutcome::Bytes(count)) => {
+                // All that was in a file has been read.
+                clock.timed |= count == 0 && !options.once;
                 match decode(&mut decoder, &bytes[..count], &mut clock, consumer) {
                     ControlFlow::Continue(()) => continue,
                     ControlFlow::Break(()) => return Ok(()),
@@ -251,10 +253,11 @@ fn report(
             let now = Instant::now();
             clock.last_frame = now;
             clock.frame_came = true;
-            let arrived = now - *clock.first.get_or_insert(now);
-            let arrived = clock.timed.then(|| to_nanoseconds(arrived.as_secs_f64()));
             let own = frame.time.map(|own| clock.times.of(own, now));
-            let time = own.or(arrived);
+            let time = own.or_else(|| {
+                let first = clock.timed.then(|| *clock.first.get_or_insert(now))?;
+                Some(to_nanoseconds((now - first).as_secs_f64()))
+            });
             consumer(AcquireEvent::Frame { frame, time })
         }
         StreamEvent::Provisional(frame) => consumer(AcquireEvent::Provisional(frame)),

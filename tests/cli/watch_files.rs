@@ -319,6 +319,48 @@ fn a_channel_that_is_not_there_is_refused_and_one_of_a_stream_is_said() {
     assert_eq!(run.stderr, said);
 }
 
+#[test]
+fn only_frames_that_arrive_in_a_growing_file_have_the_time_of_their_arrival() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for flags in [&["--format", "lines"][..], &[]] {
+        let file = folder.path().join("g.txt");
+        fs::write(&file, stream(0..3)).expect("written");
+        let target = folder.path().join(format!("touch-{}.npy", flags.len()));
+        let arguments = ["watch", file.to_str().expect("UTF-8"), "--write"];
+        let target = target.to_str().expect("UTF-8");
+        let mut child = started(&[&arguments[..], &[target], flags].concat());
+        let mut output = BufReader::new(child.stdout.take().expect("piped"));
+        let mut time = || {
+            let mut answer = String::new();
+            output.read_line(&mut answer).expect("it answers");
+            lines(&answer)[0]["time"].clone()
+        };
+        assert_eq!(
+            [time(), time(), time()],
+            [Value::Null, Value::Null, Value::Null]
+        );
+        let mut grown = fs::File::options()
+            .append(true)
+            .open(&file)
+            .expect("opened");
+        let mut last = -1.0;
+        for number in 3..6 {
+            // Until it has read all.
+            std::thread::sleep(std::time::Duration::from_millis(300));
+            let added = grown.write_all(stream(number..number + 1).as_bytes());
+            added.expect("written");
+            let time = time().as_f64().expect("a time");
+            assert!(
+                time == 0.0 && number == 3 || time >= last + 0.2,
+                "{time} after {last}"
+            );
+            last = time;
+        }
+        child.kill().expect("it is killed");
+        assert_eq!(finish(child, b"").stderr, "");
+    }
+}
+
 /// A limit of the system in place of a full disk: the last record that is begun is torn by it.
 #[test]
 fn a_recording_that_has_no_more_room_ends_with_its_last_whole_record() {
