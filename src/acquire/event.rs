@@ -53,7 +53,7 @@ impl Default for AcquireOptions {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum AcquireEvent<'a> {
-    /// A channel of a recording, before its first frame.
+    /// A channel of a recording, or of a stream that names channels, before its first frame.
     Channel(&'a ChannelInfo),
     /// A whole frame.
     Frame {

@@ -260,6 +260,7 @@ fn report(
             });
             consumer(AcquireEvent::Frame { frame, time })
         }
+        StreamEvent::Channel(info) => consumer(AcquireEvent::Channel(info)),
         StreamEvent::Provisional(frame) => consumer(AcquireEvent::Provisional(frame)),
         StreamEvent::Withdrawn => consumer(AcquireEvent::Withdrawn),
     }

@@ -320,6 +320,48 @@ fn a_channel_that_is_not_there_is_refused_and_one_of_a_stream_is_said() {
 }
 
 #[test]
+fn the_channels_of_json_lines_are_chosen_by_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("two.jsonl");
+    let path = file.to_str().expect("UTF-8");
+    let line = |channel: &str, value: u32| {
+        format!("{{\"channel\":\"{channel}\",\"frame\":[[{value},1]]}}\n")
+    };
+    let input: String = (0..6)
+        .map(|n| line("left", n) + &line("right", 100 + n))
+        .collect();
+    fs::write(&file, &input).expect("written");
+    let all_of = format!("frames {path} --all --at-least 9");
+    for (command, input) in [
+        ("watch -", input.as_str()),
+        (&format!("watch {path} --once"), ""),
+        (&all_of, ""),
+    ] {
+        let told = refused(command, input);
+        assert!(
+            told.contains("choose one with --channel: left, right"),
+            "{command}: {told}"
+        );
+        let run = taxel(&format!("{command} --json --channel right"), input);
+        let found = lines(&run.stdout);
+        assert_eq!(
+            (run.status, found.len()),
+            (Some(0), 6),
+            "{command}: {}",
+            run.stderr
+        );
+        assert_eq!(
+            (&found[5]["frame"], &found[5]["sum"]),
+            (&5.into(), &106.into())
+        );
+        assert_eq!(found[5]["channel"], "right");
+        let told = refused(&format!("{command} --channel up"), input);
+        let expected = "no channel is called \"up\", expected one of left, right";
+        assert!(told.contains(expected), "{command}: {told}");
+    }
+}
+
+#[test]
 fn only_frames_that_arrive_in_a_growing_file_have_the_time_of_their_arrival() {
     let folder = tempfile::tempdir().expect("a folder");
     for flags in [&["--format", "lines"][..], &[]] {

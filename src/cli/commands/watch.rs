@@ -629,7 +629,14 @@ impl Watcher<'_> {
         }
         // A stream has said so already.
         if failure.is_none() && ended_well && !self.begun {
-            failure = Some(self.refused("no frames"));
+            let asked = self.asked.processing.channel.as_deref();
+            let names: Vec<&str> = self.choice.names().iter().map(String::as_str).collect();
+            failure = Some(match asked {
+                Some(asked) if !names.is_empty() && !names.contains(&asked) => {
+                    self.refused(&no_channel(asked, &names))
+                }
+                _ => self.refused("no frames"),
+            });
         }
         let left_out = self.recorder.as_ref().map_or(0, FrameRecorder::left_out);
         if left_out > 0 {

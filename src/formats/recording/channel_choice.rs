@@ -2,7 +2,7 @@
 
 use crate::formats::recording::event::ChannelInfo;
 
-/// The channel that was asked for, or else the first one. A stream has no channels: all its frames are taken then.
+/// The channel that was asked for, or else the first one. A stream without channels has all its frames taken.
 #[derive(Clone, Debug, Default)]
 pub struct ChannelChoice {
     /// The name that was asked for.

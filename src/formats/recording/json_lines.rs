@@ -2,14 +2,18 @@
 //! ```text
 //! {"t": 0.00, "frame": [[0, 12], [null, 3]]}
 //! {"t": 0.05, "frame": [0, 13, null, 4], "label": 7}
+//! {"t": 0.05, "frame": [[5, 6], [7, 8]], "channel": "left"}
 //! ```
 //! Frames are lists of rows, or lists of cells where rows and columns are known beforehand. `t` or `time` is in seconds
-//! and counts from the first one; `label` is a whole number; other keys are passed over. All frames have one size.
+//! and counts from the first one; `label` is a whole number; `channel` is the name, or the number, of one of several
+//! sensors; other keys are passed over. All frames of a channel have one size.
 //! Refused, with line and column: rows of different lengths, lists within cells, infinite values, two frames, times
 //! or labels in one line.
 
 use std::fmt;
 use std::io::BufRead;
+
+use serde_json::Value;
 
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
@@ -23,6 +27,12 @@ use crate::formats::seconds::since;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::parameter::number::counted;
 
+/// No recording and no stream has more channels.
+pub(crate) const MOST_CHANNELS: usize = 256;
+
+/// No channel has a longer name, in bytes.
+const LONGEST_NAME: usize = 1024;
+
 /// Reads a recording.
 pub(super) fn read(
     input: impl BufRead,
@@ -32,7 +42,8 @@ pub(super) fn read(
     let mut lines = TextLines::new(input);
     let mut line = FrameLine::new(options.shape);
     let mut start = None;
-    let mut shape = None;
+    // The name of each channel, the size of its frames, and how many there are.
+    let mut channels: Vec<(Option<String>, (u16, u16), u64)> = Vec::new();
     let mut frame = Frame::new(1, 1);
     while lines.advance_to_content()? {
         let number = lines.number();
@@ -42,24 +53,30 @@ pub(super) fn read(
             }
             FrameLineError::Shape(values) => RecordingError::Shape { values },
         })?;
-        let (rows, columns) = line.shape;
-        if shape.is_none() {
-            shape = Some(line.shape);
-            let info = ChannelInfo {
-                shape,
-                ..ChannelInfo::default()
-            };
-            if sink(RecordingEvent::Channel(&info)).is_break() {
+        let known = channels.iter().position(|(name, ..)| *name == line.channel);
+        if known.is_none() {
+            if channels.len() == MOST_CHANNELS {
+                let message = format!("more than {MOST_CHANNELS} channels");
+                return Err(RecordingError::in_line(number, message));
+            }
+            channels.push((line.channel.clone(), line.shape, 0));
+            if sink(RecordingEvent::Channel(&line.channel_info())).is_break() {
                 break;
             }
         }
-        if let Some((first_rows, first_columns)) = shape.filter(|own| *own != line.shape) {
+        frame.channel = known.unwrap_or(channels.len() - 1);
+        let (_, size, count) = &mut channels[frame.channel];
+        let (rows, columns) = line.shape;
+        if *size != line.shape {
             let found = counted(rows, "row");
+            let (first_rows, first_columns) = *size;
             let message = format!(
                 "found {found} of {columns}, expected {first_rows} of {first_columns} as before"
             );
             return Err(RecordingError::in_line(number, message));
         }
+        frame.number = *count;
+        *count += 1;
         frame.reset(columns, rows);
         frame.values_mut().copy_from_slice(&line.values);
         frame.time = line
@@ -69,7 +86,6 @@ pub(super) fn read(
         if sink(RecordingEvent::Frame(&frame)).is_break() {
             break;
         }
-        frame.number += 1;
     }
     Ok(())
 }
@@ -87,6 +103,8 @@ pub(crate) struct FrameLine {
     pub(crate) time: Option<f64>,
     /// What the recording calls the frame.
     pub(crate) label: Option<i64>,
+    /// The sensor that it is of, where there are several.
+    pub(crate) channel: Option<String>,
 }
 
 /// Why a line is not a frame.
@@ -125,13 +143,23 @@ impl FrameLine {
             values: Vec::new(),
             time: None,
             label: None,
+            channel: None,
+        }
+    }
+
+    /// The channel of the line, if this is its first frame.
+    pub(crate) fn channel_info(&self) -> ChannelInfo {
+        ChannelInfo {
+            name: self.channel.clone(),
+            shape: Some(self.shape),
+            ..ChannelInfo::default()
         }
     }
 
     /// Reads a line.
     pub(crate) fn read(&mut self, line: &[u8]) -> Result<(), FrameLineError> {
         self.values.clear();
-        (self.time, self.label) = (None, None);
+        (self.time, self.label, self.channel) = (None, None, None);
         let mut rows = 0;
         let mut content = serde_json::Deserializer::from_slice(line);
         let read = ObjectSeed(self, &mut rows)
@@ -200,7 +228,7 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
-        let (mut frame, mut time, mut label) = (None, None, None);
+        let (mut frame, mut time, mut label, mut channel) = (None, None, None, None);
         while let Some(key) = map.next_key::<std::borrow::Cow<'de, str>>()? {
             match &*key {
                 "frame" => {
@@ -216,6 +244,10 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
                     once(&mut label, "label")?;
                     self.0.label = map.next_value()?;
                 }
+                "channel" => {
+                    once(&mut channel, "channel")?;
+                    self.0.channel = channel_name(&map.next_value()?)?;
+                }
                 _ => drop(map.next_value::<IgnoredAny>()?),
             }
         }
@@ -224,6 +256,27 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
         }
         Ok(())
     }
+}
+
+/// The name of a channel; a number is a name, too, and null is none.
+fn channel_name<E: Error>(value: &Value) -> Result<Option<String>, E> {
+    let name = match value {
+        Value::Null => return Ok(None),
+        Value::String(name) => name.clone(),
+        Value::Number(number) if !number.is_f64() => number.to_string(),
+        _ => {
+            return Err(E::custom(
+                "\"channel\" is neither a name nor a whole number",
+            ));
+        }
+    };
+    if name.is_empty() || name.len() > LONGEST_NAME {
+        let length = name.len();
+        return Err(E::custom(format!(
+            "\"channel\" is a name of {length} bytes, expected 1 to {LONGEST_NAME}"
+        )));
+    }
+    Ok(Some(name))
 }
 
 /// Notes the key that gave a value.

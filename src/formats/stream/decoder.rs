@@ -6,8 +6,10 @@
 //! size: the frames are the same however the stream is cut. What is dropped is counted in [`StreamCounts`], with a
 //! sample of it.
 
+use std::mem::take;
+
 use crate::formats::recording::is_parted_by_cr;
-use crate::formats::stream::documents::{JsonDecoder, RosDecoder};
+use crate::formats::stream::documents::{JsonChannels, JsonDecoder, RosDecoder};
 use crate::formats::stream::event::{StreamCounts, StreamFormat, StreamOptions, StreamSink};
 use crate::formats::stream::flexitac::FlexitacDecoder;
 use crate::formats::stream::format_search::{FormatSearch, MARK, is_numbers};
@@ -37,6 +39,8 @@ pub struct StreamDecoder {
     torn: bool,
     /// The clock of the source, from the last decoder.
     clock: SourceClock,
+    /// The channels of the source, from the last decoder.
+    channels: JsonChannels,
 }
 
 /// What decodes the next bytes.
@@ -70,6 +74,7 @@ impl StreamDecoder {
             first: true,
             torn: !options.from_start,
             clock: SourceClock::default(),
+            channels: JsonChannels::default(),
         };
         if let Some(format) = options.format {
             decoder.begin(format, options.from_start);
@@ -111,11 +116,13 @@ impl StreamDecoder {
     fn reset(&mut self, format: Option<StreamFormat>, from_start: bool) {
         self.bytes.clear();
         (self.skipping, self.first, self.torn) = (false, true, !from_start);
-        self.clock = match &self.state {
-            State::Lines(decoder) => decoder.clock,
-            State::Json(decoder) => decoder.clock,
-            _ => self.clock,
-        };
+        match &mut self.state {
+            State::Lines(decoder) => self.clock = decoder.clock,
+            State::Json(decoder) => {
+                (self.clock, self.channels) = (decoder.clock, take(&mut decoder.channels));
+            }
+            _ => {}
+        }
         self.state = State::Looking(FormatSearch::default());
         self.options.from_start = from_start;
         if let Some(format) = format {
@@ -128,7 +135,9 @@ impl StreamDecoder {
         let (shape, clock) = (self.options.shape, self.clock);
         self.state = match (format, shape) {
             (StreamFormat::Lines, _) => State::Lines(LinesDecoder::new(shape, from_start, clock)),
-            (StreamFormat::JsonLines, _) => State::Json(JsonDecoder::new(shape, clock)),
+            (StreamFormat::JsonLines, _) => {
+                State::Json(JsonDecoder::new(shape, take(&mut self.channels), clock))
+            }
             (StreamFormat::Ros2, _) => State::Ros(RosDecoder::new(shape, from_start)),
             (StreamFormat::Flexitac, Some(shape)) => {
                 State::Flexitac(FlexitacDecoder::new(shape, from_start))
@@ -161,7 +170,7 @@ impl StreamDecoder {
     /// The end of the input: what is whole is given, what is not is counted.
     pub fn finish(&mut self, sink: &mut StreamSink<'_>) {
         self.look(true, sink);
-        let torn = std::mem::take(&mut self.bytes);
+        let torn = take(&mut self.bytes);
         if self.first && is_parted_by_cr(&torn) {
             self.counts.drop_frames(1, &torn);
             let reason = "ends in CR alone, expected LF or CR LF";
@@ -188,14 +197,14 @@ impl StreamDecoder {
         while let Some(end) = rest.iter().position(|&byte| byte == b'\n') {
             let (line, after) = (&rest[..end], &rest[end + 1..]);
             rest = after;
-            if std::mem::take(&mut self.skipping) {
+            if take(&mut self.skipping) {
                 self.bytes.clear();
                 continue;
             }
             if self.bytes.is_empty() {
                 self.line(line, sink);
             } else {
-                let mut whole = std::mem::take(&mut self.bytes);
+                let mut whole = take(&mut self.bytes);
                 whole.extend_from_slice(line);
                 self.line(&whole, sink);
                 whole.clear();
@@ -217,7 +226,7 @@ impl StreamDecoder {
     /// Decodes a line without its end; the first one of a stream that was joined late is passed over.
     fn line(&mut self, line: &[u8], sink: &mut StreamSink<'_>) {
         let line = self.without_mark(line);
-        if std::mem::take(&mut self.torn) {
+        if take(&mut self.torn) {
             return;
         }
         match &mut self.state {
@@ -230,7 +239,7 @@ impl StreamDecoder {
 
     /// A line without the mark that may stand before the first one.
     fn without_mark<'a>(&mut self, line: &'a [u8]) -> &'a [u8] {
-        let first = std::mem::take(&mut self.first);
+        let first = take(&mut self.first);
         line.strip_prefix(MARK).filter(|_| first).unwrap_or(line)
     }
 
@@ -247,7 +256,7 @@ impl StreamDecoder {
             && self.options.format.is_none()
             && !lines.any(|line| is_numbers(line.trim_ascii()));
         self.begin(format, self.options.from_start);
-        let bytes = std::mem::take(&mut self.bytes);
+        let bytes = take(&mut self.bytes);
         // Counted already.
         self.counts.bytes -= bytes.len() as u64;
         self.push(&bytes, sink);

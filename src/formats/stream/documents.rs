@@ -3,20 +3,75 @@
 //! Unlike a recording, a stream goes on after a line or a message that is wrong, or of another size than those before: it is
 //! dropped and counted.
 
-use crate::formats::recording::json_lines::FrameLine;
+use crate::formats::recording::ChannelInfo;
+use crate::formats::recording::json_lines::{FrameLine, MOST_CHANNELS};
 use crate::formats::recording::ros_text::{self, RosLine, RosMessage};
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::size::FrameSize;
 use crate::formats::stream::source_clock::SourceClock;
 use crate::frame::Frame;
 
+/// The channels of a stream of JSON lines. After a gap they pass to the next decoder.
+#[derive(Debug, Default)]
+pub(super) struct JsonChannels {
+    channels: Vec<JsonChannel>,
+    /// Whether they were reported: as soon as one has a name.
+    reported: bool,
+}
+
+/// One of several sensors.
+#[derive(Debug)]
+struct JsonChannel {
+    /// What it was when its first frame came.
+    info: ChannelInfo,
+    /// Rows and columns of its frames.
+    size: FrameSize,
+    /// How many there are.
+    frames: u64,
+}
+
+impl JsonChannels {
+    /// The index of the channel of a line; None if there are too many.
+    fn of(
+        &mut self,
+        line: &FrameLine,
+        shape: Option<(u16, u16)>,
+        sink: &mut StreamSink<'_>,
+    ) -> Option<usize> {
+        let mut channels = self.channels.iter();
+        let known = channels.position(|channel| channel.info.name == line.channel);
+        if known.is_some() {
+            return known;
+        }
+        if self.channels.len() == MOST_CHANNELS {
+            return None;
+        }
+        self.channels.push(JsonChannel {
+            info: line.channel_info(),
+            size: FrameSize::new(shape),
+            frames: 0,
+        });
+        let index = self.channels.len() - 1;
+        let first = if self.reported { index } else { 0 };
+        self.reported |= line.channel.is_some();
+        if self.reported {
+            for channel in &self.channels[first..] {
+                sink(StreamEvent::Channel(&channel.info));
+            }
+        }
+        Some(index)
+    }
+}
+
 /// A decoder of JSON lines.
 #[derive(Debug)]
 pub(super) struct JsonDecoder {
     /// The line that was read last.
     line: FrameLine,
-    /// Rows and columns of all frames.
-    size: FrameSize,
+    /// Rows and columns of all frames, if they were named.
+    shape: Option<(u16, u16)>,
+    /// The channels so far.
+    pub(super) channels: JsonChannels,
     /// Turns times into seconds since the first frame.
     pub(super) clock: SourceClock,
     /// The frame made of it.
@@ -25,10 +80,19 @@ pub(super) struct JsonDecoder {
 
 impl JsonDecoder {
     /// `shape` is for lists of cells without rows.
-    pub(super) fn new(shape: Option<(u16, u16)>, clock: SourceClock) -> Self {
+    pub(super) fn new(
+        shape: Option<(u16, u16)>,
+        mut channels: JsonChannels,
+        clock: SourceClock,
+    ) -> Self {
+        // The sensors may have been set up anew.
+        for channel in &mut channels.channels {
+            channel.size = FrameSize::new(shape);
+        }
         Self {
             line: FrameLine::new(shape),
-            size: FrameSize::new(shape),
+            shape,
+            channels,
             clock,
             frame: Frame::new(1, 1),
         }
@@ -44,26 +108,36 @@ impl JsonDecoder {
         if line.trim_ascii().is_empty() {
             return;
         }
-        match self.line.read(line) {
-            Ok(()) if !self.size.admits(self.line.shape) => counts.drop_frames(1, line),
-            Ok(()) => {
-                let (rows, columns) = self.line.shape;
-                self.frame.reset(columns, rows);
-                self.frame.values_mut().copy_from_slice(&self.line.values);
-                self.frame.number = counts.frames;
-                self.frame.label = self.line.label;
-                let time = self.line.time;
-                self.frame.time = time.map(|time| self.clock.since_first(time));
-                counts.frames += 1;
-                sink(StreamEvent::Frame(&self.frame));
+        if let Err(error) = self.line.read(line) {
+            for channel in &mut self.channels.channels {
+                channel.size.pass_torn();
             }
-            Err(error) => {
-                self.size.pass_torn();
-                counts.unshaped = counts.unshaped.or(error.unshaped());
-                counts.drop_frames(1, line);
-                counts.reason = error.reason();
-            }
+            counts.unshaped = counts.unshaped.or(error.unshaped());
+            counts.drop_frames(1, line);
+            counts.reason = error.reason();
+            return;
         }
+        let Some(index) = self.channels.of(&self.line, self.shape, sink) else {
+            counts.drop_frames(1, line);
+            counts.reason = Some(format!("more than {MOST_CHANNELS} channels"));
+            return;
+        };
+        let channel = &mut self.channels.channels[index];
+        if !channel.size.admits(self.line.shape) {
+            counts.drop_frames(1, line);
+            return;
+        }
+        let (rows, columns) = self.line.shape;
+        self.frame.reset(columns, rows);
+        self.frame.values_mut().copy_from_slice(&self.line.values);
+        self.frame.channel = index;
+        self.frame.number = channel.frames;
+        self.frame.label = self.line.label;
+        let time = self.line.time;
+        self.frame.time = time.map(|time| self.clock.since_first(time));
+        channel.frames += 1;
+        counts.frames += 1;
+        sink(StreamEvent::Frame(&self.frame));
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a stream may be, what is known of it beforehand, and what its decoder reports.
 
+use crate::formats::recording::ChannelInfo;
 use crate::formats::value::grouped;
 use crate::frame::Frame;
 use crate::parameter::named;
@@ -88,6 +89,8 @@ impl StreamOptions {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum StreamEvent<'a> {
+    /// A channel, before its first frame; only if the stream names channels.
+    Channel(&'a ChannelInfo),
     /// A whole frame, confirmed by what follows it where its format needs that.
     Frame(&'a Frame),
     /// A frame whose last byte is here, though what follows it is not: to be shown, not to be kept.

@@ -443,6 +443,7 @@ mod tests {
                     StreamEvent::Frame(_) => "frame ",
                     StreamEvent::Provisional(_) => "provisional ",
                     StreamEvent::Withdrawn => "withdrawn ",
+                    StreamEvent::Channel(_) => "channel ",
                 };
             });
         }

@@ -8,7 +8,7 @@
 const AGAIN: u8 = 3;
 
 /// The size of the frames of a stream.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct FrameSize {
     /// Rows and columns: as named, else those of the first whole frame, until other ones come again and again.
     present: Option<(u16, u16)>,

@@ -4,6 +4,9 @@ use taxel::formats::stream::{
     StreamCounts, StreamDecoder, StreamEvent, StreamFormat, StreamOptions,
 };
 
+use taxel::frame::Frame;
+
+use super::recorded;
 use super::samples::sample;
 use crate::common::Random;
 
@@ -260,6 +263,70 @@ fn torn_short_long_and_garbled_frames_are_counted_and_never_joined() {
         &mut Random::new(4),
     );
     assert_eq!((found.len(), counts.dropped), (5, 4));
+}
+
+/// Frames of two sensors of different sizes in turn, and what was found of them: names, and channel, number, time and sum of
+/// each frame.
+#[test]
+fn the_channels_of_json_lines_are_told_apart_in_files_and_streams() {
+    let line = |time: u32, channel: &str, frame: &str| {
+        format!("{{\"t\":{time},\"channel\":{channel},\"frame\":{frame}}}\n")
+    };
+    let (left, right) = ("[[1,2],[3,4]]", "[[5,6,7]]");
+    let lines: String = (10..13)
+        .map(|time| line(time, "\"l\"", left) + &line(time, "7", right))
+        .collect();
+    let of = |time: f64, number| [(0, number, Some(time), 10.0), (1, number, Some(time), 18.0)];
+    let expected = [of(0.0, 0), of(1.0, 1), of(2.0, 2)].concat();
+    let of = |frame: &Frame| {
+        let sum = frame.values().iter().sum::<f64>();
+        (frame.channel, frame.number, frame.time, sum)
+    };
+    let read = recorded(lines.as_bytes(), None);
+    assert!(read.error.is_none());
+    let names: Vec<_> = read.channels.iter().map(|info| info.shown_name()).collect();
+    assert_eq!(names, ["l", "7"]);
+    assert_eq!(read.frames.iter().map(of).collect::<Vec<_>>(), expected);
+
+    let (mut names, mut frames) = (Vec::new(), Vec::new());
+    let mut sink = |event: StreamEvent<'_>| match event {
+        StreamEvent::Channel(info) => names.push(info.shown_name().to_owned()),
+        StreamEvent::Frame(frame) => frames.push(of(frame)),
+        _ => {}
+    };
+    let mut decoder = StreamDecoder::new(options(None));
+    decoder.push(lines.as_bytes(), &mut sink);
+    // Numbers and channels go on over a gap.
+    decoder.restart(&mut sink);
+    let after = "torn\n".to_owned() + &line(15, "\"l\"", left);
+    decoder.push(after.as_bytes(), &mut sink);
+    assert_eq!(names, ["l", "7"]);
+    assert_eq!(
+        (&frames[..6], frames[6]),
+        (&expected[..], (0, 3, Some(5.0), 10.0))
+    );
+    assert_eq!(decoder.counts().frames, 7);
+
+    // One without a name is reported as soon as another one has a name.
+    let mut names = Vec::new();
+    let mut sink = |event: StreamEvent<'_>| {
+        if let StreamEvent::Channel(info) = event {
+            names.push(info.shown_name().to_owned());
+        }
+    };
+    let mut decoder = StreamDecoder::new(options(None));
+    for channel in ["null", "null", "\"r\"", "null"] {
+        decoder.push(line(0, channel, left).as_bytes(), &mut sink);
+    }
+    assert_eq!(names, ["unnamed", "r"]);
+    for wrong in ["[]", "\"\"", "1.5"] {
+        let read = recorded(line(0, wrong, left).as_bytes(), None);
+        let error = read.error.map(|error| error.to_string());
+        assert!(
+            error.is_some_and(|error| error.contains("\"channel\"")),
+            "{wrong}"
+        );
+    }
 }
 
 #[test]
