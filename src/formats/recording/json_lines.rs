@@ -22,7 +22,7 @@ use crate::formats::json;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::lines::TextLines;
-use crate::formats::recording::side::shape;
+use crate::formats::recording::side::{changed, shape};
 use crate::formats::seconds::since;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::parameter::number::counted;
@@ -68,11 +68,7 @@ pub(super) fn read(
         let (_, size, count) = &mut channels[frame.channel];
         let (rows, columns) = line.shape;
         if *size != line.shape {
-            let found = counted(rows, "row");
-            let (first_rows, first_columns) = *size;
-            let message = format!(
-                "found {found} of {columns}, expected {first_rows} of {first_columns} as before"
-            );
+            let message = changed(line.shape, *size);
             return Err(RecordingError::in_line(number, message));
         }
         frame.number = *count;

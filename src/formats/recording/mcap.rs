@@ -28,6 +28,7 @@ use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent,
 use crate::formats::recording::ros_message::{
     ImageFrame, MessageKind, header, image, matrix_shape, multi_array,
 };
+use crate::formats::recording::side::{arranged, changed};
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::index::wide;
 use crate::parameter::number::counted;
@@ -71,6 +72,8 @@ const DATA_END: u8 = 15;
 struct GivenChannel {
     /// The topic; behind `#` the sensor of a tactile state.
     name: String,
+    /// Rows and columns of its frames, if they are known.
+    shape: Option<(u16, u16)>,
     /// How many frames it has so far.
     frames: u64,
 }
@@ -482,7 +485,9 @@ impl McapState<'_, '_> {
         match kind {
             MessageKind::Array(kind, size) => {
                 let sizes = multi_array(&mut cdr, kind, size, &mut self.values)?;
-                Some(self.give(topic, matrix_shape(&sizes)))
+                let stated = matrix_shape(&sizes);
+                let shape = arranged(self.values.len(), stated, self.options.shape);
+                Some(self.give(topic, shape))
             }
             MessageKind::Image => match image(&mut cdr, &mut self.values)? {
                 ImageFrame::Values(rows, columns) => Some(self.give(topic, Some((rows, columns)))),
@@ -507,8 +512,8 @@ impl McapState<'_, '_> {
     /// Gives the values as a frame of a channel; true if no more is wanted.
     ///
     /// # Errors
-    /// If there are too many channels, if a message of a channel has another number of values than its layout, or an
-    /// infinite one.
+    /// If there are too many channels, if a message of a channel has another number of values than its layout, another size
+    /// than those before it, or an infinite value.
     fn give(&mut self, name: &str, shape: Option<(u16, u16)>) -> Result<bool, RecordingError> {
         let found = self.values.len();
         let cells = |(rows, columns): (u16, u16)| usize::from(rows) * usize::from(columns);
@@ -531,6 +536,7 @@ impl McapState<'_, '_> {
                 };
                 self.given.push(GivenChannel {
                     name: name.to_owned(),
+                    shape,
                     frames: 0,
                 });
                 if (self.sink)(RecordingEvent::Channel(&info)).is_break() {
@@ -547,6 +553,11 @@ impl McapState<'_, '_> {
         self.frame.number = self.given[channel].frames;
         match shape {
             Some(shape) if cells(shape) == found => {
+                let before = self.given[channel].shape.unwrap_or(shape);
+                if shape != before {
+                    let message = format!("{name}: {}", changed(shape, before));
+                    return Err(RecordingError::damaged(message));
+                }
                 self.frame.reset(shape.1, shape.0);
                 self.frame.values_mut().copy_from_slice(&self.values);
             }

@@ -34,7 +34,7 @@ mod lines;
 
 pub(crate) mod moment;
 
-mod side;
+pub(crate) mod side;
 
 pub(crate) mod text_row;
 

@@ -23,7 +23,7 @@ use std::io::BufRead;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::lines::TextLines;
-use crate::formats::recording::side::shape;
+use crate::formats::recording::side::{arranged, changed, shape};
 use crate::formats::recording::text_row::{self, Field};
 use crate::frame::Frame;
 
@@ -314,6 +314,7 @@ pub(super) fn read(
     let mut lines = TextLines::new(input);
     let mut message = RosMessage::default();
     let mut frame = Frame::new(1, 1);
+    let mut first = None;
     loop {
         let ended = !lines.advance()?;
         let number = lines.number();
@@ -340,7 +341,7 @@ pub(super) fn read(
             }
         }
         let values = message.cells().len();
-        let shape = message.shape().or(options.shape);
+        let shape = arranged(values, message.shape(), options.shape).or(options.shape);
         let (rows, columns) = shape.ok_or(RecordingError::Shape {
             values: values as u64,
         })?;
@@ -356,6 +357,12 @@ pub(super) fn read(
             if sink(RecordingEvent::Channel(&info)).is_break() {
                 return Ok(());
             }
+        }
+        if let Some(first) = first.replace((rows, columns))
+            && first != (rows, columns)
+        {
+            let message = changed((rows, columns), first);
+            return Err(RecordingError::in_line(number, message));
         }
         frame.reset(columns, rows);
         frame.values_mut().copy_from_slice(message.cells());

@@ -2,6 +2,7 @@
 
 use crate::formats::recording::error::RecordingError;
 use crate::frame::MAX_FRAME_SIDE;
+use crate::parameter::number::counted;
 use crate::quote::shortened;
 
 /// A number of rows or columns; None of 0, and of what no frame has.
@@ -13,6 +14,25 @@ pub(crate) fn side(length: impl TryInto<u16>) -> Option<u16> {
 /// Rows and columns; None if either exceeds the largest side of a frame.
 pub(crate) fn shape<T: TryInto<u16>>(rows: T, columns: T) -> Option<(u16, u16)> {
     side(rows).zip(side(columns))
+}
+
+/// Rows and columns of a message with this number of values: those that were named, if they have as many cells, otherwise those
+/// that it states. Many programs publish a layout of one row, or none.
+pub(crate) fn arranged(
+    values: usize,
+    stated: Option<(u16, u16)>,
+    named: Option<(u16, u16)>,
+) -> Option<(u16, u16)> {
+    let cells = |(rows, columns): (u16, u16)| usize::from(rows) * usize::from(columns);
+    let fits = named.filter(|&named| cells(named) == values);
+    fits.or(stated)
+}
+
+/// That a frame has other rows and columns than those before it.
+pub(super) fn changed((rows, columns): (u16, u16), before: (u16, u16)) -> String {
+    let found = counted(rows, "row");
+    let (before_rows, before_columns) = before;
+    format!("found {found} of {columns}, expected {before_rows} of {before_columns} as before")
 }
 
 /// The number that a line states for a key, as `ROWS 28` does; `mark` is what stands between.

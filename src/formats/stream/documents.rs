@@ -6,6 +6,7 @@
 use crate::formats::recording::ChannelInfo;
 use crate::formats::recording::json_lines::{FrameLine, MOST_CHANNELS};
 use crate::formats::recording::ros_text::{self, RosLine, RosMessage};
+use crate::formats::recording::side::arranged;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::size::FrameSize;
 use crate::formats::stream::source_clock::SourceClock;
@@ -204,8 +205,8 @@ impl RosDecoder {
 
     /// The end of a message.
     fn end(&mut self, line: &[u8], counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
-        let shape = self.message.shape().or(self.shape);
         let values = self.message.cells().len();
+        let shape = arranged(values, self.message.shape(), self.shape).or(self.shape);
         let begun = std::mem::replace(&mut self.begun, true);
         if std::mem::take(&mut self.cut) {
             counts.cut |= begun && !self.broken;

@@ -101,6 +101,12 @@ fn text(text: &str) -> Vec<u8> {
 
 /// A file with three frames of 1 × 2 bytes. The checksums are computed if they are 1.
 fn mcap(of_chunk: u32, of_data: u32) -> Vec<u8> {
+    let array = |value: u8| [&[0; 8][..], &[2, 0, 0, 0, value, value]].concat();
+    mcap_of(&[1, 2, 3].map(array), of_chunk, of_data)
+}
+
+/// A file with these arrays, each with its layout.
+fn mcap_of(arrays: &[Vec<u8>], of_chunk: u32, of_data: u32) -> Vec<u8> {
     let schema = [
         &[1, 0][..],
         &text("std_msgs/msg/UInt8MultiArray"),
@@ -109,8 +115,8 @@ fn mcap(of_chunk: u32, of_data: u32) -> Vec<u8> {
     .concat();
     let channel = [&[1, 0, 1, 0][..], &text("/pad"), &text("cdr"), &[0; 4]].concat();
     let mut records = [record(3, &schema), record(4, &channel)].concat();
-    for value in 1..=3 {
-        let cdr = [&[0, 1, 0, 0][..], &[0; 8], &[2, 0, 0, 0, value, value]].concat();
+    for array in arrays {
+        let cdr = [&[0, 1, 0, 0][..], array].concat();
         records.extend(record(5, &[&[1, 0][..], &[0; 20], &cdr].concat()));
     }
     let length = (records.len() as u64).to_le_bytes();
@@ -126,6 +132,48 @@ fn mcap(of_chunk: u32, of_data: u32) -> Vec<u8> {
     .concat();
     let sum = (of_data * crc32(&data)).to_le_bytes();
     [data, record(15, &sum), record(2, &[0; 20]), magic.to_vec()].concat()
+}
+
+/// Ones, with a layout that states rows and columns.
+fn laid_out(rows: u8, columns: u8) -> Vec<u8> {
+    let side = |side: u8| [1, 0, 0, 0, 0, 0, 0, 0, side, 0, 0, 0, 0, 0, 0, 0];
+    let (offset, cells) = ([0; 4], rows * columns);
+    let values = [vec![cells, 0, 0, 0], vec![1; cells.into()]].concat();
+    [
+        &[2, 0, 0, 0][..],
+        &side(rows),
+        &side(columns),
+        &offset,
+        &values,
+    ]
+    .concat()
+}
+
+#[test]
+fn rows_and_columns_that_are_named_count_in_place_of_a_layout_of_as_many_cells() {
+    let bytes = mcap_of(&[laid_out(1, 20), laid_out(1, 20)], 0, 0);
+    for (named, found) in [
+        (None, (1, 20)),
+        (Some((4, 5)), (4, 5)),
+        (Some((3, 5)), (1, 20)),
+    ] {
+        let read = recorded(&bytes, named);
+        assert_eq!((read.frames.len(), error(&read)), (2, None));
+        assert_eq!(read.channels[0].shape, Some(found));
+        let sizes = (read.frames[1].rows(), read.frames[1].columns());
+        assert_eq!(sizes, found);
+    }
+}
+
+#[test]
+fn a_channel_whose_frames_change_their_size_is_a_damage() {
+    let bytes = mcap_of(&[laid_out(4, 5), laid_out(3, 5), laid_out(4, 5)], 0, 0);
+    let read = recorded(&bytes, None);
+    let expected = "/pad: found 3 rows of 5, expected 4 of 5 as before";
+    assert_eq!(
+        (read.frames.len(), error(&read).as_deref()),
+        (1, Some(expected))
+    );
 }
 
 #[test]

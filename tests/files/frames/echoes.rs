@@ -37,3 +37,25 @@ fn values_before_the_offset_of_a_layout_are_no_cells() {
         assert_eq!(found.frames[0].values(), [1.0, 2.0, 3.0, 4.0], "{text}");
     }
 }
+
+#[test]
+fn rows_and_columns_that_are_named_count_in_place_of_a_layout_of_as_many_cells() {
+    let text = b"rows,1,4,columns,4,4,0,1,2,3,4\n";
+    for (named, found) in [
+        (None, (1, 4)),
+        (Some((2, 2)), (2, 2)),
+        (Some((2, 3)), (1, 4)),
+    ] {
+        let read = recorded(text, named);
+        assert_eq!(read.channels[0].shape, Some(found), "{:?}", read.error);
+    }
+}
+
+#[test]
+fn messages_that_change_their_size_are_a_damage() {
+    let text = b"rows,2,4,columns,2,2,0,1,2,3,4\nrows,1,2,columns,2,2,0,5,6\n";
+    let found = recorded(text, None);
+    let error = found.error.map(|error| error.to_string());
+    let expected = "line 2: found 1 row of 2, expected 2 of 2 as before";
+    assert_eq!((found.frames.len(), error.as_deref()), (1, Some(expected)));
+}
