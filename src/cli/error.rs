@@ -78,7 +78,7 @@ pub(crate) enum CliError {
         error: io::Error,
     },
     /// Standard output failed.
-    #[error("cannot write: {0}")]
+    #[error("cannot write to standard output: {0}")]
     Write(io::Error),
     /// The library cannot do it: no such shape, no folder, a damaged file.
     #[error("{}", shortened_message(&.0.to_string()))]

@@ -17,12 +17,10 @@ use crate::imprint::{Bounds, Imprint};
 /// directions in degrees counter-clockwise from +x as seen on the screen.
 ///
 /// ```
-/// use taxel::description::Description;
 /// use taxel::prelude::*;
 ///
 /// let imprint: Imprint = ".##.\n####\n".parse()?;
-/// let regions = regions(&imprint);
-/// let own = Description::of(main_region(&regions).expect("something is active"));
+/// let own = Description::of(&regions(&imprint)[0]);
 /// assert_eq!((own.na, own.area(), own.filling(), own.side_ratio()), (6, 8, 0.75, 2.0));
 /// assert_eq!(own.cg_cd_direction(), Some(90.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -34,8 +34,10 @@ pub enum FrameError {
     },
     /// A threshold that is not a number, or out of range.
     Rule {
-        /// Which value.
+        /// Which value: its key in JSON.
         what: &'static str,
+        /// The number.
+        found: f64,
         /// What is allowed.
         allowed: &'static str,
     },
@@ -91,7 +93,11 @@ impl fmt::Display for FrameError {
                 expected.0,
                 expected.1
             ),
-            Self::Rule { what, allowed } => write!(f, "{what}: out of range (allowed: {allowed})"),
+            Self::Rule {
+                what,
+                found,
+                allowed,
+            } => write!(f, "{what}: {found} is out of range (allowed: {allowed})"),
             Self::Tare { frames, wanted } => {
                 write!(f, "frames for the tare: found {frames}, expected {wanted}")
             }

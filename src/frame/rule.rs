@@ -40,8 +40,11 @@ fn checked(
     allowed: &'static str,
 ) -> Result<f64, FrameError> {
     let fits = fits && value.abs() <= LARGEST_VALUE;
-    fits.then_some(value)
-        .ok_or(FrameError::Rule { what, allowed })
+    fits.then_some(value).ok_or(FrameError::Rule {
+        what,
+        found: value,
+        allowed,
+    })
 }
 
 impl Rule {
@@ -55,7 +58,7 @@ impl Rule {
     /// # Errors
     /// If it is not finite, or beyond ±1e300.
     pub fn at_least(threshold: f64) -> Result<Self, FrameError> {
-        let value = checked("threshold", threshold, true, "-1e300 to 1e300")?;
+        let value = checked("at_least", threshold, true, "-1e300 to 1e300")?;
         Ok(Self::AtLeast(value))
     }
 
@@ -74,9 +77,9 @@ impl Rule {
     /// # Errors
     /// If one is not finite, or `low` is above `high`.
     pub fn hysteresis(low: f64, high: f64) -> Result<Self, FrameError> {
-        let high = checked("upper threshold", high, true, "-1e300 to 1e300")?;
-        let allowed = "at most the upper threshold";
-        let low = checked("lower threshold", low, low <= high, allowed)?;
+        let high = checked("high", high, true, "-1e300 to 1e300")?;
+        let allowed = "at most high";
+        let low = checked("low", low, low <= high, allowed)?;
         Ok(Self::Hysteresis { low, high })
     }
 

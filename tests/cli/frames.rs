@@ -618,7 +618,7 @@ fn a_threshold_out_of_range_names_what_is_allowed() {
         ),
         (
             "--low 5 --high 3",
-            "error: --low 5 is out of range (allowed: at most the upper threshold)\n",
+            "error: --low 5 is out of range (allowed: at most high)\n",
         ),
     ] {
         refused("tekscan.asf", &format!("--all {flags}"), message);

@@ -435,7 +435,7 @@ fn names_that_are_nearly_right_are_named() {
         ),
         (
             "model train --shape 'disc=elipse' --out m.npz",
-            "--shape: figure: \"elipse\" is unknown, expected one of ellipse, rectangle, triangle, \
+            "--shape disc: figure: \"elipse\" is unknown, expected one of ellipse, rectangle, triangle, \
              pentagon, hexagon, heptagon, octagon; did you mean \"ellipse\"?",
         ),
     ] {
@@ -493,7 +493,7 @@ fn sets_that_make_no_sense_are_refused_in_one_sentence() {
     refused(
         &train("--shape 'disc=ellipse radius_x'", ""),
         1,
-        "--shape: \"radius_x\": expected KEY=NUMBER, such as radius_x=3",
+        "--shape disc: \"radius_x\": expected KEY=NUMBER, such as radius_x=3",
     );
     let run = train("no-such-shape", "");
     assert!(run.stderr.contains("no-such-shape"), "{}", run.stderr);
@@ -638,7 +638,7 @@ fn a_shape_of_a_set_has_no_pose() {
         refused_at("model train -", &format!("{{{shape}}}\n"), &at);
     }
     let words = "model train --shape 'a=ellipse radius_x=3 radius_y=2 x0=1'";
-    refused_at(words, "", "--shape: x0");
+    refused_at(words, "", "--shape a: x0");
     // The pose of a stored shape belongs to its figure.
     place.done(&format!("model train washer {COARSE} --out washer.npz"));
 }
@@ -882,10 +882,10 @@ fn a_built_in_set_is_meant_before_a_file_of_its_name() {
 fn words_of_a_shape_that_say_nothing_are_refused() {
     let place = Place::new();
     let words = [
-        ("a=hexagon side=3 side=4", "--shape: side: given twice"),
+        ("a=hexagon side=3 side=4", "--shape a: side: given twice"),
         (
             "a=hexagon weight=2",
-            "--shape: \"weight\": not a parameter of the figure hexagon, which has side, thickness; weights are given in JSON",
+            "--shape a: \"weight\": not a parameter of the figure hexagon, which has side, thickness; weights are given in JSON",
         ),
     ];
     for (shape, message) in words {

@@ -127,7 +127,7 @@ fn a_full_disk_is_told() {
         refused(
             &run,
             1,
-            "cannot write: No space left on device (os error 28)",
+            "cannot write to standard output: No space left on device (os error 28)",
         );
     }
 }

@@ -62,6 +62,9 @@ pub struct FrameRecorder {
     metadata: RecordingMetadata,
     names: Names,
     array: RecordArray,
+    /// The numbers of the first and the last frame that were recorded. The first is 0 once numbers have begun again, as
+    /// where a recording is played in a loop.
+    numbers: Option<(u64, u64)>,
     /// Frames of another size than the first one.
     left_out: u64,
     /// What went wrong first.
@@ -116,6 +119,7 @@ impl FrameRecorder {
             existing,
             metadata,
             names: Names::Waiting(array, description),
+            numbers: None,
             left_out: 0,
             reason: None,
             rate: FrameRate::over(MOST_BURSTS),
@@ -138,7 +142,15 @@ impl FrameRecorder {
     pub(crate) fn set_view(&mut self, view: RecordedView) -> DescriptionDraft {
         let RecordedView { rule, tare, marks } = view;
         (self.metadata.rule, self.metadata.tare, self.metadata.marks) = (rule, tare, marks);
+        self.leave_out_marks();
         self.draft()
+    }
+
+    /// Leaves out marks of frames that came before the first one that was recorded.
+    fn leave_out_marks(&mut self) {
+        if let Some((first, _)) = self.numbers {
+            self.metadata.marks.retain(|mark| mark.number >= first);
+        }
     }
 
     /// Keeps the reason of the first failure for the description.
@@ -224,6 +236,12 @@ impl FrameRecorder {
         }
         if let Some(time) = time {
             self.rate.add(time);
+        }
+        let (first, last) = self.numbers.unwrap_or((frame.number, frame.number));
+        let first = if frame.number < last { 0 } else { first };
+        let is_first = self.numbers.replace((first, frame.number)).is_none();
+        if is_first {
+            self.leave_out_marks();
         }
         let added = self.array.add(frame, time);
         added.map_err(|error| self.refused(error))
@@ -337,6 +355,28 @@ mod tests {
             let beside = description_beside(&path).expect("there").expect("read");
             assert_eq!(beside.marks, marks);
         }
+    }
+
+    #[test]
+    fn marks_of_frames_that_are_not_recorded_are_left_out() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let mut recorder = begun(&path);
+        let mark = |number| FrameMark { number, time: None };
+        let view = |numbers: &[u64]| RecordedView {
+            marks: numbers.iter().copied().map(mark).collect(),
+            ..RecordedView::default()
+        };
+        recorder.set_view(view(&[3]));
+        for number in [5, 6] {
+            let mut frame = Frame::new(1, 1);
+            frame.number = number;
+            recorder.add(&frame, None).expect("recorded");
+        }
+        recorder.set_view(view(&[4, 6]));
+        recorder.finish().expect("finished");
+        let beside = description_beside(&path).expect("there").expect("read");
+        assert_eq!(beside.marks, [mark(6)]);
     }
 
     #[test]

@@ -21,6 +21,7 @@ use crate::cli::input::content::{InputError, InputSource};
 use crate::cli::input::shapes::Shelf;
 use crate::formats::{ShapeLookup, named_shape, named_shape_of_words};
 use crate::picture::Picture;
+use crate::quote::shortened;
 use crate::recognition::NamedShape;
 
 /// The largest file of shapes.
@@ -63,7 +64,7 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
     for words in &asked.shapes {
         let shape = named_shape_of_words(words, &lookup);
         shapes.push(shape.map_err(|error| CliError::Set {
-            place: "--shape".to_owned(),
+            place: format!("--shape {}", shortened(words.split('=').next().unwrap_or(words))),
             error: error.to_string(),
         })?);
     }

@@ -307,8 +307,8 @@ fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
         rule: page.rule(),
         tare: page.tare_values().cloned(),
         seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
-        // Not taken: if a recording is being begun already, its description does not have them yet.
-        marks: page.marks(),
+        // Frames that were marked before are not in it.
+        marks: Vec::new(),
         ended: None,
         ended_by: None,
     };

@@ -160,7 +160,8 @@ fn of_frame(live: &Live) -> Vec<TitlePiece> {
     if let Some(name) = channel.and_then(|own| own.name.as_deref())
         && status.channels > 1
     {
-        say(5, format!("channel {name}"), Role::Text);
+        let channel = format!("channel {name} of {}", status.channels);
+        say(5, channel, Role::Text);
     }
     match live.frame() {
         Some(frame) => {

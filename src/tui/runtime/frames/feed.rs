@@ -262,7 +262,10 @@ impl FrameFeed {
             AcquireEvent::Back { gap } => self.change(|pending| {
                 pending.batch.status.state = pending.back_after(gap);
             }),
-            AcquireEvent::Anew(how) => state(SourceState::Silent(how.to_string())),
+            AcquireEvent::Anew(how) => self.change(|pending| {
+                // It stays, as frames of the new file may follow at once.
+                pending.batch.status.note = Some(format!("the file {how}"));
+            }),
             AcquireEvent::Ended(counts) => self.change(|pending| {
                 pending.batch.status.lost = counts.dropped;
                 pending.batch.status.sample.clone_from(&counts.sample);
