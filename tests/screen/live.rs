@@ -333,9 +333,9 @@ fn a_narrow_title_says_that_maxima_are_shown_and_that_frames_are_recorded() {
         ),
         (
             (60, 20),
-            "a-recording-of-the-left-…  frame 2  recording  peak held",
+            "a-recording-of-the-left-hand…  frame 2  recording  peak held",
         ),
-        ((40, 12), "a-recording-of-t…  recording  peak held"),
+        ((40, 12), "a-recording-of-th…  recording  peak held"),
     ] {
         page.resize(size.0, size.1);
         let screen = page.screen();

@@ -11,7 +11,7 @@
 //! drops.
 
 use crate::formats::recording::{moment, ros_text};
-use crate::formats::stream::event::StreamFormat;
+use crate::formats::stream::event::{StreamCounts, StreamFormat};
 use crate::formats::stream::flexitac::MARKER;
 use crate::formats::stream::matsense::MatsenseDecoder;
 use crate::formats::stream::numbers;
@@ -130,7 +130,7 @@ impl FormatSearch {
                 let trial = self
                     .trial
                     .get_or_insert_with(|| MatsenseDecoder::new(shape, false));
-                trial.push(new, &mut Default::default(), &mut |_| ());
+                trial.push(new, &mut StreamCounts::default(), &mut |_| ());
                 // Until then, bytes behind markers could still show that.
                 if bytes.len() >= enough && trial.is_sure() {
                     return Some(StreamFormat::Matsense);

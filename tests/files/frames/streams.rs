@@ -1,5 +1,6 @@
 //! Streams in pieces of any size, whole and damaged: every whole frame is found, and no false one.
 
+use taxel::formats::recording::ChannelInfo;
 use taxel::formats::stream::{
     StreamCounts, StreamDecoder, StreamEvent, StreamFormat, StreamOptions,
 };
@@ -284,7 +285,7 @@ fn the_channels_of_json_lines_are_told_apart_in_files_and_streams() {
     };
     let read = recorded(lines.as_bytes(), None);
     assert!(read.error.is_none());
-    let names: Vec<_> = read.channels.iter().map(|info| info.shown_name()).collect();
+    let names: Vec<_> = read.channels.iter().map(ChannelInfo::shown_name).collect();
     assert_eq!(names, ["l", "7"]);
     assert_eq!(read.frames.iter().map(of).collect::<Vec<_>>(), expected);
 
