@@ -26,6 +26,8 @@ const TICK: Duration = Duration::from_millis(100);
 
 /// What is measured while a stream is read.
 struct StreamClock {
+    /// Whether frames arrive while they are read; not those of a source that is read as fast as possible.
+    is_live: bool,
     /// Whether a frame without a time of its own has that of its arrival.
     timed: bool,
     /// When the first such frame came.
@@ -44,6 +46,7 @@ impl StreamClock {
     fn new(source: &FrameSource, options: &AcquireOptions) -> Self {
         let now = Instant::now();
         Self {
+            is_live: !options.once,
             // What is in a file already has arrived at some other time.
             timed: !options.once && !matches!(source, FrameSource::File(_)),
             first: None,
@@ -82,8 +85,6 @@ pub(super) fn run(
     while !stop.load(Ordering::Relaxed) {
         let lost = match input.read(&mut bytes) {
             Ok(ReadOutcome::Bytes(count)) => {
-                // All that was in a file has been read.
-                clock.timed |= count == 0 && !options.once;
                 match decode(&mut decoder, &bytes[..count], &mut clock, consumer) {
                     ControlFlow::Continue(()) => continue,
                     ControlFlow::Break(()) => return Ok(()),
@@ -237,6 +238,8 @@ fn decode(
     clock: &mut StreamClock,
     consumer: &mut Consumer<'_>,
 ) -> ControlFlow<()> {
+    // All that was in a file has been read.
+    clock.timed |= clock.is_live && bytes.is_empty();
     let push = |decoder: &mut StreamDecoder, sink: &mut StreamSink<'_>| decoder.push(bytes, sink);
     step(decoder, push, clock, consumer)?;
     tick(decoder, clock, consumer)

@@ -14,6 +14,7 @@ use crate::formats::recording::lines::is_blank;
 use crate::formats::recording::mcap;
 use crate::formats::recording::separator::Separator;
 use crate::formats::recording::table_layout::is_comment;
+use crate::formats::recording::text_row::is_parted_by_cr;
 use crate::formats::recording::{
     delimited, emed, flexitac, json_lines, npz, numpy, popu, ros_text, tekscan, xsensor, zebris,
 };
@@ -101,12 +102,6 @@ fn is_column(text: &[u8]) -> bool {
 /// Whether a line is a single number, or a word for a cell that is none.
 fn is_number(line: &[u8]) -> bool {
     Separator::of(line) == Separator::Spaces && Separator::Spaces.is_numeric(line.trim_ascii())
-}
-
-/// Whether the lines of a text end in CR alone, as on the first Macintosh computers.
-pub(crate) fn is_parted_by_cr(text: &[u8]) -> bool {
-    let ends_before = text.iter().rev().skip(1).any(|&byte| byte == b'\r');
-    ends_before && !text.contains(&b'\n') && !text.contains(&0)
 }
 
 /// Whether a text is what `ros2 topic echo` prints.

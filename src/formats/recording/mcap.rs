@@ -551,10 +551,31 @@ impl McapState<'_, '_> {
         self.frame.time = Some(seconds);
         self.frame.channel = channel;
         self.frame.number = self.given[channel].frames;
+        self.fill(name, shape, self.given[channel].shape)?;
+        let mut values = self.values.iter();
+        if let Some(value) = values.find(|value| value.abs() > LARGEST_VALUE) {
+            let message = format!("{name}: a value is {}", too_large(*value));
+            return Err(RecordingError::damaged(message));
+        }
+        self.given[channel].frames += 1;
+        Ok((self.sink)(RecordingEvent::Frame(&self.frame)).is_break())
+    }
+
+    /// Fills the frame with the values; `before` is the size of the first frame of the channel.
+    ///
+    /// # Errors
+    /// If they are of another number than the layout states, or of another size.
+    fn fill(
+        &mut self,
+        name: &str,
+        shape: Option<(u16, u16)>,
+        before: Option<(u16, u16)>,
+    ) -> Result<(), RecordingError> {
+        let found = self.values.len();
+        let cells = |(rows, columns): (u16, u16)| usize::from(rows) * usize::from(columns);
         match shape {
             Some(shape) if cells(shape) == found => {
-                let before = self.given[channel].shape.unwrap_or(shape);
-                if shape != before {
+                if let Some(before) = before.filter(|&before| before != shape) {
                     let message = format!("{name}: {}", changed(shape, before));
                     return Err(RecordingError::damaged(message));
                 }
@@ -572,12 +593,6 @@ impl McapState<'_, '_> {
             // Counted only: rows and columns have to be named.
             None => self.frame.reset(1, 1),
         }
-        let mut values = self.values.iter();
-        if let Some(value) = values.find(|value| value.abs() > LARGEST_VALUE) {
-            let message = format!("{name}: a value is {}", too_large(*value));
-            return Err(RecordingError::damaged(message));
-        }
-        self.given[channel].frames += 1;
-        Ok((self.sink)(RecordingEvent::Frame(&self.frame)).is_break())
+        Ok(())
     }
 }

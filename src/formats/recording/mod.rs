@@ -86,7 +86,6 @@ pub use channel_choice::ChannelChoice;
 #[cfg(feature = "cli")]
 pub(crate) use delimited::read_rows;
 pub use description::{FrameMark, RecordedView, RecordingMetadata};
-pub(crate) use detect::is_parted_by_cr;
 #[cfg(all(feature = "acquire", unix))]
 pub(crate) use detect::{RecordingInput, format_of, read_as};
 pub use detect::{read, recognised, recognised_input};

@@ -305,6 +305,27 @@ fn is_number(field: &[u8]) -> bool {
     matches!(text_row::value(field), Field::Value(_)) || field.eq_ignore_ascii_case(b"nan")
 }
 
+/// Rows and columns of a message that ends in this line.
+///
+/// # Errors
+/// If neither the message states them nor they were named, or if it has another number of values.
+fn size(
+    message: &RosMessage,
+    named: Option<(u16, u16)>,
+    line: u64,
+) -> Result<(u16, u16), RecordingError> {
+    let values = message.cells().len();
+    let shape = arranged(values, message.shape(), named).or(named);
+    let (rows, columns) = shape.ok_or(RecordingError::Shape {
+        values: values as u64,
+    })?;
+    let expected = usize::from(rows) * usize::from(columns);
+    if values != expected {
+        return Err(text_row::count(line, values, expected));
+    }
+    Ok((rows, columns))
+}
+
 /// Reads a recording.
 pub(super) fn read(
     input: impl BufRead,
@@ -340,18 +361,10 @@ pub(super) fn read(
                 return Err(RecordingError::in_field(number, column, text));
             }
         }
-        let values = message.cells().len();
-        let shape = arranged(values, message.shape(), options.shape).or(options.shape);
-        let (rows, columns) = shape.ok_or(RecordingError::Shape {
-            values: values as u64,
-        })?;
-        let expected = usize::from(rows) * usize::from(columns);
-        if values != expected {
-            return Err(text_row::count(number, values, expected));
-        }
+        let (rows, columns) = size(&message, options.shape, number)?;
         if frame.number == 0 {
             let info = ChannelInfo {
-                shape,
+                shape: Some((rows, columns)),
                 ..ChannelInfo::default()
             };
             if sink(RecordingEvent::Channel(&info)).is_break() {

@@ -72,3 +72,9 @@ pub(crate) fn wrong(line: u64, column: usize, field: &[u8]) -> RecordingError {
     let found = shortened(&text(field));
     RecordingError::in_field(line, column, format!("found {found:?}, expected a number"))
 }
+
+/// Whether the lines of a text end in CR alone, as on the first Macintosh computers.
+pub(crate) fn is_parted_by_cr(text: &[u8]) -> bool {
+    let ends_before = text.iter().rev().skip(1).any(|&byte| byte == b'\r');
+    ends_before && !text.contains(&b'\n') && !text.contains(&0)
+}

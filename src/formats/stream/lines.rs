@@ -178,9 +178,7 @@ impl LinesDecoder {
         if self.broken || read.is_none() || count != expected || self.rows > MAX_FRAME_SIDE {
             self.values.truncate(before);
             if !self.broken {
-                self.broken_row.clear();
-                self.broken_row.extend(line.iter().take(64));
-                self.broken_count = read.and(Some(count));
+                self.note_row(line, read.and(Some(count)));
             }
             self.broken = true;
             // None of a size that has been met is as high.
@@ -189,9 +187,7 @@ impl LinesDecoder {
             }
             self.give_up(line, counts);
         } else if self.rows == 1 {
-            self.broken_row.clear();
-            self.broken_row.extend(line.iter().take(64));
-            self.broken_count = None;
+            self.note_row(line, None);
         }
     }
 
@@ -214,6 +210,13 @@ impl LinesDecoder {
     fn may_be_row(&self, count: Option<usize>) -> bool {
         let columns = self.size.present().map(|(_, columns)| columns.into());
         self.parted && count.is_some() && count == columns
+    }
+
+    /// Keeps what a row looks like, and how many numbers it has if that is wrong.
+    fn note_row(&mut self, line: &[u8], wrong: Option<usize>) {
+        self.broken_row.clear();
+        self.broken_row.extend(line.iter().take(64));
+        self.broken_count = wrong;
     }
 
     /// Counts frames that are dropped, with a sample, and why if rows and columns were named and a line has another number of
