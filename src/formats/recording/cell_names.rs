@@ -6,9 +6,12 @@
 //! | `c0r0`, `col0_row0`, `x0y0` | the same, but columns and rows |
 //! | `0,1,2,3`, `v1,v2,v3` | cells one after the other, of which rows and columns are not known |
 //! | `frame`, `index`, `id`, … or an empty first name | what the recording calls the frame |
-//! | `time`, `t_ns`, `Time (ms)`, … | its time, with its unit |
+//! | `time`, `t_ns`, `Time (ms)`, `host_time`, `timestampMs`, … | its time, with its unit if there is one |
+//! | `sec` beside `nanosec`, `header.stamp.secs` beside `header.stamp.nsecs` | the whole seconds of its time, and the rest |
 //!
 //! Numbers of rows and columns may begin anywhere, but none may be missing: otherwise the names describe no cells.
+
+use crate::formats::recording::frame_time::TimeUnit;
 
 /// What the header of a table says of its cells.
 #[derive(Debug, PartialEq)]
@@ -26,8 +29,8 @@ pub(crate) enum NamedCells {
 pub(crate) enum FieldRole {
     /// What the recording calls the frame.
     Label,
-    /// Its time; the number is what makes seconds of it.
-    Time(f64),
+    /// Its time, and the unit if the name has one.
+    Time(Option<TimeUnit>),
 }
 
 /// The most patterns of names that are distinguished.
@@ -182,54 +185,158 @@ pub(crate) fn roles(names: &[&str]) -> Vec<Option<FieldRole>> {
     roles
 }
 
+/// The words for each unit of time. A minute may also be a minimum, so it needs a word for a time before it.
+const UNITS: [(TimeUnit, &[&str]); 5] = [
+    (
+        TimeUnit::Nanoseconds,
+        &[
+            "ns",
+            "nsec",
+            "nsecs",
+            "nanosec",
+            "nanosecs",
+            "nanosecond",
+            "nanoseconds",
+            "nanos",
+        ],
+    ),
+    (
+        TimeUnit::Microseconds,
+        &[
+            "us",
+            "µs",
+            "usec",
+            "usecs",
+            "microsec",
+            "microsecs",
+            "microsecond",
+            "microseconds",
+            "micros",
+        ],
+    ),
+    (
+        TimeUnit::Milliseconds,
+        &[
+            "ms",
+            "msec",
+            "msecs",
+            "millisec",
+            "millisecs",
+            "millisecond",
+            "milliseconds",
+            "millis",
+        ],
+    ),
+    (
+        TimeUnit::Seconds,
+        &["s", "sec", "secs", "second", "seconds"],
+    ),
+    (TimeUnit::Minutes, &["min", "mins", "minutes"]),
+];
+
+/// Words that stand for a time.
+const TIMES: [&str; 15] = [
+    "t",
+    "time",
+    "times",
+    "timestamp",
+    "timestamps",
+    "ts",
+    "stamp",
+    "clock",
+    "elapsed",
+    "epoch",
+    "datetime",
+    "utime",
+    "unixtime",
+    "unix",
+    "walltime",
+];
+
+/// Words that say which clock a time is from.
+const CLOCKS: [&str; 17] = [
+    "header", "field", "msg", "ros", "unix", "host", "log", "system", "sys", "device", "sensor",
+    "recv", "received", "utc", "cpu", "wall", "tv",
+];
+
+/// Words for what a recording calls a frame.
+const LABELS: [&str; 13] = [
+    "frame", "index", "idx", "number", "no", "nr", "n", "id", "label", "seq", "sequence", "sample",
+    "count",
+];
+
+/// The words of a name in small letters: `timestampMs` has two, and so has `Time (ms)`.
+fn words(name: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut word = String::new();
+    let mut after_small = false;
+    for character in name.chars() {
+        if !character.is_alphabetic() || after_small && character.is_uppercase() {
+            words.extend((!word.is_empty()).then(|| std::mem::take(&mut word)));
+        }
+        if character.is_alphabetic() {
+            // The Greek letter looks the same as the micro sign.
+            let small = character.to_lowercase();
+            word.extend(small.map(|small| if small == 'μ' { 'µ' } else { small }));
+        }
+        after_small = character.is_lowercase();
+    }
+    words.extend((!word.is_empty()).then_some(word));
+    words
+}
+
+/// The unit that a word names.
+fn unit(word: &str) -> Option<TimeUnit> {
+    let found = UNITS.iter().find(|(_, words)| words.contains(&word));
+    found.map(|(unit, _)| *unit)
+}
+
 /// What a field's name says of the frame, if it is a usual one.
 pub(crate) fn role(name: &str) -> Option<FieldRole> {
-    // The Greek letter looks the same as the micro sign.
-    let name = name.to_lowercase().replace('μ', "µ");
-    let words: Vec<&str> = name
-        .split(|character: char| !character.is_alphabetic())
-        .filter(|word| !word.is_empty())
-        .collect();
+    let words = words(name);
+    let first = words.first()?;
+    // Of `host_time` or `header.stamp`, what comes behind the clock.
+    let time = words
+        .iter()
+        .find(|word| !CLOCKS.contains(&word.as_str()))
+        .unwrap_or(first);
     // A letter with a number is one of several like it: `S00` is not a second.
-    let first = *words.first()?;
     let has_number = name.contains(|character: char| character.is_ascii_digit());
-    if first.chars().count() == 1 && has_number {
+    let is_one_of_several = |word: &str| has_number && word.chars().count() == 1;
+    if is_one_of_several(first) || is_one_of_several(time) {
         return None;
     }
-    let has = |units: &[&str]| words.iter().any(|word| units.contains(word));
-    let factor = if has(&["ns", "nsec", "nsecs", "nanoseconds", "nanos"]) {
-        1e-9
-    } else if has(&["us", "µs", "usec", "usecs", "microseconds", "micros"]) {
-        1e-6
-    } else if has(&["ms", "msec", "msecs", "milliseconds", "millis"]) {
-        1e-3
-    } else if has(&["min", "mins", "minutes"]) {
-        60.0
-    } else {
-        1.0
-    };
-    let times = [
-        "t",
-        "time",
-        "timestamp",
-        "seconds",
-        "sec",
-        "s",
-        "stamp",
-        "clock",
-        "elapsed",
-    ];
-    let labels = [
-        "frame", "index", "idx", "number", "no", "nr", "n", "id", "label", "seq", "sequence",
-        "sample", "count",
-    ];
-    if times.contains(&first) || factor < 1.0 {
-        Some(FieldRole::Time(factor))
-    } else if labels.contains(&first) {
+    // The smallest unit, if there are several.
+    let unit = words.iter().filter_map(|word| unit(word)).min();
+    let is_time = TIMES.contains(&time.as_str())
+        || unit.is_some_and(|unit| match unit {
+            TimeUnit::Minutes => false,
+            TimeUnit::Seconds => self::unit(time) == Some(TimeUnit::Seconds),
+            _ => true,
+        });
+    if is_time {
+        Some(FieldRole::Time(unit))
+    } else if LABELS.contains(&first.as_str()) {
         Some(FieldRole::Label)
     } else {
         None
     }
+}
+
+/// The field with the rest of a time whose whole seconds are in another, and the unit of that rest: `nanosec` beside `sec`.
+/// Only such names are a pair; `time_s` and `time_ns` may be the same time twice.
+pub(crate) fn rest_of_second(names: &[&str], seconds: usize) -> Option<(usize, TimeUnit)> {
+    let own = words(names.get(seconds)?);
+    let (last, stem) = own.split_last()?;
+    if !["sec", "secs", "second", "seconds"].contains(&last.as_str()) {
+        return None;
+    }
+    names.iter().enumerate().find_map(|(field, name)| {
+        let other = words(name);
+        let (last, own_stem) = other.split_last()?;
+        let unit = unit(last).filter(|&unit| unit < TimeUnit::Milliseconds && last.len() > 2)?;
+        (own_stem == stem).then_some((field, unit))
+    })
 }
 
 #[cfg(test)]
@@ -298,23 +405,63 @@ mod tests {
 
     #[test]
     fn times_have_units() {
-        let time = |factor| Some(FieldRole::Time(factor));
+        let time = |unit| Some(FieldRole::Time(Some(unit)));
+        let bare = Some(FieldRole::Time(None));
         for (name, expected) in [
-            ("time", time(1.0)),
-            ("t_ns", time(1e-9)),
-            ("Time (ms)", time(1e-3)),
-            ("timestamp", time(1.0)),
-            ("Time (\u{3bc}s)", time(1e-6)),
-            ("Time [msecs]", time(1e-3)),
-            ("time_min", time(60.0)),
-            ("Elapsed time (s)", time(1.0)),
+            ("time", bare),
+            ("t_ns", time(TimeUnit::Nanoseconds)),
+            ("Time (ms)", time(TimeUnit::Milliseconds)),
+            ("timestamp", bare),
+            ("Time (\u{3bc}s)", time(TimeUnit::Microseconds)),
+            ("Time [msecs]", time(TimeUnit::Milliseconds)),
+            ("time_min", time(TimeUnit::Minutes)),
+            ("Elapsed time (s)", time(TimeUnit::Seconds)),
+            ("Time in seconds", time(TimeUnit::Seconds)),
+            ("timeMs", time(TimeUnit::Milliseconds)),
+            ("timestampMs", time(TimeUnit::Milliseconds)),
+            ("ts", bare),
+            ("%time", bare),
+            ("unix_time", bare),
+            ("host_time_us", time(TimeUnit::Microseconds)),
+            ("header.stamp", bare),
+            ("header.stamp.secs", time(TimeUnit::Seconds)),
+            ("header.stamp.nsecs", time(TimeUnit::Nanoseconds)),
+            ("sec", time(TimeUnit::Seconds)),
+            ("nanosec", time(TimeUnit::Nanoseconds)),
             ("min", None),
+            ("force in s", None),
             ("Frame", Some(FieldRole::Label)),
+            ("frameNumber", Some(FieldRole::Label)),
+            ("sensor_id", None),
+            ("sensor s1", None),
             ("force", None),
             ("S00", None),
+            ("T1", None),
             ("", None),
         ] {
             assert_eq!(role(name), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_second_may_have_its_rest_in_another_field() {
+        let nanoseconds = Some((1, TimeUnit::Nanoseconds));
+        for [first, second] in [
+            ["sec", "nanosec"],
+            ["secs", "nsecs"],
+            ["header.stamp.sec", "header.stamp.nanosec"],
+            ["seconds", "nanos"],
+        ] {
+            assert_eq!(rest_of_second(&[first, second], 0), nanoseconds, "{first}");
+        }
+        let microseconds = Some((1, TimeUnit::Microseconds));
+        assert_eq!(rest_of_second(&["tv_sec", "tv_usec"], 0), microseconds);
+        for [first, second] in [
+            ["time_s", "time_ns"],
+            ["start.sec", "end.nanosec"],
+            ["time", "nanosec"],
+        ] {
+            assert_eq!(rest_of_second(&[first, second], 0), None, "{first}");
         }
     }
 }

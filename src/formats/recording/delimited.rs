@@ -24,17 +24,19 @@ use std::io::{BufRead, Seek};
 use std::ops::ControlFlow;
 
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
+use crate::formats::recording::event::{
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
+};
+use crate::formats::recording::frame_time::{TableClock, TimeText, TimeUnit};
 use crate::formats::recording::lines::{TextLines, is_blank};
-use crate::formats::recording::moment::{self, Midnights, Moment};
 use crate::formats::recording::separator::Separator;
 #[cfg(feature = "cli")]
 use crate::formats::recording::side::side;
+use crate::formats::recording::table_layout::whole;
 use crate::formats::recording::table_layout::{
-    FrameFields, LineLayout, TableLayout, is_comment, layout, whole,
+    FrameFields, LineLayout, TableLayout, is_comment, layout,
 };
 use crate::formats::recording::text_row::{self, Field};
-use crate::formats::seconds::{since, to_nanoseconds};
 use crate::frame::Frame;
 use crate::parameter::number::counted;
 
@@ -62,14 +64,7 @@ pub(super) fn read(
     let mut lines = TextLines::new(input);
     match &layout.lines {
         LineLayout::Row { parted } => {
-            let (rows, columns) = layout.shape;
-            let block = RowBlock {
-                separator: layout.separator,
-                frame: Frame::new(columns, rows),
-                found: 0,
-                parted: *parted,
-            };
-            block.read(&mut lines, sink)
+            RowBlock::new(layout.separator, layout.shape, *parted).read(&mut lines, sink)
         }
         LineLayout::Frame(fields) => frames(&mut lines, &layout, fields, sink),
     }
@@ -99,13 +94,7 @@ pub(crate) fn read_rows(text: &[u8], sink: &mut Sink<'_>) -> Result<(), Recordin
     let (Some(rows), Some(columns)) = (side(rows), columns) else {
         return Err(RecordingError::Unknown);
     };
-    let block = RowBlock {
-        separator,
-        frame: Frame::new(columns, rows),
-        found: 0,
-        parted: false,
-    };
-    block.read(&mut TextLines::new(text), sink)
+    RowBlock::new(separator, (rows, columns), false).read(&mut TextLines::new(text), sink)
 }
 
 /// Reads frames of a line each.
@@ -122,7 +111,7 @@ fn frames(
     }
     let (rows, columns) = layout.shape;
     let mut frame = Frame::new(columns, rows);
-    let (mut start, mut midnights) = (None, Midnights::default());
+    let mut clock = TableClock::new(layout.separator, fields.time);
     // Lines of commas since the last frame.
     let mut without_cells = 0_u64;
     while lines.advance()? {
@@ -143,26 +132,22 @@ fn frames(
             frame.number += 1;
         }
         let time = fields.fill(&slots, &mut frame, layout.separator, (line, number))?;
-        let time = time.map(|time| match time {
-            FrameTime::Number(number, factor) => (number, factor),
-            FrameTime::Moment(moment) => (midnights.seconds(moment), 1.0),
-        });
-        frame.time = time
-            .map(|(time, factor)| to_nanoseconds(since(*start.get_or_insert(time), time) * factor));
+        let had_unit = clock.unit().is_some();
+        frame.time = clock.seconds(time);
+        if let Some(unit) = clock.unit().filter(|_| !had_unit)
+            && unit != TimeUnit::Seconds
+        {
+            let note = RecordingNote::TimeUnit { unit: unit.name() };
+            if sink(RecordingEvent::Note(&note)).is_break() {
+                break;
+            }
+        }
         if sink(RecordingEvent::Frame(&frame)).is_break() {
             break;
         }
         frame.number += 1;
     }
     Ok(())
-}
-
-/// The time of a frame, as its line has it.
-enum FrameTime {
-    /// A number, and what makes seconds of it.
-    Number(f64, f64),
-    /// A date, a clock or both.
-    Moment(Moment),
 }
 
 impl FrameFields {
@@ -175,20 +160,22 @@ impl FrameFields {
         is_frame && self.label.is_none() && self.time.is_none()
     }
 
-    /// Fills the values and the label of a frame from a line. Returns its time.
+    /// Fills the values and the label of a frame from a line. Returns the text of its time.
     ///
-    /// Text in a field that is neither cell nor label nor time is not looked at; text in that of the time may be a moment.
+    /// Text in a field that is neither cell nor label nor time is not looked at.
     ///
     /// # Errors
     /// If the line has another number of fields, or something other than a number for a cell.
-    fn fill(
+    fn fill<'a>(
         &self,
         slots: &[Option<usize>],
         frame: &mut Frame,
         separator: Separator,
-        (line, number): (&[u8], u64),
-    ) -> Result<Option<FrameTime>, RecordingError> {
-        let (mut found, mut label, mut time) = (0, None, None);
+        (line, number): (&'a [u8], u64),
+    ) -> Result<TimeText<'a>, RecordingError> {
+        let (mut found, mut label, mut time) = (0, None, TimeText::default());
+        let own = self.time.map(|time| time.field);
+        let rest = self.time.and_then(|time| time.rest).map(|(rest, _)| rest);
         let values = frame.values_mut();
         for field in separator.fields_of(line, self.count) {
             let index = found;
@@ -196,19 +183,20 @@ impl FrameFields {
             let Some(slot) = slots.get(index) else {
                 continue;
             };
-            match (slot, separator.value(field)) {
-                (Some(slot), Field::Value(value)) => values[*slot] = value,
-                (Some(slot), Field::NoCell) => values[*slot] = f64::NAN,
-                (Some(_), Field::Wrong) => return Err(text_row::wrong(number, found, field)),
-                (None, Field::Value(value)) if self.label == Some(index) => label = whole(value),
-                (None, value) => {
-                    let own = self.time.filter(|&(own, _)| own == index);
-                    time = time.or(own.and_then(|(_, factor)| match value {
-                        Field::Value(value) => Some(FrameTime::Number(value, factor)),
-                        Field::Wrong => moment::read(field).map(FrameTime::Moment),
-                        Field::NoCell => None,
-                    }));
+            if let Some(slot) = slot {
+                values[*slot] = match separator.value(field) {
+                    Field::Value(value) => value,
+                    Field::NoCell => f64::NAN,
+                    Field::Wrong => return Err(text_row::wrong(number, found, field)),
+                };
+            } else if self.label == Some(index) {
+                if let Field::Value(value) = separator.value(field) {
+                    label = whole(value);
                 }
+            } else if own == Some(index) {
+                time.time = Some(field);
+            } else if rest == Some(index) {
+                time.rest = Some(field);
             }
         }
         if found != self.count {
@@ -232,6 +220,16 @@ struct RowBlock {
 }
 
 impl RowBlock {
+    /// Before the first row of frames of that many rows and columns.
+    fn new(separator: Separator, (rows, columns): (u16, u16), parted: bool) -> Self {
+        Self {
+            separator,
+            frame: Frame::new(columns, rows),
+            found: 0,
+            parted,
+        }
+    }
+
     /// Reads all frames.
     ///
     /// # Errors

@@ -217,6 +217,11 @@ pub enum RecordingNote {
         /// How many rows, and how many columns.
         side: u16,
     },
+    /// Times whose unit follows from their size alone.
+    TimeUnit {
+        /// The unit: `nanoseconds`.
+        unit: &'static str,
+    },
     /// Bytes that belong to no frame.
     Garbled {
         /// How many frames were dropped.
@@ -259,6 +264,9 @@ impl fmt::Display for RecordingNote {
                 "the header counts {} values, taken as {side} rows of {side} columns",
                 u32::from(*side) * u32::from(*side)
             ),
+            Self::TimeUnit { unit } => {
+                write!(f, "times have no unit, taken as {unit} since 1970")
+            }
             Self::Garbled { frames } => {
                 let frames = counted(*frames, "frame");
                 write!(f, "{frames} dropped (torn, short, long or garbled)")

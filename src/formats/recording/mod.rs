@@ -48,6 +48,8 @@ mod zebris;
 
 pub(crate) mod separator;
 
+mod frame_time;
+
 mod cell_names;
 
 mod table_layout;

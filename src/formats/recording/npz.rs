@@ -2,8 +2,9 @@
 //! gives the times of channels of its length.
 //!
 //! Its channels are named as the arrays, without `.npy`. Times may be in s, ms, µs or ns, which their name tells
-//! (`time_ms`), and count from the first one. Whole nanoseconds since 1970 lose nothing: the difference is taken before
-//! they become floats. What `numpy.savez` and `numpy.savez_compressed` write is read.
+//! (`time_ms`), their type (datetime64 and timedelta64 of numpy) or their size ([`TimeUnit::by_size`]), and count from the
+//! first one. Whole nanoseconds since 1970 lose nothing: the difference is taken before they become floats. What
+//! `numpy.savez` and `numpy.savez_compressed` write is read.
 //!
 //! The checksum of an array says only that some of its bytes are wrong, and only at its end. Its frames are given as they
 //! are read, then the error: to check it first would take twice the time and give none of the frames that are right.
@@ -16,7 +17,10 @@ use zip::result::ZipError;
 use crate::formats::npy::{Header, NumberType};
 use crate::formats::recording::cell_names::{FieldRole, role};
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
+use crate::formats::recording::event::{
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
+};
+use crate::formats::recording::frame_time::TimeUnit;
 use crate::formats::recording::numpy::{self, ArrayLayout};
 use crate::formats::seconds::{since, to_nanoseconds};
 
@@ -106,7 +110,13 @@ pub(super) fn read(
         }
     }
     for (channel, (array, layout)) in channels.iter().enumerate() {
-        let times = times(&mut archive, &arrays, layout.frames())?;
+        let (times, assumed) = times(&mut archive, &arrays, layout.frames())?;
+        if let Some(unit) = assumed {
+            let note = RecordingNote::TimeUnit { unit: unit.name() };
+            if sink(RecordingEvent::Note(&note)).is_break() {
+                break;
+            }
+        }
         let mut file = archive.by_index(array.index).map_err(damaged)?;
         let named = |error| in_array(&array.name, error);
         numpy::header(&mut file).map_err(named)?;
@@ -172,55 +182,203 @@ fn with_layouts(
     }
 }
 
-/// The times of all `frames`, in seconds since the first; empty where there are none.
-fn times<'a>(
-    archive: &mut ZipArchive<impl Read + Seek>,
-    arrays: &'a [ArchiveArray],
-    frames: u64,
-) -> Result<Vec<f64>, RecordingError> {
-    let fits = |array: &&ArchiveArray| array.header.shape == [frames];
-    let number = |array: &ArchiveArray| NumberType::of(&array.header.code);
-    let timed = |array: &'a ArchiveArray| match role(&array.name) {
-        Some(FieldRole::Time(factor)) => Some((array, number(array)?, factor)),
-        _ => None,
-    };
-    // Only where no array is called a time: `temperature` is none.
-    let mut others = arrays.iter().filter(fits);
-    let other = others.find(|array| array.name.starts_with(['t', 'T']));
-    let found = arrays.iter().filter(fits).find_map(timed);
-    let found = found.or_else(|| other.and_then(|array| Some((array, number(array)?, 1.0))));
-    let Some((array, number, factor)) = found.filter(|_| frames <= MOST_TIMES) else {
-        return Ok(Vec::new());
-    };
-    let mut file = archive.by_index(array.index).map_err(damaged)?;
-    let named = |error| in_array(&array.name, error);
-    numpy::header(&mut file).map_err(named)?;
-    let mut bytes = [0; 8];
-    let bytes = &mut bytes[..number.size()];
-    let mut times = Vec::new();
-    let (mut first, mut first_whole) = (None, None);
-    for _ in 0..frames {
-        if numpy::fill(&mut file, bytes).map_err(named)? < bytes.len() {
-            let message = format!("{}: ends before its {frames} times", array.name);
-            return Err(RecordingError::damaged(message));
-        }
-        // Nanoseconds since 1970 have more digits than a float.
-        #[expect(
-            clippy::cast_precision_loss,
-            reason = "the nearest float of a difference"
-        )]
-        let time = if let Some(whole) = number.whole(bytes) {
-            (whole - *first_whole.get_or_insert(whole)) as f64
-        } else {
-            let value = number.value(bytes);
-            since(*first.get_or_insert(value), value)
+/// A list of times.
+struct TimeArray<'a> {
+    array: &'a ArchiveArray,
+    /// Its type.
+    number: NumberType,
+    /// Its unit, if its name or its type has one.
+    unit: Option<TimeUnit>,
+    /// Whether its smallest number stands for no time, as in those of numpy.
+    has_none: bool,
+}
+
+impl<'a> TimeArray<'a> {
+    /// That of an array whose name may have a unit; None if its numbers are no times. A type such as `<M8[ns]` or `<m8[ms]`,
+    /// numpy's own for moments and for durations, says its unit.
+    fn new(array: &'a ArchiveArray, unit: Option<TimeUnit>) -> Option<Self> {
+        let code = &array.header.code;
+        let own = code.strip_suffix(']').and_then(|code| code.split_once('['));
+        let Some((kind, word)) = own else {
+            return NumberType::of(code).map(|number| Self {
+                array,
+                number,
+                unit,
+                has_none: false,
+            });
         };
-        if !time.is_finite() {
-            return Ok(Vec::new());
-        }
-        times.push(to_nanoseconds(time * factor));
+        let unit = match word {
+            "ns" => TimeUnit::Nanoseconds,
+            "us" => TimeUnit::Microseconds,
+            "ms" => TimeUnit::Milliseconds,
+            "s" => TimeUnit::Seconds,
+            "m" => TimeUnit::Minutes,
+            _ => return None,
+        };
+        let order = kind
+            .strip_suffix("M8")
+            .or_else(|| kind.strip_suffix("m8"))?;
+        Some(Self {
+            array,
+            number: NumberType::of(&format!("{order}i8"))?,
+            unit: Some(unit),
+            has_none: true,
+        })
     }
-    // Wrong times are worse than none, and the end of the list tells whether its checksum holds.
-    numpy::fill(&mut file, &mut [0]).map_err(named)?;
-    Ok(times)
+
+    /// The one for arrays of that many frames. An array that only begins with `t` counts where no other is called a time:
+    /// `temperature` is none.
+    fn of_frames(arrays: &'a [ArchiveArray], frames: u64) -> Option<Self> {
+        let mut fitting = arrays.iter().filter(|own| own.header.shape == [frames]);
+        let timed = |array: &'a ArchiveArray| match role(&array.name) {
+            Some(FieldRole::Time(unit)) => Self::new(array, unit),
+            _ => None,
+        };
+        let found = fitting.clone().find_map(timed);
+        let other = fitting.find(|array| array.name.starts_with(['t', 'T']));
+        found.or_else(|| Self::new(other?, None))
+    }
+
+    /// The times in seconds since the first, and the unit that their size alone tells, if it is not seconds.
+    ///
+    /// # Errors
+    /// If the array is damaged.
+    fn seconds(
+        &self,
+        file: &mut impl Read,
+        frames: u64,
+    ) -> Result<(Vec<f64>, Option<TimeUnit>), RecordingError> {
+        numpy::header(file)?;
+        let mut bytes = [0; 8];
+        let bytes = &mut bytes[..self.number.size()];
+        let (mut times, mut unit) = (Vec::new(), self.unit);
+        let (mut first, mut first_whole) = (None, None);
+        for _ in 0..frames {
+            if numpy::fill(file, bytes)? < bytes.len() {
+                let message = format!("ends before its {frames} times");
+                return Err(RecordingError::damaged(message));
+            }
+            let value = self.number.value(bytes);
+            // Nanoseconds since 1970 have more digits than a float.
+            #[expect(
+                clippy::cast_precision_loss,
+                reason = "the nearest float of a difference"
+            )]
+            let time = match self.number.whole(bytes) {
+                Some(whole) if self.has_none && whole == i128::from(i64::MIN) => f64::NAN,
+                Some(whole) => (whole - *first_whole.get_or_insert(whole)) as f64,
+                None => since(*first.get_or_insert(value), value),
+            };
+            if !time.is_finite() {
+                return Ok((Vec::new(), None));
+            }
+            let unit = unit.get_or_insert_with(|| TimeUnit::by_size(value));
+            times.push(to_nanoseconds(unit.seconds(time)));
+        }
+        // Wrong times are worse than none, and the end of the list tells whether its checksum holds.
+        numpy::fill(file, &mut [0])?;
+        let assumed = unit.filter(|&unit| self.unit.is_none() && unit != TimeUnit::Seconds);
+        Ok((times, assumed))
+    }
+}
+
+/// The times of all `frames`, in seconds since the first; empty where there are none. Also the unit that their size alone
+/// tells, if it is not seconds.
+///
+/// # Errors
+/// If their array is damaged.
+fn times(
+    archive: &mut ZipArchive<impl Read + Seek>,
+    arrays: &[ArchiveArray],
+    frames: u64,
+) -> Result<(Vec<f64>, Option<TimeUnit>), RecordingError> {
+    let found = TimeArray::of_frames(arrays, frames);
+    let Some(found) = found.filter(|_| frames <= MOST_TIMES) else {
+        return Ok((Vec::new(), None));
+    };
+    let mut file = archive.by_index(found.array.index).map_err(damaged)?;
+    let named = |error| in_array(&found.array.name, error);
+    found.seconds(&mut file, frames).map_err(named)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Cursor, Write};
+    use std::ops::ControlFlow;
+
+    use zip::write::SimpleFileOptions;
+
+    use super::*;
+
+    /// Times and notes of two frames of two cells beside a list `time` of such a type and such numbers.
+    fn times_of(name: &str, code: &str, times: [i64; 2]) -> (Vec<Option<f64>>, Vec<String>) {
+        let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        let options = SimpleFileOptions::default();
+        let mut add = |name: &str, code: &str, shape: &str, numbers: &[u8]| {
+            let text =
+                format!("{{'descr': '{code}', 'fortran_order': False, 'shape': ({shape}), }}\n");
+            let length = u16::try_from(text.len()).expect("short");
+            archive
+                .start_file(format!("{name}.npy"), options)
+                .expect("begun");
+            for part in [
+                b"\x93NUMPY\x01\x00",
+                &length.to_le_bytes()[..],
+                text.as_bytes(),
+                numbers,
+            ] {
+                archive.write_all(part).expect("written");
+            }
+        };
+        add("frames", "|u1", "2, 1, 2", &[1, 2, 3, 4]);
+        add(name, code, "2,", &times.map(i64::to_le_bytes).concat());
+        let archive = archive.finish().expect("finished").into_inner();
+        let (mut found, mut notes) = (Vec::new(), Vec::new());
+        let read = read(Cursor::new(archive), ReadOptions::default(), &mut |event| {
+            match event {
+                RecordingEvent::Frame(frame) => found.push(frame.time),
+                RecordingEvent::Note(note) => notes.push(note.to_string()),
+                RecordingEvent::Channel(_) => {}
+            }
+            ControlFlow::Continue(())
+        });
+        assert!(read.is_ok(), "{read:?}");
+        (found, notes)
+    }
+
+    #[test]
+    fn times_have_the_unit_of_their_name_their_type_or_their_size() {
+        let since_1970 = [1_714_564_800_123_456_789, 1_714_564_800_124_456_790];
+        let both = |step| vec![Some(0.0), Some(step)];
+        for (name, code, times, step) in [
+            ("time_ns", "<i8", since_1970, 0.001_000_001),
+            ("time", "<M8[ns]", since_1970, 0.001_000_001),
+            ("time", "<m8[ms]", [5, 55], 0.05),
+            ("stamps", "<i8", [5, 55], f64::NAN),
+            ("t_ms", "<i8", [5, 55], 0.05),
+            ("time", "<i8", [5, 55], 50.0),
+        ] {
+            let expected = if step.is_nan() {
+                vec![None; 2]
+            } else {
+                both(step)
+            };
+            assert_eq!(
+                times_of(name, code, times),
+                (expected, vec![]),
+                "{name} {code}"
+            );
+        }
+        let noted = vec!["times have no unit, taken as nanoseconds since 1970".to_owned()];
+        assert_eq!(
+            times_of("time", "<i8", since_1970),
+            (both(0.001_000_001), noted)
+        );
+        // numpy's word for no time.
+        let without = (vec![None; 2], vec![]);
+        assert_eq!(
+            times_of("time", "<M8[ns]", [since_1970[0], i64::MIN]),
+            without
+        );
+    }
 }

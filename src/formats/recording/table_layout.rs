@@ -2,14 +2,17 @@
 //!
 //! A header names the cells, see [`cell_names`](super::cell_names). Without one, rows and columns have to be known
 //! beforehand, unless the table is in blocks of a row a line; numbers before or behind the cells are then recognised by how
-//! they grow from line to line ([`without_header`]). A timestamp is the time of its frame unless a column of numbers
-//! gives the time; other texts are ignored.
+//! they grow from line to line ([`without_header`]). A timestamp is the time of its frame unless a column of
+//! numbers gives the time; other texts are ignored.
 
 use std::io::BufRead;
 
-use crate::formats::recording::cell_names::{FieldRole, NamedCells, cells, role, roles};
+use crate::formats::recording::cell_names::{
+    FieldRole, NamedCells, cells, rest_of_second, role, roles,
+};
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingNote};
+use crate::formats::recording::frame_time::{TimeFields, TimeUnit};
 use crate::formats::recording::lines::{TextLines, is_blank, text};
 use crate::formats::recording::moment;
 use crate::formats::recording::separator::Separator;
@@ -65,8 +68,8 @@ pub(super) struct FrameFields {
     pub(super) cells: Vec<usize>,
     /// The field with what the recording calls the frame.
     pub(super) label: Option<usize>,
-    /// The field with the time, and what makes seconds of it.
-    pub(super) time: Option<(usize, f64)>,
+    /// The fields with the time.
+    pub(super) time: Option<TimeFields>,
 }
 
 /// Whether a line is a comment, wherever it stands; or the line in which spreadsheet programs name their separator, `sep=;`.
@@ -253,7 +256,7 @@ impl LineLayout {
         let Self::Frame(FrameFields { time, .. }) = self else {
             return None;
         };
-        let field = *fields.get((*time)?.0)?;
+        let field = *fields.get((*time)?.field)?;
         moment::read(field).is_some().then(|| text(field))
     }
 }
@@ -269,9 +272,10 @@ impl FrameFields {
             own.is_some_and(|own| separator.is_numeric(own)) || is_moment(&field)
         };
         // A column of that name may hold anything, such as a date without a clock.
-        if !self.time.is_some_and(|(field, _)| is_time(field)) {
+        if !self.time.is_some_and(|time| is_time(time.field)) {
             let moment = (0..fields.len()).find(is_moment);
-            self.time = moment.map(|field| (field, 1.0)).or(self.time);
+            let moment = moment.map(|field| TimeFields::new(field, None));
+            self.time = moment.or(self.time);
         }
         self
     }
@@ -297,7 +301,10 @@ impl FrameFields {
             header: self.header,
             cells,
             label: self.label.map(|label| numeric[label]),
-            time: self.time.map(|(time, factor)| (numeric[time], factor)),
+            time: self.time.map(|time| TimeFields {
+                field: numeric[time.field],
+                ..time
+            }),
         })
     }
 }
@@ -329,8 +336,25 @@ fn with_header(
     };
     let label = others().find(|(_, role)| **role == Some(FieldRole::Label));
     let time = others().find_map(|(field, role)| match role {
-        Some(FieldRole::Time(factor)) => Some((field, *factor)),
+        Some(FieldRole::Time(unit)) => Some(TimeFields::new(field, *unit)),
         _ => None,
+    });
+    // Its first column may be either part of a time in two columns.
+    let mut in_two = others().filter_map(|(field, role)| match role {
+        Some(FieldRole::Time(unit)) => Some(TimeFields {
+            field,
+            unit: *unit,
+            rest: Some(rest_of_second(names, field)?),
+        }),
+        _ => None,
+    });
+    let is_part = |of: &TimeFields, field| {
+        of.field == field || of.rest.is_some_and(|(rest, _)| rest == field)
+    };
+    let time = time.map(|first| {
+        in_two
+            .find(|own| is_part(own, first.field))
+            .unwrap_or(first)
     });
     let fields = separator.fields_of(first, names.len());
     let fields: Vec<&[u8]> = fields.take(names.len()).collect();
@@ -429,12 +453,19 @@ fn without_header(
         Some(1) if lines.len() > 1 && growth_is(0, |step| step == 1.0) => {
             arranged(1, Some(0), None)
         }
-        Some(1) if growth_is(0, |step| step > 0.0) => arranged(1, None, Some((0, 1.0))),
+        Some(1) if growth_is(0, |step| step > 0.0) => {
+            arranged(1, None, Some(TimeFields::new(0, None)))
+        }
         // The offset of a message of ROS.
         Some(1) if first[0] == 0.0 && growth_is(0, |step| step == 0.0) => arranged(1, None, None),
         Some(2) => match number_and_time(number, lines, cells)? {
-            Some((label, time)) if label < cells => arranged(2, Some(label), Some((time, 1.0))),
-            Some((label, time)) => arranged(0, Some(label), Some((time, 1e-3))),
+            Some((label, time)) if label < cells => {
+                arranged(2, Some(label), Some(TimeFields::new(time, None)))
+            }
+            Some((label, time)) => {
+                let unit = Some(TimeUnit::Milliseconds);
+                arranged(0, Some(label), Some(TimeFields::new(time, unit)))
+            }
             None => Err(text_row::count(number, first.len(), cells)),
         },
         _ => Err(text_row::count(number, first.len(), cells)),

@@ -97,6 +97,66 @@ fn of_one_line_with_two_numbers_more_nothing_says_where_they_are() {
     assert_eq!(values(text, Some((2, 2))), [[1.5, 2.5, 3.0, 4.0]]);
 }
 
+/// The times of the frames of a table, and its notes.
+fn times(text: &str) -> (Vec<Option<f64>>, Vec<String>) {
+    let found = recorded(text.as_bytes(), None);
+    assert!(found.error.is_none(), "{text}: {:?}", found.error);
+    let times = found.frames.iter().map(|frame| frame.time).collect();
+    (times, found.notes.iter().map(ToString::to_string).collect())
+}
+
+#[test]
+fn a_time_in_two_columns_is_their_sum() {
+    for [seconds, rest] in [
+        ["header.stamp.secs", "header.stamp.nsecs"],
+        ["sec", "nanosec"],
+        ["secs", "nsecs"],
+    ] {
+        let rows = "1714564800,999999999,1,2\n1714564801,1,3,4\n1714564801,50000000,3,4\n";
+        let text = format!("{seconds},{rest},r0c0,r0c1\n{rows}");
+        let expected = [0.0, 2e-9, 0.050_000_001].map(Some).to_vec();
+        assert_eq!(times(&text), (expected.clone(), vec![]), "{text}");
+        // Behind the cells, and the other way round.
+        let rows = "1,2,999999999,1714564800\n3,4,1,1714564801\n3,4,50000000,1714564801\n";
+        let text = format!("r0c0,r0c1,{rest},{seconds}\n{rows}");
+        assert_eq!(times(&text), (expected, vec![]), "{text}");
+    }
+}
+
+#[test]
+fn times_since_1970_are_exact_and_their_size_is_a_unit() {
+    let start = 1_714_564_800_123_456_789_u64;
+    for (name, unit, parts, noted) in [
+        ("time_ns", 1, 1, ""),
+        ("timestamp", 1, 1, "nanoseconds"),
+        ("%time", 1, 1, "nanoseconds"),
+        ("ts", 1_000, 1, "microseconds"),
+        ("unix_time", 1_000_000, 1, "milliseconds"),
+        ("epoch", 1_000_000_000, 1_000_000_000, ""),
+    ] {
+        let row = |index: u64| match parts {
+            1 => format!("{},1,2\n", (start + 1_000_000 * index) / unit),
+            _ => {
+                let time = start + 1_000_000 * index;
+                format!("{}.{:09},1,2\n", time / parts, time % parts)
+            }
+        };
+        let text = format!("{name},r0c0,r0c1\n{}{}{}", row(0), row(1), row(2));
+        let (found, notes) = times(&text);
+        assert_eq!(found, [0.0, 0.001, 0.002].map(Some), "{text}");
+        let expected = match noted {
+            "" => vec![],
+            unit => vec![format!("times have no unit, taken as {unit} since 1970")],
+        };
+        assert_eq!(notes, expected, "{text}");
+    }
+    // A unit that is named counts, and so do seconds since anything else.
+    let text = "time_s,r0c0,r0c1\n1714564800123,1,2\n1714564800125,1,2\n";
+    assert_eq!(times(text), (vec![Some(0.0), Some(2.0)], vec![]));
+    let text = "t,r0c0,r0c1\n12345,1,2\n12395,1,2\n";
+    assert_eq!(times(text), (vec![Some(0.0), Some(50.0)], vec![]));
+}
+
 #[test]
 fn the_letters_of_names_say_which_number_is_the_column() {
     let text = "c0r0,c1r0,c2r0,c0r1,c1r1,c2r1\n1,2,3,4,5,6\n";
