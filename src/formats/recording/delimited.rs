@@ -32,11 +32,11 @@ use crate::formats::recording::lines::{TextLines, is_blank};
 use crate::formats::recording::separator::Separator;
 #[cfg(feature = "cli")]
 use crate::formats::recording::side::side;
-use crate::formats::recording::table_layout::whole;
 use crate::formats::recording::table_layout::{
     FrameFields, LineLayout, TableLayout, is_comment, layout,
 };
 use crate::formats::recording::text_row::{self, Field};
+use crate::formats::recording::unnamed_fields::whole;
 use crate::frame::Frame;
 use crate::parameter::number::counted;
 

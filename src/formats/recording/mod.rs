@@ -52,6 +52,8 @@ mod frame_time;
 
 mod cell_names;
 
+mod unnamed_fields;
+
 mod table_layout;
 
 mod delimited;

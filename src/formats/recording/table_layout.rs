@@ -1,8 +1,8 @@
 //! How a table of numbers is arranged: where its cells are, and what else stands in its lines.
 //!
 //! A header names the cells, see [`cell_names`](super::cell_names). Without one, rows and columns have to be known
-//! beforehand, unless the table is in blocks of a row a line; numbers before or behind the cells are then recognised by how
-//! they grow from line to line ([`without_header`]). A timestamp is the time of its frame unless a column of
+//! beforehand, unless the table is in blocks of a row a line; numbers beside the cells are then recognised by how they grow
+//! from line to line, see [`unnamed_fields`](super::unnamed_fields). A timestamp is the time of its frame unless a column of
 //! numbers gives the time; other texts are ignored.
 
 use std::io::BufRead;
@@ -12,12 +12,13 @@ use crate::formats::recording::cell_names::{
 };
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingNote};
-use crate::formats::recording::frame_time::{TimeFields, TimeUnit};
+use crate::formats::recording::frame_time::TimeFields;
 use crate::formats::recording::lines::{TextLines, is_blank, text};
 use crate::formats::recording::moment;
 use crate::formats::recording::separator::Separator;
 use crate::formats::recording::side::side;
 use crate::formats::recording::text_row;
+use crate::formats::recording::unnamed_fields::unnamed_fields;
 use crate::frame::MAX_FRAME_SIDE;
 use crate::parameter::number::{counted, grouped};
 
@@ -216,7 +217,15 @@ fn of_numbers(
             (shape, LineLayout::Row { parted })
         }
         (Some(shape), _) => {
-            let found = without_header(shape, number, &compared)?;
+            let cells = usize::from(shape.0) * usize::from(shape.1);
+            let found = unnamed_fields(cells, number, &compared)?;
+            let found = FrameFields {
+                count: numeric.len(),
+                header: None,
+                cells: (found.start..found.start + cells).collect(),
+                label: found.label,
+                time: found.time,
+            };
             let found = found.among(&numeric, &fields, number)?;
             (
                 shape,
@@ -244,8 +253,10 @@ fn lines_needed(shape: Option<(u16, u16)>, width: Option<u16>, values: usize) ->
     let cells = |(rows, columns)| usize::from(rows) * usize::from(columns);
     match (shape, width) {
         (Some((rows, columns)), Some(width)) if width == columns && rows > 1 => rows + 1,
-        (Some(shape), _) if values == cells(shape) + 2 => COMPARED,
-        (Some(_), _) => 2,
+        (Some(shape), _) => match values.checked_sub(cells(shape)) {
+            Some(1 | 2) => COMPARED,
+            _ => 2,
+        },
         (None, _) => MAX_FRAME_SIDE + 1,
     }
 }
@@ -424,93 +435,4 @@ fn named_cells(
             Ok((shape, (leading..end).collect(), None))
         }
     }
-}
-
-/// The arrangement of lines without names: the cells alone; a number or a time before them, or both; or a number and
-/// milliseconds behind them. What grows from line to line says which it is. The first of them is line `number` of the file.
-///
-/// # Errors
-/// If the line has fewer fields than a frame has cells, or if other fields are not cells or may be.
-fn without_header(
-    (rows, columns): (u16, u16),
-    number: u64,
-    lines: &[Vec<f64>],
-) -> Result<FrameFields, RecordingError> {
-    let cells = usize::from(rows) * usize::from(columns);
-    let first = &lines[0];
-    let arranged = |start: usize, label, time| {
-        Ok(FrameFields {
-            count: first.len(),
-            header: None,
-            cells: (start..start + cells).collect(),
-            label,
-            time,
-        })
-    };
-    let growth_is = |field, fits: fn(f64) -> bool| grows(&lines[..lines.len().min(2)], field, fits);
-    match first.len().checked_sub(cells) {
-        Some(0) => arranged(0, None, None),
-        Some(1) if lines.len() > 1 && growth_is(0, |step| step == 1.0) => {
-            arranged(1, Some(0), None)
-        }
-        Some(1) if growth_is(0, |step| step > 0.0) => {
-            arranged(1, None, Some(TimeFields::new(0, None)))
-        }
-        // The offset of a message of ROS.
-        Some(1) if first[0] == 0.0 && growth_is(0, |step| step == 0.0) => arranged(1, None, None),
-        Some(2) => match number_and_time(number, lines, cells)? {
-            Some((label, time)) if label < cells => {
-                arranged(2, Some(label), Some(TimeFields::new(time, None)))
-            }
-            Some((label, time)) => {
-                let unit = Some(TimeUnit::Milliseconds);
-                arranged(0, Some(label), Some(TimeFields::new(time, unit)))
-            }
-            None => Err(text_row::count(number, first.len(), cells)),
-        },
-        _ => Err(text_row::count(number, first.len(), cells)),
-    }
-}
-
-/// Whether the steps of a field from line to line are all as they should be; they are in a single line.
-fn grows(lines: &[Vec<f64>], field: usize, fits: fn(f64) -> bool) -> bool {
-    let value = |line: &[f64]| line.get(field).copied().unwrap_or(f64::NAN);
-    let mut pairs = lines.windows(2);
-    pairs.all(|pair| fits(value(&pair[1]) - value(&pair[0])))
-}
-
-/// The fields of a number that counts frames and of a time, both before the cells or both behind them; None where there are
-/// none. As many lines are compared as it takes until one of the two is ruled out: the last one may be torn.
-///
-/// # Errors
-/// If none is.
-fn number_and_time(
-    number: u64,
-    lines: &[Vec<f64>],
-    cells: usize,
-) -> Result<Option<(usize, usize)>, RecordingError> {
-    for count in lines.len().min(2)..=lines.len() {
-        let lines = &lines[..count];
-        let fits = |&(label, time): &(usize, usize)| {
-            whole(lines[0][label]).is_some()
-                && grows(lines, label, |step| step == 1.0)
-                && grows(lines, time, |step| step >= 0.0)
-        };
-        let before = [(0, 1), (1, 0)].into_iter().find(fits);
-        let behind = Some((cells, cells + 1)).filter(fits);
-        if before.is_none() || behind.is_none() {
-            return Ok(behind.or(before));
-        }
-    }
-    let message = format!(
-        "2 numbers more than the {cells} cells, before or behind them: name the columns in a line above, such as \
-         frame,time,r0c0"
-    );
-    Err(RecordingError::in_line(number, message))
-}
-
-/// A number without a fraction, as labels are; None of any other, and beyond what a float counts exactly.
-#[expect(clippy::cast_possible_truncation, reason = "checked")]
-pub(super) fn whole(value: f64) -> Option<i64> {
-    (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64)
 }

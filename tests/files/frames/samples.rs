@@ -129,17 +129,16 @@ fn numbers_beside_the_cells_are_told_by_how_they_grow() {
     // For two lines the cells, too, grow as a number and a time do.
     assert_eq!(first("0,0.0,5,6\n1,0.1,6,6\n2,0.2,9,6\n"), [5.0, 6.0, 9.0]);
     assert_eq!(first("5,6,0,0\n6,6,1,40\n9,6,2,80\n"), [5.0, 6.0, 9.0]);
-    let error = read("0,0.0,5,6\n1,0.1,6,6\n")
+    // Only times have decimals here.
+    assert_eq!(first("0,0.0,5,6\n1,0.1,6,8\n"), [5.0, 6.0]);
+    let error = read("0,0,5,6\n1,4,6,8\n")
         .error
         .map(|error| error.to_string());
     let unclear =
         "line 1: 2 numbers more than the 2 cells, before or behind them: name the columns";
     assert!(error.is_some_and(|error| error.starts_with(unclear)));
     for (text, expected) in [
-        (
-            "# a\n\n# b\n0,0.0,5,6\n1,0.1,6,6\n",
-            "line 4: 2 numbers more",
-        ),
+        ("# a\n\n# b\n0,0,5,6\n1,4,6,8\n", "line 4: 2 numbers more"),
         ("# a\n1,2,3,4,5\n", "line 2: found 5 values, expected 2"),
     ] {
         let error = read(text).error.map(|error| error.to_string());

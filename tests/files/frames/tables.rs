@@ -80,7 +80,7 @@ fn an_index_of_pandas_is_no_cell() {
         (Some(8), Some(0.25), &expected[1].2)
     );
     // Behind an offset of ROS, the values of the first line only look as if they counted.
-    let text = "0,1,2,3,4\n0,5,6,7,8\n";
+    let text = "0,1,2,3,4\n0,5,6,7,2\n";
     assert_eq!(values(text, Some((2, 2))).len(), 2);
 }
 
@@ -95,6 +95,90 @@ fn of_one_line_with_two_numbers_more_nothing_says_where_they_are() {
     // A number that counts frames has no fraction.
     let text = "1.5,2.5,3,4,17,40\n";
     assert_eq!(values(text, Some((2, 2))), [[1.5, 2.5, 3.0, 4.0]]);
+}
+
+#[test]
+fn numbers_beside_the_cells_are_told_by_how_they_grow() {
+    let with = |label, time: f64| (label, Some(time));
+    let (counted, timed) = (|label| (Some(label), None), |time| (None, Some(time)));
+    for (text, expected, first_cells) in [
+        // The time behind the cells, while the first cell rises, too: between two lines or all.
+        (
+            "5,1,2,9,0.00\n7,1,2,9,0.05\n6,1,2,9,0.10\n",
+            vec![timed(0.0), timed(0.05), timed(0.1)],
+            vec![5.0, 7.0, 6.0],
+        ),
+        (
+            "5,1,2,9,0.00\n7,1,2,9,0.05\n",
+            vec![timed(0.0), timed(0.05)],
+            vec![5.0, 7.0],
+        ),
+        (
+            "5,1,2,9,0\n9,1,2,9,50\n60,1,2,9,101\n",
+            vec![timed(0.0), timed(50.0), timed(101.0)],
+            vec![5.0, 9.0, 60.0],
+        ),
+        // The first cell stays 0, as the offset of a message of ROS does.
+        (
+            "0,1,2,9,0.00\n0,1,2,9,0.05\n0,1,2,9,0.11\n",
+            vec![timed(0.0), timed(0.05), timed(0.11)],
+            vec![0.0, 0.0, 0.0],
+        ),
+        (
+            "0,1,2,9,0\n0,1,2,9,3\n0,1,2,9,3\n",
+            vec![(None, None); 3],
+            vec![1.0, 1.0, 1.0],
+        ),
+        // The number or the time before the cells, while the last cell rises.
+        (
+            "0,1,2,3,4\n1,5,6,7,8\n2,5,6,7,9\n",
+            vec![counted(0), counted(1), counted(2)],
+            vec![1.0, 5.0, 5.0],
+        ),
+        (
+            "0.00,1,2,3,4\n0.05,5,6,7,8\n",
+            vec![timed(0.0), timed(0.05)],
+            vec![1.0, 5.0],
+        ),
+        (
+            "0.0011,1,2,3,4\n0.0515,1,2,3,9\n0.1003,1,2,3,10\n",
+            vec![timed(0.0), timed(0.0504), timed(0.0992)],
+            vec![1.0, 1.0, 1.0],
+        ),
+        // The number before the cells, the time behind them; a cell that does not change is no time.
+        (
+            "0,1,2,9,4,0.00\n1,1,2,8,4,0.05\n2,1,2,9,4,0.10\n",
+            vec![with(Some(0), 0.0), with(Some(1), 0.05), with(Some(2), 0.1)],
+            vec![1.0, 1.0, 1.0],
+        ),
+        (
+            "7,0.00,1,2,9,4\n8,0.05,1,2,8,6\n9,0.10,1,2,9,7\n",
+            vec![with(Some(7), 0.0), with(Some(8), 0.05), with(Some(9), 0.1)],
+            vec![1.0, 1.0, 1.0],
+        ),
+    ] {
+        let found = frames(text, Some((2, 2)));
+        let beside: Vec<_> = found.iter().map(|own| (own.0, own.1)).collect();
+        let cells: Vec<f64> = found.iter().map(|own| own.2[0]).collect();
+        assert_eq!((beside, cells), (expected, first_cells), "{text}");
+    }
+    // Nothing tells which of both it is.
+    for text in [
+        "0,1,2,3,4\n",
+        "10,1,2,3,4\n12,5,6,7,8\n",
+        "10,1,2,3,4\n12,5,6,7,8\n14,5,6,7,12\n",
+    ] {
+        let found = recorded(text.as_bytes(), Some((2, 2)));
+        let unclear = "line 1: 1 number more than the 4 cells, before or behind them: name the columns in a line above";
+        assert!(
+            error(&found).starts_with(unclear),
+            "{text}: {:?}",
+            found.error
+        );
+    }
+    // None of both grows.
+    let found = recorded(b"5,1,2,3,4\n4,5,6,7,3\n", Some((2, 2)));
+    assert_eq!(error(&found), "line 1: found 5 values, expected 4");
 }
 
 /// The times of the frames of a table, and its notes.

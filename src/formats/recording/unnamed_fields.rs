@@ -1,0 +1,230 @@
+//! What stands beside the cells in lines that no header names: the frame's number, its time or both.
+//! ```text
+//! 0,0.00,1,2,3,4      number and time before the cells
+//! 0.00,1,2,3,4        one of them before the cells
+//! 1,2,3,4,0.00        one of them behind the cells
+//! 0,1,2,3,4,0.00      the number before, the time behind
+//! 1,2,3,4,0,50        number and milliseconds behind the cells
+//! ```
+//! Numbers count up by 1 from line to line and times do not fall, while cells do both. Where cells happen to grow, too, the
+//! better evidence decides (see [`Evidence`]); where that is equal, the lines are refused, since a wrong guess would shift
+//! all cells by one.
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::frame_time::{TimeFields, TimeUnit};
+use crate::formats::recording::text_row;
+use crate::parameter::number::counted;
+
+/// Steps of a clock differ from their mean by no more than this part of it.
+const UNEVEN: f64 = 0.1;
+
+/// How a field grows from line to line; what tells more is greater.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+enum Growth {
+    /// It stays the same.
+    Constant,
+    /// It stays the same or rises.
+    NotFalling,
+    /// It is 0, as the offset of a message of ROS.
+    Zero,
+    /// It rises with each line.
+    Rising,
+    /// It rises by about the same with each line, and there are at least three.
+    Steady,
+    /// It rises by 1 with each line.
+    Counting,
+}
+
+impl Growth {
+    /// That of a field; None if it falls or is no number somewhere. A single line has constant fields only.
+    fn of(lines: &[Vec<f64>], field: usize) -> Option<Self> {
+        let value = |line: &Vec<f64>| line.get(field).copied().unwrap_or(f64::NAN);
+        let pairs = lines.windows(2);
+        let steps: Vec<f64> = pairs
+            .map(|pair| value(&pair[1]) - value(&pair[0]))
+            .collect();
+        // NaN is neither.
+        if !steps.iter().all(|step| *step >= 0.0) {
+            return None;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a mean of a few steps")]
+        let mean = steps.iter().sum::<f64>() / steps.len().max(1) as f64;
+        Some(if mean == 0.0 {
+            Self::Constant
+        } else if steps.contains(&0.0) {
+            Self::NotFalling
+        } else if steps.iter().all(|step| *step == 1.0) {
+            Self::Counting
+        } else if steps.len() > 1
+            && steps
+                .iter()
+                .all(|step| (step - mean).abs() <= UNEVEN * mean)
+        {
+            Self::Steady
+        } else {
+            Self::Rising
+        })
+    }
+}
+
+/// What speaks for such fields; the greater evidence decides.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+struct Evidence {
+    /// Whether the time has decimals and no cell has.
+    is_only_decimal: bool,
+    /// How the time grows, or the number where there is no time.
+    growth: Growth,
+}
+
+/// Where cells, number and time of a frame are, or may be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct UnnamedFields {
+    /// The first cell.
+    pub(super) start: usize,
+    /// The field of the number.
+    pub(super) label: Option<usize>,
+    /// The field of the time, with its unit where its place tells it.
+    pub(super) time: Option<TimeFields>,
+}
+
+impl UnnamedFields {
+    /// All that have one or two fields beside the cells; none of any other number of fields.
+    fn all(cells: usize, beside: usize) -> Vec<Self> {
+        let with = |start, label, time| Self { start, label, time };
+        let time = |field| Some(TimeFields::new(field, None));
+        let milliseconds = |field| Some(TimeFields::new(field, Some(TimeUnit::Milliseconds)));
+        match beside {
+            1 => vec![
+                with(1, Some(0), None),
+                with(1, None, time(0)),
+                // The offset of a message of ROS.
+                with(1, None, None),
+                with(0, Some(cells), None),
+                with(0, None, time(cells)),
+            ],
+            2 => vec![
+                with(2, Some(0), time(1)),
+                with(2, Some(1), time(0)),
+                with(1, Some(0), time(cells + 1)),
+                with(0, Some(cells), milliseconds(cells + 1)),
+            ],
+            _ => Vec::new(),
+        }
+    }
+
+    /// What lines of so many cells say for it; None if they rule it out.
+    fn evidence(self, lines: &[Vec<f64>], cells: usize) -> Option<Evidence> {
+        let growth_of = |field| Growth::of(lines, field);
+        if let Some(label) = self.label {
+            let counts = growth_of(label)? == Growth::Counting || lines.len() == 1;
+            whole(lines[0][label]).filter(|_| counts)?;
+        }
+        let has_decimals = |field: usize| {
+            let mut values = lines.iter().filter_map(|line| line.get(field));
+            values.any(|value| value.fract() != 0.0)
+        };
+        let growth = match (self.label, self.time) {
+            (Some(_), None) => Growth::Counting,
+            // What counts up by 1 beside the number is as even as other clocks, and no more.
+            (Some(_), Some(time)) if growth_of(time.field)? == Growth::Counting => Growth::Steady,
+            (Some(_), Some(time)) => growth_of(time.field)?,
+            // A time that does not change is none, unless there is a number beside it. What counts up by 1 is a number.
+            (None, Some(time)) => growth_of(time.field)
+                .filter(|growth| !matches!(growth, Growth::Constant | Growth::Counting))?,
+            (None, None) if lines.iter().all(|line| line.first() == Some(&0.0)) => Growth::Zero,
+            (None, None) => return None,
+        };
+        let is_decimal = lines.len() > 1 && self.time.is_some_and(|time| has_decimals(time.field));
+        let cells = self.start..self.start + cells;
+        Some(Evidence {
+            is_only_decimal: is_decimal && !{ cells }.any(has_decimals),
+            growth,
+        })
+    }
+}
+
+/// Where the cells, the number and the time are in lines of so many cells without names. The first of them is line `number`
+/// of the file.
+///
+/// # Errors
+/// If the line has fewer fields than a frame has cells, or if other fields are not cells or may be.
+pub(super) fn unnamed_fields(
+    cells: usize,
+    number: u64,
+    lines: &[Vec<f64>],
+) -> Result<UnnamedFields, RecordingError> {
+    let count = lines[0].len();
+    let found = match count.checked_sub(cells) {
+        Some(0) => Some(UnnamedFields {
+            start: 0,
+            label: None,
+            time: None,
+        }),
+        Some(beside @ (1 | 2)) => {
+            most_evident(lines, cells, beside).map_err(|()| unclear(number, cells, beside))?
+        }
+        _ => None,
+    };
+    found.ok_or_else(|| text_row::count(number, count, cells))
+}
+
+/// The fields with the greatest evidence; None if all are ruled out. The last line may be torn: where all lines rule
+/// out everything, those before it decide. A number that counts is so much evidence that any two lines are enough.
+///
+/// # Errors
+/// If other fields may be the cells by the same evidence.
+fn most_evident(
+    lines: &[Vec<f64>],
+    cells: usize,
+    beside: usize,
+) -> Result<Option<UnnamedFields>, ()> {
+    let all = UnnamedFields::all(cells, beside);
+    if lines.len() == 1 && beside == 1 {
+        return Err(());
+    }
+    let fewest = match beside {
+        1 => lines.len() - 1,
+        _ => 2,
+    };
+    let fewest = fewest.clamp(lines.len().min(2), lines.len());
+    for count in (fewest..=lines.len()).rev() {
+        let evident = all.iter().filter_map(|own| {
+            let evidence = own.evidence(&lines[..count], cells)?;
+            Some((*own, evidence))
+        });
+        let evident: Vec<(UnnamedFields, Evidence)> = evident.collect();
+        let mut best: Option<(UnnamedFields, Evidence)> = None;
+        for own in &evident {
+            if best.is_none_or(|best| own.1 > best.1) {
+                best = Some(*own);
+            }
+        }
+        let Some((found, evidence)) = best else {
+            continue;
+        };
+        let is_rival =
+            |own: &(UnnamedFields, Evidence)| own.0.start != found.start && own.1 == evidence;
+        return if evident.iter().any(is_rival) {
+            Err(())
+        } else {
+            Ok(Some(found))
+        };
+    }
+    Ok(None)
+}
+
+/// The error of lines that do not tell which fields are cells.
+fn unclear(number: u64, cells: usize, beside: usize) -> RecordingError {
+    let beside = counted(beside as u64, "number");
+    let message = format!(
+        "{beside} more than the {cells} cells, before or behind them: name the columns in a line above, such as \
+         frame,time,r0c0"
+    );
+    RecordingError::in_line(number, message)
+}
+
+/// A number without a fraction, as labels are; None of any other, and beyond what a float counts exactly.
+#[expect(clippy::cast_possible_truncation, reason = "checked")]
+pub(super) fn whole(value: f64) -> Option<i64> {
+    (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64)
+}
