@@ -4,7 +4,7 @@
 //! frame,time,r0c0,r0c1,r1c0,r1c1          0 12  7
 //! 0,0.00,1,2,3,4                          3  9 NaN
 //! 1,0.05,1,,3,4
-//!                                         0 11  8
+//!                                         0 11  8      or 12:00:00.25 0 11 8
 //!                                         2  9  1
 //! ```
 //! Fields are parted by semicolons (then a comma is the decimal sign), commas, tabs or spaces; the first line decides.
@@ -29,6 +29,7 @@ use crate::formats::recording::event::{
 };
 use crate::formats::recording::frame_time::{TableClock, TimeText, TimeUnit};
 use crate::formats::recording::lines::{TextLines, is_blank};
+use crate::formats::recording::moment;
 use crate::formats::recording::separator::Separator;
 #[cfg(feature = "cli")]
 use crate::formats::recording::side::side;
@@ -46,7 +47,7 @@ pub(super) fn read(
     options: ReadOptions,
     sink: &mut Sink<'_>,
 ) -> Result<(), RecordingError> {
-    let layout = layout(&mut TextLines::new(&mut input), options)?;
+    let layout = layout(&mut input, options)?;
     input.rewind()?;
     let info = ChannelInfo {
         shape: Some(layout.shape),
@@ -217,6 +218,8 @@ struct RowBlock {
     found: u16,
     /// Whether an empty line ends a frame.
     parted: bool,
+    /// Reads the moment at the beginning of its first row.
+    clock: TableClock,
 }
 
 impl RowBlock {
@@ -227,6 +230,7 @@ impl RowBlock {
             frame: Frame::new(columns, rows),
             found: 0,
             parted,
+            clock: TableClock::new(separator, None),
         }
     }
 
@@ -289,6 +293,14 @@ impl RowBlock {
         if self.found == rows {
             let message = format!("another row, expected an empty line after {rows} of them");
             return Err(RecordingError::in_line(number, message));
+        }
+        // Each row may have its moment; that of the first one counts.
+        let (moment, line) = match moment::leading(line) {
+            Some((moment, row)) => (Some(moment), row),
+            None => (None, line),
+        };
+        if self.found == 0 {
+            self.frame.time = moment.map(|moment| self.clock.moment(moment));
         }
         let start = usize::from(self.found) * columns;
         let slots = &mut self.frame.values_mut()[start..start + columns];

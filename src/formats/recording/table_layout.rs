@@ -5,7 +5,7 @@
 //! from line to line, see [`unnamed_fields`](super::unnamed_fields). A timestamp is the time of its frame unless a column of
 //! numbers gives the time; other texts are ignored.
 
-use std::io::BufRead;
+use std::io::{BufRead, Seek};
 
 use crate::formats::recording::cell_names::{
     FieldRole, NamedCells, cells, rest_of_second, role, roles,
@@ -84,14 +84,11 @@ pub(super) fn is_comment(line: &[u8]) -> bool {
 /// # Errors
 /// [`RecordingError::Unknown`] of what is not a table; [`RecordingError::Shape`] if rows and columns have to be named.
 pub(super) fn layout(
-    lines: &mut TextLines<impl BufRead>,
+    input: &mut (impl BufRead + Seek),
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
-    while lines.advance_to_content()? && is_comment(lines.line()) {}
-    let first = lines.line().to_owned();
-    if is_blank(&first) || is_comment(&first) {
-        return Err(RecordingError::Unknown);
-    }
+    let mut lines = TextLines::new(&mut *input);
+    let first = first_line(&mut lines)?;
     let separator = Separator::of(&first);
     let number = lines.number();
     if separator
@@ -116,8 +113,19 @@ pub(super) fn layout(
         .map(|(rows, columns)| usize::from(rows) * usize::from(columns));
     let counted =
         count_from_0(&names).filter(|counted| cells.is_none_or(|cells| cells == *counted));
-    if !has_words && counted.is_none() {
-        return of_numbers(lines, separator, (number, &[&first]), options);
+    let is_header = if has_words {
+        moment_of_row(separator, &first).is_none()
+    } else {
+        counted.is_some() && !is_ramp(&mut lines, separator, &first)?
+    };
+    // Lines have been read beyond the first one.
+    if counted.is_some() {
+        input.rewind()?;
+        lines = TextLines::new(input);
+        first_line(&mut lines)?;
+    }
+    if !is_header {
+        return of_numbers(&mut lines, separator, (number, &[&first]), options);
     }
     while lines.advance_to_content()? && is_comment(lines.line()) {}
     // Words above words are not a table.
@@ -126,9 +134,67 @@ pub(super) fn layout(
     }
     if has_words && is_like_next(&names, separator, lines.line()) {
         let next = lines.line().to_owned();
-        return of_numbers(lines, separator, (number, &[&first, &next]), options);
+        return of_numbers(&mut lines, separator, (number, &[&first, &next]), options);
     }
     with_header(&names, separator, (number, lines.line()), options)
+}
+
+/// The first line that is neither blank nor a comment.
+///
+/// # Errors
+/// [`RecordingError::Unknown`] if there is none.
+fn first_line(lines: &mut TextLines<impl BufRead>) -> Result<Vec<u8>, RecordingError> {
+    while lines.advance_to_content()? && is_comment(lines.line()) {}
+    let first = lines.line();
+    if is_blank(first) || is_comment(first) {
+        return Err(RecordingError::Unknown);
+    }
+    Ok(first.to_owned())
+}
+
+/// The moment at the beginning of a line of numbers and nothing else, as it is written, and these numbers.
+fn moment_of_row(separator: Separator, line: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (_, row) = moment::leading(line)?;
+    let moment = line[..line.len() - row.len()].trim_ascii();
+    let moment = moment.strip_suffix(b",").unwrap_or(moment);
+    let moment = moment.strip_suffix(b";").unwrap_or(moment);
+    let mut fields = separator.fields(row);
+    fields
+        .all(|field| separator.is_numeric(field))
+        .then_some((moment.trim_ascii(), row))
+}
+
+/// Whether a first line 0, 1, 2, … has values, as of a test pattern, and not the names of cells. It has if the next line
+/// counts on, if one of the next lines is the same, or if it begins the first of two blocks of as many lines.
+fn is_ramp(
+    lines: &mut TextLines<impl BufRead>,
+    separator: Separator,
+    first: &[u8],
+) -> Result<bool, RecordingError> {
+    let width = separator.fields(first).count();
+    let first = separator.numbers(first, width);
+    let next: Vec<f64> = first
+        .iter()
+        .map(|value| value + first.len() as f64)
+        .collect();
+    let (mut heights, mut height, mut compared) = (Vec::new(), 1_u16, 0_u16);
+    while heights.len() < 2 && height < COMPARED {
+        let is_end = !lines.advance()?;
+        if is_end || is_blank(lines.line()) {
+            heights.extend((height > 0).then(|| std::mem::take(&mut height)));
+            if is_end {
+                break;
+            }
+        } else if !is_comment(lines.line()) {
+            let own = separator.numbers(lines.line(), width + 1);
+            if own == first || own == next && compared == 0 {
+                return Ok(true);
+            }
+            height += 1;
+            compared += 1;
+        }
+    }
+    Ok(matches!(heights[..], [first, second] if first == second && first > 1))
 }
 
 /// How many cells are named, if names are those of cells and nothing else, counted from 0; pandas writes an empty one before
@@ -195,7 +261,11 @@ fn of_numbers(
         numeric.iter().map(of_field).collect()
     };
     let values = numeric.len();
-    let width = side(values).filter(|_| values == fields.len());
+    let moment = moment_of_row(separator, read[0]);
+    let width = match moment {
+        Some((_, row)) => side(separator.fields(row).count()),
+        None => side(values).filter(|_| values == fields.len()),
+    };
     let enough = lines_needed(options.shape, width, values);
     let mut compared: Vec<Vec<f64>> = read.iter().map(|line| numbers(line)).collect();
     let (mut block, mut parted) = (if read.len() > 1 { 2_u16 } else { 1 }, false);
@@ -238,10 +308,14 @@ fn of_numbers(
             return Err(RecordingError::Shape { values });
         }
     };
+    let start = match lines {
+        LineLayout::Row { .. } => moment.map(|(moment, _)| text(moment)),
+        LineLayout::Frame(_) => lines.start(&fields),
+    };
     Ok(TableLayout {
         separator,
         shape,
-        start: lines.start(&fields),
+        start,
         lines,
         note: None,
     })

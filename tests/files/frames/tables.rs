@@ -181,6 +181,36 @@ fn numbers_beside_the_cells_are_told_by_how_they_grow() {
     assert_eq!(error(&found), "line 1: found 5 values, expected 4");
 }
 
+#[test]
+fn a_first_line_that_counts_may_have_values() {
+    let block = "0 1 2 3\n4 5 6 7\n8 9 10 11\n12 13 14 15\n\n";
+    let other = "0,1,2,3\n5,5,5,5\n\n0,1,2,3\n6,6,6,6\n\n";
+    for (text, rows, count) in [
+        (block.repeat(3), 4, 3),
+        (block.to_owned(), 4, 1),
+        (other.to_owned(), 2, 2),
+    ] {
+        let found = recorded(text.as_bytes(), None);
+        assert!(found.error.is_none(), "{text}: {:?}", found.error);
+        assert_eq!(found.channels[0].shape, Some((rows, 4)), "{text}");
+        assert_eq!(found.frames.len(), count, "{text}");
+        assert_eq!(found.frames[0].values()[..4], [0.0, 1.0, 2.0, 3.0]);
+    }
+    // The same values again.
+    let text = "# ramp\n0,1,2,3\n0,1,2,3\n0,1,2,9\n";
+    assert_eq!(values(text, Some((2, 2))).len(), 3);
+    // These are names, also above groups of frames.
+    for text in [
+        "0,1,2,3\n5,6,7,8\n1,2,3,4\n\n",
+        "0,1,2,3\n5,6,7,8\n\n1,2,3,4\n",
+    ] {
+        assert_eq!(
+            values(text, None),
+            [[5.0, 6.0, 7.0, 8.0], [1.0, 2.0, 3.0, 4.0]]
+        );
+    }
+}
+
 /// The times of the frames of a table, and its notes.
 fn times(text: &str) -> (Vec<Option<f64>>, Vec<String>) {
     let found = recorded(text.as_bytes(), None);
@@ -239,6 +269,29 @@ fn times_since_1970_are_exact_and_their_size_is_a_unit() {
     assert_eq!(times(text), (vec![Some(0.0), Some(2.0)], vec![]));
     let text = "t,r0c0,r0c1\n12345,1,2\n12395,1,2\n";
     assert_eq!(times(text), (vec![Some(0.0), Some(50.0)], vec![]));
+}
+
+#[test]
+fn a_row_block_may_begin_with_a_moment() {
+    let blocks = "12:00:00.00 1 2\n3 4\n\n12:00:00.05 5 6\n7 8\n\n";
+    let both = "2024-05-01 23:59:59.95,1,2\n2024-05-02 00:00:00,3,4\n\n2024-05-02 00:00:00,5,6\n2024-05-02 00:00:01,7,8\n";
+    for (text, start) in [(blocks, "12:00:00.00"), (both, "2024-05-01 23:59:59.95")] {
+        for shape in [None, Some((2, 2))] {
+            let found = recorded(text.as_bytes(), shape);
+            assert!(found.error.is_none(), "{text}: {:?}", found.error);
+            assert_eq!(found.channels[0].start.as_deref(), Some(start));
+            let frames: Vec<_> = found
+                .frames
+                .iter()
+                .map(|own| (own.time, own.values().to_vec()))
+                .collect();
+            let expected = [
+                (Some(0.0), vec![1.0, 2.0, 3.0, 4.0]),
+                (Some(0.05), vec![5.0, 6.0, 7.0, 8.0]),
+            ];
+            assert_eq!(frames, expected, "{text}");
+        }
+    }
 }
 
 #[test]
