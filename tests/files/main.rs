@@ -6,6 +6,10 @@ mod common;
 #[path = "../common/skip.rs"]
 mod skip;
 
+#[cfg(feature = "frames")]
+#[path = "../common/array.rs"]
+mod array;
+
 mod drawing;
 
 mod exchange;

@@ -217,6 +217,13 @@ pub enum RecordingNote {
         /// How many rows, and how many columns.
         side: u16,
     },
+    /// An array of two axes is taken as one frame, but is larger than frames are.
+    Flat {
+        /// How many rows.
+        rows: u16,
+        /// How many columns.
+        columns: u16,
+    },
     /// Times whose unit follows from their size alone.
     TimeUnit {
         /// The unit: `nanoseconds`.
@@ -263,6 +270,11 @@ impl fmt::Display for RecordingNote {
                 f,
                 "the header counts {} values, taken as {side} rows of {side} columns",
                 u32::from(*side) * u32::from(*side)
+            ),
+            Self::Flat { rows, columns } => write!(
+                f,
+                "an array of {rows} × {columns}, taken as one frame; if each of its {rows} rows is a frame of {columns} values, \
+                 give --rows and --columns"
             ),
             Self::TimeUnit { unit } => {
                 write!(f, "times have no unit, taken as {unit} since 1970")

@@ -90,7 +90,9 @@ pub(super) fn read(
     let channels: Vec<&ArchiveArray> = arrays
         .iter()
         .filter(|array| {
-            (2..=3).contains(&array.header.shape.len()) && !array.header.code.starts_with('[')
+            let shape = &array.header.shape[..];
+            let is_frames = matches!(shape, [_, _] | [_, _, _] | [_, _, _, 1] | [_, 1, _, _]);
+            is_frames && !array.header.code.starts_with('[')
         })
         .collect();
     if channels.is_empty() {
@@ -106,6 +108,11 @@ pub(super) fn read(
             ..ChannelInfo::default()
         };
         if sink(RecordingEvent::Channel(&info)).is_break() {
+            return Ok(());
+        }
+        if let Some(note) = layout.note()
+            && sink(RecordingEvent::Note(note)).is_break()
+        {
             return Ok(());
         }
     }

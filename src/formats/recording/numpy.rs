@@ -5,7 +5,7 @@
 //!
 //! | shape | means |
 //! |---|---|
-//! | (frames, rows, columns) | frames |
+//! | (frames, rows, columns), also with an axis of 1 before or behind the last two | frames |
 //! | (rows, columns) | one frame; or frames × cells if rows and columns are known beforehand and fit the second |
 //! | (cells) | one frame, if rows and columns are known beforehand |
 //! | (records) of `time`, `number`, `values` | what `taxel watch --write` writes |
@@ -27,6 +27,7 @@ use crate::formats::seconds::since;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::parameter::number::counted;
 use crate::quote::shortened;
+use crate::sensor::MAX_SIDE;
 
 /// A longer header is none.
 const LONGEST_HEADER: usize = 1 << 20;
@@ -82,6 +83,8 @@ pub(super) struct ArrayLayout {
     is_flat: bool,
     /// Where the fields are, in an array of records.
     record: Option<RecordLayout>,
+    /// What was assumed, if anything.
+    note: Option<RecordingNote>,
 }
 
 impl ArrayLayout {
@@ -98,7 +101,12 @@ impl ArrayLayout {
             RecordingError::damaged(format!("numbers of type {found:?}, expected real ones"))
         })?;
         let (frames, rows, columns) = axes_shape(&header.shape, options)?;
+        // No sensor has so many cells, so that a row may well be a frame.
+        let is_large = rows.max(columns) > MAX_SIDE.into();
+        let is_assumed = header.shape.len() == 2 && options.shape.is_none();
+        let note = (is_assumed && is_large).then_some(RecordingNote::Flat { rows, columns });
         Ok(Self {
+            note,
             number,
             frames,
             rows,
@@ -129,7 +137,13 @@ impl ArrayLayout {
             fortran: false,
             is_flat: false,
             record: Some(record),
+            note: None,
         })
+    }
+
+    /// What was assumed of the array, if anything.
+    pub(super) fn note(&self) -> Option<&RecordingNote> {
+        self.note.as_ref()
     }
 
     /// Number of frames, where the header says it.
@@ -151,7 +165,10 @@ fn axes_shape(axes: &[u64], options: ReadOptions) -> Result<(u64, u16, u16), Rec
     let asked = options.shape;
     let cells = asked.map(|(rows, columns)| u64::from(rows) * u64::from(columns));
     let found = match *axes {
-        [frames, rows, columns] => shape(rows, columns).map(|(r, c)| (frames, r, c)),
+        // One channel, as frameworks for images and learning have it.
+        [frames, rows, columns] | [frames, rows, columns, 1] | [frames, 1, rows, columns] => {
+            shape(rows, columns).map(|(r, c)| (frames, r, c))
+        }
         [rows, columns] => match (asked, shape(rows, columns)) {
             (Some(asked), Some(own)) if asked == own => Some((1, own.0, own.1)),
             (Some((r, c)), _) if cells == Some(columns) => Some((rows, r, c)),
@@ -267,6 +284,11 @@ pub(super) fn read(
         ..ChannelInfo::default()
     };
     if sink(RecordingEvent::Channel(&info)).is_break() {
+        return Ok(());
+    }
+    if let Some(note) = layout.note()
+        && sink(RecordingEvent::Note(note)).is_break()
+    {
         return Ok(());
     }
     let ended = frames(input, &layout, 0, &[], sink)?;

@@ -4,6 +4,8 @@ use std::path::Path;
 
 use taxel::frame::{Frame, Processing, Rule};
 
+use crate::array::array;
+
 use super::{Recorded, recorded};
 
 /// From 9 on.
@@ -418,4 +420,41 @@ fn topics_and_their_sensors_are_channels() {
         let error = recorded(&file, None).error.map(|error| error.to_string());
         assert_eq!(error.as_deref(), Some(expected));
     }
+}
+
+#[test]
+fn an_axis_of_one_channel_is_no_axis_of_frames() {
+    let cells: Vec<f64> = (0..12).map(f64::from).collect();
+    for shape in ["(2, 2, 3)", "(2, 2, 3, 1)", "(2, 1, 2, 3)"] {
+        let found = recorded(&array(shape, false, &cells), None);
+        assert_eq!(found.channels[0].shape, Some((2, 3)), "{shape}");
+        assert_eq!(found.frames[1].values(), &cells[6..], "{shape}");
+    }
+    let fortran = recorded(&array("(2, 1, 2, 3)", true, &cells), None);
+    assert_eq!(fortran.frames[1].values(), [1.0, 5.0, 9.0, 3.0, 7.0, 11.0]);
+    assert!(
+        recorded(&array("(2, 2, 1, 3)", false, &cells), None)
+            .error
+            .is_some()
+    );
+}
+
+#[test]
+fn an_array_of_two_axes_that_is_larger_than_frames_is_noted() {
+    let notes = |shape: &str, count: usize, asked| {
+        let found = recorded(&array(shape, false, &vec![0.0; count]), asked);
+        let notes: Vec<String> = found.notes.iter().map(ToString::to_string).collect();
+        (found.frames.len(), notes)
+    };
+    let note = "an array of 300 × 256, taken as one frame; if each of its 300 rows is a frame of 256 values, give --rows \
+                and --columns";
+    assert_eq!(
+        notes("(300, 256)", 300 * 256, None),
+        (1, vec![note.to_owned()])
+    );
+    assert_eq!(
+        notes("(300, 256)", 300 * 256, Some((16, 16))),
+        (300, vec![])
+    );
+    assert_eq!(notes("(64, 64)", 64 * 64, None), (1, vec![]));
 }
