@@ -3,7 +3,7 @@
 //! | message | its frames |
 //! |---|---|
 //! | `std_msgs/*MultiArray` | a frame; rows and columns from the layout's first two sizes, if it has them |
-//! | `sensor_msgs/Image` | a frame; `mono8`, `8UC1`, `mono16`, `16UC1` and `32FC1` |
+//! | `sensor_msgs/Image` | a frame; `mono8`, `mono16`, and types of `OpenCV` with one channel, such as `16UC1` and `32FC1` |
 //! | `tactile_msgs/TactileState` | for each of its sensors a frame |
 //!
 //! Source: the definitions of these messages.
@@ -101,8 +101,12 @@ pub(super) fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<Im
     let (height, width) = (cdr.word()?, cdr.word()?);
     let (kind, size) = match cdr.text()? {
         "mono8" | "8UC1" => (b'u', 1),
+        "8SC1" => (b'i', 1),
         "mono16" | "16UC1" => (b'u', 2),
+        "16SC1" => (b'i', 2),
+        "32SC1" => (b'i', 4),
         "32FC1" => (b'f', 4),
+        "64FC1" => (b'f', 8),
         _ => return Some(ImageFrame::OfCamera),
     };
     let big_endian = cdr.byte()? != 0;
@@ -120,4 +124,68 @@ pub(super) fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<Im
         values.extend(bytes.chunks(size).map(|bytes| number.value(bytes)));
     }
     Some(ImageFrame::Values(rows, columns))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two pixels in an image of that encoding; None if it is not a frame.
+    fn pixels(encoding: &str, data: &[u8]) -> Option<Vec<f64>> {
+        let mut message = vec![0, 1, 0, 0];
+        let word = |message: &mut Vec<u8>, number: usize| {
+            message.resize(message.len().next_multiple_of(4), 0);
+            message.extend(u32::try_from(number).expect("small").to_le_bytes());
+        };
+        let text = |message: &mut Vec<u8>, text: &str| {
+            word(message, text.len() + 1);
+            message.extend(text.bytes().chain([0]));
+        };
+        word(&mut message, 0);
+        word(&mut message, 0);
+        text(&mut message, "pad");
+        word(&mut message, 1);
+        word(&mut message, 2);
+        text(&mut message, encoding);
+        message.push(0);
+        word(&mut message, data.len());
+        word(&mut message, data.len());
+        message.extend(data);
+        let mut values = Vec::new();
+        let found = image(&mut CdrReader::new(&message)?, &mut values)?;
+        matches!(found, ImageFrame::Values(1, 2)).then_some(values)
+    }
+
+    #[test]
+    fn images_of_one_channel_are_frames() {
+        let signed = [0xfe, 0xff, 3, 0];
+        for (encoding, data, expected) in [
+            ("mono8", vec![254, 3], [254.0, 3.0]),
+            ("8SC1", vec![254, 3], [-2.0, 3.0]),
+            ("16UC1", signed.to_vec(), [65_534.0, 3.0]),
+            ("16SC1", signed.to_vec(), [-2.0, 3.0]),
+            (
+                "32SC1",
+                [(-2_i32).to_le_bytes(), 3_i32.to_le_bytes()].concat(),
+                [-2.0, 3.0],
+            ),
+            (
+                "32FC1",
+                [0.5_f32.to_le_bytes(), 3_f32.to_le_bytes()].concat(),
+                [0.5, 3.0],
+            ),
+            (
+                "64FC1",
+                [0.5_f64.to_le_bytes(), 3_f64.to_le_bytes()].concat(),
+                [0.5, 3.0],
+            ),
+        ] {
+            assert_eq!(
+                pixels(encoding, &data),
+                Some(expected.to_vec()),
+                "{encoding}"
+            );
+        }
+        assert_eq!(pixels("rgb8", &[0; 6]), None);
+    }
 }

@@ -88,16 +88,28 @@ impl TekscanHeader {
 }
 
 /// A length with its unit, in mm; none without a unit.
-/// `1.27 mm`, `0.5 centimeters`, `1.27e-003 meters` or `0.05 inches`. Without a unit it may be any, so the pitch stays unknown.
+/// `1.27 mm`, `0.5 centimeters`, `1.27e-003 meters` or `0.05 in.`. Without a unit it may be any, so the pitch stays unknown.
 fn spacing(value: &[u8]) -> Option<f64> {
-    let end = value.iter().position(u8::is_ascii_whitespace)?;
+    let value = text(value).trim().to_lowercase();
+    // The unit begins with a letter that is not that of an exponent.
+    let is_exponent = |at: usize| {
+        value[at..].starts_with('e') && value[at + 1..].starts_with(['+', '-', '0', '1', '2', '3'])
+    };
+    let mut letters = value
+        .char_indices()
+        .filter(|(_, letter)| letter.is_alphabetic());
+    let (end, _) = letters.find(|&(at, _)| !is_exponent(at))?;
     let (length, unit) = value.split_at(end);
-    let length = number::read(length).filter(|&length| length > 0.0)?;
-    match unit.trim_ascii().to_ascii_lowercase().as_slice() {
-        b"mm" | b"millimeters" | b"millimetres" => Some(length),
-        b"cm" | b"centimeters" | b"centimetres" => Some(length * 10.0),
-        b"m" | b"meters" | b"metres" => Some(to_decimals(length * 1000.0, 9)),
-        b"in" | b"inch" | b"inches" => Some(length * 25.4),
+    let length = number::read(length.trim_end().as_bytes()).filter(|&length| length > 0.0)?;
+    match unit.trim_end_matches('.') {
+        "mm" | "millimeters" | "millimetres" => Some(length),
+        "cm" | "centimeters" | "centimetres" => Some(length * 10.0),
+        "m" | "meters" | "metres" => Some(to_decimals(length * 1000.0, 9)),
+        // With the micro sign or the Greek letter.
+        "um" | "\u{b5}m" | "\u{3bc}m" | "micrometers" | "micrometres" | "microns" => {
+            Some(to_decimals(length / 1000.0, 9))
+        }
+        "in" | "inch" | "inches" => Some(length * 25.4),
         _ => None,
     }
 }
@@ -259,4 +271,31 @@ fn title(line: &[u8], number: u64) -> Result<FrameTitle, RecordingError> {
         time,
         sum: sum.and_then(number::read),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::spacing;
+
+    #[test]
+    fn a_spacing_has_a_unit() {
+        for (text, expected) in [
+            ("1.27 mm", Some(1.27)),
+            ("1.27mm", Some(1.27)),
+            ("0.05 in.", Some(1.27)),
+            ("0.05inches", Some(1.27)),
+            ("1270 um", Some(1.27)),
+            ("1270 \u{b5}m", Some(1.27)),
+            ("1.27e-003 meters", Some(1.27)),
+            ("1.27E-3m", Some(1.27)),
+            ("0.127 cm", Some(1.27)),
+            ("1.27", None),
+            ("1.27 furlongs", None),
+            ("-1 mm", None),
+            ("mm", None),
+            ("", None),
+        ] {
+            assert_eq!(spacing(text.as_bytes()), expected, "{text}");
+        }
+    }
 }
