@@ -1,8 +1,10 @@
 //! Timestamps as tables write them: an ISO 8601 date and a time of day, or a time of day alone.
 //! ```text
 //! 2024-05-01T12:00:00.125Z      2024-05-01 12:00:00,125      12:00:00.125
-//! 2024/05/01 12:00:00+02:00     20:00:00
+//! 2024/05/01 12:00:00+02:00     20:00:00                    8:00:00 PM
 //! ```
+//! Also durations as pandas writes them: `0 days 00:00:00.050000`.
+//!
 //! Dates that begin with the day or the month are not read, because 01.02. and 02/01 may be the same day.
 
 use crate::formats::recording::separator::decimal;
@@ -13,13 +15,20 @@ use crate::formats::recording::text_row::Field;
 pub(crate) struct Moment {
     /// The seconds from 1970; of a clock alone, from midnight.
     pub(crate) seconds: f64,
-    /// Whether it has a date.
+    /// Whether it has a date, or is a duration: otherwise it begins anew at midnight.
     pub(crate) is_dated: bool,
 }
 
 /// Reads a timestamp; None for anything else. Second 60, a leap second, counts as the first of the next minute.
 pub(super) fn read(field: &[u8]) -> Option<Moment> {
     let text = str::from_utf8(field).ok()?.trim();
+    if let Some(seconds) = duration(text) {
+        return Some(Moment {
+            seconds,
+            is_dated: true,
+        });
+    }
+    let (text, half) = half_day(text);
     let (day, clock) = match text.split_once(['T', 't', ' ']) {
         Some((date, clock)) => (Some(iso_day(date)?), clock.trim_start()),
         None => (None, text),
@@ -28,7 +37,21 @@ pub(super) fn read(field: &[u8]) -> Option<Moment> {
         Some(sign) => (&clock[..sign], offset(&clock[sign..])?),
         None => (clock.trim_end_matches(['Z', 'z']), 0),
     };
-    let mut parts = clock.trim_end().splitn(3, ':');
+    let (hours, minutes, seconds) = clock_parts(clock.trim_end())?;
+    let hours = match half {
+        None => hours,
+        Some(half) => half.hours(hours)?,
+    };
+    let minutes = f64::from(day.unwrap_or(0)) * 1440.0 + f64::from(60 * hours + minutes - offset);
+    Some(Moment {
+        seconds: 60.0 * minutes + seconds,
+        is_dated: day.is_some(),
+    })
+}
+
+/// Hours, minutes and seconds of `12:00:00.125`.
+fn clock_parts(clock: &str) -> Option<(i32, i32, f64)> {
+    let mut parts = clock.splitn(3, ':');
     let hours = two_digits(parts.next()?, 23)?;
     let minutes = two_digits(parts.next()?, 59)?;
     let seconds = parts.next()?;
@@ -36,11 +59,57 @@ pub(super) fn read(field: &[u8]) -> Option<Moment> {
     let Field::Value(seconds) = decimal(seconds.as_bytes()) else {
         return None;
     };
-    let minutes = f64::from(day.unwrap_or(0)) * 1440.0 + f64::from(60 * hours + minutes - offset);
-    (is_number && seconds < 61.0).then_some(Moment {
-        seconds: 60.0 * minutes + seconds,
-        is_dated: day.is_some(),
-    })
+    (is_number && seconds < 61.0).then_some((hours, minutes, seconds))
+}
+
+/// Whether a timestamp is a duration, which says nothing of when it began.
+pub(super) fn is_duration(field: &[u8]) -> bool {
+    str::from_utf8(field).is_ok_and(|text| duration(text.trim()).is_some())
+}
+
+/// The seconds of a duration: `1 days 02:00:00.5`, and of a negative one `-1 days +23:59:59`.
+fn duration(text: &str) -> Option<f64> {
+    let (days, clock) = text.split_once(" day")?;
+    let clock = clock.strip_prefix('s').unwrap_or(clock).trim_start();
+    let (hours, minutes, seconds) = clock_parts(clock.strip_prefix('+').unwrap_or(clock))?;
+    let days: i32 = days.parse().ok()?;
+    let minutes = f64::from(days) * 1440.0 + f64::from(60 * hours + minutes);
+    Some(60.0 * minutes + seconds)
+}
+
+/// Half a day of a clock with twelve hours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum HalfDay {
+    /// AM
+    First,
+    /// PM
+    Second,
+}
+
+impl HalfDay {
+    /// The hours since midnight, if a clock shows these hours from 1 to 12.
+    pub(super) fn hours(self, shown: i32) -> Option<i32> {
+        let begun = match self {
+            Self::First => 0,
+            Self::Second => 12,
+        };
+        (1..=12).contains(&shown).then_some(shown % 12 + begun)
+    }
+}
+
+/// A clock without `AM` or `PM` behind it, and which of them that is.
+pub(super) fn half_day(clock: &str) -> (&str, Option<HalfDay>) {
+    let clock = clock.trim_end();
+    let split = clock.len().checked_sub(2);
+    let Some((before, mark)) = split.and_then(|split| clock.split_at_checked(split)) else {
+        return (clock, None);
+    };
+    let half = match mark {
+        _ if mark.eq_ignore_ascii_case("am") => HalfDay::First,
+        _ if mark.eq_ignore_ascii_case("pm") => HalfDay::Second,
+        _ => return (clock, None),
+    };
+    (before.trim_end(), Some(half))
 }
 
 /// The timestamp at the beginning of a line of numbers, and the numbers after it; None without a timestamp or without a
@@ -190,6 +259,13 @@ mod tests {
             ("1969-12-31T23:59:59Z", -1.0),
             ("12:00:00.5", 43_200.5),
             ("9:05:07", 32_707.0),
+            ("12:00:00 PM", 43_200.0),
+            ("12:00:01 am", 1.0),
+            ("1:00:00.5PM", 46_800.5),
+            ("2024-05-01 12:00:00 PM", 1_714_564_800.0),
+            ("0 days 00:00:00.050000", 0.05),
+            ("2 days 01:00:00", 176_400.0),
+            ("-1 days +23:59:59.5", -0.5),
         ] {
             let is_dated = text.len() > 12;
             let expected = Moment { seconds, is_dated };
@@ -220,7 +296,12 @@ mod tests {
             "12:00:00+",
             "12:00:00+1",
             "T12:00:00",
-            "12:00:00 PM",
+            "13:00:00 PM",
+            "0:00:00 AM",
+            "PM",
+            "days 00:00:00",
+            "1.5 days 00:00:00",
+            "1 days",
             "+2024-05-01T00:00:00",
             "a:b:c",
         ] {

@@ -33,6 +33,7 @@ use crate::formats::recording::number;
 use crate::formats::recording::separator::{Separator, decimal};
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
+use crate::formats::recording::unnamed_fields::whole;
 use crate::formats::seconds::since;
 use crate::frame::Frame;
 use crate::parameter::number::{counted, to_decimals};
@@ -294,14 +295,21 @@ impl XsensorState {
     /// None if the clock is not three numbers, nor a single one, of seconds, or if they are too large; a date that cannot
     /// be read counts as the same day.
     fn moment(&self) -> Option<(i32, f64)> {
-        let parts = self.clock.as_ref()?.split(':');
+        let (clock, half) = moment::half_day(self.clock.as_ref()?);
+        let parts = clock.split(':');
         let parts: Option<Vec<f64>> = parts
             .map(|part| number::read(part.trim().as_bytes()))
             .collect();
         let date = self.date.as_ref();
         let day = date.and_then(|date| days(date)).unwrap_or(1);
         let (day, seconds) = match parts?[..] {
-            [hours, minutes, seconds] => (day, hours * 3600.0 + minutes * 60.0 + seconds),
+            [hours, minutes, seconds] => {
+                let hours = match half.zip(whole(hours)) {
+                    None => hours,
+                    Some((half, shown)) => half.hours(i32::try_from(shown).ok()?)?.into(),
+                };
+                (day, hours * 3600.0 + minutes * 60.0 + seconds)
+            }
             // They count from the beginning, not from midnight.
             [seconds] => (1, seconds),
             _ => return None,

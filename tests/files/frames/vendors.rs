@@ -229,6 +229,8 @@ fn exports_of_xsensor_differ_in_quotes_colons_and_units() {
         [(Some(100), Some(0.0), 1.5), (Some(101), Some(0.5), 1.5)]
     );
     assert_eq!(whole.channels[0].pitch_mm, Some([2.5, 2.5]));
+    let half_days = recorded(xsensor(["11:59:59.9 AM", "12:00:00.4 PM"]).as_bytes(), None);
+    assert_eq!(frames(&half_days, 1), frames(&whole, 1));
     let comma = quoted(&plain).replace('.', ",");
     let comma = comma.replace("17,9", "17.9").replace("18,4", "18.4");
     let colons: String = plain
