@@ -1,15 +1,17 @@
-//! A JSON object a line: `{"t": 0.1, "frame": [[0, 12], [null, 3]]}`, null for a missing cell.
+//! A JSON object a line: `{"t": 0.1, "frame": [[0, 12], [null, 3]]}`, null or Python's `NaN` for a missing cell.
 //! ```text
 //! {"t": 0.00, "frame": [[0, 12], [null, 3]]}
 //! {"t": 0.05, "frame": [0, 13, null, 4], "label": 7}
 //! {"t": 0.05, "frame": [[5, 6], [7, 8]], "channel": "left"}
 //! ```
 //! Frames are lists of rows, or lists of cells where rows and columns are known beforehand. `t` or `time` is in seconds
-//! and counts from the first one; `label` is a whole number; `channel` is the name, or the number, of one of several
-//! sensors; other keys are passed over. All frames of a channel have one size.
+//! and counts from the first one; without either, so does a key that is the name of a time, such as `timestamp` or `t_ms`.
+//! `label` is a whole number; `channel` is the name, or the number, of one of several sensors; other keys are passed over. All
+//! frames of a channel have one size.
 //! Refused, with line and column: rows of different lengths, lists within cells, infinite values, two frames, times
 //! or labels in one line.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::io::BufRead;
 
@@ -19,9 +21,12 @@ use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Seq
 
 use crate::formats::framed::too_large;
 use crate::formats::json;
+use crate::formats::recording::cell_names::{FieldRole, role};
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
+use crate::formats::recording::frame_time::TimeUnit;
 use crate::formats::recording::lines::TextLines;
+use crate::formats::recording::moment;
 use crate::formats::recording::side::{changed, shape};
 use crate::formats::seconds::since;
 use crate::frame::{Frame, LARGEST_VALUE};
@@ -157,22 +162,14 @@ impl FrameLine {
         self.values.clear();
         (self.time, self.label, self.channel) = (None, None, None);
         let mut rows = 0;
-        let mut content = serde_json::Deserializer::from_slice(line);
+        let without_nan = WithoutNan::new(line);
+        let mut content = serde_json::Deserializer::from_slice(&without_nan.line);
         let read = ObjectSeed(self, &mut rows)
             .deserialize(&mut content)
             .and_then(|()| content.end());
         read.map_err(|error| {
-            let column = error.column().max(1);
-            // JSON has no such number, but some programs write it.
-            let is_nan = line
-                .get(column - 1..)
-                .is_some_and(|rest| rest.starts_with(b"NaN"));
-            let message = if is_nan {
-                "found NaN, expected null where there is no cell".to_owned()
-            } else {
-                json::message(&error)
-            };
-            FrameLineError::Json(column, message)
+            let column = without_nan.column(error.column().max(1));
+            FrameLineError::Json(column, complaint(line, column, &error))
         })?;
         let values = self.values.len();
         let wrong = |message: String| Err(FrameLineError::Json(1, message));
@@ -205,6 +202,65 @@ impl FrameLine {
     }
 }
 
+/// A line in which `NaN`, which Python writes although JSON has no such number, is `null`.
+struct WithoutNan<'a> {
+    line: Cow<'a, [u8]>,
+    /// Where the words that are longer now begin.
+    replaced: Vec<usize>,
+}
+
+impl<'a> WithoutNan<'a> {
+    fn new(line: &'a [u8]) -> Self {
+        let mut replaced = Vec::new();
+        if !line.windows(3).any(|word| word == b"NaN") {
+            let line = Cow::Borrowed(line);
+            return Self { line, replaced };
+        }
+        let mut own = Vec::with_capacity(line.len() + 64);
+        let (mut in_text, mut escaped) = (false, false);
+        let mut rest = line;
+        while let [byte, after @ ..] = rest {
+            if !in_text && let Some(after) = rest.strip_prefix(b"NaN") {
+                replaced.push(own.len());
+                own.extend_from_slice(b"null");
+                rest = after;
+                continue;
+            }
+            in_text ^= *byte == b'"' && !escaped;
+            escaped = in_text && *byte == b'\\' && !escaped;
+            own.push(*byte);
+            rest = after;
+        }
+        Self {
+            line: Cow::Owned(own),
+            replaced,
+        }
+    }
+
+    /// The column of the line as it was, both counted from 1.
+    fn column(&self, column: usize) -> usize {
+        let before = self.replaced.iter().filter(|&&start| start + 4 < column);
+        column - before.count()
+    }
+}
+
+/// What is wrong with a line from that column on.
+fn complaint(line: &[u8], column: usize, error: &serde_json::Error) -> String {
+    let rest = line.get(column - 1..).unwrap_or(&[]);
+    let begins_list = line.trim_ascii_start().strip_prefix(b"[");
+    match begins_list.map(<[u8]>::trim_ascii_start) {
+        Some([] | [b'{', ..]) => {
+            "found a list of objects, expected one object a line, as `jq -c '.[]'` writes them"
+                .to_owned()
+        }
+        // Some programs write it, but it is no value.
+        _ if rest.starts_with(b"Infinity") || rest.starts_with(b"-Infinity") => {
+            "found Infinity, expected a number, or null where there is no cell".to_owned()
+        }
+        _ => json::message(error),
+    }
+}
+
 /// The object of a line; the number of rows goes into the second field, 0 for cells without rows.
 struct ObjectSeed<'a>(&'a mut FrameLine, &'a mut usize);
 
@@ -225,7 +281,8 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
         let (mut frame, mut time, mut label, mut channel) = (None, None, None, None);
-        while let Some(key) = map.next_key::<std::borrow::Cow<'de, str>>()? {
+        let mut other_time = None;
+        while let Some(key) = map.next_key::<Cow<'de, str>>()? {
             match &*key {
                 "frame" => {
                     once(&mut frame, "frame")?;
@@ -244,8 +301,16 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
                     once(&mut channel, "channel")?;
                     self.0.channel = channel_name(&map.next_value()?)?;
                 }
-                _ => drop(map.next_value::<IgnoredAny>()?),
+                key => match role(key) {
+                    Some(FieldRole::Time(unit)) if other_time.is_none() => {
+                        other_time = seconds(&map.next_value()?, unit);
+                    }
+                    _ => drop(map.next_value::<IgnoredAny>()?),
+                },
             }
+        }
+        if time.is_none() {
+            self.0.time = other_time;
         }
         if frame.is_none() {
             return Err(A::Error::custom("no key \"frame\""));
@@ -273,6 +338,18 @@ fn channel_name<E: Error>(value: &Value) -> Result<Option<String>, E> {
         )));
     }
     Ok(Some(name))
+}
+
+/// The seconds that a value is, of a key with that unit; None of what is no time.
+fn seconds(value: &Value, unit: Option<TimeUnit>) -> Option<f64> {
+    if let Some(text) = value.as_str() {
+        return moment::read(text.as_bytes())
+            .filter(|moment| moment.is_dated)
+            .map(|moment| moment.seconds);
+    }
+    let number = value.as_f64().filter(|time| time.abs() <= LARGEST_VALUE)?;
+    let unit = unit.unwrap_or_else(|| TimeUnit::by_size(number));
+    Some(unit.seconds(number))
 }
 
 /// Notes the key that gave a value.
