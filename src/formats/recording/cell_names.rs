@@ -285,6 +285,11 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
+/// The unit of time that a text names: `ms`, `[s]`.
+pub(crate) fn time_unit(text: &str) -> Option<TimeUnit> {
+    words(text).first().and_then(|word| unit(word))
+}
+
 /// The unit that a word names.
 fn unit(word: &str) -> Option<TimeUnit> {
     let found = UNITS.iter().find(|(_, words)| words.contains(&word));

@@ -8,8 +8,10 @@
 //!                                         2  9  1
 //! ```
 //! Fields are parted by semicolons (then a comma is the decimal sign), commas, tabs or spaces; the first line decides.
-//! Quotes around a field do not count. An empty field, `NaN`, `null`, `none` and `NA` stand for no cell. Lines that begin
-//! with `#` are passed over.
+//! Quotes around a field do not count. An empty field, `NaN`, `-nan`, `null`, `none`, `NA`, `N/A`, `#N/A`, `<NA>` and `-`
+//! stand for no cell. Lines that begin with `#`, `//` or `%` and a blank are passed over.
+//!
+//! Below names of cells there may be a line with the unit of each field.
 //!
 //! How the fields are arranged is found from the first lines, see [`table_layout`](super::table_layout); the file is then
 //! read from its beginning.
@@ -28,14 +30,13 @@ use crate::formats::recording::event::{
     ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
 use crate::formats::recording::frame_time::{TableClock, TimeText, TimeUnit};
+use crate::formats::recording::header_line::is_comment;
 use crate::formats::recording::lines::{TextLines, is_blank};
 use crate::formats::recording::moment;
 use crate::formats::recording::separator::Separator;
 #[cfg(feature = "cli")]
 use crate::formats::recording::side::side;
-use crate::formats::recording::table_layout::{
-    FrameFields, LineLayout, TableLayout, is_comment, layout,
-};
+use crate::formats::recording::table_layout::{FrameFields, LineLayout, TableLayout, layout};
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::recording::unnamed_fields::whole;
 use crate::frame::Frame;
@@ -51,6 +52,7 @@ pub(super) fn read(
     input.rewind()?;
     let info = ChannelInfo {
         shape: Some(layout.shape),
+        unit: layout.unit.clone(),
         start: layout.start.clone(),
         ..ChannelInfo::default()
     };
@@ -122,7 +124,7 @@ fn frames(
             without_cells += u64::from(is_frame);
             continue;
         }
-        if fields.header == Some(number) || is_comment(line) {
+        if fields.header.is_some_and(|last| number <= last) || is_comment(line) {
             continue;
         }
         for _ in 0..std::mem::take(&mut without_cells) {

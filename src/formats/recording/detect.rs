@@ -9,11 +9,11 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use crate::formats::foreign;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
+use crate::formats::recording::header_line::is_comment;
 use crate::formats::recording::lines::is_blank;
 #[cfg(feature = "mcap")]
 use crate::formats::recording::mcap;
 use crate::formats::recording::separator::Separator;
-use crate::formats::recording::table_layout::is_comment;
 use crate::formats::recording::text_row::is_parted_by_cr;
 use crate::formats::recording::{
     delimited, emed, flexitac, json_lines, npz, numpy, popu, ros_text, tekscan, xsensor, zebris,
@@ -70,8 +70,8 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
         _ if has(b"SensCountX=") => RecordingFormat::Zebris,
         _ if has(b"Pict-No.:") && has(b"Matrix:") => RecordingFormat::Emed,
         _ if is_ros(ros_text::without_notices(trimmed)) => RecordingFormat::Ros2,
-        // Bare rows, without an object: the reader of JSON lines says what is missing.
-        _ if trimmed.starts_with(b"[[") => RecordingFormat::JsonLines,
+        // Bare rows, or all objects in one list: the reader of JSON lines says what was expected.
+        _ if is_list_of(trimmed, b'[') || is_list_of(trimmed, b'{') => RecordingFormat::JsonLines,
         _ if is_table(row) || options.shape.is_some() && is_number(row) => RecordingFormat::Csv,
         _ => return None,
     })
@@ -85,8 +85,42 @@ fn refused(start: &[u8]) -> RecordingError {
             kind: "text whose lines end in CR alone (save it with LF or CR LF)",
         },
         None if is_column(start) => RecordingError::Shape { values: 1 },
-        None => RecordingError::Unknown,
+        None => match numbers_below_text(start) {
+            Some(line) => RecordingError::in_line(
+                1,
+                format!(
+                    "expected a table, which begins in line {line}: delete the lines above it, or read the file with \
+                     taxel watch --once"
+                ),
+            ),
+            None => RecordingError::Unknown,
+        },
     }
+}
+
+/// The first of two lines of numbers, where text stands above them: what a board sent when it started.
+fn numbers_below_text(text: &[u8]) -> Option<u64> {
+    let is_row = |line: &[u8]| {
+        let separator = Separator::of(line);
+        let (mut fields, mut numbers) = (0, 0);
+        for field in separator.fields(line) {
+            fields += 1;
+            numbers += usize::from(separator.is_numeric(field));
+        }
+        fields > 1 && fields == numbers
+    };
+    if text.contains(&0) {
+        return None;
+    }
+    let lines = (1..).zip(text.split(|&byte| byte == b'\n'));
+    let mut rows = lines
+        .filter(|(_, line)| !is_blank(line))
+        .map(|(number, line)| (number, is_row(line)));
+    let mut before = rows.next()?;
+    rows.find_map(|own| {
+        let before = std::mem::replace(&mut before, own);
+        (before.1 && own.1).then_some(before.0)
+    })
 }
 
 /// Whether a text is numbers alone, one a line.
@@ -102,6 +136,12 @@ fn is_column(text: &[u8]) -> bool {
 /// Whether a line is a single number, or a word for a cell that is none.
 fn is_number(line: &[u8]) -> bool {
     Separator::of(line) == Separator::Spaces && Separator::Spaces.is_numeric(line.trim_ascii())
+}
+
+/// Whether a text is a list in JSON whose first part begins with this byte.
+fn is_list_of(text: &[u8], first: u8) -> bool {
+    let inside = text.strip_prefix(b"[").map(<[u8]>::trim_ascii_start);
+    inside.is_some_and(|inside| inside.first() == Some(&first))
 }
 
 /// Whether a text is what `ros2 topic echo` prints.
@@ -262,6 +302,11 @@ mod tests {
             );
         }
         assert!(error_of(b"words").starts_with("not a recording"));
+        assert!(error_of(b"words\n1 2\nwords\n").starts_with("not a recording"));
+        let log = b"ready\r\n\r\n1 2\r\n3 1\r\n\r\n1 2\r\n3 2\r\n\r\n";
+        let expected = "line 1: expected a table, which begins in line 3: delete the lines above it, or read the file \
+                        with taxel watch --once";
+        assert_eq!(error_of(log), expected);
         // A line of a growing file, up to its CR.
         assert_eq!(recognised(b"1,2\r"), Some(RecordingFormat::Csv));
     }

@@ -54,6 +54,8 @@ mod cell_names;
 
 mod unnamed_fields;
 
+mod header_line;
+
 mod table_layout;
 
 mod delimited;

@@ -4,9 +4,40 @@
 //! 0;1,5;;3      semicolons: a comma is the decimal sign, and an empty field is no cell
 //! 0,1.5,,3      commas, or tabs
 //! 0 1.5 nan 3   any number of blanks
+//! 0 1.5 N/A 3
 //! ```
 
 use crate::formats::recording::text_row::{self, Field};
+
+/// The words for a cell without a value: of C, Python, R and databases, of spreadsheets and of pandas.
+const NONE: [&[u8]; 9] = [
+    b"nan", b"-nan", b"null", b"none", b"na", b"n/a", b"#n/a", b"<na>", b"-",
+];
+
+/// Whether a field says that there is no value.
+fn is_none(field: &[u8]) -> bool {
+    match field.first() {
+        None => true,
+        // Most are numbers.
+        Some(first) if first.is_ascii_digit() => false,
+        Some(_) => NONE.iter().any(|none| field.eq_ignore_ascii_case(none)),
+    }
+}
+
+/// Whether a line is a comment, wherever it stands: behind `#`, behind `//`, or behind `%` and a blank. A `%` alone may
+/// belong to a name, as in `%time` of ROS, and `#N/A` is a cell.
+pub(super) fn is_comment(line: &[u8]) -> bool {
+    let begins = |word: &[u8]| {
+        let start = line.get(..word.len());
+        start.is_some_and(|start| start.eq_ignore_ascii_case(word))
+    };
+    match line {
+        [b'#', ..] => !begins(b"#n/a"),
+        [b'/', b'/', ..] | [b'%'] => true,
+        [b'%', next, ..] => next.is_ascii_whitespace() || *next == b'%',
+        _ => false,
+    }
+}
 
 /// What parts the fields of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,11 +105,7 @@ impl Separator {
 
     /// What a field says of its cell. With semicolons, a comma is the decimal sign.
     pub(crate) fn value(self, field: &[u8]) -> Field {
-        let is_none = field.is_empty()
-            || [&b"nan"[..], b"null", b"none", b"na"]
-                .iter()
-                .any(|none| field.eq_ignore_ascii_case(none));
-        if is_none {
+        if is_none(field) {
             return Field::NoCell;
         }
         match self {

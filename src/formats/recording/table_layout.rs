@@ -8,16 +8,19 @@
 use std::io::{BufRead, Seek};
 
 use crate::formats::recording::cell_names::{
-    FieldRole, NamedCells, cells, rest_of_second, role, roles,
+    FieldRole, NamedCells, cells, rest_of_second, roles, time_unit,
 };
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingNote};
 use crate::formats::recording::frame_time::TimeFields;
+use crate::formats::recording::header_line::{
+    count_from_0, first_line, is_comment, is_like_next, is_mostly_numeric, is_ramp, moment_of_row,
+};
 use crate::formats::recording::lines::{TextLines, is_blank, text};
 use crate::formats::recording::moment;
 use crate::formats::recording::separator::Separator;
 use crate::formats::recording::side::side;
-use crate::formats::recording::text_row;
+use crate::formats::recording::text_row::{self, Field};
 use crate::formats::recording::unnamed_fields::unnamed_fields;
 use crate::frame::MAX_FRAME_SIDE;
 use crate::parameter::number::{counted, grouped};
@@ -42,6 +45,8 @@ pub(super) struct TableLayout {
     pub(super) lines: LineLayout,
     /// What was assumed, if anything.
     pub(super) note: Option<RecordingNote>,
+    /// The unit of the cells, if a line below their names says it.
+    pub(super) unit: Option<String>,
     /// The timestamp of the first frame as it is written, if lines have one.
     pub(super) start: Option<String>,
 }
@@ -63,7 +68,7 @@ pub(super) enum LineLayout {
 pub(super) struct FrameFields {
     /// How many fields a line has.
     pub(super) count: usize,
-    /// The line with the names.
+    /// The last line of the header, if there is one.
     pub(super) header: Option<u64>,
     /// The field of each cell, row by row.
     pub(super) cells: Vec<usize>,
@@ -71,12 +76,6 @@ pub(super) struct FrameFields {
     pub(super) label: Option<usize>,
     /// The fields with the time.
     pub(super) time: Option<TimeFields>,
-}
-
-/// Whether a line is a comment, wherever it stands; or the line in which spreadsheet programs name their separator, `sep=;`.
-pub(super) fn is_comment(line: &[u8]) -> bool {
-    let line = line.trim_ascii();
-    line.starts_with(b"#") || matches!(line, [b's', b'e', b'p', b'=', _])
 }
 
 /// Finds out how the table is arranged, from its first lines.
@@ -127,119 +126,63 @@ pub(super) fn layout(
     if !is_header {
         return of_numbers(&mut lines, separator, (number, &[&first]), options);
     }
-    while lines.advance_to_content()? && is_comment(lines.line()) {}
+    let units = units_below(&mut lines, &names, separator)?;
     // Words above words are not a table.
     if !is_mostly_numeric(separator, lines.line()) {
         return Err(RecordingError::Unknown);
     }
-    if has_words && is_like_next(&names, separator, lines.line()) {
+    if has_words && units.is_none() && is_like_next(&names, separator, lines.line()) {
         let next = lines.line().to_owned();
         return of_numbers(&mut lines, separator, (number, &[&first, &next]), options);
     }
-    with_header(&names, separator, (number, lines.line()), options)
-}
-
-/// The first line that is neither blank nor a comment.
-///
-/// # Errors
-/// [`RecordingError::Unknown`] if there is none.
-fn first_line(lines: &mut TextLines<impl BufRead>) -> Result<Vec<u8>, RecordingError> {
-    while lines.advance_to_content()? && is_comment(lines.line()) {}
-    let first = lines.line();
-    if is_blank(first) || is_comment(first) {
-        return Err(RecordingError::Unknown);
-    }
-    Ok(first.to_owned())
-}
-
-/// The moment at the beginning of a line of numbers and nothing else, as it is written, and these numbers.
-fn moment_of_row(separator: Separator, line: &[u8]) -> Option<(&[u8], &[u8])> {
-    let (_, row) = moment::leading(line)?;
-    let moment = line[..line.len() - row.len()].trim_ascii();
-    let moment = moment.strip_suffix(b",").unwrap_or(moment);
-    let moment = moment.strip_suffix(b";").unwrap_or(moment);
-    let mut fields = separator.fields(row);
-    fields
-        .all(|field| separator.is_numeric(field))
-        .then_some((moment.trim_ascii(), row))
-}
-
-/// Whether a first line 0, 1, 2, … has values, as of a test pattern, and not the names of cells. It has if the next line
-/// counts on, if one of the next lines is the same, or if it begins the first of two blocks of as many lines.
-fn is_ramp(
-    lines: &mut TextLines<impl BufRead>,
-    separator: Separator,
-    first: &[u8],
-) -> Result<bool, RecordingError> {
-    let width = separator.fields(first).count();
-    let first = separator.numbers(first, width);
-    let next: Vec<f64> = first
-        .iter()
-        .map(|value| value + first.len() as f64)
-        .collect();
-    let (mut heights, mut height, mut compared) = (Vec::new(), 1_u16, 0_u16);
-    while heights.len() < 2 && height < COMPARED {
-        let is_end = !lines.advance()?;
-        if is_end || is_blank(lines.line()) {
-            heights.extend((height > 0).then(|| std::mem::take(&mut height)));
-            if is_end {
-                break;
-            }
-        } else if !is_comment(lines.line()) {
-            let own = separator.numbers(lines.line(), width + 1);
-            if own == first || own == next && compared == 0 {
-                return Ok(true);
-            }
-            height += 1;
-            compared += 1;
-        }
-    }
-    Ok(matches!(heights[..], [first, second] if first == second && first > 1))
-}
-
-/// How many cells are named, if names are those of cells and nothing else, counted from 0; pandas writes an empty one before
-/// them, above its index.
-fn count_from_0(names: &[&str]) -> Option<usize> {
-    let names = names.strip_prefix(&[""]).unwrap_or(names);
-    let all = matches!(cells(names), Some(NamedCells::Counted(0, length)) if length == names.len());
-    (names.first() == Some(&"0") && all).then_some(names.len())
-}
-
-/// Whether a line with words is a frame like the next line, with a date or a label beside its cells: words and numbers stand
-/// in the same fields. Otherwise it has the names of the fields, such as `label,0,1,2,3` above `cup,7,5,9,3`: its numbers
-/// count, from 0 or beside a word that is a usual name.
-fn is_like_next(names: &[&str], separator: Separator, next: &[u8]) -> bool {
-    let next = separator.fields_of(next, names.len());
-    let next: Vec<&[u8]> = next.take(names.len() + 1).collect();
-    let is_word = |field: &[u8]| !separator.is_numeric(field);
-    let mut pairs = names.iter().zip(&next);
-    let same = pairs.all(|(own, next)| is_word(own.as_bytes()) == is_word(next));
-    if next.len() != names.len() || !same {
-        return false;
-    }
-    let words = || {
-        let pairs = names.iter().zip(&next);
-        pairs.filter(|(_, next)| is_word(next))
+    let header = TableHeader {
+        names: &names,
+        number,
+        units: units.as_ref(),
     };
-    let repeats = words().all(|(own, next)| own.as_bytes() == *next);
-    let is_name = |name: &str| name.starts_with(char::is_alphabetic) && role(name).is_some();
-    let is_named = words().any(|(own, _)| is_name(own));
-    let numbers = names.len() - words().count();
-    let counts = matches!(
-        cells(names),
-        Some(NamedCells::Counted(start, length)) if length == numbers && (names[start] == "0" || is_named)
-    );
-    repeats || !counts
+    with_header(header, separator, lines.line(), options)
 }
 
-/// Whether a line has numbers in half of its fields or more.
-fn is_mostly_numeric(separator: Separator, line: &[u8]) -> bool {
-    let (mut all, mut numeric) = (0, 0);
-    for field in separator.fields(line) {
-        all += 1;
-        numeric += usize::from(separator.is_numeric(field));
+/// The lines above the values of a table.
+#[derive(Clone, Copy)]
+struct TableHeader<'a> {
+    /// The names of the fields.
+    names: &'a [&'a str],
+    /// Their line.
+    number: u64,
+    /// The line with the units of the fields, and these.
+    units: Option<&'a (u64, Vec<String>)>,
+}
+
+impl TableHeader<'_> {
+    /// The unit of a field; None if it has none.
+    fn unit(&self, field: usize) -> Option<&str> {
+        let unit = self.units?.1.get(field)?;
+        let inner = unit.trim_matches(['[', ']', '(', ')']).trim();
+        (!inner.is_empty()).then_some(inner)
     }
-    numeric > 0 && 2 * numeric >= all
+}
+
+/// Reads up to the first line of values below the names of cells. Returns the line between them and its fields, if there are
+/// words in it, one for each name: they are units.
+fn units_below(
+    lines: &mut TextLines<impl BufRead>,
+    names: &[&str],
+    separator: Separator,
+) -> Result<Option<(u64, Vec<String>)>, RecordingError> {
+    while lines.advance_to_content()? && is_comment(lines.line()) {}
+    let fields = separator.fields_of(lines.line(), names.len());
+    let fields: Vec<String> = fields.take(names.len() + 1).map(text).collect();
+    let is_word = |field: &String| !separator.is_numeric(field.as_bytes());
+    // A dash stands for no unit.
+    let is_number = |field: &String| matches!(separator.value(field.as_bytes()), Field::Value(_));
+    let are_units = fields.iter().any(is_word) && !fields.iter().any(is_number);
+    if fields.len() != names.len() || !are_units || cells(names).is_none() {
+        return Ok(None);
+    }
+    let units = (lines.number(), fields);
+    while lines.advance_to_content()? && is_comment(lines.line()) {}
+    Ok(Some(units))
 }
 
 /// The arrangement of a table without names, whose first lines are `read`, the first of them in line `number` of the file.
@@ -318,6 +261,7 @@ fn of_numbers(
         start,
         lines,
         note: None,
+        unit: None,
     })
 }
 
@@ -342,7 +286,8 @@ impl LineLayout {
             return None;
         };
         let field = *fields.get((*time)?.field)?;
-        moment::read(field).is_some().then(|| text(field))
+        let is_start = moment::read(field).is_some() && !moment::is_duration(field);
+        is_start.then(|| text(field))
     }
 }
 
@@ -394,16 +339,17 @@ impl FrameFields {
     }
 }
 
-/// The arrangement that the names in line `number` describe, above the first line of values.
+/// The arrangement that a header describes, above the first line of values.
 ///
 /// # Errors
 /// If the names are those of another number of rows and columns than was asked for.
 fn with_header(
-    names: &[&str],
+    header: TableHeader<'_>,
     separator: Separator,
-    (number, first): (u64, &[u8]),
+    first: &[u8],
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
+    let TableHeader { names, number, .. } = header;
     let roles = roles(names);
     let (shape, cells, note) = named_cells(names, &roles, number, options)?;
     let expected = usize::from(shape.0) * usize::from(shape.1);
@@ -420,41 +366,43 @@ fn with_header(
         roles.filter(|&(field, _)| !is_cell[field])
     };
     let label = others().find(|(_, role)| **role == Some(FieldRole::Label));
-    let time = others().find_map(|(field, role)| match role {
-        Some(FieldRole::Time(unit)) => Some(TimeFields::new(field, *unit)),
+    let times = others().filter_map(|(field, role)| match role {
+        Some(FieldRole::Time(unit)) => {
+            let below = || header.unit(field).and_then(time_unit);
+            Some(TimeFields {
+                field,
+                unit: unit.or_else(below),
+                rest: rest_of_second(names, field),
+            })
+        }
         _ => None,
     });
-    // Its first column may be either part of a time in two columns.
-    let mut in_two = others().filter_map(|(field, role)| match role {
-        Some(FieldRole::Time(unit)) => Some(TimeFields {
-            field,
-            unit: *unit,
-            rest: Some(rest_of_second(names, field)?),
-        }),
-        _ => None,
-    });
-    let is_part = |of: &TimeFields, field| {
-        of.field == field || of.rest.is_some_and(|(rest, _)| rest == field)
-    };
-    let time = time.map(|first| {
-        in_two
-            .find(|own| is_part(own, first.field))
-            .unwrap_or(first)
-    });
+    let times: Vec<TimeFields> = times.collect();
+    // The first one may be either part of a time in two columns.
+    let rest_is =
+        |field| move |time: &&TimeFields| time.rest.is_some_and(|(rest, _)| rest == field);
+    let time = times.first();
+    let time = time.map(|time| *times.iter().find(rest_is(time.field)).unwrap_or(time));
     let fields = separator.fields_of(first, names.len());
     let fields: Vec<&[u8]> = fields.take(names.len()).collect();
     let found = FrameFields {
         count: names.len(),
-        header: Some(number),
+        header: Some(header.units.map_or(number, |(number, _)| *number)),
         label: label.map(|(field, _)| field),
         time,
         cells,
     };
+    let units = found.cells.iter().map(|&cell| header.unit(cell));
+    let unit = units
+        .reduce(|one, other| one.filter(|_| one == other))
+        .flatten();
+    let unit = unit.map(str::to_owned);
     let lines = LineLayout::Frame(found.with_moment(separator, &fields));
     Ok(TableLayout {
         separator,
         shape,
         note,
+        unit,
         start: lines.start(&fields),
         lines,
     })

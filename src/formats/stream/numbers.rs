@@ -6,11 +6,17 @@ use crate::formats::recording::text_row::Field;
 /// More digits than these are left to the general reader.
 const FAST_DIGITS: usize = 9;
 
-/// Adds the numbers of a line, parted by blanks, or by commas or semicolons with or without blanks. With semicolons, a comma is
-/// the decimal sign. An empty field and `nan`, `null`, `none` or `na` stand for no cell; a separator at the end of the line
-/// counts for nothing. None if there is anything else, or more than `most`.
+/// Adds the numbers of a line, parted by blanks, or by semicolons, commas or tabs with or without blanks: the first of these
+/// that the line has, as in a table. With semicolons, a comma is the decimal sign. An empty field and words such as `nan` stand for no cell, as in a table; a separator at the end of the line
+/// counts for nothing, nor do tabs at both ends. None if there is anything else, or more than `most`.
 pub(super) fn read(line: &[u8], values: &mut Vec<f64>, most: usize) -> Option<()> {
-    let mark = if line.contains(&b';') { b';' } else { b',' };
+    let (mark, line) = if line.contains(&b';') {
+        (b';', line)
+    } else if line.contains(&b',') {
+        (b',', line)
+    } else {
+        (b'\t', line.trim_ascii())
+    };
     let is_separator = |byte: u8| byte == mark || matches!(byte, b' ' | b'\t' | b'\r');
     let first = values.len();
     let mut at = 0;
@@ -88,6 +94,10 @@ mod tests {
             ("1,,2", "[1.0, NaN, 2.0]"),
             (",1 , , 2,,", "[NaN, 1.0, NaN, 2.0, NaN]"),
             ("1 null\tNA none", "[1.0, NaN, NaN, NaN]"),
+            ("1\t\t2", "[1.0, NaN, 2.0]"),
+            ("\t1 \t 2  3\t\t\r", "[1.0, 2.0, 3.0]"),
+            ("1,\t\t2", "[1.0, 2.0]"),
+            ("1 N/A - -nan", "[1.0, NaN, NaN, NaN]"),
             (" , ,, ", "[]"),
         ] {
             let mut values = Vec::new();

@@ -272,6 +272,51 @@ fn times_since_1970_are_exact_and_their_size_is_a_unit() {
 }
 
 #[test]
+fn words_for_no_value_are_no_cells() {
+    for none in [
+        "", "nan", "-nan", "NULL", "None", "NA", "N/A", "#N/A", "<NA>", "-",
+    ] {
+        // Also at the beginning of a line, which is no comment.
+        let text = format!("r0c0,r0c1\n{none},1\n2,{none}\n");
+        let found = values(&text, None);
+        assert!(found[0][0].is_nan() && found[1][1].is_nan(), "{text}");
+        assert_eq!((found[0][1], found[1][0]), (1.0, 2.0), "{text}");
+    }
+    assert!(recorded(b"r0c0,r0c1\n1,--\n", None).error.is_some());
+}
+
+#[test]
+fn comments_and_units_are_no_frames() {
+    for comment in ["# a, b", "% a, b", "%% 1, 2", "%", "// 1, 2"] {
+        let text = format!("{comment}\n1 2\n3 4\n{comment}\n\n5 6\n7 8\n");
+        assert_eq!(values(&text, None).len(), 2, "{text}");
+    }
+    let text = "frame,time,r0c0,r0c1\n-,ms,[kPa],[kPa]\n7,10,1,2\n8,60,3,4\n";
+    let found = recorded(text.as_bytes(), None);
+    assert_eq!(found.channels[0].unit.as_deref(), Some("kPa"));
+    assert_eq!(frames(text, None)[1], (Some(8), Some(0.05), vec![3.0, 4.0]));
+    // Cells have different units; the name of the time has one.
+    let text = "time_s,r0c0,r0c1\nms,kPa,N\n\n1,1,2\n3,3,4\n";
+    let found = recorded(text.as_bytes(), None);
+    assert_eq!(found.channels[0].unit, None);
+    assert_eq!(frames(text, None)[1].1, Some(2.0));
+    // Words above words are not a table.
+    assert!(recorded(b"a,b\nc,d\n1,2\n", None).error.is_some());
+}
+
+#[test]
+fn a_duration_is_a_time_and_no_beginning() {
+    let text = "time,r0c0,r0c1\n0 days 00:00:01,1,2\n0 days 00:00:01.050000,3,4\n";
+    let found = recorded(text.as_bytes(), None);
+    assert_eq!(
+        (found.frames[1].time, &found.channels[0].start),
+        (Some(0.05), &None)
+    );
+    let text = "time,r0c0,r0c1\n11:59:59 AM,1,2\n12:00:00 PM,3,4\n";
+    assert_eq!(frames(text, None)[1].1, Some(1.0));
+}
+
+#[test]
 fn a_row_block_may_begin_with_a_moment() {
     let blocks = "12:00:00.00 1 2\n3 4\n\n12:00:00.05 5 6\n7 8\n\n";
     let both = "2024-05-01 23:59:59.95,1,2\n2024-05-02 00:00:00,3,4\n\n2024-05-02 00:00:00,5,6\n2024-05-02 00:00:01,7,8\n";
@@ -319,9 +364,6 @@ fn values_are_counted_where_names_do_not_say_rows_and_columns() {
         "{}",
         error(&found)
     );
-    let found = recorded(b"{\"frame\":[[1,NaN]]}\n", None);
-    let expected = "line 1, column 14: found NaN, expected null where there is no cell";
-    assert_eq!(error(&found), expected);
 }
 
 #[test]
@@ -397,6 +439,68 @@ fn bare_rows_of_json_are_refused_as_json() {
         error(&found),
         "line 1, column 1: found a list, expected an object with a key \"frame\""
     );
+}
+
+#[test]
+fn objects_in_a_list_are_refused_as_such() {
+    let expected = "line 1, column 1: found a list of objects, expected one object a line, as `jq -c '.[]'` writes them";
+    for text in [
+        "[{\"t\":0,\"frame\":[[1,2]]},{\"t\":1,\"frame\":[[1,2]]}]\n",
+        "[\n  {\"t\":0,\"frame\":[[1,2]]}\n]\n",
+    ] {
+        assert_eq!(error(&recorded(text.as_bytes(), None)), expected);
+    }
+}
+
+#[test]
+fn nan_of_python_is_no_cell_in_json() {
+    let text = "{\"t\":NaN,\"frame\":[[1,NaN],[NaN,3]],\"note\":\"a \\\"NaN\"}\n{\"frame\":[[1,2],[3,4]]}\n";
+    let found = frames(text, None);
+    assert_eq!(found[0].1, None);
+    let cells: Vec<bool> = found[0].2.iter().map(|value| value.is_nan()).collect();
+    assert_eq!(cells, [false, true, true, false]);
+    // Columns are those of the line as it is written.
+    for (text, expected) in [
+        (
+            "{\"frame\":[[NaN,NaN,x]]}\n",
+            "line 1, column 20: expected a value: a string in double quotes, a number, a list or an object",
+        ),
+        (
+            "{\"frame\":[[NaN,Infinity]]}\n",
+            "line 1, column 16: found Infinity, expected a number, or null where there is no cell",
+        ),
+    ] {
+        assert_eq!(error(&recorded(text.as_bytes(), None)), expected);
+    }
+}
+
+#[test]
+fn a_key_that_is_the_name_of_a_time_gives_it_where_t_does_not() {
+    for (keys, expected) in [
+        (["\"timestamp\":1.5", "\"timestamp\":1.75"], Some(0.25)),
+        (["\"t_ms\":10", "\"t_ms\":60"], Some(0.05)),
+        (
+            ["\"timestamp\":1714564800123", "\"timestamp\":1714564800173"],
+            Some(0.05),
+        ),
+        (
+            [
+                "\"timestamp\":\"2024-05-01T12:00:00Z\"",
+                "\"timestamp\":\"2024-05-01T12:00:01Z\"",
+            ],
+            Some(1.0),
+        ),
+        (["\"t_ms\":10,\"t\":1", "\"t_ms\":60,\"t\":2"], Some(1.0)),
+        (
+            ["\"time_s\":[1],\"force\":1", "\"time_s\":{},\"force\":2"],
+            None,
+        ),
+    ] {
+        let text = keys
+            .map(|keys| format!("{{{keys},\"frame\":[[1,2]]}}\n"))
+            .concat();
+        assert_eq!(frames(&text, None)[1].1, expected, "{text}");
+    }
 }
 
 #[test]

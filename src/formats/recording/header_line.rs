@@ -1,0 +1,120 @@
+//! Whether a first line of a table has the names of its fields or values, and lines that are neither.
+
+use std::io::BufRead;
+
+use crate::formats::recording::cell_names::{NamedCells, cells, role};
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::lines::{TextLines, is_blank};
+use crate::formats::recording::moment;
+use crate::formats::recording::separator::{self, Separator};
+
+/// Lines that are compared with the first one.
+const COMPARED: u16 = 8;
+
+/// Whether a line is passed over, wherever it stands: a comment, or the line in which spreadsheet programs name their
+/// separator, `sep=;`.
+pub(super) fn is_comment(line: &[u8]) -> bool {
+    let line = line.trim_ascii();
+    separator::is_comment(line) || matches!(line, [b's', b'e', b'p', b'=', _])
+}
+
+/// The first line that is neither blank nor a comment.
+///
+/// # Errors
+/// [`RecordingError::Unknown`] if there is none.
+pub(super) fn first_line(lines: &mut TextLines<impl BufRead>) -> Result<Vec<u8>, RecordingError> {
+    while lines.advance_to_content()? && is_comment(lines.line()) {}
+    let first = lines.line();
+    if is_blank(first) || is_comment(first) {
+        return Err(RecordingError::Unknown);
+    }
+    Ok(first.to_owned())
+}
+
+/// The moment at the beginning of a line of numbers and nothing else, as it is written, and these numbers.
+pub(super) fn moment_of_row(separator: Separator, line: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (_, row) = moment::leading(line)?;
+    let moment = line[..line.len() - row.len()].trim_ascii();
+    let moment = moment.strip_suffix(b",").unwrap_or(moment);
+    let moment = moment.strip_suffix(b";").unwrap_or(moment);
+    let mut fields = separator.fields(row);
+    fields
+        .all(|field| separator.is_numeric(field))
+        .then_some((moment.trim_ascii(), row))
+}
+
+/// Whether a first line 0, 1, 2, … has values, as of a test pattern, and not the names of cells. It has if the next line
+/// counts on, if one of the next lines is the same, or if it begins the first of two blocks of as many lines.
+pub(super) fn is_ramp(
+    lines: &mut TextLines<impl BufRead>,
+    separator: Separator,
+    first: &[u8],
+) -> Result<bool, RecordingError> {
+    let width = separator.fields(first).count();
+    let first = separator.numbers(first, width);
+    let count = first.last().map_or(0.0, |last| last + 1.0);
+    let next: Vec<f64> = first.iter().map(|value| value + count).collect();
+    let (mut heights, mut height, mut compared) = (Vec::new(), 1_u16, 0_u16);
+    while heights.len() < 2 && height < COMPARED {
+        let is_end = !lines.advance()?;
+        if is_end || is_blank(lines.line()) {
+            heights.extend((height > 0).then(|| std::mem::take(&mut height)));
+            if is_end {
+                break;
+            }
+        } else if !is_comment(lines.line()) {
+            let own = separator.numbers(lines.line(), width + 1);
+            if own == first || own == next && compared == 0 {
+                return Ok(true);
+            }
+            height += 1;
+            compared += 1;
+        }
+    }
+    Ok(matches!(heights[..], [first, second] if first == second && first > 1))
+}
+
+/// How many cells are named, if names are those of cells and nothing else, counted from 0; pandas writes an empty one before
+/// them, above its index.
+pub(super) fn count_from_0(names: &[&str]) -> Option<usize> {
+    let names = names.strip_prefix(&[""]).unwrap_or(names);
+    let all = matches!(cells(names), Some(NamedCells::Counted(0, length)) if length == names.len());
+    (names.first() == Some(&"0") && all).then_some(names.len())
+}
+
+/// Whether a line with words is a frame like the next line, with a date or a label beside its cells: words and numbers stand
+/// in the same fields. Otherwise it has the names of the fields, such as `label,0,1,2,3` above `cup,7,5,9,3`: its numbers
+/// count, from 0 or beside a word that is a usual name.
+pub(super) fn is_like_next(names: &[&str], separator: Separator, next: &[u8]) -> bool {
+    let next = separator.fields_of(next, names.len());
+    let next: Vec<&[u8]> = next.take(names.len() + 1).collect();
+    let is_word = |field: &[u8]| !separator.is_numeric(field);
+    let mut pairs = names.iter().zip(&next);
+    let same = pairs.all(|(own, next)| is_word(own.as_bytes()) == is_word(next));
+    if next.len() != names.len() || !same {
+        return false;
+    }
+    let words = || {
+        let pairs = names.iter().zip(&next);
+        pairs.filter(|(_, next)| is_word(next))
+    };
+    let repeats = words().all(|(own, next)| own.as_bytes() == *next);
+    let is_name = |name: &str| name.starts_with(char::is_alphabetic) && role(name).is_some();
+    let is_named = words().any(|(own, _)| is_name(own));
+    let numbers = names.len() - words().count();
+    let counts = matches!(
+        cells(names),
+        Some(NamedCells::Counted(start, length)) if length == numbers && (names[start] == "0" || is_named)
+    );
+    repeats || !counts
+}
+
+/// Whether a line has numbers in half of its fields or more.
+pub(super) fn is_mostly_numeric(separator: Separator, line: &[u8]) -> bool {
+    let (mut all, mut numeric) = (0, 0);
+    for field in separator.fields(line) {
+        all += 1;
+        numeric += usize::from(separator.is_numeric(field));
+    }
+    numeric > 0 && 2 * numeric >= all
+}
