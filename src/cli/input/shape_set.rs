@@ -64,7 +64,10 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
     for words in &asked.shapes {
         let shape = named_shape_of_words(words, &lookup);
         shapes.push(shape.map_err(|error| CliError::Set {
-            place: format!("--shape {}", shortened(words.split('=').next().unwrap_or(words))),
+            place: format!(
+                "--shape {}",
+                shortened(words.split('=').next().unwrap_or(words))
+            ),
             error: error.to_string(),
         })?);
     }

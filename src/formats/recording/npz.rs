@@ -10,6 +10,7 @@
 //! are read, then the error: to check it first would take twice the time and give none of the frames that are right.
 
 use std::io::{ErrorKind, Read, Seek};
+use std::ops::ControlFlow;
 
 use zip::ZipArchive;
 use zip::result::ZipError;
@@ -110,19 +111,15 @@ pub(super) fn read(
         if sink(RecordingEvent::Channel(&info)).is_break() {
             return Ok(());
         }
-        if let Some(note) = layout.note()
-            && sink(RecordingEvent::Note(note)).is_break()
-        {
+        if noted(layout.note(), sink).is_break() {
             return Ok(());
         }
     }
     for (channel, (array, layout)) in channels.iter().enumerate() {
         let (times, assumed) = times(&mut archive, &arrays, layout.frames())?;
-        if let Some(unit) = assumed {
-            let note = RecordingNote::TimeUnit { unit: unit.name() };
-            if sink(RecordingEvent::Note(&note)).is_break() {
-                break;
-            }
+        let assumed = assumed.map(|unit| RecordingNote::TimeUnit { unit: unit.name() });
+        if noted(assumed.as_ref(), sink).is_break() {
+            break;
         }
         let mut file = archive.by_index(array.index).map_err(damaged)?;
         let named = |error| in_array(&array.name, error);
@@ -133,6 +130,13 @@ pub(super) fn read(
         numpy::end(&mut file, layout).map_err(named)?;
     }
     Ok(())
+}
+
+/// Reports a note, if there is one.
+fn noted(note: Option<&RecordingNote>, sink: &mut Sink<'_>) -> ControlFlow<()> {
+    note.map_or(ControlFlow::Continue(()), |note| {
+        sink(RecordingEvent::Note(note))
+    })
 }
 
 /// All arrays with their headers.
@@ -311,7 +315,6 @@ fn times(
 #[cfg(test)]
 mod tests {
     use std::io::{Cursor, Write};
-    use std::ops::ControlFlow;
 
     use zip::write::SimpleFileOptions;
 

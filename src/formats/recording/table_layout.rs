@@ -161,6 +161,36 @@ impl TableHeader<'_> {
         let inner = unit.trim_matches(['[', ']', '(', ')']).trim();
         (!inner.is_empty()).then_some(inner)
     }
+
+    /// The unit that all of these fields have.
+    fn unit_of_all(&self, fields: &[usize]) -> Option<&str> {
+        let units = fields.iter().map(|&field| self.unit(field));
+        let same = units.reduce(|one, other| one.filter(|_| one == other));
+        same.flatten()
+    }
+
+    /// The first of these fields that is a time, or two fields of which it is a part.
+    fn time<'r>(
+        &self,
+        fields: impl Iterator<Item = (usize, &'r Option<FieldRole>)>,
+    ) -> Option<TimeFields> {
+        let times = fields.filter_map(|(field, role)| match role {
+            Some(FieldRole::Time(unit)) => {
+                let below = || self.unit(field).and_then(time_unit);
+                Some(TimeFields {
+                    field,
+                    unit: unit.or_else(below),
+                    rest: rest_of_second(self.names, field),
+                })
+            }
+            _ => None,
+        });
+        // More than these are hardly times, and each is compared with all names.
+        let times: Vec<TimeFields> = times.take(MOST_BESIDE).collect();
+        let first = times.first()?;
+        let has_first = |time: &&TimeFields| time.rest.is_some_and(|(rest, _)| rest == first.field);
+        Some(*times.iter().find(has_first).unwrap_or(first))
+    }
 }
 
 /// Reads up to the first line of values below the names of cells. Returns the line between them and its fields, if there are
@@ -211,34 +241,15 @@ fn of_numbers(
     };
     let enough = lines_needed(options.shape, width, values);
     let mut compared: Vec<Vec<f64>> = read.iter().map(|line| numbers(line)).collect();
-    let (mut block, mut parted) = (if read.len() > 1 { 2_u16 } else { 1 }, false);
-    while block < enough && lines.advance()? {
-        if is_blank(lines.line()) {
-            parted = true;
-            break;
-        }
-        if is_comment(lines.line()) {
-            continue;
-        }
-        if block < COMPARED {
-            compared.push(numbers(lines.line()));
-        }
-        block += 1;
-    }
+    let (block, parted) = first_block(lines, (read.len(), enough), |line| {
+        compared.push(numbers(line));
+    })?;
     let (shape, lines) = match (options.shape, width) {
         (Some(shape), Some(width)) if width == shape.1 && shape.0 > 1 => {
             (shape, LineLayout::Row { parted })
         }
         (Some(shape), _) => {
-            let cells = usize::from(shape.0) * usize::from(shape.1);
-            let found = unnamed_fields(cells, number, &compared)?;
-            let found = FrameFields {
-                count: numeric.len(),
-                header: None,
-                cells: (found.start..found.start + cells).collect(),
-                label: found.label,
-                time: found.time,
-            };
+            let found = FrameFields::unnamed(shape, number, &compared)?;
             let found = found.among(&numeric, &fields, number)?;
             (
                 shape,
@@ -263,6 +274,29 @@ fn of_numbers(
         note: None,
         unit: None,
     })
+}
+
+/// Reads on in the first block, of which some lines have been read, until there are enough lines or an empty one ends it.
+/// Those that are compared are taken. Returns the number of lines, and whether the block was ended.
+fn first_block(
+    lines: &mut TextLines<impl BufRead>,
+    (read, enough): (usize, u16),
+    mut take: impl FnMut(&[u8]),
+) -> Result<(u16, bool), RecordingError> {
+    let mut block = if read > 1 { 2_u16 } else { 1 };
+    while block < enough && lines.advance()? {
+        if is_blank(lines.line()) {
+            return Ok((block, true));
+        }
+        if is_comment(lines.line()) {
+            continue;
+        }
+        if block < COMPARED {
+            take(lines.line());
+        }
+        block += 1;
+    }
+    Ok((block, false))
 }
 
 /// How many lines are needed to decide how a table without names is arranged, given its rows and columns, the width of a row
@@ -292,6 +326,26 @@ impl LineLayout {
 }
 
 impl FrameFields {
+    /// The fields of lines of numbers without names, the first of them in line `number`.
+    ///
+    /// # Errors
+    /// If the lines do not tell which fields are cells.
+    fn unnamed(
+        (rows, columns): (u16, u16),
+        number: u64,
+        lines: &[Vec<f64>],
+    ) -> Result<Self, RecordingError> {
+        let cells = usize::from(rows) * usize::from(columns);
+        let found = unnamed_fields(cells, number, lines)?;
+        Ok(Self {
+            count: lines[0].len(),
+            header: None,
+            cells: (found.start..found.start + cells).collect(),
+            label: found.label,
+            time: found.time,
+        })
+    }
+
     /// These fields, whose first line has such `fields`, with a timestamp beside the cells as the time, unless a number
     /// gives the time.
     fn with_moment(mut self, separator: Separator, fields: &[&[u8]]) -> Self {
@@ -366,23 +420,7 @@ fn with_header(
         roles.filter(|&(field, _)| !is_cell[field])
     };
     let label = others().find(|(_, role)| **role == Some(FieldRole::Label));
-    let times = others().filter_map(|(field, role)| match role {
-        Some(FieldRole::Time(unit)) => {
-            let below = || header.unit(field).and_then(time_unit);
-            Some(TimeFields {
-                field,
-                unit: unit.or_else(below),
-                rest: rest_of_second(names, field),
-            })
-        }
-        _ => None,
-    });
-    let times: Vec<TimeFields> = times.collect();
-    // The first one may be either part of a time in two columns.
-    let rest_is =
-        |field| move |time: &&TimeFields| time.rest.is_some_and(|(rest, _)| rest == field);
-    let time = times.first();
-    let time = time.map(|time| *times.iter().find(rest_is(time.field)).unwrap_or(time));
+    let time = header.time(others());
     let fields = separator.fields_of(first, names.len());
     let fields: Vec<&[u8]> = fields.take(names.len()).collect();
     let found = FrameFields {
@@ -392,11 +430,7 @@ fn with_header(
         time,
         cells,
     };
-    let units = found.cells.iter().map(|&cell| header.unit(cell));
-    let unit = units
-        .reduce(|one, other| one.filter(|_| one == other))
-        .flatten();
-    let unit = unit.map(str::to_owned);
+    let unit = header.unit_of_all(&found.cells).map(str::to_owned);
     let lines = LineLayout::Frame(found.with_moment(separator, &fields));
     Ok(TableLayout {
         separator,

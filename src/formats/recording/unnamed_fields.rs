@@ -7,8 +7,8 @@
 //! 1,2,3,4,0,50        number and milliseconds behind the cells
 //! ```
 //! Numbers count up by 1 from line to line and times do not fall, while cells do both. Where cells happen to grow, too, the
-//! better evidence decides (see [`Evidence`]); where that is equal, the lines are refused, since a wrong guess would shift
-//! all cells by one.
+//! better evidence decides (see [`FieldEvidence`]); where that is equal, the lines are refused, since a wrong guess would
+//! shift all cells by one.
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::frame_time::{TimeFields, TimeUnit};
@@ -20,7 +20,7 @@ const UNEVEN: f64 = 0.1;
 
 /// How a field grows from line to line; what tells more is greater.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-enum Growth {
+enum FieldGrowth {
     /// It stays the same.
     Constant,
     /// It stays the same or rises.
@@ -35,7 +35,7 @@ enum Growth {
     Counting,
 }
 
-impl Growth {
+impl FieldGrowth {
     /// That of a field; None if it falls or is no number somewhere. A single line has constant fields only.
     fn of(lines: &[Vec<f64>], field: usize) -> Option<Self> {
         let value = |line: &Vec<f64>| line.get(field).copied().unwrap_or(f64::NAN);
@@ -69,11 +69,11 @@ impl Growth {
 
 /// What speaks for such fields; the greater evidence decides.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-struct Evidence {
+struct FieldEvidence {
     /// Whether the time has decimals and no cell has.
     is_only_decimal: bool,
     /// How the time grows, or the number where there is no time.
-    growth: Growth,
+    growth: FieldGrowth,
 }
 
 /// Where cells, number and time of a frame are, or may be.
@@ -113,10 +113,10 @@ impl UnnamedFields {
     }
 
     /// What lines of so many cells say for it; None if they rule it out.
-    fn evidence(self, lines: &[Vec<f64>], cells: usize) -> Option<Evidence> {
-        let growth_of = |field| Growth::of(lines, field);
+    fn evidence(self, lines: &[Vec<f64>], cells: usize) -> Option<FieldEvidence> {
+        let growth_of = |field| FieldGrowth::of(lines, field);
         if let Some(label) = self.label {
-            let counts = growth_of(label)? == Growth::Counting || lines.len() == 1;
+            let counts = growth_of(label)? == FieldGrowth::Counting || lines.len() == 1;
             whole(lines[0][label]).filter(|_| counts)?;
         }
         let has_decimals = |field: usize| {
@@ -124,19 +124,24 @@ impl UnnamedFields {
             values.any(|value| value.fract() != 0.0)
         };
         let growth = match (self.label, self.time) {
-            (Some(_), None) => Growth::Counting,
+            (Some(_), None) => FieldGrowth::Counting,
             // What counts up by 1 beside the number is as even as other clocks, and no more.
-            (Some(_), Some(time)) if growth_of(time.field)? == Growth::Counting => Growth::Steady,
+            (Some(_), Some(time)) if growth_of(time.field)? == FieldGrowth::Counting => {
+                FieldGrowth::Steady
+            }
             (Some(_), Some(time)) => growth_of(time.field)?,
             // A time that does not change is none, unless there is a number beside it. What counts up by 1 is a number.
-            (None, Some(time)) => growth_of(time.field)
-                .filter(|growth| !matches!(growth, Growth::Constant | Growth::Counting))?,
-            (None, None) if lines.iter().all(|line| line.first() == Some(&0.0)) => Growth::Zero,
+            (None, Some(time)) => growth_of(time.field).filter(|growth| {
+                !matches!(growth, FieldGrowth::Constant | FieldGrowth::Counting)
+            })?,
+            (None, None) if lines.iter().all(|line| line.first() == Some(&0.0)) => {
+                FieldGrowth::Zero
+            }
             (None, None) => return None,
         };
         let is_decimal = lines.len() > 1 && self.time.is_some_and(|time| has_decimals(time.field));
         let cells = self.start..self.start + cells;
-        Some(Evidence {
+        Some(FieldEvidence {
             is_only_decimal: is_decimal && !{ cells }.any(has_decimals),
             growth,
         })
@@ -192,8 +197,8 @@ fn most_evident(
             let evidence = own.evidence(&lines[..count], cells)?;
             Some((*own, evidence))
         });
-        let evident: Vec<(UnnamedFields, Evidence)> = evident.collect();
-        let mut best: Option<(UnnamedFields, Evidence)> = None;
+        let evident: Vec<(UnnamedFields, FieldEvidence)> = evident.collect();
+        let mut best: Option<(UnnamedFields, FieldEvidence)> = None;
         for own in &evident {
             if best.is_none_or(|best| own.1 > best.1) {
                 best = Some(*own);
@@ -203,7 +208,7 @@ fn most_evident(
             continue;
         };
         let is_rival =
-            |own: &(UnnamedFields, Evidence)| own.0.start != found.start && own.1 == evidence;
+            |own: &(UnnamedFields, FieldEvidence)| own.0.start != found.start && own.1 == evidence;
         return if evident.iter().any(is_rival) {
             Err(())
         } else {
