@@ -413,7 +413,9 @@ impl Library {
                     "half-written by a program that died, or being written"
                 }
                 Some(name) if name_of(name).is_some() => continue,
-                Some(name) if name.ends_with(".json") => "no shape: shapes cannot have this name",
+                Some(name) if name.strip_suffix(".json").is_some() => {
+                    "no shape: shapes cannot have this name"
+                }
                 _ => "no shape: its name is not NAME.json",
             };
             found.push((self.folder.join(name), what));

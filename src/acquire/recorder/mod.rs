@@ -27,7 +27,9 @@ pub(crate) use description::name_description;
 pub use error::RecorderError;
 
 use crate::acquire::frame_rate::FrameRate;
-use crate::formats::recording::{RecordedView, RecordingMetadata};
+#[cfg(feature = "tui")]
+use crate::formats::recording::RecordedView;
+use crate::formats::recording::RecordingMetadata;
 use crate::frame::Frame;
 use crate::storage::{Existing, FinishedFile, UnfinishedFile, persist_pair};
 
@@ -139,6 +141,7 @@ impl FrameRecorder {
     }
 
     /// Replaces threshold, tare and marks, and returns the description that says so, for the caller to write.
+    #[cfg(feature = "tui")]
     pub(crate) fn set_view(&mut self, view: RecordedView) -> DescriptionDraft {
         let RecordedView { rule, tare, marks } = view;
         (self.metadata.rule, self.metadata.tare, self.metadata.marks) = (rule, tare, marks);

@@ -248,10 +248,11 @@ fn times_since_1970_are_exact_and_their_size_is_a_unit() {
         ("unix_time", 1_000_000, 1, "milliseconds"),
         ("epoch", 1_000_000_000, 1_000_000_000, ""),
     ] {
-        let row = |index: u64| match parts {
-            1 => format!("{},1,2\n", (start + 1_000_000 * index) / unit),
-            _ => {
-                let time = start + 1_000_000 * index;
+        let row = |index: u64| {
+            let time = start + 1_000_000 * index;
+            if parts == 1 {
+                format!("{},1,2\n", time / unit)
+            } else {
                 format!("{}.{:09},1,2\n", time / parts, time % parts)
             }
         };
