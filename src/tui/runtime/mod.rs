@@ -366,7 +366,7 @@ impl World {
     }
 
     /// Finishes changes and recordings and writes unsaved work at once, because the program is about to end; but waits for
-    /// [`PATIENCE`] at most. Returns lines about what is not on the disk, because of an error or because the disk does not
+    /// 1.5 s at most. Returns lines about what is not on the disk, because of an error or because the disk does not
     /// answer.
     pub fn end(&mut self, app: &mut App) -> Vec<String> {
         let recording = self.workers.frames.stop();
@@ -385,7 +385,7 @@ impl World {
     }
 
     /// Finishes changes and writes out unsaved work and what is recorded, because the program is about to be stopped,
-    /// perhaps for ever; but waits for [`PATIENCE`] at most. All goes on where it is continued. Returns lines about what is
+    /// perhaps for ever; but waits for 1.5 s at most. All goes on where it is continued. Returns lines about what is
     /// not on the disk.
     pub fn flush(&mut self, app: &mut App) -> Vec<String> {
         let recording = self.workers.frames.recording();
