@@ -544,6 +544,21 @@ fn the_shape_is_named_by_sets_of_shapes_in_turn() {
     hides(&page, &["…", "training or"]);
 }
 
+#[test]
+fn a_name_is_short_where_there_is_little_room() {
+    let keys = ":watch<Space>examples/recording.csv<Space>--at-least<Space>10<Enter>";
+    for (columns, shape) in [
+        (80, "shape      hexagon 100 %, certain"),
+        (62, "shape      hexagon, certain"),
+        (60, "shape      hexagon 100 %"),
+    ] {
+        let mut page = sized((columns, 20), false, keys);
+        page.frames(4);
+        then(&mut page, "n", &[shape, "nearest    hexagon, "]);
+        hides(&page, &["…"]);
+    }
+}
+
 /// The error of a source names flags that can be typed behind it.
 #[test]
 fn a_source_is_named_with_the_flags_of_the_command_line() {

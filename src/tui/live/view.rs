@@ -24,7 +24,7 @@ use crate::tui::keys::keymap::Keymap;
 use crate::tui::live::heat::{HeatMap, cells, scale};
 use crate::tui::live::layout::{HeatGrid, LivePanes};
 use crate::tui::live::message::{LiveMessage, SourceState};
-use crate::tui::live::naming::Naming;
+use crate::tui::live::naming::{NamedImprint, Naming};
 use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::state::Live;
 use crate::tui::widget::theme::{Role, Theme};
@@ -298,6 +298,17 @@ impl PanelLine {
         }
     }
 
+    /// A line in several forms, longer ones first; `none` if there are none.
+    fn of_forms(label: &'static str, forms: Vec<String>, none: &str) -> Self {
+        let mut forms = forms.into_iter();
+        let text = forms.next().unwrap_or_else(|| none.to_owned());
+        Self {
+            label,
+            text,
+            shorter: forms.collect(),
+        }
+    }
+
     /// A line with a shorter form that leaves out what the whole says after its first `mark`.
     fn up_to(label: &'static str, text: String, mark: &str) -> Self {
         let shorter = text.split_once(mark).map(|(head, _)| head.to_owned());
@@ -322,10 +333,7 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> 
     }
     if let Some(naming) = live.naming() {
         let shown = live.reading().and_then(|reading| reading.imprint);
-        for (label, text) in named(naming, shown.as_ref()) {
-            let text = text.unwrap_or_else(|| theme.none().to_owned());
-            lines.push(PanelLine::new(label, text));
-        }
+        lines.extend(named(naming, shown.as_ref(), theme));
     }
     lines.push(threshold(live, keymap));
     lines.push(PanelLine::up_to("tare", tare(live), ", "));
@@ -450,7 +458,7 @@ fn regions(reading: &LiveReading) -> PanelLine {
 
 /// The name of the shape, the nearest imprint, and by which model and noise; none where nothing is active. What is said
 /// of an earlier imprint ends in dots.
-fn named(naming: &Naming, shown: Option<&Imprint>) -> [(&'static str, Option<String>); 3] {
+fn named(naming: &Naming, shown: Option<&Imprint>, theme: &Theme) -> [PanelLine; 3] {
     let name = naming.request.choice.name();
     let model = match naming.request.noise {
         Some(noise) => format!("{name}, noise {}", noise.flip()),
@@ -463,38 +471,59 @@ fn named(naming: &Naming, shown: Option<&Imprint>) -> [(&'static str, Option<Str
         _ => text,
     };
     let shape = match (&naming.failure, answer) {
-        (Some(reason), _) => Some(format!("! {reason}")),
-        (None, None) => shown.map(|_| "training or reading the model".to_owned()),
-        (None, Some(answer)) => Some(late(match answer.state {
-            AnswerState::Tied => format!("{}: tied", answer.names.join(" or ")),
-            AnswerState::Unknown => "unknown".to_owned(),
-            state => {
-                let name = answer.names.join(" or ");
-                let percent = answer.probability.map(|own| fitting(100.0 * own, 4));
-                let how_sure = match answer.unexplained {
-                    Some(_) => "perhaps none",
-                    None => state.name(),
-                };
-                format!(
-                    "{name} {} %, {how_sure}",
-                    percent.unwrap_or_else(String::new)
-                )
-            }
-        })),
+        (Some(reason), _) => vec![format!("! {reason}")],
+        (None, None) => {
+            let waiting = shown.map(|_| "training or reading the model".to_owned());
+            waiting.into_iter().collect()
+        }
+        (None, Some(answer)) => answered(answer).map(late).into(),
     };
     let nearest = answer.and_then(|answer| answer.nearest.as_ref());
-    let nearest = nearest.map(|(name, distance)| {
-        late(match distance {
-            0 => format!("{name}, the same"),
-            1 => format!("{name}, 1 taxel differs"),
-            taxels => format!("{name}, {taxels} taxels differ"),
-        })
+    let nearest = nearest.map_or_else(Vec::new, |(name, distance)| {
+        let forms = match distance {
+            0 => [format!("{name}, the same"), format!("{name}, same")],
+            1 => [
+                format!("{name}, 1 taxel differs"),
+                format!("{name}, 1 differs"),
+            ],
+            taxels => [
+                format!("{name}, {taxels} taxels differ"),
+                format!("{name}, {taxels} differ"),
+            ],
+        };
+        forms.map(late).into()
     });
     [
-        ("shape", shape),
-        ("nearest", nearest),
-        ("model", Some(model)),
+        PanelLine::of_forms("shape", shape, theme.none()),
+        PanelLine::of_forms("nearest", nearest, theme.none()),
+        PanelLine::new("model", model),
     ]
+}
+
+/// The name of the shape and how sure that is, longer forms first.
+fn answered(answer: &NamedImprint) -> [String; 3] {
+    let name = answer.names.join(" or ");
+    match answer.state {
+        AnswerState::Tied => [
+            format!("{name}: tied"),
+            format!("tied: {name}"),
+            "tied".to_owned(),
+        ],
+        AnswerState::Unknown => ["unknown"; 3].map(str::to_owned),
+        state => {
+            let percent = answer.probability.map(|own| fitting(100.0 * own, 4));
+            let percent = percent.unwrap_or_default();
+            let how_sure = match answer.unexplained {
+                Some(_) => "perhaps none",
+                None => state.name(),
+            };
+            [
+                format!("{name} {percent} %, {how_sure}"),
+                format!("{name}, {how_sure}"),
+                format!("{name} {percent} %"),
+            ]
+        }
+    }
 }
 
 /// The rule of the imprint, and where it is from.
