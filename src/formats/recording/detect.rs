@@ -64,7 +64,7 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
                 RecordingFormat::JsonLines
             }
         }
-        _ if is_parted_by_cr(text) || trimmed.starts_with(b"<") => return None,
+        _ if is_parted_by_cr(text) || trimmed.starts_with(b"<") || is_bitmap(text) => return None,
         _ if line_with(b"ASCII_DATA") || line_with(b"DATA_TYPE ") => RecordingFormat::Tekscan,
         _ if xsensor::is_export(text) => RecordingFormat::Xsensor,
         _ if has(b"SensCountX=") => RecordingFormat::Zebris,
@@ -83,6 +83,9 @@ fn refused(start: &[u8]) -> RecordingError {
         Some(kind) => RecordingError::Foreign { kind },
         None if is_parted_by_cr(start) => RecordingError::Foreign {
             kind: "text whose lines end in CR alone (save it with LF or CR LF)",
+        },
+        None if is_bitmap(start) => RecordingError::Foreign {
+            kind: "a PBM or PGM image (taxel describe reads PBM)",
         },
         None if is_column(start) => RecordingError::Shape { values: 1 },
         None => match numbers_below_text(start) {
@@ -121,6 +124,11 @@ fn numbers_below_text(text: &[u8]) -> Option<u64> {
         let before = std::mem::replace(&mut before, own);
         (before.1 && own.1).then_some(before.0)
     })
+}
+
+/// Whether it is a black-and-white or grey image of netpbm.
+fn is_bitmap(start: &[u8]) -> bool {
+    matches!(start, [b'P', b'1' | b'2' | b'4' | b'5', blank, ..] if blank.is_ascii_whitespace())
 }
 
 /// Whether a text is numbers alone, one a line.
@@ -302,6 +310,14 @@ mod tests {
             );
         }
         assert!(error_of(b"words").starts_with("not a recording"));
+        for image in [&b"P1\n2 2\n1 0\n0 1\n"[..], b"P2 2 2 9 1 2 3 4\n"] {
+            assert!(error_of(image).starts_with("a PBM or PGM image"));
+        }
+        let empty = error_of(b"{\"frame\":[]}\n");
+        assert!(
+            empty.ends_with("\"frame\" is empty, expected rows of values"),
+            "{empty}"
+        );
         assert!(error_of(b"words\n1 2\nwords\n").starts_with("not a recording"));
         let log = b"ready\r\n\r\n1 2\r\n3 1\r\n\r\n1 2\r\n3 2\r\n\r\n";
         let expected = "line 1: expected a table, which begins in line 3: delete the lines above it, or read the file \

@@ -187,6 +187,9 @@ impl FrameLine {
             self.shape = shape;
             return Ok(());
         }
+        if values == 0 {
+            return wrong("\"frame\" is empty, expected rows of values".to_owned());
+        }
         let Some((rows, columns)) = self.asked else {
             return Err(FrameLineError::Shape(values as u64));
         };
@@ -313,7 +316,7 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
             self.0.time = other_time;
         }
         if frame.is_none() {
-            return Err(A::Error::custom("no key \"frame\""));
+            return Err(A::Error::custom("no key \"frame\" with rows of values"));
         }
         Ok(())
     }
