@@ -137,6 +137,8 @@ impl Seek for FollowedFile<'_> {
         if to != SeekFrom::Start(0) {
             return Err(io::ErrorKind::Unsupported.into());
         }
+        // What is read again did not arrive just now.
+        self.growth.has_caught_up.set(false);
         self.file.rewind().map(|()| 0)
     }
 }

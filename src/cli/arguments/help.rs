@@ -328,8 +328,8 @@ Reads an imprint in any format that 'taxel describe' reads, or lines of JSON,
 each {\"imprint\":[\"..##\",...]}, {\"touches\":[[...],[...]]} for several touches
 of one shape, or {\"frame\":[[0,12],...],\"at_least\":10} for the values of a
 sensor with a threshold as for 'taxel batch'. Each line gets one line in return,
-which copies label, time, channel and the number of a frame; other keys are
-ignored. An imprint at the rim may be cut off and is never 'certain'. With
+which copies label, time and channel, and frame if it is a number; other keys
+are ignored. An imprint at the rim may be cut off and is never 'certain'. With
 --noise, even an imprint that no shape leaves gets an answer: it is compared
 with every key in every place on the matrix. With --expect, the exit status is 3
 if the answer is another shape, or is tied, rejected or unknown.

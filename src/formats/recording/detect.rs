@@ -92,8 +92,8 @@ fn refused(start: &[u8]) -> RecordingError {
             Some(line) => RecordingError::in_line(
                 1,
                 format!(
-                    "expected a table, which begins in line {line}: delete the lines above it, or read the file with \
-                     taxel watch --once"
+                    "found text, expected a table; numbers begin in line {line}: delete the lines above, or read the file \
+                     with taxel watch --once"
                 ),
             ),
             None => RecordingError::Unknown,
@@ -320,8 +320,8 @@ mod tests {
         );
         assert!(error_of(b"words\n1 2\nwords\n").starts_with("not a recording"));
         let log = b"ready\r\n\r\n1 2\r\n3 1\r\n\r\n1 2\r\n3 2\r\n\r\n";
-        let expected = "line 1: expected a table, which begins in line 3: delete the lines above it, or read the file \
-                        with taxel watch --once";
+        let expected = "line 1: found text, expected a table; numbers begin in line 3: delete the lines above, or read the \
+                        file with taxel watch --once";
         assert_eq!(error_of(log), expected);
         // A line of a growing file, up to its CR.
         assert_eq!(recognised(b"1,2\r"), Some(RecordingFormat::Csv));

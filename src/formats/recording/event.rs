@@ -217,7 +217,7 @@ pub enum RecordingNote {
         /// How many rows, and how many columns.
         side: u16,
     },
-    /// An array of two axes is taken as one frame, but is larger than frames are.
+    /// A two-dimensional array is taken as one frame, though it is larger than 64 × 64.
     Flat {
         /// How many rows.
         rows: u16,
@@ -277,7 +277,10 @@ impl fmt::Display for RecordingNote {
                  give --rows and --columns"
             ),
             Self::TimeUnit { unit } => {
-                write!(f, "times have no unit, taken as {unit} since 1970")
+                write!(
+                    f,
+                    "the times have no unit and are taken as {unit} since 1970"
+                )
             }
             Self::Garbled { frames } => {
                 let frames = counted(*frames, "frame");

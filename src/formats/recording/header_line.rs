@@ -8,8 +8,8 @@ use crate::formats::recording::lines::{TextLines, is_blank};
 use crate::formats::recording::moment;
 use crate::formats::recording::separator::{self, Separator};
 
-/// Lines that are compared with the first one.
-const COMPARED: u16 = 8;
+/// Lines that are compared with the first one, or among each other where nothing names what stands beside the cells.
+pub(super) const COMPARED: u16 = 8;
 
 /// Whether a line is passed over, wherever it stands: a comment, or the line in which spreadsheet programs name their
 /// separator, `sep=;`.

@@ -379,7 +379,8 @@ mod tests {
                 "{name} {code}"
             );
         }
-        let noted = vec!["times have no unit, taken as nanoseconds since 1970".to_owned()];
+        let noted =
+            vec!["the times have no unit and are taken as nanoseconds since 1970".to_owned()];
         assert_eq!(
             times_of("time", "<i8", since_1970),
             (both(0.001_000_001), noted)

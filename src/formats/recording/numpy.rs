@@ -101,7 +101,7 @@ impl ArrayLayout {
             RecordingError::damaged(format!("numbers of type {found:?}, expected real ones"))
         })?;
         let (frames, rows, columns) = axes_shape(&header.shape, options)?;
-        // No sensor has so many cells, so that a row may well be a frame.
+        // Few sensors are that large, so a row may well be a frame.
         let is_large = rows.max(columns) > MAX_SIDE.into();
         let is_assumed = header.shape.len() == 2 && options.shape.is_none();
         let note = (is_assumed && is_large).then_some(RecordingNote::Flat { rows, columns });

@@ -10,12 +10,12 @@
 use crate::formats::recording::text_row::{self, Field};
 
 /// The words for a cell without a value: of C, Python, R and databases, of spreadsheets and of pandas.
-const NONE: [&[u8]; 9] = [
-    b"nan", b"-nan", b"null", b"none", b"na", b"n/a", b"#n/a", b"<na>", b"-",
+const NONE: [&[u8]; 8] = [
+    b"nan", b"-nan", b"null", b"none", b"na", b"n/a", b"#n/a", b"<na>",
 ];
 
-/// Whether a field says that there is no value.
-fn is_none(field: &[u8]) -> bool {
+/// Whether a field says that there is no value. A dash does not: lines of lists begin with it.
+pub(super) fn is_none(field: &[u8]) -> bool {
     match field.first() {
         None => true,
         // Most are numbers.
@@ -26,7 +26,7 @@ fn is_none(field: &[u8]) -> bool {
 
 /// Whether a line is a comment, wherever it stands: behind `#`, behind `//`, or behind `%` and a blank. A `%` alone may
 /// belong to a name, as in `%time` of ROS, and `#N/A` is a cell.
-pub(super) fn is_comment(line: &[u8]) -> bool {
+pub(crate) fn is_comment(line: &[u8]) -> bool {
     let begins = |word: &[u8]| {
         let start = line.get(..word.len());
         start.is_some_and(|start| start.eq_ignore_ascii_case(word))

@@ -8,25 +8,23 @@
 use std::io::{BufRead, Seek};
 
 use crate::formats::recording::cell_names::{
-    FieldRole, NamedCells, cells, rest_of_second, roles, time_unit,
+    FieldRole, NamedCells, cells, rest_of_second, role, roles, time_unit,
 };
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingNote};
 use crate::formats::recording::frame_time::TimeFields;
 use crate::formats::recording::header_line::{
-    count_from_0, first_line, is_comment, is_like_next, is_mostly_numeric, is_ramp, moment_of_row,
+    COMPARED, count_from_0, first_line, is_comment, is_like_next, is_mostly_numeric, is_ramp,
+    moment_of_row,
 };
 use crate::formats::recording::lines::{TextLines, is_blank, text};
 use crate::formats::recording::moment;
-use crate::formats::recording::separator::Separator;
+use crate::formats::recording::separator::{Separator, is_none};
 use crate::formats::recording::side::side;
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::recording::unnamed_fields::unnamed_fields;
 use crate::frame::MAX_FRAME_SIDE;
 use crate::parameter::number::{counted, grouped};
-
-/// Lines that are compared to find what stands beside the cells where nothing names it.
-const COMPARED: u16 = 8;
 
 /// The most cells of a frame.
 const MOST_CELLS: usize = MAX_FRAME_SIDE as usize * MAX_FRAME_SIDE as usize;
@@ -159,7 +157,9 @@ impl TableHeader<'_> {
     fn unit(&self, field: usize) -> Option<&str> {
         let unit = self.units?.1.get(field)?;
         let inner = unit.trim_matches(['[', ']', '(', ')']).trim();
-        (!inner.is_empty()).then_some(inner)
+        // A dash stands for no unit, and so do the words for a missing value.
+        let is_none = inner == "-" || is_none(inner.as_bytes());
+        (!is_none).then_some(inner)
     }
 
     /// The unit that all of these fields have.
@@ -169,7 +169,7 @@ impl TableHeader<'_> {
         same.flatten()
     }
 
-    /// The first of these fields that is a time, or two fields of which it is a part.
+    /// The first of these fields that is a time; with its other field if the time is in two.
     fn time<'r>(
         &self,
         fields: impl Iterator<Item = (usize, &'r Option<FieldRole>)>,
@@ -203,10 +203,15 @@ fn units_below(
     while lines.advance_to_content()? && is_comment(lines.line()) {}
     let fields = separator.fields_of(lines.line(), names.len());
     let fields: Vec<String> = fields.take(names.len() + 1).map(text).collect();
-    let is_word = |field: &String| !separator.is_numeric(field.as_bytes());
-    // A dash stands for no unit.
-    let is_number = |field: &String| matches!(separator.value(field.as_bytes()), Field::Value(_));
-    let are_units = fields.iter().any(is_word) && !fields.iter().any(is_number);
+    // A timestamp or the word of a label may stand in a line of values, of which all may be missing.
+    let is_value = |field: &String| {
+        matches!(separator.value(field.as_bytes()), Field::Value(_))
+            || moment::read(field.as_bytes()).is_some()
+    };
+    let is_word = |(field, name): (&String, &&str)| {
+        !separator.is_numeric(field.as_bytes()) && role(name) != Some(FieldRole::Label)
+    };
+    let are_units = fields.iter().zip(names).any(is_word) && !fields.iter().any(is_value);
     if fields.len() != names.len() || !are_units || cells(names).is_none() {
         return Ok(None);
     }

@@ -23,10 +23,8 @@ const UNEVEN: f64 = 0.1;
 enum FieldGrowth {
     /// It stays the same.
     Constant,
-    /// It stays the same or rises.
+    /// It stays the same or rises; or it is 0, as the offset of a message of ROS.
     NotFalling,
-    /// It is 0, as the offset of a message of ROS.
-    Zero,
     /// It rises with each line.
     Rising,
     /// It rises by about the same with each line, and there are at least three.
@@ -135,7 +133,7 @@ impl UnnamedFields {
                 !matches!(growth, FieldGrowth::Constant | FieldGrowth::Counting)
             })?,
             (None, None) if lines.iter().all(|line| line.first() == Some(&0.0)) => {
-                FieldGrowth::Zero
+                FieldGrowth::NotFalling
             }
             (None, None) => return None,
         };
@@ -222,8 +220,7 @@ fn most_evident(
 fn unclear(number: u64, cells: usize, beside: usize) -> RecordingError {
     let beside = counted(beside as u64, "number");
     let message = format!(
-        "{beside} more than the {cells} cells, before or behind them: name the columns in a line above, such as \
-         frame,time,r0c0"
+        "found {beside} besides the {cells} cells, and cannot tell which: add a header line, such as frame,time,r0c0"
     );
     RecordingError::in_line(number, message)
 }

@@ -110,8 +110,8 @@ pub struct StreamCounts {
     pub dropped: u64,
     /// What the last of these looked like, up to 40 characters.
     pub sample: Option<String>,
-    /// What is wrong with the last line that belongs to none, where its format can tell: JSON lines, and numbers if rows and
-    /// columns were named.
+    /// Why the last dropped line is not a frame, where the format can tell: JSON lines, and numbers if rows and columns were
+    /// named.
     pub reason: Option<String>,
     /// What is missing to decode the stream at all: how many values a frame seems to have, without rows and columns.
     pub unshaped: Option<u64>,

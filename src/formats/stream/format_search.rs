@@ -97,8 +97,7 @@ impl FormatSearch {
     /// The format once the line is known that these bytes end with.
     fn after_line(&mut self, bytes: &[u8]) -> Option<StreamFormat> {
         let line = bytes[self.line..].trim_ascii();
-        let is_text = self.text_from <= self.line;
-        let form = form_of_line(line, self.after_first).filter(|_| is_text);
+        let form = form_of_line(line, self.after_first).filter(|_| self.is_text(line));
         (self.line, self.after_first) = (bytes.len(), true);
         if self.text_from == 0 || form.is_some() && form == self.shown {
             return form;
@@ -107,6 +106,13 @@ impl FormatSearch {
             self.shown = form;
         }
         None
+    }
+
+    /// Whether the last line is text: in ASCII, or in UTF-8, as names of channels may be.
+    fn is_text(&self, line: &[u8]) -> bool {
+        let is_control = |sign: char| sign.is_control() && !matches!(sign, '\t' | '\x0c');
+        self.text_from <= self.line
+            || str::from_utf8(line).is_ok_and(|text| !text.contains(is_control))
     }
 
     /// The format of bytes that are not all text, of which the last ones are new.
@@ -142,8 +148,8 @@ impl FormatSearch {
 
     /// The format of a line that is not ended.
     fn of_open_line(&self, bytes: &[u8]) -> Option<StreamFormat> {
-        let line = &bytes[self.line..];
-        form_of_line(line, self.after_first).filter(|_| self.text_from <= self.line)
+        let line = bytes[self.line..].trim_ascii();
+        form_of_line(line, self.after_first).filter(|_| self.is_text(line))
     }
 
     /// The format of an input that has ended.
@@ -226,6 +232,20 @@ mod tests {
     }
 
     #[test]
+    fn lines_in_utf_8_are_text() {
+        let line = "{\"channel\":\"Größe\",\"frame\":[[1,2]]}\n".repeat(2);
+        let mut search = FormatSearch::default();
+        let found = search.format(line.as_bytes(), None, false);
+        assert_eq!(found, Some(StreamFormat::JsonLines));
+        // The rest of a message that began before.
+        let echo = b"- 3\n- 4\n- 5\n---\ndata:\n- 1\n";
+        assert_eq!(
+            FormatSearch::default().format(echo, None, false),
+            Some(StreamFormat::Ros2)
+        );
+    }
+
+    #[test]
     fn bytes_have_a_format_once_their_frames_are_found() {
         let shape = Some((2, 2));
         let flexitac = b"\xaa\x55\x01\x02\x03\x04".repeat(9);
@@ -264,13 +284,14 @@ mod tests {
     #[test]
     fn the_form_does_not_depend_on_the_pieces() {
         let markers = [&b"\x01\x02\xaa\x55"[..], &[9; 6], b"\xaa\x55", &[9; 9]].concat();
-        let streams: [&[u8]; 9] = [
+        let streams: [&[u8]; 10] = [
             b"",
             b"\xef\xbb\xbf1 2\n3 4\n",
             b"\xef\xbb",
             b"version 1\n\n1 2\n",
             b"1 2\n\n\n{\"t\":1}\n",
             b"7]\ndata: 1\n",
+            b"1\n- 4\n- 5\n---\ndata:\n",
             b"1 2\n3 \xff4\n5 6\n",
             b"ab\xaa\x55c",
             &markers,

@@ -17,6 +17,7 @@
 //! joined. Where frames are known to be a line each, each line that is none is a frame that is lost.
 
 use crate::formats::recording::moment;
+use crate::formats::recording::separator::is_comment;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
 use crate::formats::stream::size::FrameSize;
@@ -120,7 +121,7 @@ impl LinesDecoder {
             self.boundary(counts, sink);
             return;
         }
-        if trimmed.starts_with(b"#") {
+        if is_comment(trimmed) {
             return;
         }
         let (moment, line) = match moment::leading(line) {

@@ -6,9 +6,10 @@ use crate::formats::recording::text_row::Field;
 /// More digits than these are left to the general reader.
 const FAST_DIGITS: usize = 9;
 
-/// Adds the numbers of a line, parted by blanks, or by semicolons, commas or tabs with or without blanks: the first of these
-/// that the line has, as in a table. With semicolons, a comma is the decimal sign. An empty field and words such as `nan` stand for no cell, as in a table; a separator at the end of the line
-/// counts for nothing, nor do tabs at both ends. None if there is anything else, or more than `most`.
+/// Adds the numbers of a line. They are parted as in a table: by the first of semicolons, commas and tabs that the line has,
+/// with or without blanks, otherwise by blanks. With semicolons, a comma is the decimal sign. An empty field and words such as
+/// `nan` stand for no cell; a separator at the end of the line counts for nothing, nor do tabs at both ends. None if there is
+/// anything else, or more than `most`.
 pub(super) fn read(line: &[u8], values: &mut Vec<f64>, most: usize) -> Option<()> {
     let (mark, line) = if line.contains(&b';') {
         (b';', line)
@@ -97,13 +98,15 @@ mod tests {
             ("1\t\t2", "[1.0, NaN, 2.0]"),
             ("\t1 \t 2  3\t\t\r", "[1.0, 2.0, 3.0]"),
             ("1,\t\t2", "[1.0, 2.0]"),
-            ("1 N/A - -nan", "[1.0, NaN, NaN, NaN]"),
+            ("#N/A 1 N/A -nan", "[NaN, 1.0, NaN, NaN]"),
             (" , ,, ", "[]"),
         ] {
             let mut values = Vec::new();
             assert_eq!(read(line.as_bytes(), &mut values, 5), Some(()), "{line}");
             assert_eq!(format!("{values:?}"), expected, "{line}");
         }
+        // The item of a list.
+        assert_eq!(read(b"- 12", &mut Vec::new(), 5), None);
         let mut values = vec![7.0];
         assert_eq!(read(b"1,,2", &mut values, 2), None);
     }

@@ -136,11 +136,13 @@ fn numbers_beside_the_cells_are_told_by_how_they_grow() {
     let error = read("0,0,5,6\n1,4,6,8\n")
         .error
         .map(|error| error.to_string());
-    let unclear =
-        "line 1: 2 numbers more than the 2 cells, before or behind them: name the columns";
+    let unclear = "line 1: found 2 numbers besides the 2 cells, and cannot tell which";
     assert!(error.is_some_and(|error| error.starts_with(unclear)));
     for (text, expected) in [
-        ("# a\n\n# b\n0,0,5,6\n1,4,6,8\n", "line 4: 2 numbers more"),
+        (
+            "# a\n\n# b\n0,0,5,6\n1,4,6,8\n",
+            "line 4: found 2 numbers besides",
+        ),
         ("# a\n1,2,3,4,5\n", "line 2: found 5 values, expected 2"),
     ] {
         let error = read(text).error.map(|error| error.to_string());

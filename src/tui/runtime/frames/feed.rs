@@ -263,7 +263,7 @@ impl FrameFeed {
                 pending.batch.status.state = pending.back_after(gap);
             }),
             AcquireEvent::Anew(how) => self.change(|pending| {
-                // It stays, as frames of the new file may follow at once.
+                // A note rather than a state: the next frame would replace a state at once.
                 pending.batch.status.note = Some(format!("the file {how}"));
             }),
             AcquireEvent::Ended(counts) => self.change(|pending| {
