@@ -511,17 +511,19 @@ fn answered(answer: &NamedImprint) -> [String; 3] {
         ],
         AnswerState::Unknown => ["unknown"; 3].map(str::to_owned),
         state => {
-            let percent = answer.probability.map(|own| fitting(100.0 * own, 4));
-            let percent = percent.unwrap_or_default();
             let how_sure = match answer.unexplained {
                 Some(_) => "perhaps none",
                 None => state.name(),
             };
-            [
-                format!("{name} {percent} %, {how_sure}"),
-                format!("{name}, {how_sure}"),
-                format!("{name} {percent} %"),
-            ]
+            let short = format!("{name}, {how_sure}");
+            match answer.probability.map(|own| fitting(100.0 * own, 4)) {
+                Some(percent) => [
+                    format!("{name} {percent} %, {how_sure}"),
+                    short,
+                    format!("{name} {percent} %"),
+                ],
+                None => [short.clone(), short, name],
+            }
         }
     }
 }
