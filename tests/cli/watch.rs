@@ -271,6 +271,12 @@ fn only_a_serial_line_has_a_speed() {
     let run = taxel("watch - --baud 9600", stream(0..3));
     let message = "--baud has no effect on standard input: it is for serial lines";
     super::refused(&run, 2, message);
+    let run = taxel("watch no/sensor --baud 9600", "");
+    assert!(
+        run.stderr.contains("no/sensor: cannot open it"),
+        "{}",
+        run.stderr
+    );
 }
 
 #[test]

@@ -158,7 +158,9 @@ pub(crate) fn watch(
 /// does not have.
 fn check(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
     let usual = AcquireOptions::default();
-    if asked.baud_named && !matches!(source, FrameSource::Serial(_)) {
+    // The name of a serial line that is not plugged in may be any.
+    let is_missing = matches!(source, FrameSource::File(path) if !path.exists());
+    if asked.baud_named && !is_missing && !matches!(source, FrameSource::Serial(_)) {
         let (flag, reason) = (
             "baud",
             format!("on {}: it is for serial lines", source.name()),
