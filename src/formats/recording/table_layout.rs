@@ -254,7 +254,11 @@ fn of_numbers(
             (shape, LineLayout::Row { parted })
         }
         (Some(shape), _) => {
-            let found = FrameFields::unnamed(shape, number, &compared)?;
+            // Numbers before a timestamp are no cells.
+            let moment = (0..fields.len()).find(|&field| moment::read(fields[field]).is_some());
+            let before = |&&field: &&usize| moment.is_some_and(|moment| field < moment);
+            let before = numeric.iter().filter(before).count();
+            let found = FrameFields::unnamed(shape, number, (&compared, before))?;
             let found = found.among(&numeric, &fields, number)?;
             (
                 shape,
@@ -331,17 +335,18 @@ impl LineLayout {
 }
 
 impl FrameFields {
-    /// The fields of lines of numbers without names, the first of them in line `number`.
+    /// The fields of lines of numbers without names, the first of them in line `number`. The first `before` numbers of a line
+    /// are no cells if other numbers follow.
     ///
     /// # Errors
     /// If the lines do not tell which fields are cells.
     fn unnamed(
         (rows, columns): (u16, u16),
         number: u64,
-        lines: &[Vec<f64>],
+        (lines, before): (&[Vec<f64>], usize),
     ) -> Result<Self, RecordingError> {
         let cells = usize::from(rows) * usize::from(columns);
-        let found = unnamed_fields(cells, number, lines)?;
+        let found = unnamed_fields((cells, before), number, lines)?;
         Ok(Self {
             count: lines[0].len(),
             header: None,
@@ -363,6 +368,8 @@ impl FrameFields {
         // A column of that name may hold anything, such as a date without a clock.
         if !self.time.is_some_and(|time| is_time(time.field)) {
             let moment = (0..fields.len()).find(is_moment);
+            // An index of timestamps, as pandas writes it without a name, is no label.
+            self.label = self.label.filter(|&label| moment != Some(label));
             let moment = moment.map(|field| TimeFields::new(field, None));
             self.time = moment.or(self.time);
         }

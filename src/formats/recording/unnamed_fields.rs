@@ -18,8 +18,8 @@ use crate::parameter::number::counted;
 /// Steps of a clock differ from their mean by no more than this part of it.
 const UNEVEN: f64 = 0.1;
 
-/// How a field grows from line to line; what tells more is greater.
-#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+/// How a field grows from line to line.
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum FieldGrowth {
     /// It stays the same.
     Constant,
@@ -34,6 +34,15 @@ enum FieldGrowth {
 }
 
 impl FieldGrowth {
+    /// How much it says: cells may happen to rise for a few lines, but seldom evenly.
+    fn strength(self) -> u8 {
+        match self {
+            Self::Constant => 0,
+            Self::NotFalling | Self::Rising => 1,
+            Self::Steady | Self::Counting => 2,
+        }
+    }
+
     /// That of a field; None if it falls or is no number somewhere. A single line has constant fields only.
     fn of(lines: &[Vec<f64>], field: usize) -> Option<Self> {
         let value = |line: &Vec<f64>| line.get(field).copied().unwrap_or(f64::NAN);
@@ -65,13 +74,18 @@ impl FieldGrowth {
     }
 }
 
+/// A number that no cell reaches, but a clock does that counts from 1970.
+const CLOCK: f64 = 1e9;
+
 /// What speaks for such fields; the greater evidence decides.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 struct FieldEvidence {
+    /// Whether none of the cells is as large as a clock.
+    has_small_cells: bool,
     /// Whether the time has decimals and no cell has.
     is_only_decimal: bool,
-    /// How the time grows, or the number where there is no time.
-    growth: FieldGrowth,
+    /// How much the growth of the time says, or that of the number where there is no time.
+    strength: u8,
 }
 
 /// Where cells, number and time of a frame are, or may be.
@@ -123,10 +137,6 @@ impl UnnamedFields {
         };
         let growth = match (self.label, self.time) {
             (Some(_), None) => FieldGrowth::Counting,
-            // What counts up by 1 beside the number is as even as other clocks, and no more.
-            (Some(_), Some(time)) if growth_of(time.field)? == FieldGrowth::Counting => {
-                FieldGrowth::Steady
-            }
             (Some(_), Some(time)) => growth_of(time.field)?,
             // A time that does not change is none, unless there is a number beside it. What counts up by 1 is a number.
             (None, Some(time)) => growth_of(time.field).filter(|growth| {
@@ -139,20 +149,26 @@ impl UnnamedFields {
         };
         let is_decimal = lines.len() > 1 && self.time.is_some_and(|time| has_decimals(time.field));
         let cells = self.start..self.start + cells;
+        let is_large = |value: &f64| value.abs() >= CLOCK;
+        let has_large = |line: &Vec<f64>| {
+            let own = line.get(cells.clone());
+            own.is_some_and(|own| own.iter().any(is_large))
+        };
         Some(FieldEvidence {
-            is_only_decimal: is_decimal && !{ cells }.any(has_decimals),
-            growth,
+            has_small_cells: !lines.iter().any(has_large),
+            is_only_decimal: is_decimal && !cells.clone().any(has_decimals),
+            strength: growth.strength(),
         })
     }
 }
 
-/// Where the cells, the number and the time are in lines of so many cells without names. The first of them is line `number`
-/// of the file.
+/// Where the cells, the number and the time are in lines of so many cells without names, of which the first `before` numbers
+/// are none. The first of these is line `number` of the file.
 ///
 /// # Errors
 /// If the line has fewer fields than a frame has cells, or if other fields are not cells or may be.
 pub(super) fn unnamed_fields(
-    cells: usize,
+    (cells, before): (usize, usize),
     number: u64,
     lines: &[Vec<f64>],
 ) -> Result<UnnamedFields, RecordingError> {
@@ -164,7 +180,9 @@ pub(super) fn unnamed_fields(
             time: None,
         }),
         Some(beside @ (1 | 2)) => {
-            most_evident(lines, cells, beside).map_err(|()| unclear(number, cells, beside))?
+            let mut all = UnnamedFields::all(cells, beside);
+            all.retain(|own| own.start >= before.min(beside));
+            most_evident(&all, lines, cells).map_err(|()| unclear(number, cells, beside))?
         }
         _ => None,
     };
@@ -177,12 +195,12 @@ pub(super) fn unnamed_fields(
 /// # Errors
 /// If other fields may be the cells by the same evidence.
 fn most_evident(
+    all: &[UnnamedFields],
     lines: &[Vec<f64>],
     cells: usize,
-    beside: usize,
 ) -> Result<Option<UnnamedFields>, ()> {
-    let all = UnnamedFields::all(cells, beside);
-    if lines.len() == 1 && beside == 1 {
+    let beside = lines[0].len() - cells;
+    if lines.len() == 1 && beside == 1 && all.iter().any(|own| own.start == 0) {
         return Err(());
     }
     let fewest = match beside {

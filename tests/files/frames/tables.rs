@@ -123,6 +123,27 @@ fn numbers_beside_the_cells_are_told_by_how_they_grow() {
             vec![timed(0.0), timed(0.05), timed(0.11)],
             vec![0.0, 0.0, 0.0],
         ),
+        // A clock that counts from 1970 is no cell, however evenly the last cell rises.
+        (
+            "1714564800000,10,20,30,0\n1714564800050,11,19,30,1\n1714564800092,10,21,29,2\n",
+            vec![timed(0.0), timed(0.05), timed(0.092)],
+            vec![10.0, 11.0, 10.0],
+        ),
+        (
+            "0,1714564800000,0,0,0,0\n1,1714564800050,3,9,8,2\n2,1714564800092,4,18,16,4\n",
+            vec![
+                with(Some(0), 0.0),
+                with(Some(1), 0.05),
+                with(Some(2), 0.092),
+            ],
+            vec![0.0, 3.0, 4.0],
+        ),
+        // A number before a timestamp is no cell.
+        (
+            "0,12:00:00.00,1,2,3,4\n1,12:00:00.05,2,3,4,5\n2,12:00:00.10,3,4,5,6\n",
+            vec![with(Some(0), 0.0), with(Some(1), 0.05), with(Some(2), 0.1)],
+            vec![1.0, 2.0, 3.0],
+        ),
         // The number or the time before the cells, while the last cell rises.
         (
             "0,1,2,3,4\n1,5,6,7,8\n2,5,6,7,9\n",
@@ -159,6 +180,7 @@ fn numbers_beside_the_cells_are_told_by_how_they_grow() {
     // Nothing tells which of both it is.
     for text in [
         "0,1,2,9,0\n0,1,2,9,3\n0,1,2,9,3\n",
+        "0,10,20,30,0\n50,11,19,30,1\n100,10,21,29,2\n150,12,21,29,3\n",
         "0,1,2,3,4\n",
         "10,1,2,3,4\n12,5,6,7,8\n",
         "10,1,2,3,4\n12,5,6,7,8\n14,5,6,7,12\n",
@@ -306,6 +328,13 @@ fn comments_and_units_are_no_frames() {
         let found = recorded(text.as_bytes(), None);
         assert_eq!(found.frames.len(), 2, "{text}");
         assert_eq!(found.channels[0].unit, None);
+    }
+    // The index of pandas may have the times.
+    for text in [
+        ",r0c0,r0c1\n2024-05-01 12:00:00.000,1,2\n2024-05-01 12:00:00.050,5,6\n",
+        ",r0c0,r0c1\n0 days 00:00:00,1,2\n0 days 00:00:00.050000,5,6\n",
+    ] {
+        assert_eq!(frames(text, None)[1], (None, Some(0.05), vec![5.0, 6.0]));
     }
     // Words above words are not a table.
     assert!(recorded(b"a,b\nc,d\n1,2\n", None).error.is_some());
