@@ -3,6 +3,8 @@
 //! Nanoseconds since 1970 have more digits than a float, so numbers are subtracted as they are written: in whole
 //! picoseconds. A number with an exponent or of more than 20 digits is taken as the nearest float.
 
+use std::ops::Range;
+
 use crate::formats::recording::moment::{self, Midnights};
 use crate::formats::recording::separator::Separator;
 use crate::formats::recording::text_row::Field;
@@ -53,15 +55,14 @@ impl TimeUnit {
         }
     }
 
-    /// That of a time without a unit. Seconds since 1970 have 10 digits; more of them are a smaller unit since 1970. Times
-    /// since anything else tell nothing, and are taken as seconds.
+    /// That of a time without a unit: milliseconds or less if that makes it a date between 2000 and 2100, else seconds. The
+    /// clock of a machine may count in any unit from its start; nothing tells it.
     pub(crate) fn by_size(number: f64) -> Self {
-        match number.abs() {
-            ..1e11 => Self::Seconds,
-            ..1e14 => Self::Milliseconds,
-            ..1e17 => Self::Microseconds,
-            _ => Self::Nanoseconds,
-        }
+        const DATES: Range<f64> = 946_684_800.0..4_102_444_800.0;
+        let smaller = [Self::Milliseconds, Self::Microseconds, Self::Nanoseconds];
+        let mut dated = smaller.into_iter();
+        let dated = dated.find(|unit| DATES.contains(&unit.seconds(number)));
+        dated.unwrap_or(Self::Seconds)
     }
 }
 
@@ -237,6 +238,25 @@ impl TableClock {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_a_date_of_our_time_has_a_smaller_unit_than_seconds() {
+        for (number, expected) in [
+            (1_714_564_800.0, TimeUnit::Seconds),
+            (1_714_564_800_123.0, TimeUnit::Milliseconds),
+            (1_714_564_800_123_456.0, TimeUnit::Microseconds),
+            (1_714_564_800_123_456_789.0, TimeUnit::Nanoseconds),
+            // Up for five days: in nanoseconds and in microseconds.
+            (4.3e14, TimeUnit::Seconds),
+            (4.3e11, TimeUnit::Seconds),
+            (5e12, TimeUnit::Seconds),
+            (5e18, TimeUnit::Seconds),
+            (-1_714_564_800_123.0, TimeUnit::Seconds),
+            (f64::INFINITY, TimeUnit::Seconds),
+        ] {
+            assert_eq!(TimeUnit::by_size(number), expected, "{number}");
+        }
+    }
 
     #[test]
     fn times_are_subtracted_as_they_are_written() {
