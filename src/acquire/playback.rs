@@ -176,13 +176,22 @@ struct Player<'a, 'b> {
     consumer: RefCell<&'a mut Consumer<'b>>,
 }
 
+/// A channel that was reported.
+struct KnownChannel {
+    name: Option<String>,
+    /// The number of its first frame in this round.
+    first: u64,
+    /// The number of its next frame.
+    next: u64,
+}
+
 /// How a recording is read from its beginning once more.
 #[derive(Default)]
 struct Round<'a> {
-    /// Whether its channels were reported before.
-    is_again: bool,
-    /// The number of its first frame.
-    first: u64,
+    /// The channels of all rounds, in the order in which they were reported.
+    channels: Vec<KnownChannel>,
+    /// The place among them of each channel of this round: a file that takes the place of another may begin with another one.
+    order: Vec<usize>,
     /// The times of its frames.
     times: ContinuedTime,
     /// Whether the file grows, if it is followed.
@@ -192,6 +201,45 @@ struct Round<'a> {
 }
 
 impl Round<'_> {
+    /// Adds the next channel of this round. Returns whether no round had it before.
+    fn add(&mut self, info: &ChannelInfo) -> bool {
+        let mut known = self.channels.iter().enumerate();
+        // Several may have the same name, or none.
+        let known = known
+            .position(|(index, channel)| channel.name == info.name && !self.order.contains(&index));
+        self.order.push(known.unwrap_or(self.channels.len()));
+        if known.is_none() {
+            self.channels.push(KnownChannel {
+                name: info.name.clone(),
+                first: 0,
+                next: 0,
+            });
+        }
+        known.is_none()
+    }
+
+    /// The channel and the number, over all rounds, of a frame of this one.
+    fn place(&mut self, frame: &Frame) -> (usize, u64) {
+        let own = (frame.channel, frame.number);
+        let Some(&index) = self.order.get(frame.channel) else {
+            return own;
+        };
+        let Some(channel) = self.channels.get_mut(index) else {
+            return own;
+        };
+        let number = channel.first + frame.number;
+        channel.next = number + 1;
+        (index, number)
+    }
+
+    /// Begins the next round, whose frames are counted on if it has another file.
+    fn begin(&mut self, counts_on: bool) {
+        self.order.clear();
+        for channel in &mut self.channels {
+            channel.first = if counts_on { channel.next } else { 0 };
+        }
+    }
+
     /// The time of a frame, given its own: that of its arrival if it has none and was not in the file before.
     fn time_of(&mut self, own: Option<f64>) -> Option<f64> {
         let now = Instant::now();
@@ -220,7 +268,7 @@ impl Player<'_, '_> {
             {
                 return Ok(());
             }
-            round.is_again = true;
+            round.begin(false);
         }
     }
 
@@ -235,7 +283,7 @@ impl Player<'_, '_> {
             let waiting = &mut || self.tick();
             let mut followed =
                 FollowedFile::new(file, &growth, waiting).map_err(AcquireError::opening)?;
-            let (pace, read) = self.round(format, &mut followed, &mut round);
+            let (_, read) = self.round(format, &mut followed, &mut round);
             let end;
             (file, end) = followed.into_parts();
             let how = match end {
@@ -247,7 +295,7 @@ impl Player<'_, '_> {
             if (self.consumer.borrow_mut())(AcquireEvent::Anew(how)).is_break() {
                 return Ok(());
             }
-            (round.is_again, round.first) = (true, round.first + u64::from(pace.frames));
+            round.begin(true);
             round.times.rejoin();
             // Its beginning may not be written yet.
             format = loop {
@@ -289,21 +337,21 @@ impl Player<'_, '_> {
                 RecordingEvent::Channel(info) => {
                     let info = info.completed(self.description.as_ref());
                     pace.add(&info);
-                    if round.is_again {
-                        ControlFlow::Continue(())
-                    } else {
+                    if round.add(&info) {
                         consumer(AcquireEvent::Channel(&info))
+                    } else {
+                        ControlFlow::Continue(())
                     }
                 }
                 RecordingEvent::Frame(frame) if pace.has_no_shape(frame) => ControlFlow::Break(()),
                 RecordingEvent::Frame(mut frame) => {
-                    let own = frame.time;
                     let given_up =
                         !self.options.once && pace.wait(frame, self.stop, consumer).is_break();
-                    let time = round.time_of(own);
-                    if round.first > 0 {
+                    let time = round.time_of(frame.time);
+                    let (channel, number) = round.place(frame);
+                    if (channel, number) != (frame.channel, frame.number) {
                         renumbered.copy_from(frame);
-                        renumbered.number += round.first;
+                        (renumbered.channel, renumbered.number) = (channel, number);
                         frame = &renumbered;
                     }
                     if given_up || self.stop.load(Ordering::Relaxed) {
@@ -448,6 +496,52 @@ mod tests {
         });
         assert!(result.is_ok());
         times
+    }
+
+    #[test]
+    fn the_channels_of_a_file_that_is_rewritten_keep_their_names_and_count_on() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("r.jsonl");
+        let lines = |names: &[&str]| -> String {
+            let line = |name| format!("{{\"channel\":\"{name}\",\"frame\":[[1,2]]}}\n");
+            names.iter().map(line).collect()
+        };
+        std::fs::write(&path, lines(&["left", "right", "left"])).expect("written");
+        let options = AcquireOptions {
+            channel: Some("left".to_owned()),
+            ..AcquireOptions::default()
+        };
+        let (mut channels, mut frames) = (Vec::new(), Vec::new());
+        let result = run(&path, &options, &AtomicBool::new(false), &mut |event| {
+            match event {
+                AcquireEvent::Channel(info) => channels.extend(info.name.clone()),
+                AcquireEvent::Frame { frame, .. } => {
+                    frames.push((channels[frame.channel].clone(), frame.number));
+                    if frames.len() == 3 {
+                        std::fs::write(&path, lines(&["right", "top", "left"])).expect("written");
+                    }
+                }
+                _ => {}
+            }
+            if frames.len() == 6 {
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        });
+        assert!(result.is_ok());
+        assert_eq!(channels, ["left", "right", "top"]);
+        let frames = frames.iter().map(|(name, number)| (name.as_str(), *number));
+        assert_eq!(
+            frames.collect::<Vec<_>>(),
+            [
+                ("left", 0),
+                ("right", 0),
+                ("left", 1),
+                ("right", 1),
+                ("top", 0),
+                ("left", 2)
+            ]
+        );
     }
 
     #[test]
