@@ -296,15 +296,24 @@ fn unit(word: &str) -> Option<TimeUnit> {
     found.map(|(unit, _)| *unit)
 }
 
+/// The first word of a name behind the clock: of `host_time` or `header.stamp`, what comes behind that.
+fn word_behind_clock(words: &[String]) -> Option<&String> {
+    let mut behind = words.iter();
+    behind
+        .find(|word| !CLOCKS.contains(&word.as_str()))
+        .or(words.first())
+}
+
+/// Whether a name says that it is a time, and not only that it has the unit of one: `t_ms`, but not `latency_ms`.
+pub(crate) fn is_named_time(name: &str) -> bool {
+    word_behind_clock(&words(name)).is_some_and(|word| TIMES.contains(&word.as_str()))
+}
+
 /// What a field's name says of the frame, if it is a usual one.
 pub(crate) fn role(name: &str) -> Option<FieldRole> {
     let words = words(name);
     let first = words.first()?;
-    // Of `host_time` or `header.stamp`, what comes behind the clock.
-    let time = words
-        .iter()
-        .find(|word| !CLOCKS.contains(&word.as_str()))
-        .unwrap_or(first);
+    let time = word_behind_clock(&words)?;
     // A letter with a number is one of several like it: `S00` is not a second.
     let has_number = name.contains(|character: char| character.is_ascii_digit());
     let is_one_of_several = |word: &str| has_number && word.chars().count() == 1;

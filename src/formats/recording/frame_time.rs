@@ -90,14 +90,14 @@ impl TimeFields {
 
 /// A time, as exactly as it is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Time {
+pub(super) enum Time {
     Picoseconds(i128),
     Seconds(f64),
 }
 
 impl Time {
     /// That of a field which is this number.
-    fn read(field: &[u8], number: f64, unit: TimeUnit) -> Self {
+    pub(super) fn read(field: &[u8], number: f64, unit: TimeUnit) -> Self {
         match picoseconds(field, unit) {
             Some(exact) => Self::Picoseconds(exact),
             None => Self::Seconds(unit.seconds(number)),
@@ -112,7 +112,7 @@ impl Time {
         }
     }
 
-    fn plus(self, other: Self) -> Self {
+    pub(super) fn plus(self, other: Self) -> Self {
         match (self, other) {
             (Self::Picoseconds(one), Self::Picoseconds(other)) => Self::Picoseconds(one + other),
             _ => Self::Seconds(self.seconds() + other.seconds()),
@@ -120,7 +120,7 @@ impl Time {
     }
 
     /// The seconds from `start` to this time, to the nanosecond.
-    fn since(self, start: Self) -> f64 {
+    pub(super) fn since(self, start: Self) -> f64 {
         let seconds = match (start, self) {
             (Self::Picoseconds(start), Self::Picoseconds(own)) => {
                 Self::Picoseconds(own - start).seconds()

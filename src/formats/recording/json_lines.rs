@@ -5,7 +5,7 @@
 //! {"t": 0.05, "frame": [[5, 6], [7, 8]], "channel": "left"}
 //! ```
 //! Frames are lists of rows, or lists of cells where rows and columns are known beforehand. `t` or `time` is in seconds
-//! and counts from the first one; without either, so does a key that is the name of a time, such as `timestamp` or `t_ms`.
+//! and counts from the first one; without either, another key may give the time, see [`json_time`](super::json_time).
 //! `label` is a whole number; `channel` is the name, or the number, of one of several sensors; other keys are passed over. All
 //! frames of a channel have one size.
 //! Refused, with line and column: rows of different lengths, lists within cells, infinite values, two frames, times
@@ -21,12 +21,12 @@ use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Seq
 
 use crate::formats::framed::too_large;
 use crate::formats::json;
-use crate::formats::recording::cell_names::{FieldRole, role};
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
-use crate::formats::recording::frame_time::TimeUnit;
+use crate::formats::recording::event::{
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
+};
+use crate::formats::recording::json_time::{JsonClock, TimeCandidates};
 use crate::formats::recording::lines::TextLines;
-use crate::formats::recording::moment;
 use crate::formats::recording::side::{changed, shape};
 use crate::formats::seconds::since;
 use crate::frame::{Frame, LARGEST_VALUE};
@@ -46,18 +46,14 @@ pub(super) fn read(
 ) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(input);
     let mut line = FrameLine::new(options.shape);
-    let mut start = None;
+    let (mut clock, mut start) = (JsonClock::default(), None);
     // The name of each channel, the size of its frames, and how many there are.
     let mut channels: Vec<(Option<String>, (u16, u16), u64)> = Vec::new();
     let mut frame = Frame::new(1, 1);
     while lines.advance_to_content()? {
         let number = lines.number();
-        line.read(lines.line()).map_err(|error| match error {
-            FrameLineError::Json(column, message) => {
-                RecordingError::in_field(number, column, message)
-            }
-            FrameLineError::Shape(values) => RecordingError::Shape { values },
-        })?;
+        line.read(lines.line(), &mut clock)
+            .map_err(|error| error.in_line(number))?;
         let known = channels.iter().position(|(name, ..)| *name == line.channel);
         if known.is_none() {
             if channels.len() == MOST_CHANNELS {
@@ -84,6 +80,12 @@ pub(super) fn read(
             .time
             .map(|time| since(*start.get_or_insert(time), time));
         frame.label = line.label;
+        if let Some(unit) = clock.take_assumed() {
+            let note = RecordingNote::TimeUnit { unit: unit.name() };
+            if sink(RecordingEvent::Note(&note)).is_break() {
+                break;
+            }
+        }
         if sink(RecordingEvent::Frame(&frame)).is_break() {
             break;
         }
@@ -100,7 +102,7 @@ pub(crate) struct FrameLine {
     pub(crate) shape: (u16, u16),
     /// Its cells, row by row; NaN for null.
     pub(crate) values: Vec<f64>,
-    /// In seconds, as it is written.
+    /// In seconds: as `t` or `time` is written, or since the first time under another key.
     pub(crate) time: Option<f64>,
     /// What the recording calls the frame.
     pub(crate) label: Option<i64>,
@@ -118,6 +120,14 @@ pub(crate) enum FrameLineError {
 }
 
 impl FrameLineError {
+    /// What is wrong with that line of a recording.
+    fn in_line(self, number: u64) -> RecordingError {
+        match self {
+            Self::Json(column, message) => RecordingError::in_field(number, column, message),
+            Self::Shape(values) => RecordingError::Shape { values },
+        }
+    }
+
     /// How many values a frame seems to have, if only its rows and columns are missing.
     pub(crate) fn unshaped(&self) -> Option<u64> {
         match self {
@@ -157,14 +167,23 @@ impl FrameLine {
         }
     }
 
-    /// Reads a line.
-    pub(crate) fn read(&mut self, line: &[u8]) -> Result<(), FrameLineError> {
+    /// Reads a line. `clock` reads the times of all lines.
+    pub(crate) fn read(
+        &mut self,
+        line: &[u8],
+        clock: &mut JsonClock,
+    ) -> Result<(), FrameLineError> {
         self.values.clear();
         (self.time, self.label, self.channel) = (None, None, None);
         let mut rows = 0;
         let without_nan = WithoutNan::new(line);
         let mut content = serde_json::Deserializer::from_slice(&without_nan.line);
-        let read = ObjectSeed(self, &mut rows)
+        let object = ObjectSeed {
+            line: self,
+            rows: &mut rows,
+            clock,
+        };
+        let read = object
             .deserialize(&mut content)
             .and_then(|()| content.end());
         read.map_err(|error| {
@@ -264,8 +283,13 @@ fn complaint(line: &[u8], column: usize, error: &serde_json::Error) -> String {
     }
 }
 
-/// The object of a line; the number of rows goes into the second field, 0 for cells without rows.
-struct ObjectSeed<'a>(&'a mut FrameLine, &'a mut usize);
+/// The object of a line.
+struct ObjectSeed<'a> {
+    line: &'a mut FrameLine,
+    /// Is set to the number of rows; stays 0 for cells without rows.
+    rows: &'a mut usize,
+    clock: &'a mut JsonClock,
+}
 
 impl<'de> DeserializeSeed<'de> for ObjectSeed<'_> {
     type Value = ();
@@ -284,36 +308,35 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
         let (mut frame, mut time, mut label, mut channel) = (None, None, None, None);
-        let mut other_time = None;
+        let mut other_times = TimeCandidates::default();
+        let Self { line, rows, clock } = self;
         while let Some(key) = map.next_key::<Cow<'de, str>>()? {
             match &*key {
                 "frame" => {
                     once(&mut frame, "frame")?;
-                    map.next_value_seed(CellsSeed(&mut self.0.values, Some(self.1)))?;
+                    map.next_value_seed(CellsSeed(&mut line.values, Some(&mut *rows)))?;
                 }
                 key @ ("t" | "time") => {
                     once(&mut time, if key == "t" { "t" } else { "time" })?;
                     let time: Option<f64> = map.next_value()?;
-                    self.0.time = time.filter(|time| time.abs() <= LARGEST_VALUE);
+                    line.time = time.filter(|time| time.abs() <= LARGEST_VALUE);
                 }
                 "label" => {
                     once(&mut label, "label")?;
-                    self.0.label = map.next_value()?;
+                    line.label = map.next_value()?;
                 }
                 "channel" => {
                     once(&mut channel, "channel")?;
-                    self.0.channel = channel_name(&map.next_value()?)?;
+                    line.channel = channel_name(&map.next_value()?)?;
                 }
-                key => match role(key) {
-                    Some(FieldRole::Time(unit)) if other_time.is_none() => {
-                        other_time = seconds(&map.next_value()?, unit);
-                    }
-                    _ => drop(map.next_value::<IgnoredAny>()?),
-                },
+                other if clock.takes(other, &other_times) => {
+                    other_times.add(other.to_owned(), map.next_value()?);
+                }
+                _ => drop(map.next_value::<IgnoredAny>()?),
             }
         }
         if time.is_none() {
-            self.0.time = other_time;
+            line.time = clock.seconds(&other_times);
         }
         if frame.is_none() {
             return Err(A::Error::custom("no key \"frame\" with rows of values"));
@@ -341,18 +364,6 @@ fn channel_name<E: Error>(value: &Value) -> Result<Option<String>, E> {
         )));
     }
     Ok(Some(name))
-}
-
-/// The seconds that a value is, of a key with that unit; None of what is no time.
-fn seconds(value: &Value, unit: Option<TimeUnit>) -> Option<f64> {
-    if let Some(text) = value.as_str() {
-        return moment::read(text.as_bytes())
-            .filter(|moment| moment.is_dated)
-            .map(|moment| moment.seconds);
-    }
-    let number = value.as_f64().filter(|time| time.abs() <= LARGEST_VALUE)?;
-    let unit = unit.unwrap_or_else(|| TimeUnit::by_size(number));
-    Some(unit.seconds(number))
 }
 
 /// Notes the key that gave a value.

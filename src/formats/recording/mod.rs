@@ -73,6 +73,8 @@ mod mcap;
 
 mod npz;
 
+pub(crate) mod json_time;
+
 pub(crate) mod json_lines;
 
 mod popu;

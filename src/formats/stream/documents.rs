@@ -5,6 +5,7 @@
 
 use crate::formats::recording::ChannelInfo;
 use crate::formats::recording::json_lines::{FrameLine, MOST_CHANNELS};
+use crate::formats::recording::json_time::JsonClock;
 use crate::formats::recording::ros_text::{self, RosLine, RosMessage};
 use crate::formats::recording::side::arranged;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
@@ -16,6 +17,8 @@ use crate::frame::Frame;
 #[derive(Debug, Default)]
 pub(super) struct JsonChannels {
     channels: Vec<JsonChannel>,
+    /// Reads the times of their lines.
+    clock: JsonClock,
     /// Whether they were reported: as soon as one has a name.
     reported: bool,
 }
@@ -109,7 +112,7 @@ impl JsonDecoder {
         if line.trim_ascii().is_empty() {
             return;
         }
-        if let Err(error) = self.line.read(line) {
+        if let Err(error) = self.line.read(line, &mut self.channels.clock) {
             for channel in &mut self.channels.channels {
                 channel.size.pass_torn();
             }

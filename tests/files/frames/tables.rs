@@ -284,6 +284,10 @@ fn times_since_1970_are_exact_and_their_size_is_a_unit() {
         };
         assert_eq!(notes, expected, "{text}");
     }
+    let line = |step| format!("{{\"timestamp\":{},\"frame\":[[1,2]]}}\n", start + step);
+    let noted = "times have no unit, taken as nanoseconds since 1970".to_owned();
+    let found = times(&(line(0) + &line(1_000_001)));
+    assert_eq!(found, (vec![Some(0.0), Some(0.001_000_001)], vec![noted]));
     // A unit that is named counts, and so do seconds since anything else.
     let text = "time_s,r0c0,r0c1\n1714564800123,1,2\n1714564800125,1,2\n";
     assert_eq!(times(text), (vec![Some(0.0), Some(2.0)], vec![]));
@@ -527,6 +531,20 @@ fn a_key_that_is_the_name_of_a_time_gives_it_where_t_does_not() {
             Some(1.0),
         ),
         (["\"t_ms\":10,\"t\":1", "\"t_ms\":60,\"t\":2"], Some(1.0)),
+        (
+            [
+                "\"latency_ms\":5,\"timestamp\":1",
+                "\"latency_ms\":9,\"timestamp\":2",
+            ],
+            Some(1.0),
+        ),
+        (
+            [
+                "\"sec\":1714564800,\"nanosec\":950000000",
+                "\"sec\":1714564801,\"nanosec\":50000001",
+            ],
+            Some(0.100_000_001),
+        ),
         (
             ["\"time_s\":[1],\"force\":1", "\"time_s\":{},\"force\":2"],
             None,
