@@ -77,12 +77,7 @@ pub(super) fn read(
     sink: &mut Sink<'_>,
 ) -> Result<(), RecordingError> {
     let mut archive = ZipArchive::new(input).map_err(damaged)?;
-    // Of Excel and of LibreOffice.
-    let is_office = |name: &str| matches!(name, "[Content_Types].xml" | "content.xml");
-    if archive
-        .file_names()
-        .any(|name| name.is_ok_and(|name| is_office(&name)))
-    {
+    if is_office_document(&archive) {
         return Err(RecordingError::Foreign {
             kind: "a spreadsheet or another office document (save the sheet as CSV)",
         });
@@ -115,10 +110,14 @@ pub(super) fn read(
             return Ok(());
         }
     }
+    let mut noted_unit = None;
     for (channel, (array, layout)) in channels.iter().enumerate() {
         let (times, assumed) = times(&mut archive, &arrays, layout.frames())?;
-        let assumed = assumed.map(|unit| RecordingNote::TimeUnit { unit: unit.name() });
-        if noted(assumed.as_ref(), sink).is_break() {
+        // Channels of as many frames have the same times.
+        let news = assumed.filter(|_| assumed != noted_unit);
+        noted_unit = news.or(noted_unit);
+        let note = news.map(|unit| RecordingNote::TimeUnit { unit: unit.name() });
+        if noted(note.as_ref(), sink).is_break() {
             break;
         }
         let mut file = archive.by_index(array.index).map_err(damaged)?;
@@ -130,6 +129,13 @@ pub(super) fn read(
         numpy::end(&mut file, layout).map_err(named)?;
     }
     Ok(())
+}
+
+/// Whether it is an office document: a spreadsheet is an archive, too.
+fn is_office_document(archive: &ZipArchive<impl Read + Seek>) -> bool {
+    let is_office = |name: &str| matches!(name, "[Content_Types].xml" | "content.xml");
+    let mut names = archive.file_names();
+    names.any(|name| name.is_ok_and(|name| is_office(&name)))
 }
 
 /// Reports a note, if there is one.
@@ -320,7 +326,7 @@ mod tests {
 
     use super::*;
 
-    /// Times and notes of two frames of two cells beside a list `time` of such a type and such numbers.
+    /// Times and notes of two frames of two cells, of each of two sensors, beside a list `time` of such a type and such numbers.
     fn times_of(name: &str, code: &str, times: [i64; 2]) -> (Vec<Option<f64>>, Vec<String>) {
         let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
         let options = SimpleFileOptions::default();
@@ -340,7 +346,9 @@ mod tests {
                 archive.write_all(part).expect("written");
             }
         };
-        add("frames", "|u1", "2, 1, 2", &[1, 2, 3, 4]);
+        for sensor in ["left", "right"] {
+            add(sensor, "|u1", "2, 1, 2", &[1, 2, 3, 4]);
+        }
         add(name, code, "2,", &times.map(i64::to_le_bytes).concat());
         let archive = archive.finish().expect("finished").into_inner();
         let (mut found, mut notes) = (Vec::new(), Vec::new());
@@ -353,7 +361,9 @@ mod tests {
             ControlFlow::Continue(())
         });
         assert!(read.is_ok(), "{read:?}");
-        (found, notes)
+        let (left, right) = found.split_at(2);
+        assert_eq!(left, right);
+        (left.to_vec(), notes)
     }
 
     #[test]
