@@ -23,7 +23,7 @@ mod frame_rate;
 
 mod event;
 
-mod continued_time;
+mod arrival_clock;
 
 mod stream;
 

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::acquire::continued_time::ContinuedTime;
+use crate::acquire::arrival_clock::ArrivalClock;
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
 use crate::acquire::followed_file::{self, FollowEnd, FollowedFile, Growth};
 use crate::acquire::recorder::description_beside;
@@ -16,7 +16,6 @@ use crate::formats::recording::{
     ChannelChoice, ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingFormat,
     RecordingInput, RecordingMetadata, RecordingNote, format_of, read_as, recognised_input,
 };
-use crate::formats::seconds::to_nanoseconds;
 use crate::formats::stream::StreamCounts;
 use crate::frame::Frame;
 
@@ -193,11 +192,9 @@ struct Round<'a> {
     /// The place among them of each channel of this round: a file that takes the place of another may begin with another one.
     order: Vec<usize>,
     /// The times of its frames.
-    times: ContinuedTime,
+    times: ArrivalClock,
     /// Whether the file grows, if it is followed.
     growth: Option<&'a Growth>,
-    /// When the first frame arrived that has no time of its own.
-    first_arrival: Option<Instant>,
 }
 
 impl Round<'_> {
@@ -238,17 +235,6 @@ impl Round<'_> {
         for channel in &mut self.channels {
             channel.first = if counts_on { channel.next } else { 0 };
         }
-    }
-
-    /// The time of a frame, given its own: that of its arrival if it has none and was not in the file before.
-    fn time_of(&mut self, own: Option<f64>) -> Option<f64> {
-        let now = Instant::now();
-        if let Some(own) = own {
-            return Some(self.times.of(own, now));
-        }
-        self.growth.filter(|growth| growth.has_caught_up())?;
-        let first = *self.first_arrival.get_or_insert(now);
-        Some(to_nanoseconds((now - first).as_secs_f64()))
     }
 }
 
@@ -347,7 +333,9 @@ impl Player<'_, '_> {
                 RecordingEvent::Frame(mut frame) => {
                     let given_up =
                         !self.options.once && pace.wait(frame, self.stop, consumer).is_break();
-                    let time = round.time_of(frame.time);
+                    // What is in a file already has arrived at some other time.
+                    let arrives = round.growth.is_some_and(Growth::has_caught_up);
+                    let time = round.times.time(frame.time, arrives);
                     let (channel, number) = round.place(frame);
                     if (channel, number) != (frame.channel, frame.number) {
                         renumbered.copy_from(frame);
@@ -392,6 +380,7 @@ fn description_of(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::seconds::to_nanoseconds;
 
     #[test]
     fn only_frames_of_the_channel_that_is_watched_are_waited_for() {

@@ -5,11 +5,10 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use crate::acquire::arrival_clock::ArrivalClock;
 use crate::acquire::byte_input::{ByteInput, ReadOutcome};
-use crate::acquire::continued_time::ContinuedTime;
 use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
 use crate::acquire::source::FrameSource;
-use crate::formats::seconds::to_nanoseconds;
 use crate::formats::stream::{StreamDecoder, StreamEvent, StreamOptions, StreamSink};
 
 /// Bytes read at a time.
@@ -30,16 +29,14 @@ struct StreamClock {
     is_live: bool,
     /// Whether a frame without a time of its own has that of its arrival.
     timed: bool,
-    /// When the first such frame came.
-    first: Option<Instant>,
     last_frame: Instant,
     last_tick: Instant,
     /// Whether a frame has come since then.
     frame_came: bool,
     /// Bytes until the last frame or the last message of silence.
     bytes: u64,
-    /// The times of frames that have one of their own.
-    times: ContinuedTime,
+    /// The times of frames.
+    times: ArrivalClock,
 }
 
 impl StreamClock {
@@ -49,12 +46,11 @@ impl StreamClock {
             is_live: !options.once,
             // What is in a file already has arrived at some other time.
             timed: !options.once && !matches!(source, FrameSource::File(_)),
-            first: None,
             last_frame: now,
             last_tick: now,
             frame_came: false,
             bytes: 0,
-            times: ContinuedTime::default(),
+            times: ArrivalClock::default(),
         }
     }
 }
@@ -253,14 +249,9 @@ fn report(
 ) -> ControlFlow<()> {
     match event {
         StreamEvent::Frame(frame) => {
-            let now = Instant::now();
-            clock.last_frame = now;
+            clock.last_frame = Instant::now();
             clock.frame_came = true;
-            let own = frame.time.map(|own| clock.times.of(own, now));
-            let time = own.or_else(|| {
-                let first = clock.timed.then(|| *clock.first.get_or_insert(now))?;
-                Some(to_nanoseconds((now - first).as_secs_f64()))
-            });
+            let time = clock.times.time(frame.time, clock.timed);
             consumer(AcquireEvent::Frame { frame, time })
         }
         StreamEvent::Channel(info) => consumer(AcquireEvent::Channel(info)),
@@ -412,6 +403,7 @@ mod tests {
     #[test]
     fn the_times_of_a_source_go_on_over_a_gap() {
         let json = |time: f64| format!("{{\"time\":{time},\"frame\":[[1,2]]}}\n");
+        let stamped = |time: f64| format!("{{\"t_ms\":{},\"frame\":[[1,2]]}}\n", 1e6 + 1e3 * time);
         let dated = |time: f64| format!("2024-05-01 12:00:0{time},1,2\n");
         // Midnight is in the gap.
         let clock = |time: f64| {
@@ -422,7 +414,7 @@ mod tests {
             };
             format!("{hour}:{:04.1},1,2\n", second + time)
         };
-        let formats: [&(dyn Fn(f64) -> String + Sync); 3] = [&json, &dated, &clock];
+        let formats: [&(dyn Fn(f64) -> String + Sync); 4] = [&json, &stamped, &dated, &clock];
         std::thread::scope(|scope| {
             for line in formats {
                 scope.spawn(move || {

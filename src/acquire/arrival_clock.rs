@@ -1,4 +1,4 @@
-//! Times of frames that go on growing over a gap in their source.
+//! Times of frames: their own, which go on growing over a gap in their source, or those of their arrival.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ const LATE: f64 = 1.0;
 
 /// Continues the frames' own times over gaps.
 #[derive(Debug, Default)]
-pub(super) struct ContinuedTime {
+struct ContinuedTime {
     /// The time of the last frame that had one of its own, and when it came.
     given: Option<(f64, Instant)>,
     /// Whether there was a gap since then.
@@ -19,15 +19,41 @@ pub(super) struct ContinuedTime {
     shift: Option<f64>,
 }
 
-impl ContinuedTime {
+/// Gives each frame a time: its own, else that of its arrival since the first that had none.
+#[derive(Debug, Default)]
+pub(super) struct ArrivalClock {
+    /// The times of frames that have one of their own.
+    own: ContinuedTime,
+    /// When the first frame without one arrived.
+    first: Option<Instant>,
+}
+
+impl ArrivalClock {
     /// Notes a gap: the source is read anew from here on.
     pub(super) fn rejoin(&mut self) {
+        self.own.rejoin();
+    }
+
+    /// The time of a frame that came now, given its own; None of a frame without one that arrived at some other time.
+    pub(super) fn time(&mut self, own: Option<f64>, arrives: bool) -> Option<f64> {
+        let now = Instant::now();
+        if let Some(own) = own {
+            return Some(self.own.of(own, now));
+        }
+        let first = arrives.then(|| *self.first.get_or_insert(now))?;
+        Some(to_nanoseconds((now - first).as_secs_f64()))
+    }
+}
+
+impl ContinuedTime {
+    /// Notes a gap: the source is read anew from here on.
+    fn rejoin(&mut self) {
         self.rejoined = true;
     }
 
     /// The time of a frame, given its own. After a gap the source's clock may have restarted or been set; then the time of the
     /// gap is taken from this machine's clock, so that times keep growing.
-    pub(super) fn of(&mut self, own: f64, now: Instant) -> f64 {
+    fn of(&mut self, own: f64, now: Instant) -> f64 {
         let mut time = self.shifted(own);
         if std::mem::take(&mut self.rejoined)
             && let Some((last, when)) = self.given
