@@ -8,7 +8,7 @@
 use std::io::{BufRead, Seek};
 
 use crate::formats::recording::cell_names::{
-    FieldRole, NamedCells, cells, rest_of_second, role, roles, time_unit,
+    FieldRole, NamedCells, cells, is_named_time, rest_of_second, role, roles, time_unit,
 };
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingNote};
@@ -187,7 +187,9 @@ impl TableHeader<'_> {
         });
         // More than these are hardly times, and each is compared with all names.
         let times: Vec<TimeFields> = times.take(MOST_BESIDE).collect();
-        let first = times.first()?;
+        // What has only a unit may be a duration, such as `latency_ms`.
+        let is_named = |time: &&TimeFields| is_named_time(self.names[time.field]);
+        let first = times.iter().find(is_named).or(times.first())?;
         let has_first = |time: &&TimeFields| time.rest.is_some_and(|(rest, _)| rest == first.field);
         Some(*times.iter().find(has_first).unwrap_or(first))
     }

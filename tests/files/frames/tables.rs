@@ -285,7 +285,7 @@ fn times_since_1970_are_exact_and_their_size_is_a_unit() {
         assert_eq!(notes, expected, "{text}");
     }
     let line = |step| format!("{{\"timestamp\":{},\"frame\":[[1,2]]}}\n", start + step);
-    let noted = "times have no unit, taken as nanoseconds since 1970".to_owned();
+    let noted = "the times have no unit and are taken as nanoseconds since 1970".to_owned();
     let found = times(&(line(0) + &line(1_000_001)));
     assert_eq!(found, (vec![Some(0.0), Some(0.001_000_001)], vec![noted]));
     // A unit that is named counts, and so do seconds since anything else.
@@ -324,6 +324,9 @@ fn comments_and_units_are_no_frames() {
     let found = recorded(text.as_bytes(), None);
     assert_eq!(found.channels[0].unit, None);
     assert_eq!(frames(text, None)[1].1, Some(2.0));
+    // A duration before the time is none.
+    let text = "latency_ms,timestamp,r0c0,r0c1\n3,0.5,1,2\n4,0.75,3,4\n";
+    assert_eq!(frames(text, None)[1].1, Some(0.25));
     // A first frame without values is a frame.
     for text in [
         "time,r0c0,r0c1\n2024-05-01T12:00:00Z,,\n2024-05-01T12:00:01Z,1,2\n",
