@@ -17,6 +17,7 @@
 //! state            which frame is shown and how
 //! layout           where taxels and numbers stand
 //! heat             the heat map, with the edge of the imprint
+//! title            which frame of which source is shown, and how
 //! view             the page: heat map, and beside it what can be said of the frame
 //! update           what messages do
 //! ```
@@ -52,6 +53,8 @@ pub mod state;
 mod layout;
 
 mod heat;
+
+mod title;
 
 pub mod view;
 

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use crate::formats::recording::ChannelInfo;
+use crate::formats::value::counted;
 use crate::frame::{Frame, FrameError, Processing, TareFrames};
 use crate::matrix::Matrix;
 use crate::tui::live::request::WatchRequest;
@@ -162,6 +163,11 @@ impl LiveTare {
         self.first = begins.then(|| TareFrames::new(self.wanted));
         self.error = None;
     }
+}
+
+/// How many frames have come for a tare, and how many it needs: `3 of 30 frames`.
+pub(super) fn progress_text((taken, wanted): (u64, u64)) -> String {
+    format!("{taken} of {}", counted(wanted, "frame"))
 }
 
 #[cfg(test)]

@@ -23,20 +23,17 @@ use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::live::heat::{HeatMap, cells, scale};
 use crate::tui::live::layout::{HeatGrid, LivePanes};
-use crate::tui::live::message::{LiveMessage, SourceState};
+use crate::tui::live::message::LiveMessage;
 use crate::tui::live::naming::{NamedImprint, Naming};
-use crate::tui::live::reading::{HeatLayer, LiveReading};
+use crate::tui::live::reading::LiveReading;
 use crate::tui::live::state::Live;
+use crate::tui::live::tare::progress_text;
+use crate::tui::live::title::{fitting_title, title};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
 /// Columns of the names of numbers.
 const LABEL: usize = 11;
-
-/// Columns that the name of the source keeps in the title when something of rank 2 to 4 is left out, and when something of
-/// rank 1 is shortened. It is shortened first: the user knows what was typed.
-const SHORT_NAME: usize = 16;
-const SHORTEST_NAME: usize = 4;
 
 /// The descriptors that are shown.
 const SHOWN: [&str; 5] = ["na", "nae", "p", "f", "cg"];
@@ -130,152 +127,6 @@ pub(super) fn beyond(live: &Live, theme: &Theme, area: Rect, towards: Arrow) -> 
     let reading = live.reading().filter(|_| !live.display.only_panel)?;
     let map = HeatMap::of(live, reading, theme, panes(live, area).map);
     map.beyond(towards, live)
-}
-
-/// What is shown, and how; `window`: which part of the taxels, at length and in short.
-/// What is the usual state, such as following the source, is not said; a channel is named only where there are several.
-fn title(live: &Live, window: Option<[String; 2]>) -> Vec<TitlePiece> {
-    let mut pieces = vec![TitlePiece {
-        text: live.request().name(),
-        short: None,
-        role: Role::Title,
-        rank: 0,
-    }];
-    pieces.extend(of_frame(live));
-    pieces.extend(of_state(live));
-    let window = window.map(|[text, short]| TitlePiece {
-        short: Some(format!("  {short}")),
-        ..TitlePiece::new(3, &text, Role::Text)
-    });
-    pieces.extend(window);
-    pieces
-}
-
-/// Which frame is shown, and of which channel.
-fn of_frame(live: &Live) -> Vec<TitlePiece> {
-    let mut pieces = Vec::new();
-    let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, &text, role));
-    let status = live.status();
-    let channel = status.channel.as_deref();
-    if let Some(name) = channel.and_then(|own| own.name.as_deref())
-        && status.channels > 1
-    {
-        let channel = format!("channel {name} of {}", status.channels);
-        say(5, channel, Role::Text);
-    }
-    match live.frame() {
-        Some(frame) => {
-            let label = frame.label.map(|label| format!(" (label {label})"));
-            let label = label.as_deref().unwrap_or("");
-            say(2, format!("frame {}{label}", frame.number), Role::Text);
-            if let Some(time) = frame.time {
-                say(6, format!("{} s", value::decimal(time, 3)), Role::Text);
-            }
-        }
-        None => say(2, "no frame yet".to_owned(), Role::Quiet),
-    }
-    pieces
-}
-
-/// Whether it stays or follows the source, what is shown of it, and what is not as usual.
-fn of_state(live: &Live) -> Vec<TitlePiece> {
-    let mut pieces = Vec::new();
-    let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, &text, role));
-    match live.frozen() {
-        Some(0) => say(1, "frozen".to_owned(), Role::Focus),
-        Some(back) => {
-            let behind = counted(back, "frame");
-            pieces.push(TitlePiece {
-                short: Some("  frozen".to_owned()),
-                ..TitlePiece::new(1, &format!("frozen, {behind} behind"), Role::Focus)
-            });
-        }
-        None => {}
-    }
-    let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, &text, role));
-    if live.recording().name().is_some() {
-        say(1, "recording".to_owned(), Role::Focus);
-    }
-    match (&live.status().state, live.stopped()) {
-        (_, true) => say(3, "stopped".to_owned(), Role::Quiet),
-        (SourceState::Ended, _) => say(3, "ended".to_owned(), Role::Quiet),
-        _ => {}
-    }
-    let layer = match live.layer() {
-        HeatLayer::Tared if live.tare().is_none() => HeatLayer::Raw,
-        layer => layer,
-    };
-    say(8, layer.name().to_owned(), Role::Quiet);
-    if live.tare_progress().is_some() {
-        say(4, format!("tare: {}", tare(live)), Role::Focus);
-    }
-    if live.holds_peak() {
-        // A frame that is frozen is shown as it came.
-        let rank = if live.frozen().is_none() { 1 } else { 4 };
-        say(rank, "peak held".to_owned(), Role::Focus);
-    }
-    if live.is_marked() {
-        say(4, "marked".to_owned(), Role::Focus);
-    }
-    pieces
-}
-
-/// A part of the title.
-struct TitlePiece {
-    /// What it says, after two blanks but for the name of the source.
-    text: String,
-    /// The same in fewer columns; None where there is no such way.
-    short: Option<String>,
-    role: Role,
-    /// Where there is no room for all, those of the highest rank are left out first; the name never is.
-    rank: u8,
-}
-
-impl TitlePiece {
-    /// A part after the name of the source.
-    fn new(rank: u8, text: &str, role: Role) -> Self {
-        Self {
-            text: format!("  {text}"),
-            short: None,
-            role,
-            rank,
-        }
-    }
-}
-
-/// The title in a number of columns. What tells how to read the numbers, such as that they are frozen or maxima, and that
-/// they are recorded, stays longest; then the name is shortened.
-fn fitting_title(mut pieces: Vec<TitlePiece>, room: usize, theme: &Theme) -> Vec<TitlePiece> {
-    let width = |pieces: &[TitlePiece], name: usize| -> usize {
-        let mut widths = pieces.iter().map(|piece| write::width(&piece.text));
-        let name = widths.next().map_or(0, |own| own.min(name));
-        name + widths.sum::<usize>()
-    };
-    while let Some(last) = (1..pieces.len()).max_by_key(|&index| {
-        let piece = &pieces[index];
-        (piece.rank, piece.short.is_some())
-    }) {
-        let rank = pieces[last].rank;
-        let name = match rank {
-            ..=1 => SHORTEST_NAME,
-            2..=4 => SHORT_NAME,
-            _ => usize::MAX,
-        };
-        if width(&pieces, name) <= room {
-            break;
-        }
-        match pieces[last].short.take() {
-            Some(short) => pieces[last].text = short,
-            None if rank > 1 => drop(pieces.remove(last)),
-            None => break,
-        }
-    }
-    let others = width(&pieces, 0);
-    if let Some(name) = pieces.first_mut() {
-        let room = room.saturating_sub(others);
-        name.text = write::fitted(&name.text, room, theme).into_owned();
-    }
-    pieces
 }
 
 /// A number with its name.
@@ -562,8 +413,8 @@ fn threshold(live: &Live, keymap: &Keymap) -> PanelLine {
 /// In seconds where the frames have times, otherwise in frames; no age for a tare made after the frame shown. Of a tare that
 /// is being made, how many of its frames have come.
 fn tare(live: &Live) -> String {
-    if let Some((taken, wanted)) = live.tare_progress() {
-        return format!("{taken} of {}", counted(wanted, "frame"));
+    if let Some(progress) = live.tare_progress() {
+        return progress_text(progress);
     }
     let Some(mark) = live.tare() else {
         return "none".to_owned();
