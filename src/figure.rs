@@ -479,7 +479,7 @@ impl Figure {
 }
 
 impl fmt::Debug for Figure {
-    /// With the sizes that it has only.
+    /// With only the sizes that it has.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             kind,

@@ -217,7 +217,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Returns the number of a count or a number; None of what is none or several.
+    /// Returns the number, if the value is a count or a single number.
     ///
     /// ```
     /// use taxel::description::Value;

@@ -271,7 +271,8 @@ fn unknown(which: &OsStr, shelf: &Shelf) -> CliError {
     CliError::NoSet(unknown_set(&which.to_string_lossy(), &stored))
 }
 
-/// Shows the card of a model: in words, or as an object of JSON. Both end with the evaluation of one touch ([`evaluation::summary`]).
+/// Shows the card of a model, in words or as an object of JSON. Both end with the evaluation of one touch
+/// ([`evaluation::summary`]).
 pub(crate) fn show(
     which: &OsStr,
     json: bool,

@@ -8,8 +8,8 @@
 //!                                         2  9  1
 //! ```
 //! Fields are parted by semicolons (then a comma is the decimal sign), commas, tabs or spaces; the first line decides.
-//! Quotes around a field do not count. An empty field, `NaN`, `-nan`, `null`, `none`, `NA`, `N/A`, `#N/A`, `<NA>` and `-`
-//! stand for no cell. Lines that begin with `#`, `//` or `%` and a blank are passed over.
+//! Quotes around a field do not count. An empty field, `NaN`, `-nan`, `null`, `none`, `NA`, `N/A`, `#N/A` and `<NA>` stand for
+//! no cell. Lines that begin with `#`, `//` or `%` and a blank are passed over.
 //!
 //! Below names of cells there may be a line with the unit of each field.
 //!

@@ -3,7 +3,7 @@
 //!
 //! Its channels are named as the arrays, without `.npy`. Times may be in s, ms, µs or ns, which their name tells
 //! (`time_ms`), their type (datetime64 and timedelta64 of numpy) or their size ([`TimeUnit::by_size`]), and count from the
-//! first one. Whole nanoseconds since 1970 lose nothing: the difference is taken before they become floats. What
+//! first one. Whole nanoseconds since 1970 keep all their digits: the difference is taken before they become floats. What
 //! `numpy.savez` and `numpy.savez_compressed` write is read.
 //!
 //! The checksum of an array says only that some of its bytes are wrong, and only at its end. Its frames are given as they

@@ -5,7 +5,7 @@
 //!
 //! | shape | means |
 //! |---|---|
-//! | (frames, rows, columns), also with an axis of 1 before or behind the last two | frames |
+//! | (frames, rows, columns), also with an axis of length 1 after the first or at the end | frames |
 //! | (rows, columns) | one frame; or frames × cells if rows and columns are known beforehand and fit the second |
 //! | (cells) | one frame, if rows and columns are known beforehand |
 //! | (records) of `time`, `number`, `values` | what `taxel watch --write` writes |

@@ -74,7 +74,7 @@ impl FieldGrowth {
     }
 }
 
-/// A number that no cell reaches, but a clock does that counts from 1970.
+/// Cells do not reach this number; a clock that counts from 1970 does.
 const CLOCK: f64 = 1e9;
 
 /// What speaks for such fields; the greater evidence decides.
@@ -163,7 +163,7 @@ impl UnnamedFields {
 }
 
 /// Where the cells, the number and the time are in lines of so many cells without names, of which the first `before` numbers
-/// are none. The first of these is line `number` of the file.
+/// are no cells. The first line is line `number` of the file.
 ///
 /// # Errors
 /// If the line has fewer fields than a frame has cells, or if other fields are not cells or may be.
@@ -190,7 +190,7 @@ pub(super) fn unnamed_fields(
 }
 
 /// The fields with the greatest evidence; None if all are ruled out. The last line may be torn: where all lines rule
-/// out everything, those before it decide. A number that counts is so much evidence that any two lines are enough.
+/// out everything, those before it decide. With two numbers beside the cells, two lines are enough.
 ///
 /// # Errors
 /// If other fields may be the cells by the same evidence.
