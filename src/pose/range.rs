@@ -184,26 +184,27 @@ fn scaled(units: i64, places: u32) -> f64 {
 impl FromStr for DecimalRange {
     type Err = RangeError;
 
-    fn from_str(text: &str) -> Result<Self, RangeError> {
-        let parts = text.split(':').map(|part| without_exponent(part.trim()));
+    fn from_str(whole: &str) -> Result<Self, RangeError> {
+        let parts = whole.split(':').map(|part| without_exponent(part.trim()));
         let parts: Vec<Cow<'_, str>> = parts.collect();
         let (start, end, step) = match &parts[..] {
             [single] => (&**single, &**single, "1"),
             [start, end, step] => (&**start, &**end, &**step),
             _ => {
                 return Err(RangeError::Form {
-                    text: shortened(text.trim()),
+                    text: shortened(whole.trim()),
                 });
             }
         };
         let places = places(start).max(places(end)).max(places(step));
         let units = |text: &str| {
             units(text, places).ok_or_else(|| {
-                let is_number = is_decimal(text);
-                let text = shortened(text);
-                if is_number {
+                if is_decimal(text) {
+                    // All three count: the finest of them decides how many decimals each needs.
+                    let text = shortened(whole.trim());
                     RangeError::Digits { text }
                 } else {
+                    let text = shortened(text);
                     RangeError::Number { text }
                 }
             })
@@ -325,12 +326,13 @@ pub enum RangeError {
         /// The text, shortened.
         text: String,
     },
-    /// A decimal with more digits than are exact.
+    /// More digits than are exact.
     #[error(
-        "\"{text}\" has too many digits: at most 15, and {MAX_PLACES} of them behind the point"
+        "\"{text}\" has too many digits: at most 15, and {MAX_PLACES} of them behind the point, each number written to the \
+         finest decimal"
     )]
     Digits {
-        /// The text, shortened.
+        /// The whole range, shortened.
         text: String,
     },
     /// A step of 0, or backwards.
