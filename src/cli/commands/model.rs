@@ -191,6 +191,14 @@ pub(crate) enum FoundModel {
 }
 
 impl FoundModel {
+    /// Its shapes.
+    pub(crate) fn shapes(&self) -> &[NamedShape] {
+        match self {
+            Self::Read(model) => model.shapes(),
+            Self::BuiltIn(training) => training.shapes(),
+        }
+    }
+
     /// The model. That of a built-in set comes from the user's cache; if it is not there it is trained, which takes some
     /// seconds, and `progress` begins to show how many poses are done. Signals keep their meaning meanwhile: nothing is left
     /// behind that would have to be removed.

@@ -34,7 +34,7 @@ use crate::formats::value::counted;
 use crate::imprint::Imprint;
 use crate::memory::MemoryGuard;
 use crate::quote::{did_you_mean, shortened_message};
-use crate::recognition::{Answer, AnswerState, Evidence, Model, Noise};
+use crate::recognition::{Answer, AnswerState, Evidence, Model, NamedShape, Noise};
 
 /// Answers what is asked, on `output`.
 ///
@@ -51,12 +51,34 @@ pub(crate) fn recognise(
     let model = model::find(&asked.model, shelf)?;
     let noise = noise(asked, shelf)?;
     let input = input(&asked.what, shelf)?;
+    if let Some(expected) = &asked.expect {
+        check_expected(expected, model.shapes())?;
+    }
     let model = model.ready(&|poses| Progress::new(poses, false, charset))?;
-    let recogniser = Recogniser::new(asked, &model, noise.as_ref())?;
+    let recogniser = Recogniser {
+        asked,
+        model: &model,
+        noise,
+    };
     match input {
         RecogniseInput::Imprint(imprint) => recogniser.answer_imprint(&imprint, charset, output),
         RecogniseInput::Lines(input) => recogniser.answer_lines(input, output),
     }
+}
+
+/// Checks that a model has a shape of the expected name.
+///
+/// # Errors
+/// [`CliError::NotInModel`].
+fn check_expected(name: &str, shapes: &[NamedShape]) -> Result<(), CliError> {
+    if shapes.iter().any(|shape| shape.name == name) {
+        return Ok(());
+    }
+    let names = shapes.iter().map(|shape| shape.name.as_str());
+    Err(CliError::NotInModel {
+        name: name.to_owned(),
+        near: did_you_mean(name, names),
+    })
 }
 
 /// A model, and how it is asked.
@@ -69,33 +91,7 @@ struct Recogniser<'a> {
     noise: Option<Noise>,
 }
 
-impl<'a> Recogniser<'a> {
-    /// Asks a model under a noise.
-    ///
-    /// # Errors
-    /// If the model has no shape of the expected name.
-    fn new(
-        asked: &'a RecogniseArguments,
-        model: &'a Model,
-        noise: Option<&Noise>,
-    ) -> Result<Self, CliError> {
-        if let Some(name) = &asked.expect
-            && model.shapes().iter().all(|shape| shape.name != *name)
-        {
-            let names = model.shapes().iter().map(|shape| shape.name.as_str());
-            let near = did_you_mean(name, names);
-            return Err(CliError::NotInModel {
-                name: name.clone(),
-                near,
-            });
-        }
-        Ok(Self {
-            asked,
-            model,
-            noise: noise.copied(),
-        })
-    }
-
+impl Recogniser<'_> {
     /// Answers one imprint, as text or JSON.
     ///
     /// # Errors
