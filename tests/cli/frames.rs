@@ -92,6 +92,26 @@ fn a_list_says_what_the_recording_says() {
 }
 
 #[test]
+fn a_list_says_when_frames_were_taken_and_where_the_time_goes_back() {
+    let time = |times: [&str; 3]| {
+        let lines = times.map(|time| format!("{time},1,2,3,4\n"));
+        let run = taxel(
+            "frames -",
+            format!("time,r0c0,r0c1,r1c0,r1c1\n{}", lines.concat()),
+        );
+        let mut lines = run.stdout.lines();
+        lines
+            .find_map(|line| Some(line.strip_prefix("time      ")?.to_owned()))
+            .expect("a line of times")
+    };
+    assert_eq!(time(["0.5", "1", "1.25"]), "0 to 0.75 s");
+    assert_eq!(time(["0", "2", "1.5"]), "0 to 1.5 s, goes back at frame 2");
+    assert_eq!(time(["0", "-1", "5"]), "0 to 5 s, goes back at frame 1");
+    let untimed = taxel("frames -", "r0c0,r0c1\n1,2\n3,4\n");
+    assert!(!untimed.stdout.contains("time"), "{}", untimed.stdout);
+}
+
+#[test]
 fn frames_are_chosen_by_number_label_or_sum() {
     let rule = "--at-least 9 --json";
     let peak = answered("tekscan.asf", &format!("--peak {rule}"));
@@ -540,7 +560,7 @@ fn a_listing_is_of_the_channel_that_is_asked_for() {
 #[test]
 fn an_input_without_an_end_is_refused_at_once() {
     for (line, expected) in [
-        ("1 2 3", "3 values a frame, but no rows and columns"),
+        ("1 2 3", "3 numbers a line, but no rows and columns"),
         ("{\\\"frame\\\":[[1],[]]}", "line 1, column "),
     ] {
         let taxel = env!("CARGO_BIN_EXE_taxel");

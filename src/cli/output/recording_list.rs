@@ -3,14 +3,17 @@
 //! ```text
 //! csv, 1 channel
 //!
-//! frames    1
-//! size      4 rows × 5 columns, 20 cells
-//! peak      frame 0
+//! frames    4
+//! size      2 rows × 2 columns, 4 cells
+//! time      0 to 2 s, goes back at frame 2
+//! peak      frame 2
 //! ```
 //! A line is there only if the recording says something of it. As JSON, one object for the recording:
 //! ```text
-//! {"format":"csv","channels":[{"name":null,"frames":1,"rows":4,"columns":5,"cells":20,"unit":null,…,"peak":0}]}
+//! {"format":"csv","channels":[{"name":null,"frames":4,"rows":2,"columns":2,"cells":4,"unit":null,…,"peak":2}]}
 //! ```
+
+use std::fmt;
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
@@ -38,6 +41,41 @@ pub(crate) struct ListedChannel {
     cells: usize,
     /// The row and column of the whole sensor that frames begin at.
     first: Option<(u32, u32)>,
+    /// The times of its frames; None where frames have none.
+    times: Option<FrameTimes>,
+}
+
+/// When frames were taken, in seconds.
+#[derive(Clone, Copy, Debug)]
+struct FrameTimes {
+    /// That of the first frame.
+    first: f64,
+    /// That of the last one so far.
+    last: f64,
+    /// The first frame that is earlier than the one before it: a clock that was set back, or a column that is no time.
+    backwards: Option<u64>,
+}
+
+impl FrameTimes {
+    /// With those of one more frame.
+    fn with(self, number: u64, time: f64) -> Self {
+        Self {
+            last: time,
+            backwards: self.backwards.or((time < self.last).then_some(number)),
+            ..self
+        }
+    }
+}
+
+impl fmt::Display for FrameTimes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [first, last] = [self.first, self.last].map(|time| decimal(time, 6));
+        write!(f, "{first} to {last} s")?;
+        match self.backwards {
+            Some(number) => write!(f, ", goes back at frame {number}"),
+            None => Ok(()),
+        }
+    }
 }
 
 impl ListedChannel {
@@ -61,6 +99,14 @@ impl ListedChannel {
         self.cells = self.cells.max(cells);
         if cells > 0 {
             self.peak.add(frame.number, present.sum());
+        }
+        if let Some(time) = frame.time {
+            let begun = self.times.unwrap_or(FrameTimes {
+                first: time,
+                last: time,
+                backwards: None,
+            });
+            self.times = Some(begun.with(frame.number, time));
         }
         self.frames += 1;
         self.values = self.info.values.unwrap_or(frame.values().len() as u64);
@@ -173,6 +219,7 @@ fn channel_lines(channel: &ListedChannel) -> Vec<String> {
         ),
         row("unit", info.unit.clone()),
         row("start", info.start.clone()),
+        row("time", channel.times.map(|times| times.to_string())),
         row(
             "step",
             info.seconds_per_frame
