@@ -37,6 +37,15 @@ pub enum RecordingError {
         /// How many values a frame has.
         values: u64,
     },
+    /// The same of a table without a header: not all numbers of a line need be values.
+    #[error(
+        "{} a line, but no rows and columns; give --rows and --columns (a frame number and a time may be among the numbers)",
+        counted(*numbers, "number")
+    )]
+    Columns {
+        /// How many numbers a line has.
+        numbers: u64,
+    },
 }
 
 /// The formats for a file whose content is none of them.

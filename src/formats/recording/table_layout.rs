@@ -79,7 +79,8 @@ pub(super) struct FrameFields {
 /// Finds out how the table is arranged, from its first lines.
 ///
 /// # Errors
-/// [`RecordingError::Unknown`] of what is not a table; [`RecordingError::Shape`] if rows and columns have to be named.
+/// [`RecordingError::Unknown`] of what is not a table; [`RecordingError::Shape`] or [`RecordingError::Columns`] if rows and
+/// columns have to be named.
 pub(super) fn layout(
     input: &mut (impl BufRead + Seek),
     options: ReadOptions,
@@ -269,8 +270,8 @@ fn of_numbers(
         }
         (None, Some(width)) if parted && block > 1 => ((block, width), LineLayout::Row { parted }),
         (None, _) => {
-            let values = values as u64;
-            return Err(RecordingError::Shape { values });
+            let numbers = values as u64;
+            return Err(RecordingError::Columns { numbers });
         }
     };
     let start = match lines {
