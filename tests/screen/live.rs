@@ -569,7 +569,10 @@ fn a_source_is_named_with_the_flags_of_the_command_line() {
         |flags: &str| format!(":watch {}{flags}<Enter>", file.display()).replace(' ', "<Space>");
     let mut page = session(&line(""));
     page.frames(1);
-    shows(&page, &["give --rows and --columns"]);
+    shows(
+        &page,
+        &["give --rows and --columns", "--rows R --columns C (after"],
+    );
     then(&mut page, "<Esc>", &[]);
     then(&mut page, &line(" --rows 2 --columns 3 --at-least 4"), &[]);
     page.frames(3);

@@ -38,7 +38,7 @@ use crate::formats::recording::{
     ChannelChoice, ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent,
     RecordingMetadata,
 };
-use crate::formats::stream::StreamCounts;
+use crate::formats::stream::{StreamCounts, StreamRefusal};
 use crate::formats::value::counted;
 use crate::frame::{Frame, FrameError, Processing, SetRule, Tare, TareFrames};
 use crate::matrix::Matrix;
@@ -547,19 +547,10 @@ impl Watcher<'_> {
 
     /// What cannot be decoded without rows and columns is an error.
     fn shaped(&self, counts: &StreamCounts) -> Result<(), CliError> {
-        match counts.unshaped.filter(|_| counts.frames == 0) {
-            Some(0) if counts.unknown => Err(self.unknown()),
-            Some(0) => Err(self.refused(
-                "the stream does not state the size of a frame; give --rows and --columns, and --format if it is text",
-            )),
-            Some(values) => Err(CliError::Recording {
-                name: self.name.clone(),
-                error: RecordingError::Shape { values },
-            }),
-            None if counts.cut => Err(self.refused(
-                "the echo leaves out values ('...'): run ros2 topic echo with --full-length",
-            )),
+        match counts.refusal() {
             None => Ok(()),
+            Some(StreamRefusal::Unknown) => Err(self.unknown()),
+            Some(refusal) => Err(self.refused(&refusal.to_string())),
         }
     }
 
@@ -570,10 +561,7 @@ impl Watcher<'_> {
             let error = RecordingError::Unknown;
             return CliError::Recording { name, error };
         }
-        self.refused(
-            "not a stream of a known format: expected lines of numbers, JSON lines, ros2 topic echo, FlexiTac or MatSense; \
-             --format names one",
-        )
+        self.refused(&StreamRefusal::Unknown.to_string())
     }
 
     /// Notes how many frames have been dropped if there are more than at the last time, with the bytes of the last one.
@@ -583,11 +571,15 @@ impl Watcher<'_> {
         }
         self.dropped = counts.dropped;
         self.reported = Some(Instant::now());
-        let sample = counts.sample.as_deref().unwrap_or("");
         let dropped = counted(counts.dropped, "frame");
-        self.say(&format!(
-            "{dropped} dropped so far (torn, short, long or garbled), the last: {sample}"
-        ));
+        let mut text = format!("{dropped} dropped so far (torn, short, long or garbled)");
+        if let Some(sample) = &counts.sample {
+            text += &format!(", the last: {sample}");
+        }
+        if let Some(reason) = &counts.reason {
+            text += &format!(" ({reason})");
+        }
+        self.say(&text);
     }
 
     /// The end of a source that has one.

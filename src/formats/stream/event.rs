@@ -1,6 +1,6 @@
 //! What a stream may be, what is known of it beforehand, and what its decoder reports.
 
-use crate::formats::recording::ChannelInfo;
+use crate::formats::recording::{ChannelInfo, RecordingError};
 use crate::formats::value::grouped;
 use crate::frame::Frame;
 use crate::parameter::named;
@@ -108,10 +108,9 @@ pub struct StreamCounts {
     pub frames: u64,
     /// Torn, short, long and garbled ones.
     pub dropped: u64,
-    /// What the last of these looked like, up to 40 characters.
+    /// What the last of these looked like, up to 40 characters; None if nothing of it came.
     pub sample: Option<String>,
-    /// Why the last dropped line is not a frame, where the format can tell: JSON lines, and numbers if rows and columns were
-    /// named.
+    /// Why the last of these is not a frame, where the format can tell: JSON lines, and numbers if rows and columns were named.
     pub reason: Option<String>,
     /// What is missing to decode the stream at all: how many values a frame seems to have, without rows and columns.
     pub unshaped: Option<u64>,
@@ -125,8 +124,21 @@ pub struct StreamCounts {
 const SAMPLE: usize = 40;
 
 impl StreamCounts {
+    /// What has to be stated, or asked for, before any frame can be decoded. None where frames have come, or may come.
+    pub fn refusal(&self) -> Option<StreamRefusal> {
+        match self.unshaped.filter(|_| self.frames == 0) {
+            Some(0) if self.unknown => Some(StreamRefusal::Unknown),
+            Some(0) => Some(StreamRefusal::Size),
+            Some(values) => Some(StreamRefusal::Shape { values }),
+            None => self.cut.then_some(StreamRefusal::Cut),
+        }
+    }
+
     /// Why no frame may have come for some time, given the bytes a second that came meanwhile.
     pub fn silence(&self, bytes_per_second: f64) -> String {
+        if let Some(refusal) = self.refusal() {
+            return refusal.to_string();
+        }
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -157,7 +169,40 @@ impl StreamCounts {
             }
             sample += &text;
         }
-        self.sample = Some(sample);
+        self.sample = Some(sample).filter(|sample| !sample.is_empty());
+    }
+}
+
+/// Why a stream cannot be decoded as it comes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StreamRefusal {
+    /// Text without a line of numbers.
+    #[error(
+        "not a stream of a known format: expected lines of numbers, JSON lines, ros2 topic echo, FlexiTac or MatSense; --format \
+         names one"
+    )]
+    Unknown,
+    /// Bytes that may be values, in frames of any size.
+    #[error(
+        "the stream does not state the size of a frame; give --rows and --columns, and --format if it is text"
+    )]
+    Size,
+    /// Lists of values, in rows of any length.
+    #[error("{}", RecordingError::Shape { values: *values })]
+    Shape {
+        /// How many values a frame has.
+        values: u64,
+    },
+    /// `ros2 topic echo` leaves out values.
+    #[error("the echo leaves out values ('...'): run ros2 topic echo with --full-length")]
+    Cut,
+}
+
+impl StreamRefusal {
+    /// Whether rows and columns would help.
+    pub fn is_of_size(self) -> bool {
+        matches!(self, Self::Size | Self::Shape { .. })
     }
 }
 

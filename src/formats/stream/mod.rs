@@ -42,4 +42,6 @@ mod format_search;
 mod decoder;
 
 pub use decoder::StreamDecoder;
-pub use event::{StreamCounts, StreamEvent, StreamFormat, StreamOptions, StreamSink};
+pub use event::{
+    StreamCounts, StreamEvent, StreamFormat, StreamOptions, StreamRefusal, StreamSink,
+};

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::formats::recording::ChannelInfo;
+use crate::formats::stream::StreamCounts;
 use crate::formats::value::decimal;
 use crate::frame::Frame;
 use crate::tui::keys::key::Arrow;
@@ -114,6 +115,8 @@ pub struct FeedStatus {
     pub lost: u64,
     /// What the last of these looked like.
     pub sample: Option<String>,
+    /// Why the last of these is not a frame, where the format can tell.
+    pub reason: Option<String>,
     /// How often the source was lost and came back.
     pub gaps: SourceGaps,
     /// Frames that came while nobody took them and there was no memory for more.
@@ -124,6 +127,15 @@ pub struct FeedStatus {
     pub record_error: Option<String>,
     /// What is odd in a recording that is played, the first of it.
     pub note: Option<String>,
+}
+
+impl FeedStatus {
+    /// Notes the frames that were dropped so far.
+    pub(in crate::tui) fn note_dropped(&mut self, counts: &StreamCounts) {
+        self.lost = counts.dropped;
+        self.sample.clone_from(&counts.sample);
+        self.reason.clone_from(&counts.reason);
+    }
 }
 
 /// Gaps between the frames of a source that was lost and came back, such as a connection.

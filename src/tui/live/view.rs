@@ -194,7 +194,7 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> 
     let rate = live.rate().map(|rate| format!("{}/s", fitting(rate, 5)));
     let rate = rate.unwrap_or_else(|| theme.none().to_owned());
     lines.push(PanelLine::new("rate", rate));
-    lines.push(PanelLine::up_to("lost", lost(live), ", the last: "));
+    lines.push(PanelLine::of_forms("lost", lost(live), "0"));
     let mut say = |label, text: String| lines.push(PanelLine::new(label, text));
     say("not drawn", grouped(live.not_drawn()));
     if let Some(text) = gaps(live) {
@@ -434,14 +434,17 @@ fn tare(live: &Live) -> String {
     age.map_or(frames.clone(), |age| frames + &age)
 }
 
-/// How many frames were lost, and what the last one looked like.
-fn lost(live: &Live) -> String {
+/// How many frames were lost, what the last one looked like, and why it is not a frame; then with less of this.
+fn lost(live: &Live) -> Vec<String> {
     let status = live.status();
-    let lost = grouped(status.lost);
-    match &status.sample {
-        Some(sample) if status.lost > 0 => format!("{lost}, the last: {sample}"),
-        _ => lost,
+    let mut forms = vec![grouped(status.lost)];
+    if let Some(sample) = status.sample.as_ref().filter(|_| status.lost > 0) {
+        forms.insert(0, format!("{}, the last: {sample}", forms[0]));
+        if let Some(reason) = &status.reason {
+            forms.insert(0, format!("{} ({reason})", forms[0]));
+        }
     }
+    forms
 }
 
 /// Draws the lines from the top; those below the area are left out.

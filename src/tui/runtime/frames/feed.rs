@@ -12,8 +12,9 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, acquire};
-use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
+use crate::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, acquire};
+use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingError, RecordingMetadata};
+use crate::formats::stream::StreamCounts;
 use crate::formats::value::decimal;
 use crate::frame::Frame;
 use crate::storage::Existing;
@@ -156,7 +157,7 @@ impl FrameFeed {
             wanted
         };
         let ended = caught(|| acquire(source, options, stop, &mut consumer));
-        let ended = ended.and_then(|ended| ended.map_err(|error| error.to_string()));
+        let ended = ended.and_then(|ended| ended.map_err(|error| reason(&error, request)));
         if wanted.is_break() {
             return;
         }
@@ -230,8 +231,7 @@ impl FrameFeed {
                 let mut pending = locked(&self.pending);
                 let status = &mut pending.batch.status;
                 let is_new = status.lost != counts.dropped || written.is_err();
-                status.lost = counts.dropped;
-                status.sample.clone_from(&counts.sample);
+                status.note_dropped(counts);
                 pending.note(written);
                 is_new && !std::mem::replace(&mut pending.is_new, true)
             }
@@ -239,11 +239,8 @@ impl FrameFeed {
                 bytes_per_second,
                 counts,
             } => {
-                let what = counts.silence(bytes_per_second);
-                // Words that stay true while the silence lasts: a page on which nothing changes sends nothing.
-                state(SourceState::Silent(format!(
-                    "no frame for more than 2 s: {what}"
-                )))
+                let why = silence(counts, bytes_per_second, request);
+                state(SourceState::Silent(why))
             }
             AcquireEvent::Absent(error) => {
                 let name = request.source.to_string_lossy();
@@ -267,12 +264,38 @@ impl FrameFeed {
                 pending.batch.status.note = Some(format!("the file {how}"));
             }),
             AcquireEvent::Ended(counts) => self.change(|pending| {
-                pending.batch.status.lost = counts.dropped;
-                pending.batch.status.sample.clone_from(&counts.sample);
+                pending.batch.status.note_dropped(counts);
             }),
             _ => false,
         }
     }
+}
+
+/// Why a source cannot be read, and for a page on which no flag can be typed, how to give what is missing.
+fn reason(error: &AcquireError, request: &WatchRequest) -> String {
+    let hint = match error {
+        AcquireError::Recording(RecordingError::Shape { .. } | RecordingError::Columns { .. }) => {
+            size_hint(request)
+        }
+        _ => String::new(),
+    };
+    format!("{error}{hint}")
+}
+
+/// Why no frame comes. Words that stay true while the silence lasts: a page on which nothing changes sends nothing.
+fn silence(counts: &StreamCounts, bytes_per_second: f64, request: &WatchRequest) -> String {
+    let hint = match counts.refusal() {
+        Some(refusal) if refusal.is_of_size() => size_hint(request),
+        _ => String::new(),
+    };
+    let what = counts.silence(bytes_per_second);
+    format!("no frame for more than 2 s: {what}{hint}")
+}
+
+/// The command that gives rows and columns.
+fn size_hint(request: &WatchRequest) -> String {
+    let source = request.source.display();
+    format!(", as in :watch {source} --rows R --columns C (after Esc)")
 }
 
 impl Pending {
