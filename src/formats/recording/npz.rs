@@ -31,11 +31,14 @@ const MOST_TIMES: u64 = 1 << 24;
 /// No archive has more arrays.
 const MOST_ARRAYS: usize = 256;
 
-/// What the archive's reader complains about.
+/// What is wrong with an archive, in words that do not suppose that one knows its layout.
 fn damaged(error: ZipError) -> RecordingError {
     match error {
         ZipError::Io(error) => RecordingError::Io(error),
-        error => RecordingError::damaged(format!("a broken archive: {error}")),
+        ZipError::UnsupportedArchive(what) => {
+            RecordingError::damaged(format!("an archive: {what}"))
+        }
+        _ => RecordingError::damaged("an archive that is cut short or damaged"),
     }
 }
 
