@@ -6,7 +6,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::formats::recording::{RecordingFormat, recognised};
+use crate::formats::recording::may_be_recording;
 use crate::formats::shape::MAX_BYTES;
 use crate::formats::{Content, ContentError, read_content};
 use crate::quote::shortened_message;
@@ -88,20 +88,6 @@ fn read(bytes: &[u8]) -> Result<Content, InputError> {
         return Err(InputError::Large);
     }
     Ok(read_content(bytes)?)
-}
-
-/// Whether bytes that are no imprint look like a recording. Of JSON this is said only where there is a frame: most is a
-/// stored shape with a mistake.
-fn may_be_recording(bytes: &[u8]) -> bool {
-    let frame = b"\"frame\"";
-    // PBM and PGM say by themselves what they are.
-    if matches!(bytes, [b'P', b'1'..=b'6', ..]) {
-        return false;
-    }
-    match recognised(bytes) {
-        Some(RecordingFormat::JsonLines) => bytes.windows(frame.len()).any(|word| word == frame),
-        found => found.is_some(),
-    }
 }
 
 /// All bytes of a source, up to one more than the limit.

@@ -170,7 +170,21 @@ fn is_table(line: &[u8]) -> bool {
     is_text && has_mark && (has_digit || line.contains(&b',') || line.contains(&b';'))
 }
 
-/// The same, of what is read from its present place on.
+/// Whether bytes that are no imprint and no shape look like a recording, for the message about them. Of JSON this is said only
+/// where there is a frame: most is a stored shape with a mistake.
+pub(crate) fn may_be_recording(bytes: &[u8]) -> bool {
+    let frame = b"\"frame\"";
+    // PBM and PGM say by themselves what they are.
+    if matches!(bytes, [b'P', b'1'..=b'6', ..]) {
+        return false;
+    }
+    match recognised(bytes) {
+        Some(RecordingFormat::JsonLines) => bytes.windows(frame.len()).any(|word| word == frame),
+        found => found.is_some(),
+    }
+}
+
+/// The same as [`recognised`], of what is read from its present place on.
 ///
 /// # Errors
 /// If it cannot be read.

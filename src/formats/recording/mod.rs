@@ -95,7 +95,7 @@ pub use channel_choice::ChannelChoice;
 pub(crate) use delimited::read_rows;
 pub use description::{FrameMark, RecordedView, RecordingMetadata};
 #[cfg(all(feature = "acquire", unix))]
-pub(crate) use detect::{RecordingInput, format_of, read_as};
+pub(crate) use detect::{RecordingInput, format_of, may_be_recording, read_as};
 pub use detect::{read, recognised, recognised_input};
 pub use error::RecordingError;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};

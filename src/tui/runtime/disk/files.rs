@@ -5,6 +5,7 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use crate::formats::recording::may_be_recording;
 use crate::formats::{Content, imprint_file, read_content};
 use crate::storage::{Existing, UnfinishedFile, location};
 use crate::tui::app::message::{FileEvent, OpenedFile};
@@ -53,6 +54,9 @@ fn open(name: &str) -> Result<OpenedFile, String> {
     match read_content(&bytes) {
         Ok(Content::Shape(shape)) => Ok(OpenedFile::Shape(Box::new(shape))),
         Ok(Content::Imprint(imprint)) => Ok(OpenedFile::Imprint(Box::new(imprint))),
+        Err(error) if may_be_recording(&bytes) => {
+            Err(format!("{error}; if this is a recording, use :watch"))
+        }
         Err(error) => Err(error.to_string()),
     }
 }
