@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::formats::name::{Name, folded};
 use crate::formats::shape::StoredShape;
+use crate::quote::did_you_mean;
 use crate::storage::atomic_file;
 use crate::storage::atomic_file::sync_folder;
 use crate::storage::error::{FileError, LibraryError};
@@ -335,6 +336,22 @@ impl Library {
         atomic_file::write(&path, Some(&temporary), thrown.write().as_bytes())?;
         trash.forget_oldest();
         Ok(name.to_string())
+    }
+
+    /// The end of a message about a name that no shape has, or none in the trash: one that is much like it; empty if there is
+    /// none, and for other errors.
+    pub(crate) fn suggestion(&self, error: &LibraryError) -> String {
+        match error {
+            LibraryError::Unknown { name } => self.list().map_or_else(
+                |_| String::new(),
+                |shapes| did_you_mean(name, shapes.iter().map(|shape| shape.name.as_str())),
+            ),
+            LibraryError::NotInTrash { name } => self.in_trash().map_or_else(
+                |_| String::new(),
+                |names| did_you_mean(name, names.iter().map(String::as_str)),
+            ),
+            _ => String::new(),
+        }
     }
 
     /// The names of the shapes in the trash, the one deleted last first, each once.

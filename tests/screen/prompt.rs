@@ -372,6 +372,10 @@ fn a_refused_prompt_stays_open() {
     for (line, refusal) in [
         ("load nope", "! no shape is called \"nope\""),
         ("picture nope", "! no shape is called \"nope\""),
+        (
+            "picture wahser",
+            "! no shape is called \"wahser\"; did you mean \"washer\"?",
+        ),
         ("delete nope", "! no shape is called \"nope\""),
         (
             "delete arrow",

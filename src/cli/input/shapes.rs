@@ -17,7 +17,6 @@ use crate::formats::Content;
 use crate::formats::StoredShape;
 use crate::formats::name::folded;
 use crate::imprint::Imprint;
-use crate::quote::did_you_mean;
 use crate::storage::{Expected, Library, LibraryError};
 
 /// The library, opened when it is first used: most commands never need it.
@@ -114,6 +113,7 @@ impl Shelf {
             .map(|name| self.library().and_then(|library| library.load(name)));
         let nowhere = match named {
             Some(Ok(loaded)) => return Ok(Located::Shape(loaded.shape)),
+            // What is like it is looked for only if there is no such file.
             Some(Err(LibraryError::Unknown { name })) => {
                 let near = String::new();
                 Some(CliError::Nowhere { name, near })
@@ -128,7 +128,7 @@ impl Shelf {
         match (File::open(&path), nowhere) {
             (Ok(file), _) => Ok(Located::File(path, file)),
             (Err(error), Some(CliError::Nowhere { name, .. })) if is_missing(&error) => {
-                let near = self.near(&name);
+                let near = self.suggestion(&LibraryError::Unknown { name: name.clone() });
                 Err(CliError::Nowhere { name, near })
             }
             (Err(error), Some(nowhere)) if is_missing(&error) => Err(nowhere),
@@ -139,27 +139,22 @@ impl Shelf {
         }
     }
 
-    /// The end of a message about a name that no stored shape has: the name of one that is much like it, if there is one.
-    fn near(&self, name: &str) -> String {
-        match self.library().and_then(|library| library.list()) {
-            Ok(shapes) => did_you_mean(name, shapes.iter().map(|shape| shape.name.as_str())),
-            Err(_) => String::new(),
-        }
-    }
-
     /// The message about an error of the library; a name that it does not have is compared with those that it has.
     pub(crate) fn refused(&self, error: LibraryError) -> CliError {
-        let near = match &error {
-            LibraryError::Unknown { name } => self.near(name),
-            LibraryError::NotInTrash { name } => {
-                match self.library().and_then(|library| library.in_trash()) {
-                    Ok(trash) => did_you_mean(name, trash.iter().map(String::as_str)),
-                    Err(_) => String::new(),
-                }
-            }
-            _ => return error.into(),
-        };
+        if !matches!(
+            error,
+            LibraryError::Unknown { .. } | LibraryError::NotInTrash { .. }
+        ) {
+            return error.into();
+        }
+        let near = self.suggestion(&error);
         CliError::NoShape { error, near }
+    }
+
+    /// The end of a message about a name that is not there: the name of a shape that is much like it, if there is one.
+    fn suggestion(&self, error: &LibraryError) -> String {
+        let library = self.library();
+        library.map_or_else(|_| String::new(), |library| library.suggestion(error))
     }
 
     /// The imprint of a stored shape, for the lines of a batch. Each shape is read once.

@@ -590,6 +590,6 @@ impl World {
 }
 
 /// The event of a request that names a shape.
-fn done(result: Result<String, LibraryError>, answer: fn(String) -> LibraryEvent) -> LibraryEvent {
-    result.map_or_else(|error| LibraryEvent::Failed(error.to_string()), answer)
+fn done(result: Result<String, String>, answer: fn(String) -> LibraryEvent) -> LibraryEvent {
+    result.map_or_else(LibraryEvent::Failed, answer)
 }

@@ -81,9 +81,9 @@ pub(in crate::tui::runtime) enum DiskAnswer {
         Option<Box<LoadedShape>>,
     ),
     /// The shape of that name was deleted.
-    Removed(Result<String, LibraryError>),
+    Removed(Result<String, String>),
     /// A shape was restored: its name.
-    Restored(Result<String, LibraryError>),
+    Restored(Result<String, String>),
     /// The work is in the trash under that name; and the next one, and how many there are.
     ThrownAway(Result<String, LibraryError>, Option<(Box<Orphan>, usize)>),
     /// What became of a file.
@@ -154,6 +154,7 @@ impl DiskRequest {
 
     /// Carries it out.
     fn perform(self, library: &Library, access: &WriteAccess) -> DiskAnswer {
+        let sentence = |error| sentence(library, &error);
         match self {
             Self::Store(shape, expected) => {
                 let stored = library.save(&shape, expected);
@@ -165,8 +166,8 @@ impl DiskRequest {
                 };
                 DiskAnswer::Stored(shape, stored, in_the_way.map(Box::new))
             }
-            Self::Remove(name) => DiskAnswer::Removed(library.delete(&name)),
-            Self::Restore(name) => DiskAnswer::Restored(restore(library, name)),
+            Self::Remove(name) => DiskAnswer::Removed(library.delete(&name).map_err(sentence)),
+            Self::Restore(name) => DiskAnswer::Restored(restore(library, name).map_err(sentence)),
             Self::ThrowAway(orphan) => throw_away(library, *orphan),
             Self::File(request) => DiskAnswer::File(files::perform(request, access)),
             Self::List => {
@@ -230,10 +231,9 @@ pub(in crate::tui::runtime) fn not_recorded(answer: &DiskAnswer) -> Option<Strin
     }
 }
 
-/// An error of the library in a sentence.
-#[expect(clippy::needless_pass_by_value, reason = "for `map_err`")]
-fn sentence(error: LibraryError) -> String {
-    error.to_string()
+/// An error of the library in a sentence, with the name that was probably meant.
+fn sentence(library: &Library, error: &LibraryError) -> String {
+    format!("{error}{}", library.suggestion(error))
 }
 
 /// Restores the shape that was deleted last, of that name or of any.
