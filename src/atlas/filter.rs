@@ -45,6 +45,12 @@ pub enum FilterError {
         /// The word.
         found: String,
     },
+    /// A word between conditions.
+    #[error("{found:?}: conditions stand side by side and must all hold, as in na>40 holes=0")]
+    Joined {
+        /// The word.
+        found: String,
+    },
     /// No sign after a name.
     #[error("{name}: expected = != < <= > or >= after it")]
     Sign {
@@ -184,6 +190,9 @@ impl AtlasFilter {
     }
 }
 
+/// What other languages write between conditions.
+const JOINING: [&str; 7] = ["and", "AND", "or", "OR", "&", "&&", ","];
+
 /// The condition that a text begins with, and the text behind it.
 fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
     let in_name = |c: char| c.is_alphanumeric() || c == '_';
@@ -195,7 +204,11 @@ fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
         let end = text.find(char::is_whitespace).map_or(text.len(), |end| end);
         let found = if name.is_empty() { &text[..end] } else { name };
         let found = shortened(found);
-        return Err(FilterError::Unknown { found });
+        return Err(if JOINING.contains(&found.as_str()) {
+            FilterError::Joined { found }
+        } else {
+            FilterError::Unknown { found }
+        });
     };
     let rest = rest.trim_start();
     let signs = SIGNS.iter();
@@ -348,6 +361,10 @@ mod tests {
         );
         assert!(error(">=3").starts_with("\">=3\" is not known"));
         assert_eq!(error("na"), "na: expected = != < <= > or >= after it");
+        assert_eq!(
+            error("na>3 and holes=0"),
+            "\"and\": conditions stand side by side and must all hold, as in na>40 holes=0"
+        );
         assert_eq!(
             error("na>="),
             "na>=: expected a number after it, found \"\""
