@@ -176,5 +176,5 @@ fn the_menu_of_a_narrow_screen_has_every_option() {
         "{}",
         menu(40)
     );
-    assert!(menu(60).starts_with("New  Load  Figure"), "{}", menu(60));
+    assert!(menu(60).starts_with("new  load  figure"), "{}", menu(60));
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! n New   l Load   f Figure   p Picture   s Save   d Delete   q Quit   ? Help      on the matrix, from 70 columns on
-//! New  Load  Figure  Picture  Save  Delete  Quit  ? Help                           the key is the bold letter
+//! new  load  figure  picture  save  delete  quit  ? Help                           the key is the bold letter
 //! n l f p s d  q Quit  ? Help                                                      where that has no room either
 //! Enter accept   Esc cancel   ? help                                               in a form or a list
 //! Tab page   d D descriptor   x export   e ranges   ? help   Esc close             on all pages of Explore
@@ -75,8 +75,12 @@ impl Item<'_> {
         } else if self.binding.keys.is_empty() {
             [keys, ("", Role::Text), (self.name, self.role)]
         } else {
+            // Its key: a capital would be another one.
             let (first, rest) = self.name.split_at(1);
-            [keys, (first, Role::Key), (rest, self.role)]
+            let first = first.to_lowercase();
+            let pieces = [(first.as_str(), Role::Key), (rest, self.role)];
+            write::line(buffer, self.area, theme, pieces);
+            return;
         };
         write::line(buffer, self.area, theme, pieces);
     }

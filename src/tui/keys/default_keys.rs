@@ -349,7 +349,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Home => FIRST, End => LAST] "" "first, last cell";
         [Enter => ACCEPT] "to matrix" "put the imprint of the cell onto the matrix";
         [Char('?') => HELP] "help" "these keys";
-        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "close" "back to the matrix";
+        [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "close" "back to Recognise";
     }
 
     /// While sizes are still looked at, Enter is refused, and Esc stops the work and leaves the page open.
@@ -364,7 +364,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('V') => SEPARATE] "" "resume after a stop";
         [Char('?') => HELP] "help" "these keys";
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL]
-            "close" "stop the work; back to the matrix";
+            "close" "stop the work; back to Recognise";
     }
 
     /// All four arrows move in the history of frames: the page has no cursor that they could move.

@@ -205,7 +205,7 @@ fn a_terminal_without_a_size_gets_one() {
         variables: &variables,
         ..Start::default()
     });
-    program.shows("Quit");
+    program.shows("quit");
     let script = session(false, (60, 20));
     let rows = script.screen();
     program.until("60 × 20", |program| program.rows() == rows.trim_end());
