@@ -286,4 +286,48 @@ mod tests {
         assert_eq!((report.noise, report.repeated), (Some(0.0), 4));
         assert_eq!(report.mask().count(), 0);
     }
+
+    /// What these frames show, each so many times.
+    fn shown<const N: usize>(frames: [([&str; 3], usize); N]) -> FlipReport {
+        let cells = Imprint::from_rows(["###"; 3].iter().copied()).expect("rows");
+        let mut counter = FlipCounter::new(cells);
+        for (rows, times) in frames {
+            let imprint = Imprint::from_rows(rows.iter().copied()).expect("rows");
+            (0..times).for_each(|_| counter.add(&imprint));
+        }
+        counter.finish()
+    }
+
+    #[test]
+    fn a_taxel_is_dead_after_ten_frames_amid_three_quarters_of_its_neighbours() {
+        // Six of the eight neighbours of the one in the middle.
+        let amid = ["###", "#.#", "#.."];
+        assert_eq!(shown([(amid, 9)]).stuck_off.count(), 0);
+        let report = shown([(amid, 10)]);
+        assert!(report.stuck_off.get(1, 1), "{}", report.stuck_off);
+        let fewer = shown([(["###", "#.#", "..."], 10)]);
+        assert!(!fewer.stuck_off.get(1, 1), "{}", fewer.stuck_off);
+    }
+
+    #[test]
+    fn a_taxel_in_a_corner_may_be_dead_too() {
+        // It has three neighbours.
+        let report = shown([([".##", "###", "###"], 10)]);
+        assert_eq!(report.stuck_off.to_string(), "#..\n...\n...");
+    }
+
+    #[test]
+    fn a_taxel_that_is_stuck_on_may_flip_in_one_frame_of_a_hundred() {
+        let (on, off) = (["...", ".#.", "..."], ["..."; 3]);
+        let stuck_on = |times, gone| shown([(on, times), (off, gone)]).stuck_on.count();
+        assert_eq!((stuck_on(9, 0), stuck_on(10, 0)), (0, 1));
+        assert_eq!((stuck_on(98, 1), stuck_on(99, 1)), (0, 1));
+    }
+
+    #[test]
+    fn without_a_flip_the_noise_is_as_uncertain_as_with_one() {
+        let report = shown([(["###"; 3], 12)]);
+        assert_eq!((report.noise, report.repeated), (Some(0.0), 90));
+        assert_eq!(report.standard_error, Some(1.0 / 90.0));
+    }
 }

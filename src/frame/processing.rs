@@ -199,4 +199,38 @@ mod tests {
         );
         assert!(processed.imprint.is_some_and(|imprint| imprint.is_empty()));
     }
+
+    #[test]
+    fn peaks_are_compared_after_a_tare_and_after_a_gain_alone() {
+        let mut frame = Frame::new(2, 1);
+        frame.values_mut().copy_from_slice(&[10.0, 12.0]);
+        let mut processing = Processing::default();
+        let mut tare = TareFrames::new(1);
+        tare.add(&Matrix::filled(2, 1, 4.0)).expect("it fits");
+        let mut sums = |tare: Option<Tare>, gain: Option<Matrix<f64>>| {
+            (processing.tare, processing.gain) = (tare, gain);
+            let processed = processing.run(&frame).expect("it fits");
+            (processed.sum, processed.tared_sum)
+        };
+        assert_eq!(sums(None, None), (22.0, 22.0));
+        assert_eq!(sums(tare.finish().ok(), None), (22.0, 14.0));
+        assert_eq!(sums(None, Some(Matrix::filled(2, 1, 0.5))), (22.0, 11.0));
+    }
+
+    #[test]
+    fn a_product_that_is_too_large_for_a_sum_is_no_value() {
+        let mut frame = Frame::new(3, 1);
+        frame.values_mut().copy_from_slice(&[1e299, -1e299, 2.0]);
+        let mut gain = Matrix::filled(3, 1, 100.0);
+        gain.set(2, 0, 1.0);
+        let mut processing = Processing {
+            gain: Some(gain),
+            rule: Some(Rule::AtLeast(1.0)),
+            ..Processing::default()
+        };
+        let processed = processing.run(&frame).expect("it fits");
+        assert_eq!(processed.tared_sum, 2.0);
+        let imprint = processed.imprint.map(|imprint| imprint.to_string());
+        assert_eq!(imprint.as_deref(), Some("..#"));
+    }
 }

@@ -97,3 +97,19 @@ impl Frame {
         self.values.iter().filter(is_value).count()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_copy_has_all_that_the_frame_has() {
+        let mut frame = Frame::new(2, 1);
+        frame.values_mut().copy_from_slice(&[1.0, 2.0]);
+        (frame.number, frame.channel, frame.label) = (3, 4, Some(5));
+        (frame.time, frame.first) = (Some(0.5), Some((6, 7)));
+        let mut copy = Frame::new(5, 5);
+        copy.copy_from(&frame);
+        assert_eq!(format!("{copy:?}"), format!("{frame:?}"));
+    }
+}

@@ -331,4 +331,21 @@ mod tests {
             assert!(matches!(rule, Err(FrameError::Rule { .. })), "{rule:?}");
         }
     }
+
+    #[test]
+    fn one_frame_of_tare_tells_nothing_of_noise() {
+        let rule = Rule::noise(3.0).expect("in range");
+        let of_frames = |count: u64| {
+            let mut tare = TareFrames::new(count);
+            for _ in 0..count {
+                tare.add(&matrix(&[&[1.0, 1.0]])).expect("of one size");
+            }
+            let tare = tare.finish().expect("all frames");
+            let imprint = rule.imprint(&matrix(&[&[0.9, 1.0]]), Some(&tare), None);
+            imprint.map(|imprint| imprint.to_string())
+        };
+        assert_eq!(of_frames(1), Err(FrameError::NoTare));
+        // All values are equal, so one step is 1.
+        assert_eq!(of_frames(2).as_deref(), Ok(".#"));
+    }
 }

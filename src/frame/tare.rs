@@ -242,4 +242,17 @@ mod tests {
         let many = TareFrames::new(1 << 40).add(&Matrix::filled(64, 64, 0.0));
         assert_eq!(many, Err(FrameError::TareSize { most: 8192 }));
     }
+
+    #[test]
+    fn a_tare_may_be_as_long_as_its_refusal_says() {
+        assert_eq!(TareFrames::new(8192).check_memory(64 * 64), Ok(()));
+        let longer = TareFrames::new(8193).check_memory(64 * 64);
+        assert_eq!(longer, Err(FrameError::TareSize { most: 8192 }));
+    }
+
+    #[test]
+    fn one_step_of_equal_values_is_1() {
+        let tare = tare(&[[7.0, f64::NAN], [7.0, 7.0]]).expect("two frames");
+        assert_eq!((tare.step(), tare.margin(0, 3.0)), (1.0, 1.0));
+    }
 }

@@ -242,4 +242,26 @@ mod tests {
             Err(FrameError::Crop { .. })
         ));
     }
+
+    #[test]
+    fn a_crop_keeps_at_least_one_cell() {
+        let crop = |columns, rows| View {
+            crop: Some(Crop {
+                left: 2,
+                top: 1,
+                columns,
+                rows,
+            }),
+            ..View::default()
+        };
+        assert_eq!(seen(&crop(1, 1)).as_deref(), Ok("6"));
+        let refused = Err(FrameError::Crop {
+            columns: 3,
+            rows: 2,
+        });
+        assert_eq!(
+            (seen(&crop(0, 1)), seen(&crop(1, 0))),
+            (refused.clone(), refused)
+        );
+    }
 }
