@@ -124,6 +124,8 @@ mod tests {
     fn gaps_and_times_that_go_back_do_not_count() {
         let usual = [0.0, 0.125, 98.25, 98.375, 96.0, 96.125];
         assert_eq!(step(usual), Some(0.125));
+        // None of those after it come at once, though they are before the frame that was open.
+        assert_eq!(step([1.0, 1.5, 0.0, 0.5, 1.0, 1.5, 2.0]), Some(0.5));
         let mut with_gap: Vec<f64> = bursts(3, 0.3, 20).collect();
         with_gap.extend(bursts(3, 0.3, 2).map(|time| 11.0 + time));
         assert_eq!(step(with_gap), Some(0.1));

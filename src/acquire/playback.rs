@@ -461,8 +461,10 @@ mod tests {
         };
         assert!(with(&[None, None]), "until 8,000 s, and 7,200 are gone");
         assert!(!with(&[None]), "until 4,000 s");
-        assert!(with(&[Some(1000.0), Some(5000.0)]), "until 9,000 s");
-        assert!(!with(&[Some(5000.0), Some(6000.0)]), "until 7,000 s");
+        // From the first one on, whose own time does not matter.
+        assert!(with(&[Some(1000.0), Some(5000.0)]), "until 8,000 s");
+        let often = [1000.0, 2000.0, 3000.0, 4000.0, 5000.0, 6000.0].map(Some);
+        assert!(!with(&often), "until 6,000 s: they are not 4,000 s apart");
         assert!(!with(&[]), "there is none");
     }
 
@@ -556,5 +558,29 @@ mod tests {
             let steps = times[5..].iter().map(|time| to_nanoseconds(time - begun));
             assert_eq!(steps.collect::<Vec<_>>(), [0.0, 0.1, 0.2], "{name}");
         }
+    }
+
+    #[test]
+    fn a_recording_that_is_repeated_has_the_same_numbers_in_each_round() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("two.jsonl");
+        std::fs::write(&path, "{\"frame\":[[1,2]]}\n{\"frame\":[[3,4]]}\n").expect("written");
+        let options = AcquireOptions {
+            repeat: true,
+            speed: 1e9,
+            ..AcquireOptions::default()
+        };
+        let mut numbers = Vec::new();
+        let result = run(&path, &options, &AtomicBool::new(false), &mut |event| {
+            if let AcquireEvent::Frame { frame, .. } = event {
+                numbers.push(frame.number);
+            }
+            if numbers.len() == 5 {
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        });
+        assert!(result.is_ok());
+        assert_eq!(numbers, [0, 1, 0, 1, 0]);
     }
 }

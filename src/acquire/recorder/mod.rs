@@ -376,10 +376,54 @@ mod tests {
             frame.number = number;
             recorder.add(&frame, None).expect("recorded");
         }
-        recorder.set_view(view(&[4, 6]));
+        recorder.set_view(view(&[4, 5, 6]));
         recorder.finish().expect("finished");
         let beside = description_beside(&path).expect("there").expect("read");
-        assert_eq!(beside.marks, [mark(6)]);
+        assert_eq!(beside.marks, [mark(5), mark(6)]);
+    }
+
+    #[test]
+    fn marks_of_frames_whose_numbers_begin_again_are_kept() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let mut recorder = begun(&path);
+        for number in [5, 6, 0, 1] {
+            let mut frame = Frame::new(1, 1);
+            frame.number = number;
+            recorder.add(&frame, None).expect("recorded");
+        }
+        let marks = vec![FrameMark {
+            number: 1,
+            time: None,
+        }];
+        recorder.set_view(RecordedView {
+            marks: marks.clone(),
+            ..RecordedView::default()
+        });
+        recorder.finish().expect("finished");
+        let beside = description_beside(&path).expect("there").expect("read");
+        assert_eq!(beside.marks, marks);
+    }
+
+    #[test]
+    fn the_time_of_a_frame_is_measured_unless_the_source_states_it() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for (name, stated, expected) in [("a.npy", None, 0.25), ("b.npy", Some(0.2), 0.2)] {
+            let path = folder.path().join(name);
+            let metadata = RecordingMetadata {
+                seconds_per_frame: stated,
+                ..RecordingMetadata::default()
+            };
+            let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
+            let mut recorder = recorder.expect("begun");
+            for time in [0.0, 0.25, 0.5, 0.75] {
+                let added = recorder.add(&Frame::new(1, 1), Some(time));
+                added.expect("recorded");
+            }
+            recorder.finish().expect("finished");
+            let beside = description_beside(&path).expect("there").expect("read");
+            assert_eq!(beside.seconds_per_frame, Some(expected));
+        }
     }
 
     #[test]
@@ -447,5 +491,26 @@ mod tests {
         let metadata = RecordingMetadata::default();
         let refused = FrameRecorder::create(&path, Existing::Replaced, &metadata);
         assert!(matches!(refused, Err(RecorderError::Ending { .. })));
+    }
+
+    #[test]
+    fn a_value_that_a_reader_would_refuse_is_recorded_as_none() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let mut recorder = begun(&path);
+        let mut frame = Frame::new(3, 1);
+        let values = [1e300, 1.1e300, f64::NEG_INFINITY];
+        frame.values_mut().copy_from_slice(&values);
+        recorder.add(&frame, None).expect("recorded");
+        recorder.finish().expect("finished");
+        let bytes = std::fs::read(&path).expect("there");
+        let words = bytes[256 + 16..].chunks_exact(8);
+        let found: Vec<String> = words
+            .map(|word| f64::from_le_bytes(word.try_into().expect("eight bytes")).to_string())
+            .collect();
+        assert_eq!(
+            found,
+            [1e300.to_string(), "NaN".to_owned(), "NaN".to_owned()]
+        );
     }
 }
