@@ -322,3 +322,31 @@ pub fn words(file: &[u8]) -> Option<Vec<u64>> {
         .map(|chunk| Some(u64::from_le_bytes(chunk.try_into().ok()?)))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_header_has_each_key_once_and_commas_between_them() {
+        let parsed = |text: &str| dictionary(text).map(|header| (header.code, header.shape));
+        let whole = Some(("<f8".to_owned(), vec![2, 3]));
+        for text in [
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }",
+            "{\"shape\":(2,3,),\"fortran_order\":False,\"descr\":\"<f8\"}",
+        ] {
+            assert_eq!(parsed(text), whole, "{text}");
+        }
+        for text in [
+            "{'descr': '<f8' 'fortran_order': False, 'shape': (2, 3), }",
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), 'shape': (3, 2)}",
+            "{'descr': '<f8', 'descr': '<f8', 'fortran_order': False, 'shape': (2, 3)}",
+            "{'descr': '<f8', 'fortran_order': False}",
+            "{'descr': '<f8', 'fortran_order': 0, 'shape': (2, 3)}",
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), 'more': ''}",
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (2, -3)}",
+        ] {
+            assert_eq!(parsed(text), None, "{text}");
+        }
+    }
+}

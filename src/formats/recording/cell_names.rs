@@ -399,6 +399,8 @@ mod tests {
             cells(&["r0c0", "r0c1", "r0c2", "r0c4"]),
             incomplete(1, 5, 4)
         );
+        // Half of them are too few to be cells.
+        assert_eq!(cells(&["r0c0", "r1c1"]), None);
         // One is there twice.
         assert_eq!(cells(&["r0c0", "r0c1", "r0c1"]), None);
         assert_eq!(cells(&["a", "b"]), None);
@@ -415,6 +417,29 @@ mod tests {
             assert_eq!(cells(&[first, second, "c0", "c1", "c2", "c3"]), counted);
         }
         assert_eq!(cells(&["s0_0", "s0_4294967295"]), None);
+        // The names of a single row count, too, but they are pairs.
+        assert_eq!(cells(&["S0_0", "S0_1", "S0_2"]), grid(1, 3, &[0, 1, 2]));
+        // Of two counts of the same length the first.
+        assert_eq!(
+            cells(&["a1", "a2", "a3", "b1", "b2", "b3"]),
+            Some(NamedCells::Counted(0, 3))
+        );
+    }
+
+    #[test]
+    fn names_of_cells_are_those_of_at_most_512_a_side() {
+        let row = |length: u16| -> Vec<String> {
+            (0..length).map(|column| format!("r0c{column}")).collect()
+        };
+        let sides = |names: &[String]| {
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            match cells(&names) {
+                Some(NamedCells::Grid(rows, columns, _)) => Some((rows, columns)),
+                _ => None,
+            }
+        };
+        assert_eq!(sides(&row(512)), Some((1, 512)));
+        assert_eq!(sides(&row(513)), None);
     }
 
     #[test]
@@ -446,6 +471,9 @@ mod tests {
             ("force in s", None),
             ("Frame", Some(FieldRole::Label)),
             ("frameNumber", Some(FieldRole::Label)),
+            ("id 2", Some(FieldRole::Label)),
+            ("t1_ms 2", None),
+            ("ts1", bare),
             ("sensor_id", None),
             ("sensor s1", None),
             ("force", None),
@@ -474,6 +502,7 @@ mod tests {
             ["time_s", "time_ns"],
             ["start.sec", "end.nanosec"],
             ["time", "nanosec"],
+            ["time_sec", "time_msec"],
         ] {
             assert_eq!(rest_of_second(&[first, second], 0), None, "{first}");
         }

@@ -320,18 +320,28 @@ mod tests {
 
     #[test]
     fn a_description_completes_a_channel_but_for_what_the_recording_says() {
+        let rule = |percent| SetRule {
+            rule: Rule::Percent(percent),
+            least: 0,
+            from: RuleOrigin::File,
+        };
         let own = ChannelInfo {
+            rule: Some(rule(30.0)),
             unit: Some("kPa".to_owned()),
+            seconds_per_frame: Some(0.1),
             ..ChannelInfo::default()
         };
         let description = RecordingMetadata {
+            rule: Some(rule(40.0)),
             unit: Some("mmHg".to_owned()),
+            seconds_per_frame: Some(0.2),
             pitch_mm: Some([2.0, 3.0]),
             ..RecordingMetadata::default()
         };
         assert_eq!(own.completed(None), own);
         let completed = own.completed(Some(&description));
-        assert_eq!(completed.unit, own.unit);
+        assert_eq!((completed.unit, completed.rule), (own.unit, own.rule));
+        assert_eq!(completed.seconds_per_frame, own.seconds_per_frame);
         assert_eq!(completed.pitch_mm, description.pitch_mm);
     }
 

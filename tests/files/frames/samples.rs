@@ -164,6 +164,8 @@ fn a_line_of_commas_between_frames_is_one_without_cells() {
         ("1,2\n3,4\n,\n,\n", &[2, 2]),
         ("frame,r0c0,r0c1\n0,1,2\n,,\n1,3,4\n", &[2, 2]),
         ("1,2\n,,,\n3,4\n", &[2, 2]),
+        // One more ends the line.
+        ("1,2,\n,,\n3,4,\n", &[2, 0, 2]),
     ] {
         let found = recorded(text.as_bytes(), Some((1, 2)));
         assert!(found.error.is_none(), "{text}: {:?}", found.error);

@@ -284,6 +284,9 @@ fn times_since_1970_are_exact_and_their_size_is_a_unit() {
         };
         assert_eq!(notes, expected, "{text}");
     }
+    // As exact with 20 digits.
+    let text = "time_s,r0c0,r0c1\n1714564800.1234567890,1,2\n1714564800.1234567910,3,4\n";
+    assert_eq!(times(text), (vec![Some(0.0), Some(2e-9)], vec![]));
     let line = |step| format!("{{\"timestamp\":{},\"frame\":[[1,2]]}}\n", start + step);
     let noted = "the times have no unit and are taken as nanoseconds since 1970".to_owned();
     let found = times(&(line(0) + &line(1_000_001)));
@@ -324,6 +327,9 @@ fn comments_and_units_are_no_frames() {
     let found = recorded(text.as_bytes(), None);
     assert_eq!(found.channels[0].unit, None);
     assert_eq!(frames(text, None)[1].1, Some(2.0));
+    // A dash is no unit.
+    let text = "time_s,r0c0,r0c1\ns,-,-\n1,1,2\n3,3,4\n";
+    assert_eq!(recorded(text.as_bytes(), None).channels[0].unit, None);
     // A duration before the time is none.
     let text = "latency_ms,timestamp,r0c0,r0c1\n3,0.5,1,2\n4,0.75,3,4\n";
     assert_eq!(frames(text, None)[1].1, Some(0.25));
@@ -548,6 +554,11 @@ fn a_key_that_is_the_name_of_a_time_gives_it_where_t_does_not() {
             ],
             Some(0.100_000_001),
         ),
+        // A clock without a date may be anything.
+        (
+            ["\"timestamp\":\"12:00:00\"", "\"timestamp\":\"12:00:01\""],
+            None,
+        ),
         (
             ["\"time_s\":[1],\"force\":1", "\"time_s\":{},\"force\":2"],
             None,
@@ -581,4 +592,32 @@ fn a_line_of_json_gives_a_key_once() {
     }
     let found = recorded(b"{\"frame\":[[1]],\"x\":1,\"x\":2}\n", None);
     assert_eq!(found.frames.len(), 1);
+}
+
+#[test]
+fn the_time_of_a_line_of_json_may_come_after_many_other_keys() {
+    let others: String = (0..20).map(|key| format!("\"force_{key}\":1,")).collect();
+    let line = |time: &str| format!("{{{others}\"timestamp\":{time},\"frame\":[[1,2]]}}\n");
+    let text = line("1.5") + &line("1.75");
+    assert_eq!(frames(&text, None)[1].1, Some(0.25));
+}
+
+#[test]
+fn rows_that_are_parted_one_by_one_do_not_say_how_many_are_a_frame() {
+    let found = recorded(b"1,2\n\n3,4\n\n5,6\n\n", None);
+    assert!(error(&found).contains("--rows"), "{}", error(&found));
+    assert_eq!(values("1,2\n\n3,4\n\n5,6\n\n", Some((1, 2))).len(), 3);
+}
+
+#[test]
+fn json_lines_have_at_most_256_channels() {
+    let lines = |count: usize| -> String {
+        let line = |number| format!("{{\"channel\":\"s{number}\",\"frame\":[[1,2]]}}\n");
+        (0..count).map(line).collect()
+    };
+    let found = recorded(lines(256).as_bytes(), None);
+    assert!(found.error.is_none(), "{:?}", found.error);
+    assert_eq!(found.channels.len(), 256);
+    let found = recorded(lines(257).as_bytes(), None);
+    assert_eq!(error(&found), "line 257: more than 256 channels");
 }

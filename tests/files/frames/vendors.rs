@@ -144,6 +144,36 @@ fn the_pages_of_a_picture_of_emed_are_one_frame() {
 }
 
 #[test]
+fn the_header_of_emed_gives_the_pitch_and_the_time_of_a_picture() {
+    let of = |from: &str, to: &str| {
+        let first = emed_header(1).replace(from, to);
+        let second = emed_header(2).replace(from, to);
+        let found = recorded(
+            format!("{first}{LEFT}\u{c}\n{second}{LEFT}").as_bytes(),
+            None,
+        );
+        assert_eq!((error(&found), found.frames.len()), (None, 2), "{to}");
+        (found.channels[0].pitch_mm, found.frames[1].time)
+    };
+    assert_eq!(of("", ""), (Some([10.0, 10.0]), Some(0.02)));
+    let millimetres = of("1.000x1.000 cm", "5.0x7.5 mm");
+    assert_eq!(millimetres, (Some([5.0, 7.5]), Some(0.02)));
+    let seconds = of("20.0 ms", "0.5 s");
+    assert_eq!(seconds, (Some([10.0, 10.0]), Some(0.5)));
+    // 0 is none.
+    assert_eq!(of("20.0 ms", "0.0 ms"), (Some([10.0, 10.0]), None));
+}
+
+#[test]
+fn a_picture_of_emed_without_rows_is_damaged() {
+    let header = emed_header(1).replace("  Force[N]=sum*sensor_area in row/column", "");
+    let found = recorded(format!("{header}\t7\t8\n\n").as_bytes(), None);
+    assert_eq!(found.frames.len(), 0);
+    let expected = "line 9: the picture ends here, expected more rows, then their Force";
+    assert_eq!(error(&found).as_deref(), Some(expected));
+}
+
+#[test]
 fn every_force_of_emed_is_checked() {
     let window =
         "\t7\t8\tForce\n4\t0.00\t20.00\t2.00\n5\t30.00\t0.00\t3.00\nForce\t3.00\t2.00\t5.00\n";
@@ -165,11 +195,19 @@ fn every_force_of_emed_is_checked() {
             "2.00\t7.00",
             "the force of all cells should be 7, but the values give 5",
         ),
+        // Each sum was rounded, and then their sum.
+        (
+            "2.00\t5.00",
+            "2.00\t5.02",
+            "the force of all cells should be 5.02, but the values give 5",
+        ),
     ] {
         let found = read(&window.replace(from, to));
         assert_eq!(error(&found), None);
         assert_eq!(notes(&found), [format!("frame 0 (label 1): {what}")]);
     }
+    let rounded = read(&window.replace("2.00\t5.00", "2.00\t5.01"));
+    assert_eq!(notes(&rounded), [""; 0]);
     // All values are there, but not all forces.
     let found = read(window.trim_end().trim_end_matches("\t5.00"));
     assert_eq!(found.frames.len(), 1);
