@@ -215,6 +215,48 @@ fn is_right_after_a_kill(round: u32, file: &Path) {
     );
 }
 
+/// Only of a recording it has to be known first that no other channel comes.
+#[test]
+fn the_first_frame_of_a_stream_is_answered_before_the_second_comes() {
+    let mut watch = started(&[
+        "watch",
+        "-",
+        "--format",
+        "lines",
+        "--rows",
+        "2",
+        "--columns",
+        "2",
+    ]);
+    let mut input = watch.stdin.take().expect("piped");
+    let output = watch.stdout.take().expect("piped");
+    let (sender, answers) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        let mut answer = String::new();
+        let read = BufReader::new(output).read_line(&mut answer);
+        // Nobody waits any longer.
+        let _ = sender.send(read.map(|_| answer));
+    });
+    input.write_all(stream(7..8).as_bytes()).expect("written");
+    let answer = answers.recv_timeout(Duration::from_secs(20));
+    drop(input);
+    assert!(watch.wait().expect("it ends").success());
+    let answer = answer.expect("an answer while the stream is open");
+    assert_eq!(lines(&answer.expect("read"))[0]["frame"], 0);
+}
+
+#[test]
+fn a_first_frame_that_does_not_fit_is_an_error() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let gain = folder.path().join("gain.csv");
+    fs::write(&gain, "1,2,3\n").expect("written");
+    let line = format!("watch - --rows 2 --columns 2 --gain {}", gain.display());
+    let run = taxel(&line, stream(0..3));
+    assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""));
+    let said = "the gain has 3 columns and 1 row";
+    assert!(run.stderr.contains(said), "{}", run.stderr);
+}
+
 #[test]
 fn a_fifo_is_read_until_its_writer_closes_it() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -317,6 +317,9 @@ mod tests {
         assert_eq!(decoded(&always, (2, 2), true).0.len(), 9);
         let once = b"\x01\x5b\x03\x04\xff\x01\x5d\x03\x04\xff";
         assert_eq!(decoded(once, (2, 2), true).0.len(), 2);
+        let one = b"\x01\x5b\x03\x04\xff\x01\x5d";
+        let wanted = vec![vec![1.0, 91.0, 3.0, 4.0]];
+        assert_eq!(decoded(one, (2, 2), true), (wanted, 1));
         // A damaged frame among them is dropped, wherever it is.
         for at in 0..9 {
             let mut stream = always.clone();
@@ -324,5 +327,13 @@ mod tests {
             let (frames, _) = decoded(&stream, (2, 2), true);
             assert_eq!(frames.len(), 8, "{at}");
         }
+    }
+
+    #[test]
+    fn an_escape_of_nothing_damages_its_frame() {
+        let (whole, damaged) = (b"\x5b\x01\x02\x03\x04\x5d", b"\x5b\x01\x02\x03\x04\x5c\x5d");
+        let stream = [&whole[..], damaged, whole, whole, whole].concat();
+        let wanted = vec![vec![1.0, 2.0, 3.0, 4.0]; 4];
+        assert_eq!(decoded(&stream, (2, 2), true), (wanted, 1));
     }
 }

@@ -229,6 +229,35 @@ fn a_provisional_frame_is_confirmed_or_withdrawn() {
 }
 
 #[test]
+fn the_start_of_a_frame_of_flexitac_alone_is_a_torn_frame() {
+    let given = options(Some((1, 3))).with_format(StreamFormat::Flexitac);
+    let (found, counts) = decoded(given, &[0xaa, 0x55, 1, 2], &mut Random::new(4));
+    assert_eq!((found.len(), counts.dropped), (0, 1));
+    // Without a marker it is none.
+    let (found, counts) = decoded(given, &[1, 2, 3, 4], &mut Random::new(5));
+    assert_eq!((found.len(), counts.dropped), (0, 0));
+}
+
+#[test]
+fn a_line_that_is_too_long_is_dropped_and_the_next_one_is_read() {
+    let given = options(Some((1, 2))).with_format(StreamFormat::Lines);
+    let mut decoder = StreamDecoder::new(given);
+    let mut frames = Vec::new();
+    let mut sink = |event: StreamEvent<'_>| {
+        if let StreamEvent::Frame(frame) = event {
+            frames.push(frame.values().to_vec());
+        }
+    };
+    decoder.push(b"1 2\n", &mut sink);
+    // Blanks are no values.
+    decoder.push(&vec![b' '; 9 << 20], &mut sink);
+    decoder.push(b"3 4\n5 6\n", &mut sink);
+    decoder.finish(&mut sink);
+    assert_eq!(decoder.counts().dropped, 1);
+    assert_eq!(frames, [[1.0, 2.0], [5.0, 6.0]]);
+}
+
+#[test]
 fn torn_short_long_and_garbled_frames_are_counted_and_never_joined() {
     let lines = "9 9\n9 9\n\n1 2\n3 4\n\n1 2\n3\n\n1 2\n3 x\n\n1 2\n3 4\n5 6\n\n5 6\n7 8\n\n1 2\n3";
     let (found, counts) = decoded(options(None), lines.as_bytes(), &mut Random::new(1));
