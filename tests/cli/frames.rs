@@ -883,3 +883,59 @@ fn a_frame_without_cells_is_no_peak() {
     write(none);
     assert!(peak("")["channels"][0]["peak"].is_null());
 }
+
+#[test]
+fn a_peak_is_that_of_the_values_after_a_gain() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (path, gain) = (
+        folder.path().join("two.jsonl"),
+        folder.path().join("gain.csv"),
+    );
+    let frames = "{\"frame\":[[5,1]]}\n{\"frame\":[[1,4]]}\n";
+    std::fs::write(&path, frames).expect("written");
+    std::fs::write(&gain, "1,3\n").expect("written");
+    let peak = |flags: &str| {
+        let line = format!(
+            "frames {} --json --peak --at-least 1 {flags}",
+            path.display()
+        );
+        let run = taxel(&line, "");
+        assert_eq!(run.status, Some(0), "{run:?}");
+        let answer: Value = serde_json::from_str(&run.stdout).expect("JSON");
+        answer["frame"].clone()
+    };
+    assert_eq!(peak(""), 0);
+    assert_eq!(peak(&format!("--gain {}", gain.display())), 1);
+}
+
+#[test]
+fn a_recording_of_more_cells_than_an_imprint_is_listed() {
+    let frame = format!("{{\"frame\":[[{}]]}}\n", vec!["1"; 70].join(","));
+    let run = taxel("frames - --json", frame.as_str());
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    let listed: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    assert_eq!(listed["channels"][0]["frames"], 1);
+    // A crop of it has to fit.
+    let run = taxel("frames - --json --crop 0,0,71x1", frame);
+    assert_eq!(run.status, Some(1), "{run:?}");
+}
+
+#[test]
+fn of_many_warnings_the_first_twenty_are_shown() {
+    let head = "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nUNITS raw\nASCII_DATA @@\n";
+    let wrong = |frames: u32| -> String {
+        let frame = |number| format!("\nFrame {number}, 0,,,,,Raw Sum=,,9\n1,2\n");
+        (1..=frames).map(frame).collect()
+    };
+    let warnings = |frames: u32| {
+        let run = taxel("frames - --json", format!("{head}{}\n@@\n", wrong(frames)));
+        assert_eq!(run.status, Some(0), "{run:?}");
+        run.stderr.lines().map(str::to_owned).collect::<Vec<_>>()
+    };
+    let all = warnings(20);
+    assert_eq!(all.len(), 20);
+    assert!(all[19].contains("frame 19"), "{}", all[19]);
+    let some = warnings(22);
+    assert_eq!(some[..20], all[..]);
+    assert_eq!(some[20..], ["warning: standard input: 2 more of these"]);
+}
