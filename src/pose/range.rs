@@ -392,4 +392,22 @@ mod tests {
             assert_eq!(DecimalRange::rounded(odd, 9), None, "{odd}");
         }
     }
+
+    #[test]
+    fn half_a_step_has_one_decimal_more_as_long_as_a_range_can() {
+        let half = |text: &str| {
+            let range: DecimalRange = text.parse().expect("a range");
+            range.half_a_step_on().map(|half| half.to_string())
+        };
+        assert_eq!(half("5:5.9:0.1").as_deref(), Some("5.05:5.95:0.1"));
+        assert_eq!(half("5").as_deref(), Some("5"));
+        let finest = "0:0.00000000002:0.00000000001";
+        let expected = "0.000000000005:0.000000000025:0.00000000001";
+        let parsed = |text: &str| text.parse::<DecimalRange>().ok();
+        let range = parsed(finest).expect("a range");
+        assert_eq!(range.half_a_step_on(), parsed(expected));
+        // Thirteen decimals, and sixteen digits.
+        assert_eq!(half("0:0.000000000002:0.000000000001"), None);
+        assert_eq!(half("0:999999999999999:111111111111111"), None);
+    }
 }

@@ -190,4 +190,20 @@ mod tests {
         assert_eq!(image(&picture("##\n.#\n.#"), "0:359:1", 60), None);
         assert_eq!(image(&picture("..\n.."), "0:359:1", 60), None);
     }
+
+    #[cfg(feature = "recognition")]
+    #[test]
+    fn a_picture_looks_the_same_after_a_quarter_turn_under_one_zoom_alone() {
+        let rows = ".#.\n###\n.#.".parse().expect("rows");
+        let plus = Source::Picture(Picture::at_home(rows));
+        let period = |zoom_x: &str, zoom_y: &str| {
+            let zoom = |text: &str| text.parse().expect("a range");
+            let ranges = Ranges::default().with(Axis::ZoomX, zoom(zoom_x));
+            exact_period(&plus, &ranges.with(Axis::ZoomY, zoom(zoom_y)))
+        };
+        assert_eq!(period("2", "2"), Some(90.0));
+        assert_eq!(period("2", "1"), Some(180.0));
+        // Of two zooms each, some poses have different ones.
+        assert_eq!(period("1:2:1", "1:2:1"), Some(180.0));
+    }
 }

@@ -455,6 +455,9 @@ mod tests {
         assert_eq!(steps(&format!("{turn}180"), numbers), [1, 1, 0]);
         assert_eq!(steps(&format!("{turn}30"), numbers), [6, 6, 9]);
         assert_eq!(steps("cg_cd=30", numbers), [6, -6, -3]);
+        // A turn has no whole number of these.
+        assert_eq!(steps(&format!("{turn}7"), numbers), [26, -26, -11]);
+        assert_eq!(steps(&format!("{turn}720"), numbers), [0, 0, 0]);
     }
 
     #[test]
@@ -466,5 +469,14 @@ mod tests {
             [5, 5, 4]
         );
         assert_eq!([-below, -45.0].map(|own| rounding.steps(own)), [31, 31]);
+    }
+
+    #[test]
+    fn steps_are_from_a_billionth_to_a_billion() {
+        let is_read = |step: &str| format!("cg_cd={step}").parse::<Rounding>().is_ok();
+        assert!(is_read("1e-9") && is_read("1e9"));
+        for step in ["9e-10", "1.1e9", "0", "-1", "NaN", "inf"] {
+            assert!(!is_read(step), "{step}");
+        }
     }
 }

@@ -150,4 +150,47 @@ mod tests {
         assert_eq!(stop_after(all - 1), Err(TrainingError::Stopped));
         assert_eq!(stop_after(all), Ok(result));
     }
+
+    #[test]
+    fn touches_count_with_weights_and_the_nearest_names_what_is_missing() {
+        let steps = GridSteps::new(4, 30).expect("divisors");
+        let mut shapes = equal_figures();
+        shapes[0].weight = 3;
+        let training = Training::fitting(shapes.clone(), steps).expect("they fit");
+        let model = training.run().expect("not stopped");
+        let mut ranges = *model.ranges();
+        for axis in [Axis::X0, Axis::Y0, Axis::Angle] {
+            ranges[axis] = ranges[axis].half_a_step_on().expect("few decimals");
+        }
+        let between = Training::new(shapes, *model.sensor(), model.anchor(), ranges);
+        let between = between.expect("in range").allow_cut(true).run();
+        let between = between.expect("not stopped");
+        let mut expected = HalfStep {
+            touches: 0,
+            held: 0,
+            right: 0,
+            right_with_nearest: 0,
+        };
+        for key in 0..between.keys().len() {
+            let touch = between.keys().imprint(key).expect("none is empty");
+            // Two taxels more on each side.
+            let mut wider = Imprint::empty(touch.columns() + 4, touch.rows() + 4);
+            for (column, row) in touch.active() {
+                wider.set(column + 2, row + 2, true);
+            }
+            let nearest = model.nearest(&wider).expect("it has keys");
+            for &count in between.counts(key) {
+                let touches = between.weighted(count);
+                expected.touches += touches;
+                let right = u128::from(nearest.shape == usize::from(count.shape)) * touches;
+                expected.right_with_nearest += right;
+                if nearest.distance == 0 {
+                    expected.held += touches;
+                    expected.right += right;
+                }
+            }
+        }
+        assert!(expected.right_with_nearest > expected.right);
+        assert_eq!(model.half_step(&|_| true), Ok(expected));
+    }
 }

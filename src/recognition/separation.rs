@@ -524,4 +524,44 @@ mod tests {
         assert_eq!(stopped, Err(TrainingError::Stopped));
         assert_eq!(separation.touches(), 7 * 100 * 72);
     }
+
+    #[test]
+    fn an_error_that_is_just_allowed_is_small_enough_and_not_missed() {
+        let point = |value: f64, right: u128| SeparationPoint {
+            value,
+            scale: value,
+            threshold: 0.5,
+            side: 16,
+            touches: 10,
+            right,
+            certain: 0,
+            keys: 1,
+        };
+        let separation = coarse(equal_figures());
+        let smallest = |scan: &[SeparationPoint]| {
+            let found = separation.smallest(SizeAxis::Scale, scan, 0.1, &|_| true);
+            found.expect("nothing is computed")
+        };
+        let scan = [point(1.0, 9), point(2.0, 8), point(3.0, 9), point(4.0, 10)];
+        let found = smallest(&scan).expect("the first one");
+        assert_eq!((found.point.value, found.missed_again), (1.0, 1));
+        assert_eq!(smallest(&scan[1..2]), None);
+    }
+
+    #[test]
+    fn a_scale_multiplies_the_zoom_that_a_picture_has() {
+        let ranges = |zoom: f64, scale: f64| {
+            let rows = "##\n#.".parse().expect("rows");
+            let mut source = Source::Picture(Picture::at_home(rows));
+            for axis in [Axis::ZoomX, Axis::ZoomY] {
+                let zoomed = source.with(axis.parameter(), zoom, &Sensor::LARGEST);
+                source = zoomed.expect("in range");
+            }
+            let separation = coarse(vec![NamedShape::new("corner", source)]);
+            let training = separation.training(scale, 0.5).expect("it fits");
+            *training.grids()[0].ranges()
+        };
+        assert_eq!(ranges(2.0, 1.5), ranges(1.0, 3.0));
+        assert_eq!(ranges(2.0, 1.5)[Axis::ZoomX], DecimalRange::whole(3));
+    }
 }

@@ -596,4 +596,27 @@ mod tests {
         let error = rate.map(|rate| (rate.accuracy(), rate.standard_error()));
         assert_eq!(error, Some((0.5, 0.0)));
     }
+
+    #[test]
+    fn the_standard_error_of_a_heavy_shape_counts_with_its_weight() {
+        let rate = |right| ShapeRate {
+            touches: 100,
+            right,
+            ..ShapeRate::default()
+        };
+        let found = RecognitionRate::of(&[(3, rate(50)), (1, rate(80))]);
+        assert_eq!(found.accuracy(), 230.0 / 400.0);
+        // The variances are 25 and 16.
+        let error = (9.0 * 25.0 + 16.0_f64).sqrt() / 400.0;
+        assert!((found.standard_error() - error).abs() < 1e-15, "{found:?}");
+    }
+
+    #[test]
+    fn a_single_run_has_a_mean_but_no_error() {
+        let found = summary(1, &[Some((3, true))]);
+        assert_eq!((found.mean, found.standard_error), (Some(3.0), None));
+        let found = summary(2, &[Some((3, true)), Some((5, false))]);
+        assert_eq!((found.mean, found.standard_error), (Some(4.0), Some(1.0)));
+        assert_eq!((found.reached, found.right), (2, 1));
+    }
 }

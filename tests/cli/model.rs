@@ -341,6 +341,18 @@ fn a_training_is_taken_up_where_it_was_left() {
         );
         assert!(run.stderr.contains("error: part.npz is of another study ("));
     }
+    // Poses that are cut off have to be allowed again.
+    fs::remove_file(place.path("part.npz")).expect("it is there");
+    let cut = "washer --columns 8 --rows 8";
+    assert_eq!(train(&format!("{cut} --allow-cut")).status, Some(0));
+    assert_eq!(train(&format!("{cut} --allow-cut")).status, Some(0));
+    let run = train(cut);
+    let said = "it has poses that the sensor cuts off";
+    assert!(
+        run.status == Some(1) && run.stderr.contains(said),
+        "{}",
+        run.stderr
+    );
     fs::write(place.path("part.npz"), &written[..100]).expect("written");
     let run = train(of);
     assert!(

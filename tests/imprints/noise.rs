@@ -150,6 +150,34 @@ fn touches_that_contradict_each_other_are_weighed_not_ruled_out() {
 }
 
 #[test]
+fn shapes_that_each_leave_one_of_two_touches_only_are_both_possible() {
+    let sensor = sensor(16);
+    let shape = |name: &str, width: f64| {
+        let figure = Figure::rectangle(3.0, width).on(&sensor);
+        NamedShape::new(name, figure.expect("in range"))
+    };
+    let shapes = vec![shape("bar", 1.0), shape("block", 2.0).weighted(3)];
+    let model = train(shapes, 16, ranges("5", "5", "0"));
+    let read = |text: &str| text.parse::<Imprint>().expect("an imprint");
+    let bar = read(".....\n.###.\n.....\n.....\n.....");
+    let block = read(".....\n.###.\n.###.\n.....\n.....");
+    for flip in [1e-9, 1e-6, 0.001, 0.01] {
+        let noise = Noise::new(flip).expect("in range");
+        let touches = [bar, block];
+        let answer = model.recognise(Evidence::of(&touches).under(Some(&noise)));
+        assert_eq!(answer.ranking.len(), 2, "{flip}");
+        let expected = of_several(&model, &touches, flip);
+        for (shape, found) in answer.ranking {
+            let expected = expected[shape];
+            assert!(
+                (found - expected).abs() < 1e-6,
+                "{flip}: {found} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
 fn heavy_shapes_count_from_afar() {
     let sensor = sensor(16);
     let shape = |name: &str, width: f64| {
@@ -210,6 +238,23 @@ fn without_noise_a_mask_does_not_make_the_impossible_certain() {
     assert_eq!(nearest.map(|near| near.distance), Some(1));
     let distance = model.nearest(&torn).map(|near| near.distance);
     assert_eq!(distance, Some(1), "where it is not known");
+}
+
+#[test]
+fn a_noise_of_0_leaves_a_certain_answer_certain() {
+    let model = tiny();
+    let touch: Imprint = ".....\n.##..\n.##..\n.....\n....."
+        .parse()
+        .expect("an imprint");
+    let state = |flip: f64| {
+        let noise = Noise::new(flip).expect("in range");
+        let touches = [touch];
+        let evidence = Evidence::of(&touches).under(Some(&noise));
+        model.recognise(evidence).state
+    };
+    let without = model.recognise(Evidence::of(&[touch])).state;
+    assert_eq!(without, AnswerState::Certain);
+    assert_eq!((state(0.0), state(1e-6)), (without, AnswerState::Likely));
 }
 
 #[test]
@@ -285,6 +330,29 @@ fn small_noise_is_looked_up_and_larger_noise_scanned() {
     assert!(model.posterior_under(&nothing, &noise(0.01)).is_some());
     for wrong in [-0.1, 0.5, 1.0, f64::NAN, f64::INFINITY] {
         assert!(Noise::new(wrong).is_err(), "{wrong}");
+    }
+}
+
+#[test]
+fn nothing_is_found_as_often_when_it_is_looked_up_as_when_it_is_scanned() {
+    let sensor = sensor(16);
+    let shape = |name: &str, (length, width): (f64, f64)| {
+        let figure = Figure::rectangle(length, width).on(&sensor);
+        NamedShape::new(name, figure.expect("in range"))
+    };
+    // The dot leaves one taxel or none.
+    let shapes = vec![shape("bar", (2.0, 1.0)), shape("dot", (0.8, 0.9))];
+    let model = train(shapes, 16, ranges("5:5.9:0.1", "5:5.9:0.1", "0"));
+    let nothing = Imprint::empty(5, 5);
+    let distances = |flip: f64| {
+        let noise = Noise::new(flip).expect("in range");
+        model.distances(&nothing, &noise).expect("keys fit")
+    };
+    let (near, far) = (distances(1e-8), distances(0.01));
+    assert_eq!((near.method, far.method), (Method::OneFlip, Method::Scan));
+    assert!(near.touches[1].iter().all(|&touches| touches > 0));
+    for (near, far) in near.touches.iter().zip(&far.touches) {
+        assert_eq!(near[..2], far[..2]);
     }
 }
 

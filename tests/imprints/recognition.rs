@@ -315,6 +315,39 @@ fn cut_poses_are_refused_unless_allowed() {
     assert_eq!((cut, poses), (360_000, 360_000));
     let model = set().allow_cut(true).run().expect("allowed");
     assert_eq!(model.cut(), [360_000]);
+    // Those of the shards add up.
+    let part = |number| {
+        let shard = Shard::new(number, 3).expect("a shard");
+        let part = set().allow_cut(true).shard(shard).run();
+        part.expect("allowed")
+    };
+    let merged = Model::merge([1, 2, 3].map(part)).expect("all three");
+    assert_eq!(merged.cut(), [360_000]);
+}
+
+#[test]
+fn among_descriptors_that_tell_as_much_the_first_in_the_table_is_chosen() {
+    let sensor = sensor(16);
+    let shape = |name: &str, length: f64| {
+        let figure = Figure::rectangle(length, 2.0).on(&sensor);
+        NamedShape::new(name, figure.expect("in range"))
+    };
+    let shapes = vec![shape("short", 3.0), shape("long", 5.0)];
+    let model = train(shapes, 16, ranges("5", "5", "0"));
+    let chosen: Vec<&str> = greedy(&model, &[])
+        .iter()
+        .map(|(own, _)| own.key())
+        .collect();
+    let tells = |one: &ShapeDescriptor| {
+        let given: GivenDescriptors = one.key().parse().expect("a descriptor");
+        given.evaluate(&model).error() == 0.0
+    };
+    let telling: Vec<&str> = ShapeDescriptor::all()
+        .filter(tells)
+        .map(ShapeDescriptor::key)
+        .collect();
+    assert!(telling.len() > 1, "{telling:?}");
+    assert_eq!(chosen, telling[..1]);
 }
 
 #[test]
@@ -443,6 +476,18 @@ fn two_names_for_one_shape_can_never_be_told_apart() {
     assert_eq!(
         (answer.state, answer.shape, answer.tied.as_slice()),
         (AnswerState::Tied, Some(0), [0, 1].as_slice())
+    );
+    // One of several touches at the rim may be cut off.
+    let rim: Imprint = "###\n###\n...".parse().expect("an imprint");
+    let at_rim = |touches: &[Imprint]| model.recognise(Evidence::of(touches)).at_rim;
+    assert!(at_rim(&[bar, rim]) && at_rim(&[rim, bar]) && !at_rim(&[bar, bar]));
+    // A probability that is just reached is not rejected.
+    let rejecting = |least| model.recognise(Evidence::of(&[bar]).reject_below(least));
+    assert_eq!(rejecting(0.5), answer);
+    let rejected = rejecting(0.500_001);
+    assert_eq!(
+        (rejected.state, rejected.shape),
+        (AnswerState::Rejected, None)
     );
 }
 
