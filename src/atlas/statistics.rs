@@ -234,8 +234,8 @@ mod tests {
     use super::*;
     use crate::atlas::sums::signed;
 
-    /// The deviations of directions: in all, from the position and from the angle. Each group is those of an orientation.
-    fn deviations(groups: &[&[f64]]) -> [f64; 3] {
+    /// The statistic of directions. Each group is those of an orientation.
+    fn of_directions(groups: &[&[f64]]) -> Statistic {
         let feature = features().iter().find(|feature| feature.circular);
         let (mut sum, mut between) = (Sum::default(), Wide::default());
         for group in groups {
@@ -251,7 +251,12 @@ mod tests {
         }
         let squares = [0; 2];
         let total = Total { sum, squares };
-        let found = total.statistic(feature.expect("there is one"), None, between, None);
+        total.statistic(feature.expect("there is one"), None, between, None)
+    }
+
+    /// Their deviations: in all, from the position and from the angle.
+    fn deviations(groups: &[&[f64]]) -> [f64; 3] {
+        let found = of_directions(groups);
         let found = [found.sd, found.sd_position, found.sd_angle];
         found.map(|sd| sd.expect("they do not cancel"))
     }
@@ -271,5 +276,16 @@ mod tests {
         // Directions that differ by a thousandth of a degree do differ.
         let [.., angle] = deviations(&[&[10.0], &[10.001]]);
         assert!((angle / 0.0005 - 1.0).abs() < 0.01, "{angle}");
+    }
+
+    #[test]
+    fn directions_that_cancel_but_for_a_rounding_error_have_no_mean() {
+        for first in 0..120 {
+            let first = f64::from(first) + 0.3;
+            let found = of_directions(&[&[first, first + 120.0, first + 240.0]]);
+            assert_eq!((found.mean, found.sd), (None, None), "{first}");
+        }
+        let found = of_directions(&[&[0.3, 120.3, 240.4]]);
+        assert!(found.mean.is_some() && found.sd.is_some());
     }
 }

@@ -254,6 +254,11 @@ mod tests {
         assert_eq!(parts.first_poses[0], 5000);
         assert_eq!(read(5000), Ok(true));
         assert_eq!(read(4999), Err(PartsError("first poses out of order")));
+        let first = Shard::new(1, 2).expect("a shard");
+        let mut parts = Sweep::new(&grid).shard(first).run().parts();
+        *parts.first_poses.last_mut().expect("some") = 5000;
+        let read = SweepResult::from_parts(grid.clone(), first, &parts);
+        assert_eq!(read.err(), Some(PartsError("first poses out of order")));
     }
 
     #[test]
@@ -276,6 +281,10 @@ mod tests {
             parts.counts[1] = 0;
         });
         assert_eq!(emptied, Some("an imprint that no pose leaves"));
+        let more = Some("more poses than there are");
+        assert_eq!(fault(&|parts| parts.partly_off = parts.poses + 1), more);
+        let equal = fault(&|parts| parts.first_poses[1] = parts.first_poses[0]);
+        assert_eq!(equal, Some("first poses out of order"));
         let doubled = fault(&|parts| parts.rows.copy_within(..height, height));
         assert_eq!(doubled, Some("an imprint that is there twice"));
         let sums = Some("sums that contradict each other, or of another version");

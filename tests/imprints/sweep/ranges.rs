@@ -154,4 +154,6 @@ fn grids_are_in_range_or_refused() {
         grid(ring(), many).expect_err("no grid").to_string(),
         "360,000,000,000,000 poses, expected at most 1,000,000,000,000"
     );
+    let most = many.with(Axis::Angle, read("0"));
+    assert_eq!(grid(ring(), most), Ok(1_000_000_000_000));
 }
