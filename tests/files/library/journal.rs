@@ -2,7 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use taxel::formats::StoredShape;
+use taxel::formats::{Name, StoredShape};
+use taxel::prelude::*;
 use taxel::storage::{Expected, Journal, Orphan};
 
 use super::Scratch;
@@ -131,6 +132,42 @@ fn only_work_that_is_not_saved_is_offered() {
     let washer = scratch.library.load("washer").expect("shipped").shape;
     left(&scratch, &washer);
     assert_eq!(offered_soon(&scratch), [shape("other", 1)]);
+}
+
+#[test]
+fn a_figure_that_leaves_nothing_is_work_all_the_same() {
+    let scratch = Scratch::new();
+    let sensor = Sensor::default();
+    let dot = Figure::rectangle(0.5, 0.5).on(&sensor).expect("in range");
+    let name = Name::new("dot").expect("a name");
+    let nothing = Imprint::empty(16, 16);
+    let of = |source| StoredShape::new(name.clone(), sensor, nothing, source);
+    left(&scratch, &of(None).expect("16 x 16 both"));
+    assert_eq!(offered(&scratch), []);
+    let work = of(Some(dot.into())).expect("16 x 16 both");
+    left(&scratch, &work);
+    assert_eq!(offered_soon(&scratch), [work]);
+}
+
+#[test]
+fn of_much_work_the_newest_hundred_are_offered() {
+    let scratch = Scratch::new();
+    left(&scratch, &shape("work", 1));
+    let folder = scratch.path(".journal");
+    let now = std::time::SystemTime::now();
+    for number in 0..101 {
+        let path = folder.join(format!("1-{number}.json"));
+        std::fs::write(&path, shape(&format!("w{number}"), 1).write()).expect("written");
+        let file = std::fs::File::options().write(true).open(&path);
+        let changed = now + Duration::from_secs(number);
+        file.expect("opened").set_modified(changed).expect("set");
+    }
+    let names: Vec<String> = offered(&scratch)
+        .iter()
+        .map(|work| work.name.to_string())
+        .collect();
+    let newest: Vec<String> = (1..101).map(|number| format!("w{number}")).collect();
+    assert_eq!(names, newest);
 }
 
 #[test]

@@ -47,6 +47,19 @@ fn the_last_deleted_comes_back_first_and_never_over_another() {
 }
 
 #[test]
+fn a_name_that_was_deleted_more_than_once_is_listed_once() {
+    let scratch = Scratch::with(&["one", "two"]);
+    for name in ["one", "two"] {
+        scratch.library.delete(name).expect("deleted");
+    }
+    scratch.save("ONE", 2);
+    scratch.library.delete("one").expect("deleted");
+    // The newest first.
+    let listed = scratch.library.in_trash().expect("listed");
+    assert_eq!(listed, ["ONE", "two"]);
+}
+
+#[test]
 fn the_last_deleted_comes_back_without_its_name() {
     let scratch = Scratch::with(&["one", "two"]);
     let empty = "the trash is empty";
