@@ -17,6 +17,30 @@ type Vertex = (f64, f64);
 /// What is expected of a taxel, given by column and row.
 type Cells<'a> = &'a [((u8, u8), f64)];
 
+#[test]
+fn nothing_is_covered_beyond_the_sensor() {
+    let mut plane = Plane::new(sensor(4, 3, 0.5));
+    plane.touch(&figure("rectangle length=4 width=3 x0=0 y0=0", SIDE));
+    assert_eq!(plane.coverage(3, 2), 1.0);
+    assert_eq!(
+        [(4, 0), (4, 1), (0, 3)].map(|(x, y)| plane.coverage(x, y)),
+        [0.0; 3]
+    );
+}
+
+#[test]
+fn a_coverage_that_is_a_half_or_whole_but_for_a_rounding_error_is_exact() {
+    let mut plane = Plane::new(sensor(SIDE, SIDE, 0.5));
+    plane.touch(&figure(
+        "rectangle length=2.4 width=3.3 x0=1.1 y0=2.5",
+        SIDE,
+    ));
+    assert_eq!(
+        [(2, 2), (2, 3)].map(|(x, y)| plane.coverage(x, y)),
+        [0.5, 1.0]
+    );
+}
+
 fn assert_coverages(name: &str, solid: &impl Solid, cells: Cells) {
     let mut plane = Plane::new(sensor(SIDE, SIDE, 0.5));
     plane.touch(solid);
