@@ -5,8 +5,8 @@
 use std::f64::consts::{PI, SQRT_2};
 
 use crate::common::{Random, figure, picture, sensor};
-use taxel::geometry::{Ellipse, Pen, Point, Polygon, Real, Side, Solid};
-use taxel::touch::Plane;
+use taxel::geometry::{Ellipse, Extent, Pen, Point, Polygon, Real, Side, Solid};
+use taxel::touch::{Plane, reaches_beyond};
 
 /// Columns and rows of the sensor.
 const SIDE: u8 = 16;
@@ -310,4 +310,24 @@ fn ellipses_are_active_where_they_cover_half() {
         }
     }
     assert!(active > 1_000_000 && near > 10_000, "{active}, {near}");
+}
+
+#[test]
+fn a_figure_that_ends_at_the_rim_does_not_reach_beyond() {
+    let sensor = sensor(SIDE, SIDE, 0.5);
+    let mut beyond_but_for_rounding = 0;
+    for hundredths in 100..400 {
+        // Turned onto itself, it ends where the upright one does.
+        for angle in [60, 120, 180, 240, 300] {
+            let side = f64::from(hundredths) / 100.0;
+            let text = format!("hexagon side={side} x0=0 y0=0 angle={angle}");
+            let figure = figure(&text, SIDE);
+            let extent = Extent::of(&figure).expect("it has edges");
+            beyond_but_for_rounding += u32::from(extent.left.min(extent.top) < 0.0);
+            assert!(!reaches_beyond(&figure, &sensor), "{text}: {extent:?}");
+        }
+    }
+    assert!(beyond_but_for_rounding > 0);
+    let beyond = figure("ellipse radius_x=1 radius_y=1 x0=14.01 y0=3", SIDE);
+    assert!(reaches_beyond(&beyond, &sensor));
 }
