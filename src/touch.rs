@@ -27,6 +27,8 @@ use crate::sensor::Sensor;
 /// Coverages this near to the threshold are computed with more digits, for every shape of the program; a share of a
 /// cell.
 pub(crate) const DOUBTFUL: f64 = 1e-10;
+/// Coordinates of ellipses are below this: products of four of them are computed, and must be finite.
+const ELLIPSE_LIMIT: f64 = 1e70;
 /// User-defined outlines may reach farther than the shapes of the program, and rounding errors grow with coordinates.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
@@ -65,7 +67,8 @@ impl Plane {
         &self.sensor
     }
 
-    /// The imprint that a shape leaves. It never fails: a shape without a boundary leaves an empty imprint.
+    /// The imprint that a shape leaves. It never fails: a shape without a boundary leaves an empty imprint, and so does one
+    /// of your own with a coordinate that is not finite, or an ellipse with one beyond 1e70.
     pub fn touch(&mut self, solid: &impl Solid) -> Imprint {
         self.areas.clear();
         self.ellipses.clear();
@@ -73,10 +76,17 @@ impl Plane {
             areas: &mut self.areas,
             ellipses: &mut self.ellipses,
             edges: false,
+            finite: true,
         };
         solid.draw(&mut pen);
-        let round = !pen.edges;
+        let (round, finite) = (!pen.edges, pen.finite);
         let mut imprint = Imprint::empty(self.sensor.columns(), self.sensor.rows());
+        if !finite {
+            // Nothing of it may be left for the next shape.
+            self.areas.wipe();
+            self.ellipses.clear();
+            return imprint;
+        }
         if round
             && self.sensor.threshold() == CentreSampling::THRESHOLD
             && let Some(rows) = self.ellipses.sample()
@@ -221,21 +231,40 @@ struct TouchPen<'a> {
     ellipses: &'a mut CentreSampling,
     /// Whether there are edges.
     edges: bool,
+    /// Whether all coordinates are such that areas can be computed.
+    finite: bool,
+}
+
+/// Whether both coordinates of a point are below a limit; not if one is NaN.
+fn is_within(point: Point<f64>, limit: f64) -> bool {
+    point.x.abs() < limit && point.y.abs() < limit
 }
 
 impl Pen<f64> for TouchPen<'_> {
     fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
         self.edges = true;
+        self.finite &= is_within(from, f64::INFINITY) & is_within(to, f64::INFINITY);
         self.areas.edge(from, to);
     }
 
     #[inline]
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, material: Side) {
+        let Ellipse {
+            centre,
+            across,
+            along,
+        } = *ellipse;
+        self.finite &= is_within(centre, ELLIPSE_LIMIT)
+            & is_within(across, ELLIPSE_LIMIT)
+            & is_within(along, ELLIPSE_LIMIT);
         self.ellipses.add(ellipse, material);
     }
 
     fn ring(&mut self, points: &[Point<f64>], material: Side) {
         self.edges = true;
+        for &point in points {
+            self.finite &= is_within(point, f64::INFINITY);
+        }
         self.areas.ring(points, material);
     }
 }

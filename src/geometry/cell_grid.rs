@@ -79,6 +79,12 @@ impl<T: Real> CellGrid<T> {
         self.moment = T::ZERO;
     }
 
+    /// Clears every entry, whatever the extent says: that of coordinates that are not finite is not known.
+    pub(crate) fn wipe(&mut self) {
+        self.entries.fill(CellSums::EMPTY);
+        self.clear();
+    }
+
     /// Its lower end.
     pub(crate) fn bottom(&self) -> T {
         T::whole(self.rows)

@@ -7,8 +7,9 @@
 //! **Orientation.** Edges run clockwise as seen (x right, y down) around the material, with the material on their
 //! right; around a hole they run the other way. Only closed sets of edges bound anything; their order does not matter.
 //!
-//! **Size.** Coordinates are finite. They may lie far beyond the sensor, but rounding errors grow with them: of the 32
-//! digits that decide a tie, those before the decimal point are lost, and twice as many for an ellipse.
+//! **Size.** Coordinates are finite, and those of ellipses below 1e70; a shape with others leaves an empty imprint. They may
+//! lie far beyond the sensor, but rounding errors grow with them: of the 32 digits that decide a tie, those before the decimal
+//! point are lost, and twice as many for an ellipse.
 
 use crate::geometry::real::Real;
 

@@ -36,6 +36,11 @@ impl<T: Real> Overlap<T> {
         self.grid.clear();
     }
 
+    /// Wipes a grid on which coordinates that are not finite may have been drawn.
+    pub(crate) fn wipe(&mut self) {
+        self.grid.wipe();
+    }
+
     /// What has been drawn since.
     pub(crate) fn grid(&self) -> &CellGrid<T> {
         &self.grid

@@ -270,6 +270,61 @@ impl Solid for Rings {
     }
 }
 
+/// A ring through four points, drawn as a whole or edge by edge.
+struct Quadrangle([f64; 8], bool);
+
+impl Solid for Quadrangle {
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+        let corner = |i: usize| Point::new(T::decimal(self.0[i]), T::decimal(self.0[i + 1]));
+        let ring = [0, 2, 4, 6].map(corner);
+        if self.1 {
+            return pen.ring(&ring, Side::Inside);
+        }
+        for (index, &from) in ring.iter().enumerate() {
+            pen.edge(from, ring[(index + 1) % 4]);
+        }
+    }
+}
+
+/// A mistake in a shape of the user's own must not change the imprints of later shapes.
+#[test]
+fn a_shape_that_is_not_finite_leaves_nothing_for_the_next_one() {
+    let mut plane = Plane::new(sensor(SIDE, SIDE, 0.5));
+    let square = Polygon::new([(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]);
+    let mut check = |odd: f64, solid: &dyn Fn(&mut Plane) -> u32| {
+        assert_eq!(solid(&mut plane), 0, "{odd}");
+        assert!(plane.coverages().iter().all(|&own| own == 0.0), "{odd}");
+        assert_eq!(plane.touch(&square).count(), 4, "{odd}");
+        assert_eq!(plane.coverages().iter().sum::<f64>(), 4.0, "{odd}");
+    };
+    for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for index in 0..8 {
+            let mut corners = [1.0, 1.0, 9.0, 1.5, 9.5, 9.0, 1.3, 9.3];
+            corners[index] = odd;
+            for whole in [false, true] {
+                check(odd, &|plane| {
+                    plane.touch(&Quadrangle(corners, whole)).count()
+                });
+            }
+        }
+    }
+    for odd in [f64::NAN, f64::INFINITY, f64::MAX, -1e200, 1e70] {
+        for index in 0..6 {
+            let mut numbers = [4.0, 5.0, 3.0, 0.5, -0.5, 2.0];
+            numbers[index] = odd;
+            let [centre, across, along] = [0, 2, 4].map(|i| Point::new(numbers[i], numbers[i + 1]));
+            let ellipse = Ellipse {
+                centre,
+                across,
+                along,
+            };
+            check(odd, &|plane| {
+                plane.touch(&Rings(vec![(ellipse, Side::Inside)])).count()
+            });
+        }
+    }
+}
+
 /// At a threshold of one half centres decide about ellipses, and coverages come from areas.
 #[test]
 fn ellipses_are_active_where_they_cover_half() {
