@@ -43,6 +43,24 @@ pub struct DecimalRange {
 }
 
 impl DecimalRange {
+    /// The range from `start` to `end`, which is included, in steps of `step`: `start:end:step` as text. Each number counts as
+    /// the shortest decimal that reads back as it, so 0.1 is one tenth.
+    ///
+    /// ```
+    /// use taxel::pose::DecimalRange;
+    /// assert_eq!(DecimalRange::new(5.0, 5.99, 0.01)?, "5:5.99:0.01".parse()?);
+    /// assert_eq!(DecimalRange::try_from(0.3)?, "0.3".parse()?);
+    /// assert!(DecimalRange::new(0.0, 1.0, f64::NAN).is_err());
+    /// # Ok::<(), taxel::pose::RangeError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If a number is not finite, or has more than 15 digits or 12 decimals, such as `0.1 + 0.2`; if the step is not above 0,
+    /// the end lies before the start, or there are more than [`MAX_VALUES`] values.
+    pub fn new(start: f64, end: f64, step: f64) -> Result<Self, RangeError> {
+        format!("{start}:{end}:{step}").parse()
+    }
+
     /// The range of one whole number.
     pub const fn whole(value: i32) -> Self {
         Self::from_units(value as i64, 1, 0, 1)
@@ -230,6 +248,15 @@ impl FromStr for DecimalRange {
     }
 }
 
+impl TryFrom<f64> for DecimalRange {
+    type Error = RangeError;
+
+    /// The range of one number.
+    fn try_from(value: f64) -> Result<Self, RangeError> {
+        value.to_string().parse()
+    }
+}
+
 /// The exponents that are written out, up or down. Beyond them any number has too many digits.
 const LARGEST_EXPONENT: i32 = 30;
 
@@ -373,10 +400,32 @@ impl RangeError {
     }
 }
 
-#[cfg(all(test, feature = "recognition"))]
+#[cfg(test)]
 mod tests {
     use super::*;
 
+    #[test]
+    fn numbers_make_the_range_that_their_decimals_make() {
+        for (start, end, step) in [(5.0, 5.99, 0.01), (-0.0, 1e-9, 1e-12), (-3.5, 64.0, 0.3)] {
+            let written = format!("{start}:{end}:{step}").parse();
+            assert_eq!(DecimalRange::new(start, end, step), written);
+        }
+        for odd in [
+            f64::NAN,
+            f64::INFINITY,
+            f64::MAX,
+            f64::MIN_POSITIVE,
+            0.1 + 0.2,
+        ] {
+            assert!(DecimalRange::try_from(odd).is_err(), "{odd}");
+            assert!(DecimalRange::new(odd, odd, 1.0).is_err(), "{odd}");
+            assert!(DecimalRange::new(0.0, 1.0, odd).is_err(), "{odd}");
+        }
+        assert!(DecimalRange::new(2.0, 1.0, 0.5).is_err());
+        assert!(DecimalRange::new(1.0, 2.0, -0.5).is_err());
+    }
+
+    #[cfg(feature = "recognition")]
     #[test]
     fn a_rounded_number_equals_the_decimal_that_it_is_written_as() {
         for (value, expected) in [
