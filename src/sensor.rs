@@ -25,7 +25,7 @@ pub const SENSOR_PARAMETERS: [Parameter; 4] = [
 ///
 /// ```
 /// use taxel::prelude::*;
-/// let sensor = Sensor::new(12, 8)?.with(Parameter::Threshold, 0.7)?;
+/// let sensor = Sensor::new(12, 8)?.with_threshold(0.7)?;
 /// assert_eq!((sensor.columns(), sensor.rows(), sensor.threshold()), (12, 8, 0.7));
 /// assert_eq!(sensor.to_string(), "12 × 8 with threshold 0.7 and pitch 1 mm");
 /// let error = sensor.check(Parameter::X0, 12.5).unwrap_err();
@@ -121,6 +121,30 @@ impl Sensor {
             }
         }
         Ok(self)
+    }
+
+    /// Returns the same sensor with another threshold: the share of a cell that makes its taxel active.
+    ///
+    /// ```
+    /// use taxel::prelude::*;
+    /// let sensor = Sensor::new(10, 8)?.with_threshold(0.3)?.with_pitch_mm(1.27)?;
+    /// assert_eq!((sensor.threshold(), sensor.pitch_mm()), (0.3, 1.27));
+    /// assert_eq!(sensor.with_threshold(0.0).unwrap_err().parameter(), Parameter::Threshold);
+    /// # Ok::<(), ParameterError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If it is not above 0, up to 1.
+    pub fn with_threshold(self, threshold: f64) -> Result<Self, ParameterError> {
+        self.with(Parameter::Threshold, threshold)
+    }
+
+    /// Returns the same sensor with another pitch: the side of a cell, in mm.
+    ///
+    /// # Errors
+    /// If it is not above 0, up to 1000.
+    pub fn with_pitch_mm(self, pitch: f64) -> Result<Self, ParameterError> {
+        self.with(Parameter::Pitch, pitch)
     }
 
     /// Returns one of its values; None for a parameter that a sensor does not have.
