@@ -1,5 +1,8 @@
 //! A matrix of values, one per taxel, row by row from the top left: what a sensor measures in each of its cells.
 
+use std::fmt;
+
+use crate::parameter::number::counted;
 use crate::sensor::MAX_SIDE;
 
 /// Values of 1 × 1 to 64 × 64 cells, row-major.
@@ -29,6 +32,39 @@ impl<T: Copy> Matrix<T> {
         };
         matrix.reset(columns, rows, value);
         matrix
+    }
+
+    /// Creates a matrix from the values of its cells, row by row.
+    ///
+    /// ```
+    /// use taxel::matrix::Matrix;
+    /// let gain = Matrix::from_values(3, 2, vec![1.0, 1.2, 0.9, 1.0, 1.0, 1.1])?;
+    /// assert_eq!(gain.get(2, 1), Some(1.1));
+    /// let error = Matrix::from_values(3, 2, vec![1.0]).unwrap_err();
+    /// assert_eq!(error.to_string(), "1 value, expected 6 of a matrix of 3 × 2");
+    /// # Ok::<(), taxel::matrix::MatrixError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If a side is not 1 to 64, or the number of values is not that of the cells.
+    pub fn from_values(columns: u8, rows: u8, values: Vec<T>) -> Result<Self, MatrixError> {
+        let sides = 1..=MAX_SIDE;
+        if !sides.contains(&columns) || !sides.contains(&rows) {
+            return Err(MatrixError::Sides { columns, rows });
+        }
+        let found = values.len();
+        if found != usize::from(columns) * usize::from(rows) {
+            return Err(MatrixError::Values {
+                columns,
+                rows,
+                found,
+            });
+        }
+        Ok(Self {
+            columns,
+            rows,
+            values,
+        })
     }
 
     /// Changes the size, with the same value in every cell. It allocates only if there are more cells than ever before.
@@ -82,5 +118,68 @@ impl<T: Copy> Matrix<T> {
     fn index(&self, column: u8, row: u8) -> Option<usize> {
         let inside = column < self.columns && row < self.rows;
         inside.then(|| usize::from(row) * usize::from(self.columns) + usize::from(column))
+    }
+}
+
+/// The error for values that are not those of a matrix.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MatrixError {
+    /// A side that is not 1 to 64.
+    Sides {
+        /// Number of columns.
+        columns: u8,
+        /// Number of rows.
+        rows: u8,
+    },
+    /// Another number of values than there are cells.
+    Values {
+        /// Number of columns.
+        columns: u8,
+        /// Number of rows.
+        rows: u8,
+        /// Number of values.
+        found: usize,
+    },
+}
+
+impl fmt::Display for MatrixError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Sides { columns, rows } => write!(
+                f,
+                "{columns} × {rows} cells, expected 1 to {MAX_SIDE} columns and rows"
+            ),
+            Self::Values {
+                columns,
+                rows,
+                found,
+            } => {
+                let found = counted(found as u64, "value");
+                let expected = u16::from(columns) * u16::from(rows);
+                write!(
+                    f,
+                    "{found}, expected {expected} of a matrix of {columns} × {rows}"
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for MatrixError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_matrix_has_as_many_values_as_cells() {
+        for (columns, rows) in [(0, 1), (1, 65), (255, 255)] {
+            let error = MatrixError::Sides { columns, rows };
+            assert_eq!(Matrix::from_values(columns, rows, vec![0]), Err(error));
+        }
+        let full = Matrix::from_values(64, 64, vec![0; 4096]);
+        assert_eq!(full, Ok(Matrix::filled(64, 64, 0)));
+        assert!(Matrix::from_values(2, 2, vec![0; 5]).is_err());
     }
 }

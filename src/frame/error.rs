@@ -16,6 +16,22 @@ pub enum FrameError {
         /// Rows that are left.
         rows: u16,
     },
+    /// A side of a frame that is not 1 to 512.
+    Sides {
+        /// Its columns.
+        columns: u16,
+        /// Its rows.
+        rows: u16,
+    },
+    /// Another number of values than a frame has cells.
+    Values {
+        /// The frame's columns.
+        columns: u16,
+        /// The frame's rows.
+        rows: u16,
+        /// Number of values.
+        found: usize,
+    },
     /// The crop reaches beyond the frame.
     Crop {
         /// The frame's columns.
@@ -75,6 +91,15 @@ impl fmt::Display for FrameError {
                 f,
                 "{columns} × {rows} cells are left, expected at most 64 × 64: crop the frame"
             ),
+            Self::Sides { columns, rows } => write!(
+                f,
+                "a frame of {columns} × {rows}, expected 1 to 512 columns and rows"
+            ),
+            Self::Values {
+                columns,
+                rows,
+                found,
+            } => f.write_str(&wrong_values((*columns, *rows), *found)),
             Self::Crop { columns, rows } => write!(
                 f,
                 "the crop reaches beyond the frame, which has {} and {}",
@@ -115,6 +140,12 @@ impl fmt::Display for FrameError {
 }
 
 impl std::error::Error for FrameError {}
+
+fn wrong_values((columns, rows): (u16, u16), found: usize) -> String {
+    let found = counted(found as u64, "value");
+    let expected = u32::from(columns) * u32::from(rows);
+    format!("{found}, expected {expected} of a frame of {columns} × {rows}")
+}
 
 /// Refuses a matrix whose size differs from that of the values.
 pub(super) fn check_size(

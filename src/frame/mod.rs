@@ -12,8 +12,7 @@
 //!
 //! ```
 //! use taxel::frame::{Frame, Processing, Rule};
-//! let mut frame = Frame::new(3, 2);
-//! frame.values_mut().copy_from_slice(&[0.0, 12.0, f64::NAN, 3.0, 10.0, 0.0]);
+//! let frame = Frame::from_values(3, 2, &[0.0, 12.0, f64::NAN, 3.0, 10.0, 0.0])?;
 //! let mut processing = Processing::default();
 //! processing.rule = Some(Rule::at_least(10.0)?);
 //! let processed = processing.run(&frame)?;

@@ -1,5 +1,7 @@
 //! A raw frame: the values of all cells at one moment, before any processing.
 
+use crate::frame::error::FrameError;
+
 /// The largest number of columns, and of rows, of a frame before it is cropped.
 pub const MAX_FRAME_SIDE: u16 = 512;
 
@@ -42,6 +44,45 @@ impl Frame {
         };
         frame.reset(columns, rows);
         frame
+    }
+
+    /// Creates a frame from the values of its cells, row by row; NaN where the sensor has no cell.
+    ///
+    /// ```
+    /// use taxel::frame::Frame;
+    /// let mut frame = Frame::from_values(3, 2, &[0.0, 12.0, f64::NAN, 3.0, 10.0, 0.0])?;
+    /// assert_eq!((frame.columns(), frame.rows(), frame.cells()), (3, 2, 5));
+    /// // The next frame, in the same memory.
+    /// frame.set_values(&[0.0, 11.0, f64::NAN, 4.0, 10.0, 0.0])?;
+    /// assert_eq!(frame.set_values(&[0.0]).unwrap_err().to_string(), "1 value, expected 6 of a frame of 3 × 2");
+    /// # Ok::<(), taxel::frame::FrameError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If a side is not 1 to 512, or the number of values is not that of the cells.
+    pub fn from_values(columns: u16, rows: u16, values: &[f64]) -> Result<Self, FrameError> {
+        let mut frame = Self::new(columns, rows);
+        if (frame.columns, frame.rows) != (columns, rows) {
+            return Err(FrameError::Sides { columns, rows });
+        }
+        frame.set_values(values)?;
+        Ok(frame)
+    }
+
+    /// Changes the values of all cells, row by row; number, channel, label and time stay. It does not allocate.
+    ///
+    /// # Errors
+    /// If the number of values is not that of the cells; then nothing is changed.
+    pub fn set_values(&mut self, values: &[f64]) -> Result<(), FrameError> {
+        if values.len() != self.values.len() {
+            return Err(FrameError::Values {
+                columns: self.columns,
+                rows: self.rows,
+                found: values.len(),
+            });
+        }
+        self.values.copy_from_slice(values);
+        Ok(())
     }
 
     /// Changes the size and empties all cells; number, channel, label and time stay. It allocates only if there are
