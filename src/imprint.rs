@@ -151,6 +151,7 @@ impl Imprint {
     /// use taxel::imprint::Imprint;
     /// let [one, other] = ["##.\n...", ".###\n#..."].map(|text| text.parse::<Imprint>().expect("an imprint"));
     /// assert_eq!(one.union(&other).to_string(), "###\n#..");
+    /// assert_eq!(one.intersection(&other).to_string(), ".#.\n...");
     /// assert_eq!(one.without(&other).to_string(), "#..\n...");
     /// ```
     #[must_use]
@@ -160,6 +161,12 @@ impl Imprint {
             *word |= more & mask;
         }
         all
+    }
+
+    /// The taxels that are active in both imprints, on the matrix of this one.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Self {
+        self.without(&self.without(other))
     }
 
     /// The taxels that are active in this imprint but not in the other, on the matrix of this one.
