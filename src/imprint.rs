@@ -126,7 +126,7 @@ impl Imprint {
     }
 
     /// The active taxels, (column, row), in reading order.
-    pub fn active(&self) -> impl Iterator<Item = (u8, u8)> + '_ {
+    pub fn active(&self) -> impl DoubleEndedIterator<Item = (u8, u8)> {
         (0..self.rows).flat_map(move |row| {
             let word = self.words[usize::from(row)];
             (0..self.columns)
@@ -267,7 +267,7 @@ impl fmt::Debug for Imprint {
 
 impl Imprint {
     /// The rows as text, `#` active, `.` inactive.
-    pub fn lines(&self) -> impl Iterator<Item = String> + '_ {
+    pub fn lines(&self) -> impl DoubleEndedIterator<Item = String> + ExactSizeIterator {
         (0..self.rows).map(|row| {
             (0..self.columns)
                 .map(|column| if self.get(column, row) { '#' } else { '.' })

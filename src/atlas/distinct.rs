@@ -94,12 +94,12 @@ impl Atlas {
     }
 
     /// How often the imprints occur, in their order.
-    pub fn counts(&self) -> impl Iterator<Item = u64> + '_ {
+    pub fn counts(&self) -> impl DoubleEndedIterator<Item = u64> + ExactSizeIterator {
         self.counter.tallies().iter().map(|tally| tally.count)
     }
 
     /// The numbers of the first poses that leave the imprints, in their order.
-    pub fn first_poses(&self) -> impl Iterator<Item = u64> + '_ {
+    pub fn first_poses(&self) -> impl DoubleEndedIterator<Item = u64> + ExactSizeIterator {
         self.counter.tallies().iter().map(|tally| tally.first)
     }
 
@@ -116,20 +116,25 @@ impl Atlas {
     /// The imprint of that number.
     pub fn entry(&self, id: u32) -> Option<AtlasEntry> {
         let index = wide(id);
-        let summary = *self.summaries.get(index)?;
+        let summary = self.summaries.get(index)?;
+        Some(self.described(index, summary))
+    }
+
+    fn described(&self, index: usize, summary: &ImprintSummary) -> AtlasEntry {
         let tally = self.counter.tallies()[index];
-        Some(AtlasEntry {
-            id,
+        AtlasEntry {
+            id: narrow(index),
             imprint: self.layout.imprint(self.counter.key(index)),
             count: tally.count,
             first_pose: tally.first,
-            summary,
-        })
+            summary: *summary,
+        }
     }
 
     /// All rows in order.
-    pub fn entries(&self) -> impl Iterator<Item = AtlasEntry> + '_ {
-        (0..narrow(self.len())).filter_map(|id| self.entry(id))
+    pub fn entries(&self) -> impl DoubleEndedIterator<Item = AtlasEntry> + ExactSizeIterator {
+        let summaries = self.summaries.iter().enumerate();
+        summaries.map(|(index, summary)| self.described(index, summary))
     }
 
     /// The number of an imprint; None if no pose leaves it.

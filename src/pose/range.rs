@@ -172,8 +172,16 @@ impl DecimalRange {
     }
 
     /// All values in order.
-    pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
-        (0..self.count).map(|index| self.value(index))
+    ///
+    /// ```
+    /// use taxel::pose::DecimalRange;
+    /// let values = DecimalRange::new(0.0, 0.3, 0.1)?;
+    /// assert_eq!(values.values().len(), 4);
+    /// assert!(values.values().rev().eq([0.3, 0.2, 0.1, 0.0]));
+    /// # Ok::<(), taxel::pose::RangeError>(())
+    /// ```
+    pub fn values(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator {
+        (0..narrow(self.count)).map(|index| self.value(index.into()))
     }
 
     /// First value and step in units of the last place: exact, for questions of symmetry.

@@ -64,7 +64,7 @@ impl ConfusionMatrix {
     }
 
     /// Iterates over the rows with all their cells: that of shape i has the touches of i that are named 0, 1, 2 and so on.
-    pub fn rows(&self) -> impl Iterator<Item = Vec<u128>> + '_ {
+    pub fn rows(&self) -> impl DoubleEndedIterator<Item = Vec<u128>> + ExactSizeIterator {
         self.rows.iter().map(|row| {
             let mut cells = vec![0; self.shapes()];
             for &(named, touches) in row {

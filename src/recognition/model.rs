@@ -385,6 +385,26 @@ impl Model {
         &self.counts[self.starts[key]..self.starts[key + 1]]
     }
 
+    /// Iterates over the keys in their order: the imprint of each, None of the empty key, and the shapes that leave it.
+    ///
+    /// ```
+    /// use taxel::prelude::*;
+    /// use taxel::recognition::{NamedShape, Training};
+    ///
+    /// let sensor = Sensor::default();
+    /// let bar = NamedShape::new("bar", Figure::rectangle(4.0, 2.0).on(&sensor)?);
+    /// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
+    /// let model = Training::new([bar], sensor, Anchor::Centre, ranges)?.run()?;
+    /// let most = model.entries().max_by_key(|(_, counts)| counts[0].poses).expect("a key");
+    /// assert_eq!(most.0, Some("####\n####".parse()?));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn entries(
+        &self,
+    ) -> impl DoubleEndedIterator<Item = (Option<Imprint>, &[ShapeCount])> + ExactSizeIterator {
+        (0..self.keys.len()).map(|key| (self.keys.imprint(key), self.counts(key)))
+    }
+
     /// Returns the shapes that leave the key of an imprint; empty if none does.
     pub fn counts_of(&self, imprint: &Imprint) -> &[ShapeCount] {
         self.keys

@@ -35,6 +35,11 @@ impl CountedImprints {
         let imprint = self.layout.imprint(self.counter.key(index));
         (imprint, self.counter.tallies()[index].count)
     }
+
+    /// Iterates over all imprints, each with the number of poses in which it occurs.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = (Imprint, u64)> + ExactSizeIterator {
+        (0..self.len()).map(|index| self.get(index))
+    }
 }
 
 /// Neighbouring poses of one row that leave the same imprint.
@@ -58,7 +63,7 @@ impl Sweep<'_> {
     /// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
     /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
     /// let counted = Sweep::new(&grid).count().expect("not stopped");
-    /// let counts: Vec<u64> = (0..counted.len()).map(|index| counted.get(index).1).collect();
+    /// let counts: Vec<u64> = counted.iter().map(|(_, poses)| poses).collect();
     /// assert_eq!((counted.poses, counts.iter().sum::<u64>()), (10_000, 10_000));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -150,8 +155,7 @@ mod tests {
             let grid = PoseGrid::new(source, sensor, Anchor::Corner, ranges).expect("in range");
             let counted = Sweep::new(&grid).count().expect("not stopped");
             let mut poses = 0;
-            for index in 0..counted.len() {
-                let (imprint, count) = counted.get(index);
+            for (imprint, count) in counted.iter() {
                 let same = |other: &Imprint| *other == imprint;
                 let runs = Sweep::new(&grid).poses_where(&same).expect("not stopped");
                 let found: u64 = runs.iter().map(|run| run.poses * run.orientations).sum();
