@@ -192,7 +192,7 @@ impl Imprint {
 
 /// A rectangle of whole taxels, by the plane coordinates of its edges: columns `left..right`, rows `top..bottom`.
 // Four bytes at an odd address, as in an enum, would be copied in parts, and a processor waits for the last one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(align(4))]
 pub struct Bounds {
     /// First column.

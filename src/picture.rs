@@ -54,7 +54,7 @@ impl PartialEq for Picture {
 /// A picture whose values are not checked yet; [`Self::on`] checks them all.
 ///
 /// At first its imprint stays where it is: at its own corner, with angle 0 and zoom 1.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[must_use = "only `on` makes a picture of it"]
 pub struct PictureBuilder(Picture);
 

@@ -14,7 +14,7 @@ const GROWTH: Duration = Duration::from_millis(50);
 const REMEMBERED: usize = 1 << 12;
 
 /// Why a file is read from its start again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ReadAnew {
     /// It is shorter than it was, or holds something else.

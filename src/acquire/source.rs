@@ -12,7 +12,7 @@ use crate::acquire::recorder::RecorderError;
 use crate::formats::recording::{ReadOptions, RecordingError, format_of};
 
 /// Where frames come from.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum FrameSource {
     /// Standard input, `-`.

@@ -6,7 +6,7 @@ use crate::atlas::distinct::Atlas;
 use crate::index::narrow;
 
 /// What an atlas can be sorted by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum SortKey {
     /// The number of the first pose, which orders the imprints' own numbers too.

@@ -7,7 +7,7 @@
 use crate::imprint::{Bounds, Imprint};
 
 /// The steps of a chain by their kind, so that the length is the same number on every machine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ChainSteps {
     /// Steps to a taxel beside, above or below: length 1.
     pub straight: u32,

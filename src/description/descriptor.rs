@@ -233,7 +233,7 @@ impl Value {
 }
 
 /// What a descriptor's number measures, and so how it converts to millimetres.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Dimension {
     /// Taxels, or another pure count.
@@ -251,7 +251,7 @@ pub enum Dimension {
 }
 
 /// Whether a descriptor changes when the whole imprint is moved, turned or mirrored on its matrix.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct ChangesUnder {
     /// Moved by whole taxels.

@@ -15,7 +15,7 @@ pub struct SetRule {
 }
 
 /// Where a rule is from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum RuleOrigin {
     /// An argument of the command.

@@ -7,7 +7,7 @@ use crate::matrix::Matrix;
 use crate::sensor::MAX_SIDE;
 
 /// A rectangle of whole cells of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Crop {
     /// Its first column, from 0.
     pub left: u16,

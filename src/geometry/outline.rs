@@ -36,7 +36,7 @@ impl<T: Real> Point<T> {
 }
 
 /// A rotation about the origin.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn<T> {
     sin: T,
     cos: T,
@@ -59,7 +59,7 @@ impl<T: Real> Turn<T> {
 }
 
 /// An ellipse as the affine image of the unit disc: `centre + across·u + along·v` for `u² + v² ≤ 1`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipse<T> {
     /// The centre.
     pub centre: Point<T>,
@@ -92,7 +92,7 @@ impl<T: Real> Ellipse<T> {
 }
 
 /// Which side of a boundary the material lies on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// The boundary encloses material.
     Inside,
@@ -191,7 +191,7 @@ pub trait Solid {
 /// let covered: f64 = plane.coverages().iter().sum();
 /// assert!((covered - 16.0).abs() < 1e-9);
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     vertices: Vec<(f64, f64)>,
 }

@@ -94,7 +94,7 @@ impl Parameter {
 }
 
 /// The unit of a parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Unit {
     /// Sides of a sensory cell.

@@ -68,6 +68,17 @@ impl Axis {
 named!(Axis, "axis", &Axis::ALL);
 
 /// A value for each axis, indexed by [`Axis`].
+///
+/// ```
+/// use std::collections::HashMap;
+/// use taxel::pose::{Axis, PoseIndex, Ranges};
+///
+/// let corner = PoseIndex::new([0; 5]).with(Axis::Angle, 90);
+/// assert_eq!(corner[Axis::Angle], 90);
+/// // Ranges and indices are keys of maps.
+/// let done = HashMap::from([(Ranges::default(), corner)]);
+/// assert_eq!(done.get(&Ranges::default()), Some(&corner));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PerAxis<T>([T; 5]);
 

@@ -33,7 +33,7 @@ const MAX_UNITS: i64 = 999_999_999_999_999;
 /// assert_eq!("1:2:0".parse::<DecimalRange>().unwrap_err().to_string(), "step 0: expected one above 0");
 /// # Ok::<(), taxel::pose::RangeError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DecimalRange {
     /// First value and step, in units of `10^-places`.
     start: i64,

@@ -7,7 +7,7 @@ use crate::recognition::nearest::Nearest;
 use crate::recognition::noise::{Method, NEGLIGIBLE, Noise};
 
 /// How far an answer can be trusted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum AnswerState {
     /// No other shape of the set leaves these imprints.

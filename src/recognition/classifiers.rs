@@ -25,7 +25,7 @@ use crate::recognition::simulation::Draw;
 use crate::recognition::templates::Templates;
 
 /// A classifier that uses descriptors or samples. It is not the best one: those answers come from the model itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Classifier {
     /// The nearest class mean, in units of each class's standard deviation.
@@ -122,7 +122,7 @@ pub struct ClassifierEvaluation {
 }
 
 /// Poses that a classifier drew at random.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct PoseSample {
     /// How many of each shape.

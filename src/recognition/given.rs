@@ -25,6 +25,14 @@ impl PartialEq for ShapeDescriptor {
     }
 }
 
+impl Eq for ShapeDescriptor {}
+
+impl std::hash::Hash for ShapeDescriptor {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        self.0.key.hash(state);
+    }
+}
+
 /// Why a text is not a list of descriptors, or not a rounding.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]

@@ -166,7 +166,7 @@ impl Noise {
 }
 
 /// Which keys were compared for an answer, the fewest first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Method {
     /// The key of the imprint itself.

@@ -21,7 +21,7 @@ use crate::source::Source;
 const FINER: u8 = 10;
 
 /// What is varied to change the size of the shapes in cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum SizeAxis {
     /// Sizes are in cells; a value multiplies them.

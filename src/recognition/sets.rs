@@ -53,7 +53,7 @@ pub fn equal_figures() -> Vec<NamedShape> {
 }
 
 /// The number of positions within a cell in each direction: a divisor of 100, so that steps are whole hundredths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CellPositions(u8);
 
 impl CellPositions {
@@ -87,7 +87,7 @@ impl CellPositions {
 }
 
 /// The steps of a grid of poses: one cell of positions, all angles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct GridSteps {
     positions: CellPositions,
     degrees: u16,

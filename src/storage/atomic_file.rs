@@ -16,7 +16,7 @@ use crate::storage::error::FileError;
 use crate::storage::temporary::{OldFile, TemporaryFile};
 
 /// What happens to a file that is there already.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Existing {
     /// It is replaced if it is a regular file. A folder, a device or a link never is.

@@ -25,7 +25,7 @@ use crate::storage::temporary::is_temporary;
 use crate::storage::trash::Trash;
 
 /// Where a shape comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum ShapeOrigin {
     /// The user's folder.
@@ -35,7 +35,7 @@ pub enum ShapeOrigin {
 }
 
 /// A row of the list: what is known without opening the file.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct LibraryEntry {
     /// The shape's name: its file's, without `.json`.
@@ -59,7 +59,7 @@ pub struct LoadedShape {
 }
 
 /// What the writer expects to replace.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Expected {
     /// Nothing: the name is free.

@@ -15,7 +15,7 @@ use crate::recognition::{
 use crate::storage::shipped;
 
 /// A set of shapes.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum ModelChoice {
     /// The seven figures at the sizes that forms propose.
     Figures,

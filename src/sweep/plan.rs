@@ -22,7 +22,7 @@ use crate::sweep::point_symmetry::PointSymmetry;
 /// assert_eq!(shard.rows(10), 3..6);
 /// assert!("4/3".parse::<Shard>().is_err());
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Shard {
     number: u32,
     of: u32,

@@ -88,7 +88,7 @@ impl RecordingFormat {
 named!(RecordingFormat, "format", &RecordingFormat::ALL);
 
 /// What is known beforehand.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct ReadOptions {
     /// Rows and columns, for files that do not say them.

@@ -51,7 +51,7 @@ named!(
 );
 
 /// What is known of a stream beforehand.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct StreamOptions {
     /// Its format; found by looking where there is none.
