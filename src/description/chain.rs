@@ -8,6 +8,7 @@ use crate::imprint::{Bounds, Imprint};
 
 /// The steps of a chain by their kind, so that the length is the same number on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub struct ChainSteps {
     /// Steps to a taxel beside, above or below: length 1.
     pub straight: u32,

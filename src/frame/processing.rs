@@ -42,6 +42,7 @@ impl Default for Processing {
 
 /// A frame and the results of its processing.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Processed<'a> {
     /// The values after crop, flip, turn and mask, in the sensor's unit; NaN where there is no cell.
     pub raw: &'a Matrix<f64>,

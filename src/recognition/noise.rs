@@ -195,6 +195,7 @@ named!(Method, "method", &Method::ALL);
 
 /// For each shape, how many touches lie at each distance from an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Distances {
     /// The least distance of any touch.
     pub least: u32,

@@ -167,6 +167,7 @@ impl Model {
 
 /// A shape in a pose, and how far it is moved from there onto the matrix of an imprint.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PlacedSource {
     /// The shape on the sensor of the model.
     pub source: Source,

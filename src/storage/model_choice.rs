@@ -16,6 +16,7 @@ use crate::storage::shipped;
 
 /// A set of shapes.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum ModelChoice {
     /// The seven figures at the sizes that forms propose.
     Figures,

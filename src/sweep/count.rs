@@ -44,6 +44,7 @@ impl CountedImprints {
 
 /// Neighbouring poses of one row that leave the same imprint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub struct PoseRun {
     /// The number of the first of them in the grid.
     pub first: u64,

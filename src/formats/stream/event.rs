@@ -101,6 +101,7 @@ pub enum StreamEvent<'a> {
 
 /// What has come so far.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct StreamCounts {
     /// Bytes.
     pub bytes: u64,
