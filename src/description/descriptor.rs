@@ -14,7 +14,8 @@ use crate::description::region::{Region, RegionKind};
 use crate::imprint::{Bounds, Imprint};
 
 /// The counts and sums of one region, from which every descriptor follows. Coordinates and lengths are in cell sides,
-/// directions in degrees counter-clockwise from +x as seen on the screen.
+/// directions in degrees counter-clockwise from +x as seen on the screen. If its fields are changed to numbers that no region
+/// has, descriptors may be of no use, or NaN, but nothing panics.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -81,8 +82,8 @@ impl Description {
 
     fn sides(&self) -> DVec2 {
         DVec2::new(
-            f64::from(self.rect.right - self.rect.left),
-            f64::from(self.rect.bottom - self.rect.top),
+            f64::from(self.rect.right) - f64::from(self.rect.left),
+            f64::from(self.rect.bottom) - f64::from(self.rect.top),
         )
     }
 
@@ -127,7 +128,8 @@ impl Description {
     /// The width and height of the rectangle.
     fn whole_sides(&self) -> [i64; 2] {
         let rect = self.rect;
-        [rect.right - rect.left, rect.bottom - rect.top].map(i64::from)
+        [(rect.left, rect.right), (rect.top, rect.bottom)]
+            .map(|(low, high)| i64::from(high) - i64::from(low))
     }
 
     /// Twice the sums of the coordinates, which are whole.
@@ -149,16 +151,17 @@ impl Description {
     /// The vector from the centre of gravity to the rectangle's centre, in units of 1/(2 NA).
     fn exact_cg_to_cd(&self) -> [i64; 2] {
         let (sums, centre) = (self.doubled_sums(), self.doubled_centre());
-        [0, 1].map(|axis| i64::from(self.na) * centre[axis] - sums[axis])
+        [0, 1].map(|axis| (i64::from(self.na) * centre[axis]).saturating_sub(sums[axis]))
     }
 
     /// P²/NAE as a + b√2.
     fn exact_compactness(&self) -> [i64; 4] {
         let [straight, diagonal] = [self.steps.straight, self.steps.diagonal].map(i64::from);
+        let times = |one: i64, other: i64| one.saturating_mul(other);
         ratios(
             [
-                straight * straight + 2 * diagonal * diagonal,
-                2 * straight * diagonal,
+                times(straight, straight).saturating_add(times(2 * diagonal, diagonal)),
+                times(2 * straight, diagonal),
             ],
             i64::from(self.nae),
         )
@@ -412,7 +415,8 @@ fn whole<const N: usize>(numbers: [u32; N]) -> [i64; 4] {
 /// Two ratios with one positive denominator, each in lowest terms.
 fn ratios(numerators: [i64; 2], denominator: i64) -> [i64; 4] {
     let [one, other] = numerators.map(|numerator| {
-        let common = gcd(numerator.unsigned_abs(), denominator.unsigned_abs());
+        // 0 only for a description whose fields were changed.
+        let common = gcd(numerator.unsigned_abs(), denominator.unsigned_abs()).max(1);
         [numerator / common, denominator / common]
     });
     [one[0], one[1], other[0], other[1]]
@@ -583,7 +587,8 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         |d| {
             let [x, y] = d.exact_cg_to_cd();
             let unit = 2 * i64::from(d.na);
-            Some(ratios([x * x + y * y, 0], unit * unit))
+            let [x, y, unit] = [x, y, unit].map(|own| own.saturating_mul(own));
+            Some(ratios([x.saturating_add(y), 0], unit))
         },
     ),
     Descriptor::new(
@@ -596,3 +601,48 @@ pub const DESCRIPTORS: &[Descriptor] = &[
     )
     .of_orientation(true),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::description::regions;
+
+    #[test]
+    fn fields_that_no_region_has_are_no_panic() {
+        let imprint: Imprint = ".##.\n####".parse().expect("an imprint");
+        let own = Description::of(&regions(&imprint)[0]);
+        let (bounds, steps) = (own.rect, own.steps);
+        let swapped = Bounds {
+            left: bounds.right,
+            right: bounds.left,
+            ..bounds
+        };
+        let many = ChainSteps {
+            straight: u32::MAX,
+            diagonal: u32::MAX,
+        };
+        for rect in [bounds, swapped] {
+            for steps in [steps, many] {
+                for count in [0, 1, u32::MAX] {
+                    for sum in [0.0, f64::NAN, 1e300, f64::NEG_INFINITY] {
+                        let (na, nae, ce) = (count, count, count);
+                        let (num_x, num_y, kind) = (sum, -sum, own.kind);
+                        let odd = Description {
+                            kind,
+                            na,
+                            nae,
+                            ce,
+                            num_x,
+                            num_y,
+                            steps,
+                            rect,
+                        };
+                        for row in DESCRIPTORS {
+                            let _ = ((row.measure)(&odd), (row.exact)(&odd));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

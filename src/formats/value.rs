@@ -91,8 +91,13 @@ pub fn measured(number: f64, width: usize) -> String {
         .unwrap_or_else(|| fitting(number, width))
 }
 
+/// The decimals of the smallest number.
+const MOST_DECIMALS: usize = 1074;
+
 /// A number with at most `decimals` decimals, without trailing zeros, and without a minus before a zero.
 pub(crate) fn decimal(number: f64, decimals: usize) -> String {
+    // No number has more, and a format string takes no more than 65,535.
+    let decimals = decimals.min(MOST_DECIMALS);
     let text = format!("{number:.decimals$}");
     let text = if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.')
@@ -117,7 +122,7 @@ pub fn deviation(number: f64, decimals: usize) -> String {
     match decimal(number, decimals) {
         zero if zero == "0" && number > 0.0 => match decimals {
             0 => "<1".to_owned(),
-            _ => format!("<0.{:0>decimals$}", 1),
+            _ => format!("<0.{:0>width$}", 1, width = decimals.min(MOST_DECIMALS)),
         },
         text => text,
     }
@@ -135,6 +140,15 @@ mod tests {
             (deviation(0.04, 1), deviation(0.3, 0)),
             ("<0.1".into(), "<1".into())
         );
+    }
+
+    #[test]
+    fn any_number_of_decimals_can_be_asked_for() {
+        for decimals in [1074, 65_536, usize::MAX] {
+            assert_eq!(decimal(0.25, decimals), "0.25");
+            assert_eq!(deviation(0.25, decimals), "0.25");
+            assert_eq!(decimal(5e-324, decimals).len(), 2 + 1074);
+        }
     }
 
     #[test]

@@ -150,7 +150,8 @@ impl MapLayout<'_> {
         let shapes = self.map.labels.len();
         let (mut lines, mut numbers) = (Vec::new(), Vec::new());
         for row in 0..shapes {
-            let sum: u128 = (0..shapes).map(|column| self.map.count(row, column)).sum();
+            let counts = (0..shapes).map(|column| self.map.count(row, column));
+            let sum = counts.fold(0, u128::saturating_add);
             for column in 0..shapes {
                 let count = self.map.count(row, column);
                 let (low, high) = (
