@@ -174,6 +174,34 @@ pub trait Solid {
     fn draw<T: Real>(&self, pen: &mut impl Pen<T>);
 }
 
+/// A reference to a shape is a shape, so that a shape made of others may borrow them.
+///
+/// ```
+/// use taxel::prelude::*;
+/// use taxel::geometry::{Pen, Real};
+///
+/// /// Shapes that do not overlap, such as the two jaws of a gripper.
+/// struct Both<A, B>(A, B);
+///
+/// impl<A: Solid, B: Solid> Solid for Both<A, B> {
+///     fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+///         self.0.draw(pen);
+///         self.1.draw(pen);
+///     }
+/// }
+///
+/// let sensor = Sensor::default();
+/// let left = Figure::rectangle(2.0, 5.0).on(&sensor)?;
+/// let right = Figure::rectangle(2.0, 5.0).at(6.0, 0.0).on(&sensor)?;
+/// assert_eq!(Plane::new(sensor).touch(&Both(&left, &right)).count(), 2 * 10);
+/// # Ok::<(), ParameterError>(())
+/// ```
+impl<S: Solid> Solid for &S {
+    fn draw<T: Real>(&self, pen: &mut impl Pen<T>) {
+        (**self).draw(pen);
+    }
+}
+
 /// A simple polygon from at least three vertices, in either sense of rotation.
 ///
 /// With fewer vertices, or with all of them on a line, it bounds nothing. If its edges cross each other, a part that is
