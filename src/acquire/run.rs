@@ -10,6 +10,38 @@ use crate::acquire::{playback, stream};
 /// Reads a source until it ends, `stop` is set, or the consumer breaks off. A file that is a recording is played back, and
 /// followed if it grows meanwhile; any other file, or one for which the format of a stream is given, is read as it grows.
 ///
+/// ```
+/// use std::ops::ControlFlow;
+/// use std::sync::atomic::AtomicBool;
+///
+/// use taxel::acquire::{AcquireEvent, AcquireOptions, FrameSource, acquire};
+/// use taxel::frame::{Processing, Rule};
+///
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("touch.jsonl");
+/// # std::fs::write(&path, "{\"t\":0,\"frame\":[[0,9],[0,8]]}\n{\"t\":0.01,\"frame\":[[0,9],[7,8]]}\n")?;
+/// // Or "/dev/ttyUSB0", "tcp://192.168.1.4:5000", a FIFO, or a file that grows.
+/// let source = FrameSource::new(path.as_os_str());
+/// let mut options = AcquireOptions::default();
+/// // As fast as possible, then stop; without this a recording is played at its own rate.
+/// options.once = true;
+/// let mut processing = Processing::default();
+/// processing.rule = Some(Rule::at_least(5.0)?);
+/// let mut imprints = Vec::new();
+/// let stop = AtomicBool::new(false);
+/// acquire(&source, &options, &stop, &mut |event| {
+///     if let AcquireEvent::Frame { frame, .. } = event {
+///         // A frame of another size than the mask or the tare is an error; this one has neither.
+///         imprints.extend(processing.run(frame).ok().and_then(|processed| processed.imprint));
+///     }
+///     // `Break` ends it from here, `stop` from another thread.
+///     ControlFlow::Continue(())
+/// })?;
+/// assert_eq!(imprints.len(), 2);
+/// assert_eq!(imprints[1].to_string(), ".#\n##");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// If the source cannot be opened at first, cannot be read on and does not come back, or is a damaged recording.
 pub fn acquire(

@@ -81,6 +81,32 @@ pub(super) const RECOGNISED_SET: &str = ".recognise";
 pub(super) const FORMS: &str = ".forms";
 
 /// A library in a folder. The folder is made when the first shape is saved.
+///
+/// ```
+/// use taxel::formats::StoredShape;
+/// use taxel::prelude::*;
+/// use taxel::storage::{Expected, Library, LibraryError, ShapeOrigin};
+///
+/// # let folder = tempfile::tempdir()?;
+/// # let folder = folder.path().join("shapes");
+/// let library = Library::open(folder);
+/// let sensor = Sensor::default();
+/// let hexagon = Source::from(Figure::hexagon(2.5).on(&sensor)?);
+/// let imprint = Plane::new(sensor).touch(&hexagon);
+/// let shape = StoredShape::new("my hexagon".parse()?, sensor, imprint, Some(hexagon))?;
+///
+/// // There must be no such shape yet; the stamp says which content a later save may replace.
+/// let stamp = library.save(&shape, Expected::Nothing)?;
+/// assert!(matches!(library.save(&shape, Expected::Nothing), Err(LibraryError::Exists { .. })));
+/// library.save(&shape, Expected::Stamp(stamp))?;
+///
+/// assert_eq!(library.load("my hexagon")?.shape, shape);
+/// let own = library.list()?.into_iter().filter(|entry| entry.origin == ShapeOrigin::Own);
+/// assert_eq!(own.count(), 1, "beside those that come with the program");
+/// library.delete("my hexagon")?;
+/// library.restore_last()?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Library {
     folder: PathBuf,
