@@ -51,7 +51,8 @@ impl<'a> ArrayWriter<'a> {
             .compression_method(CompressionMethod::Stored)
             .last_modified_time(DateTime::default())
             .large_file(numbers.len() >= 1 << 31);
-        self.0.start_file(format!("{name}.npy"), options)?;
+        let file = format!("{name}.npy");
+        self.0.start_file(file, options).map_err(zip_error)?;
         self.0.write_all(&npy::header(kind, shape))?;
         self.0.write_all(numbers)?;
         Ok(())
@@ -59,7 +60,7 @@ impl<'a> ArrayWriter<'a> {
 
     /// Writes the directory of the archive.
     pub(crate) fn finish(self) -> Result<(), ArchiveError> {
-        self.0.finish()?.flush()?;
+        self.0.finish().map_err(zip_error)?.flush()?;
         Ok(())
     }
 }
@@ -78,7 +79,7 @@ impl<R: Read + Seek> ArrayReader<R> {
         let length = input.seek(SeekFrom::End(0))?;
         Ok(Self {
             length,
-            archive: ZipArchive::new(input)?,
+            archive: ZipArchive::new(input).map_err(zip_error)?,
             read: Vec::new(),
         })
     }
@@ -88,7 +89,7 @@ impl<R: Read + Seek> ArrayReader<R> {
         self.read.push(name);
         let mut file = match self.archive.by_name(&format!("{name}.npy")) {
             Err(ZipError::FileNotFound) => return Err(ArchiveError::Array(name)),
-            file => file?,
+            file => file.map_err(zip_error)?,
         };
         is_stored(&file, name)?;
         let most = if name == HEADER {
@@ -112,8 +113,12 @@ impl<R: Read + Seek> ArrayReader<R> {
         // Arrays that share their bytes would take for ever, however short the archive.
         let mut rest = self.length;
         for index in 0..self.archive.len() {
-            let mut file = self.archive.by_index(index)?;
-            let name = file.name()?.trim_end_matches(".npy").to_owned();
+            let mut file = self.archive.by_index(index).map_err(zip_error)?;
+            let name = file
+                .name()
+                .map_err(zip_error)?
+                .trim_end_matches(".npy")
+                .to_owned();
             is_stored(&file, &name)?;
             if self.read.contains(&name.as_str()) {
                 continue;
@@ -211,13 +216,14 @@ pub(crate) fn format_in(header: &[u8]) -> Result<String, ArchiveError> {
     Ok(format.format)
 }
 
-/// What is wrong with an archive, in words that do not suppose that one knows its layout.
-fn zip_reason(error: &ZipError) -> String {
-    match error {
+/// What is wrong with an archive, in words that do not suppose that one knows its layout. The type of the crate that reads
+/// archives is no part of the interface.
+fn zip_error(error: ZipError) -> ArchiveError {
+    ArchiveError::Zip(match error {
         ZipError::Io(error) => error.to_string(),
         ZipError::UnsupportedArchive(what) => what.to_string(),
         _ => "cut short, damaged, or a file of another kind".to_owned(),
-    }
+    })
 }
 
 /// Why an archive cannot be written or read.
@@ -228,8 +234,8 @@ pub enum ArchiveError {
     #[error(transparent)]
     Io(#[from] io::Error),
     /// No zip, or a broken one.
-    #[error("no archive of arrays: {}", zip_reason(.0))]
-    Zip(#[from] ZipError),
+    #[error("no archive of arrays: {0}")]
+    Zip(String),
     /// An array whose bytes are not those that were written.
     #[error("array {0:?} is damaged")]
     Damaged(String),
@@ -263,7 +269,7 @@ pub enum ArchiveError {
     #[error("header: {0}")]
     Grid(#[from] GridError),
     /// Numbers that contradict each other.
-    #[error("{0}")]
+    #[error(transparent)]
     Parts(#[from] PartsError),
     /// A part of a model where a whole one is wanted.
     #[cfg(feature = "recognition")]
@@ -274,6 +280,33 @@ pub enum ArchiveError {
     },
     /// Shapes or numbers that make no model.
     #[cfg(feature = "recognition")]
-    #[error("{0}")]
+    #[error(transparent)]
     Model(#[from] crate::recognition::ModelError),
+}
+
+#[cfg(test)]
+mod tests {
+    use std::error::Error;
+
+    use super::*;
+
+    #[test]
+    fn an_error_says_a_thing_once() {
+        let broken = ArrayReader::new(io::Cursor::new(b"PK")).err();
+        let broken = broken.expect("two bytes are no archive");
+        assert_eq!(
+            broken.to_string(),
+            "no archive of arrays: cut short, damaged, or a file of another kind"
+        );
+        assert!(broken.source().is_none());
+    }
+
+    #[cfg(feature = "recognition")]
+    #[test]
+    fn an_error_of_a_model_is_that_error() {
+        let shards = crate::recognition::ModelError::NoShards;
+        let wrapped = ArchiveError::from(shards.clone());
+        assert_eq!(wrapped.to_string(), shards.to_string());
+        assert!(wrapped.source().is_none());
+    }
 }

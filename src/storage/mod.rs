@@ -87,7 +87,9 @@ pub use library::{Expected, Library, LibraryEntry, LoadedShape, ShapeOrigin};
 pub use trash::TRASH_KEPT;
 
 #[cfg(feature = "sweep")]
-pub use sweep_file::{ArchiveFileError, AtlasFile, PoseFile, is_poses, load_atlas, open_archive};
+pub use sweep_file::{
+    ArchiveFileError, AtlasEndingError, AtlasFile, PoseFile, is_poses, load_atlas, open_archive,
+};
 
 #[cfg(all(feature = "recognition", feature = "library"))]
 pub use models::{

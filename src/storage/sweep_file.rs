@@ -68,12 +68,18 @@ enum AtlasFormat {
     Archive,
 }
 
+/// The error for a name that ends in none of the endings of an atlas.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected a name that ends in .csv, .jsonl or .npz")]
+#[non_exhaustive]
+pub struct AtlasEndingError;
+
 impl AtlasFile {
     /// A file of that name.
     ///
     /// # Errors
-    /// What was expected, if no format has this extension.
-    pub fn new(path: impl Into<PathBuf>) -> Result<Self, &'static str> {
+    /// If no format has this extension.
+    pub fn new(path: impl Into<PathBuf>) -> Result<Self, AtlasEndingError> {
         let path = path.into();
         let ending = path.extension().and_then(|ending| ending.to_str());
         let ending = ending.map(str::to_ascii_lowercase);
@@ -81,7 +87,7 @@ impl AtlasFile {
             Some("csv") => AtlasFormat::Csv,
             Some("jsonl") => AtlasFormat::JsonLines,
             Some("npz") => AtlasFormat::Archive,
-            _ => return Err("expected a name that ends in .csv, .jsonl or .npz"),
+            _ => return Err(AtlasEndingError),
         };
         Ok(Self { path, format })
     }
@@ -295,7 +301,8 @@ mod tests {
             assert_eq!(std::fs::read(&path).ok(), Some(first));
             std::fs::remove_file(&path).expect("it is there");
         }
-        assert!(AtlasFile::new("a.txt").is_err() && AtlasFile::new("csv").is_err());
+        let refused = ["a.txt", "csv"].map(|name| AtlasFile::new(name).err());
+        assert_eq!(refused, [const { Some(AtlasEndingError) }; 2]);
         let nowhere = folder.path().join("nowhere/a.csv");
         let nowhere = AtlasFile::new(nowhere).expect("a format");
         let going = AtomicBool::new(false);

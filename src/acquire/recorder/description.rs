@@ -54,7 +54,7 @@ pub(super) fn prepared(
     let path = array.with_extension("json");
     let json = metadata.text().map_err(|error| RecorderError::Io {
         path: path.clone(),
-        error: error.into(),
+        error,
     })?;
     let prepare = || {
         let mut file = UnfinishedFile::new(&path, existing)?;

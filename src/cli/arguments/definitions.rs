@@ -34,7 +34,7 @@ use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;
 use crate::pose::Axis;
 use crate::sensor::SENSOR_PARAMETERS;
-use crate::storage::AtlasFile;
+use crate::storage::{AtlasEndingError, AtlasFile};
 
 /// The program with all its commands.
 /// Also the source of completions and manual pages, so a new command appears there by itself.
@@ -300,7 +300,7 @@ fn atlas() -> Arg {
 }
 
 /// The file of an atlas; its ending must be that of one of the formats.
-fn parse_atlas(text: &str) -> Result<AtlasFile, &'static str> {
+fn parse_atlas(text: &str) -> Result<AtlasFile, AtlasEndingError> {
     AtlasFile::new(text)
 }
 

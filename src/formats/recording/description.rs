@@ -12,6 +12,8 @@
 //! Everything but `format` may be missing. The values in the array are as the sensor sent them, in f64: what is said here
 //! is done again when they are read, unless flags say otherwise.
 
+use std::io;
+
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
@@ -189,9 +191,9 @@ impl RecordingMetadata {
     ///
     /// # Errors
     /// None that is known of; what the writer of JSON reports.
-    pub fn text(&self) -> Result<Vec<u8>, serde_json::Error> {
+    pub fn text(&self) -> io::Result<Vec<u8>> {
         let tare = self.tare.as_ref();
-        serde_json::to_vec_pretty(&Described {
+        let text = serde_json::to_vec_pretty(&Described {
             format: FORMAT.to_owned(),
             source: self.source.clone(),
             unit: self.unit.clone(),
@@ -205,7 +207,8 @@ impl RecordingMetadata {
             marks: self.marks.clone(),
             ended: self.ended,
             ended_by: self.ended_by.clone(),
-        })
+        });
+        text.map_err(io::Error::from)
     }
 }
 
