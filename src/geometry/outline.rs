@@ -225,13 +225,18 @@ pub struct Polygon {
 }
 
 impl Polygon {
-    /// The polygon through the vertices, in order. Coordinates that are not finite become 0.
+    /// The polygon through the vertices, in order. One with a coordinate that is not finite bounds nothing: any other number in
+    /// its place would make a wrong imprint that looks right.
+    ///
+    /// ```
+    /// use taxel::geometry::{Extent, Polygon};
+    /// assert_eq!(Extent::of(&Polygon::new([(1.0, 1.0), (f64::NAN, 4.0), (5.0, 4.0)])), None);
+    /// ```
     pub fn new(vertices: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
-        let mut vertices: Vec<_> = vertices
-            .into_iter()
-            .map(|(x, y)| (finite(x), finite(y)))
-            .collect();
+        let mut vertices: Vec<_> = vertices.into_iter().collect();
+        if !vertices.iter().all(|(x, y)| x.is_finite() && y.is_finite()) {
+            vertices.clear();
+        }
         if turns_left(&vertices) {
             vertices.reverse();
         }
