@@ -92,7 +92,7 @@
 //! mcap                MCAP files in formats::recording                 frames
 //! png                 formats::Drawing::png
 //! library             storage                                          json
-//! acquire             acquire                                          frames, library
+//! acquire             acquire, on Unix-like systems                    frames, library
 //! tui                 tui                                              library, recognition, acquire, png
 //! cli (the default)   cli, and the program                             tui
 //! ```
@@ -113,6 +113,9 @@
 //! - What follows from a document (coverage, imprint, regions, descriptors) is computed, never stored beside it.
 //! - Infinity is never shown or written. A value that does not exist is None; arrays (`.npz`, recordings) cannot
 //!   express that otherwise and use NaN.
+
+// Says at each item which feature it needs. It is not stable yet, so only docs.rs sets this.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 // The examples of the README are compiled and run with those of the documentation.
 #[cfg(doctest)]
