@@ -127,6 +127,9 @@ struct Readme;
 #[doc = include_str!("../docs/library.md")]
 struct LibraryGuide;
 
+/// The version of glam whose points are in the interface: CG, CD and [`description::Value::Point`].
+pub use glam;
+
 mod quote;
 
 mod index;
