@@ -63,6 +63,16 @@ impl FigureKind {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
+    /// What is said about a word that is not a figure here, but means one of the seven.
+    #[cfg(feature = "json")]
+    pub(crate) fn of_other_name(word: &str) -> Option<&'static str> {
+        match word {
+            "circle" => Some("a circle is an ellipse with equal radii"),
+            "square" => Some("a square is a rectangle with equal sides"),
+            _ => None,
+        }
+    }
+
     /// Returns its parameters in the order of forms: its sizes, then position, angle and thickness. The thickness may
     /// be absent.
     pub fn parameters(self) -> &'static [Parameter] {

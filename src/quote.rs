@@ -47,6 +47,16 @@ pub(crate) fn did_you_mean<'a>(wrong: &str, names: impl IntoIterator<Item = &'a 
     }
 }
 
+/// A name as it is typed in a command line: in quotes if it has blanks.
+#[cfg(all(feature = "recognition", feature = "library"))]
+pub(crate) fn as_argument(name: &str) -> String {
+    if name.contains(char::is_whitespace) {
+        format!("{name:?}")
+    } else {
+        name.to_owned()
+    }
+}
+
 /// The longest name, in characters, that is compared with others.
 #[cfg(feature = "json")]
 const LONGEST_NAME: usize = 64;

@@ -39,7 +39,7 @@ pub enum RecordError {
     #[error(
         "figure: {found:?} is unknown, expected one of {}{}",
         FigureKind::ALL.map(FigureKind::name).join(", "),
-        did_you_mean(found, FigureKind::ALL.map(FigureKind::name))
+        meant(found)
     )]
     FigureKind {
         /// What was given.
@@ -51,6 +51,14 @@ pub enum RecordError {
     /// A picture's name where names are not known.
     #[error("picture: {0}")]
     Name(String),
+}
+
+/// The end of a message about a figure that there is not: which one was probably meant.
+fn meant(found: &str) -> String {
+    match FigureKind::of_other_name(found) {
+        Some(known) => format!("; {known}"),
+        None => did_you_mean(found, FigureKind::ALL.map(FigureKind::name)),
+    }
 }
 
 /// `a` or `an`, by the first letter.

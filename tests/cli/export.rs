@@ -246,7 +246,7 @@ fn a_drawn_screen_has_its_theme_and_is_not_overwritten() {
     assert!(light.contains("fill=\"#ffffff\"/>") && light.contains("fill=\"#008700\"/>"));
     misused(
         "script --theme light -k f",
-        "unexpected argument '--theme' found",
+        "'--theme' does not belong to 'script', but to 'watch', 'config' and the screen\n",
     );
 }
 

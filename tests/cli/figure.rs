@@ -1,6 +1,7 @@
 //! `taxel figure`: the worked example of the paper, flags, ranges, usage.
 
 use super::RING;
+use super::library::Shelf;
 use super::misused;
 use super::refused;
 use super::taxel;
@@ -79,11 +80,12 @@ fn wrong_usage_is_status_2() {
     misused("figur", "unrecognized subcommand 'figur'\n");
     misused(
         "figure",
-        "the following required arguments were not provided:\n  <KIND>\n",
+        "the following required arguments were not provided:\n  <KIND>\n\n  \
+         tip: KIND is ellipse, rectangle, triangle, pentagon, hexagon, heptagon or octagon\n\nUsage: ",
     );
     misused(
-        "figure circle",
-        "invalid value 'circle' for '<KIND>'\n  [possible values: ellipse, ",
+        "figure blob",
+        "invalid value 'blob' for '<KIND>'\n  [possible values: ellipse, ",
     );
     misused(
         "figure ellipse --side 3",
@@ -97,10 +99,6 @@ fn wrong_usage_is_status_2() {
         "figure hexagon --side 1 --side 2",
         "the argument '--side <CELLS>' cannot be used multiple times\n",
     );
-    misused(
-        "figure hexagon --zoom-x 2",
-        "unexpected argument '--zoom-x' found\n",
-    );
     for text in ["three", "nan", "inf", "--json", "0x3"] {
         misused(
             &format!("figure hexagon --side {text}"),
@@ -113,11 +111,123 @@ fn wrong_usage_is_status_2() {
     );
     misused("describe", "the following required arguments");
     misused("describe one two", "unexpected argument 'two' found\n");
-    misused("batch --pitch 2", "unexpected argument '--pitch' found\n");
     misused(
         "--columns 3 figure hexagon",
         "'--columns' must come after 'figure'; before it, it is a flag of the screen\n",
     );
+}
+
+#[test]
+fn a_flag_of_another_command_is_refused_with_what_this_one_takes_or_where_it_belongs() {
+    for (line, message) in [
+        (
+            "figure hexagon --zoom-x 2",
+            "'--zoom-x' does not belong to 'figure', which takes --radius-x, --radius-y, --length, --width, --side, --x0, \
+             --y0, --angle, --thickness, --columns, --rows, --threshold and --pitch\n\nUsage: taxel figure ",
+        ),
+        (
+            "picture washer --side 3",
+            "'--side' does not belong to 'picture', which takes --x0, --y0, --angle, --zoom-x, --zoom-y, --columns, --rows, \
+             --threshold and --pitch\n\nUsage: taxel picture ",
+        ),
+        (
+            "batch --pitch=2",
+            "'--pitch' does not belong to 'batch', which takes --columns, --rows and --threshold\n",
+        ),
+        (
+            "describe washer --x0 3",
+            "'--x0' does not belong to 'describe', but to 'figure', 'picture', 'sweep' and 'model train'\n",
+        ),
+        (
+            "recognise - --at-least 3",
+            "'--at-least' does not belong to 'recognise', but to 'frames' and 'watch'\n\nUsage: taxel recognise ",
+        ),
+        (
+            "model show figures --at-least 3",
+            "'--at-least' does not belong to 'model show', but to 'frames' and 'watch'\n\nUsage: taxel model show ",
+        ),
+        (
+            "describe washer --theme light",
+            "'--theme' does not belong to 'describe', but to 'watch', 'config' and the screen\n",
+        ),
+        // Too many commands have it.
+        ("batch --json", "'--json' does not belong to 'batch'\n\n"),
+        // One that no command has, with no advice to pass it as a value.
+        (
+            "describe washer --foo 3",
+            "unexpected argument '--foo' found\n\nUsage: taxel describe ",
+        ),
+        (
+            "picture washer --columnss 3",
+            "unexpected argument '--columnss' found\n\n  tip: a similar argument exists: '--columns'\n",
+        ),
+        ("--foo", "unexpected argument '--foo' found\n\nUsage: "),
+        (
+            "figure hexagon --version",
+            "unexpected argument '--version' found\n\nUsage: ",
+        ),
+    ] {
+        misused(line, message);
+    }
+}
+
+#[test]
+fn a_word_that_is_no_figure_says_what_it_may_be() {
+    let shelf = Shelf::new();
+    shelf.does("library|save|my ring|washer", "");
+    let tip = |line: &str| {
+        let run = shelf.run(line, "");
+        assert_eq!((run.status, run.stdout.as_str()), (Some(2), ""), "{line}");
+        let mut tips = run
+            .stderr
+            .lines()
+            .filter_map(|line| line.trim().strip_prefix("tip: "));
+        let tip = tips.next().map(str::to_owned);
+        assert_eq!(tips.next(), None, "{line}");
+        tip
+    };
+    for (line, expected) in [
+        (
+            "figure|circle",
+            Some("a circle is an ellipse with equal radii"),
+        ),
+        (
+            "sweep|square",
+            Some("a square is a rectangle with equal sides"),
+        ),
+        (
+            "figure|washer",
+            Some("'taxel picture washer' takes a stored shape"),
+        ),
+        (
+            "figure|my ring|--json",
+            Some("'taxel picture \"my ring\"' takes a stored shape"),
+        ),
+        ("figure|blob", None),
+        ("figure|hexagn", Some("a similar value exists: 'hexagon'")),
+        (
+            "sweep|washer",
+            Some("for a stored shape, use '--picture washer'"),
+        ),
+    ] {
+        assert_eq!(tip(line).as_deref(), expected, "{line}");
+    }
+    for (line, message) in [
+        (
+            "describe|hexagon",
+            "no stored shape and no file is called \"hexagon\"; \"hexagon\" is a figure: taxel figure hexagon",
+        ),
+        (
+            "recognise|hexagon",
+            "no stored shape and no file is called \"hexagon\"; \"hexagon\" is a figure: taxel figure hexagon",
+        ),
+        (
+            "model|train|hexagon|--out|no.npz",
+            "no shape is called \"hexagon\"; \"hexagon\" is a figure: --shape hexagon=hexagon",
+        ),
+    ] {
+        refused(&shelf.run(line, ""), 1, message);
+    }
 }
 
 #[test]

@@ -595,6 +595,12 @@ fn a_listing_has_no_threshold_and_no_tare() {
             "the following required arguments were not provided:",
         );
     }
+    let run = taxel(
+        &format!("frames {} --at-least 10", sample("tekscan.asf")),
+        "",
+    );
+    let tip = "\n  tip: to describe frames, choose some, such as '--peak' or '--all'\n";
+    assert!(run.stderr.contains(tip), "{}", run.stderr);
 }
 
 #[test]

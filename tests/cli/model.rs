@@ -450,6 +450,11 @@ fn names_that_are_nearly_right_are_named() {
             "--shape disc: figure: \"elipse\" is unknown, expected one of ellipse, rectangle, triangle, \
              pentagon, hexagon, heptagon, octagon; did you mean \"ellipse\"?",
         ),
+        (
+            "model train --shape 'disc=circle' --out m.npz",
+            "--shape disc: figure: \"circle\" is unknown, expected one of ellipse, rectangle, triangle, \
+             pentagon, hexagon, heptagon, octagon; a circle is an ellipse with equal radii",
+        ),
     ] {
         refused(&place.run(line, ""), 1, message);
     }

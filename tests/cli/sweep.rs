@@ -487,7 +487,8 @@ fn what_is_no_sweep_is_refused() {
         ),
         (
             "sweep",
-            "required arguments were not provided:\n  <KIND|--picture <NAME|FILE>>\n\n\
+            "required arguments were not provided:\n  <KIND|--picture <NAME|FILE>>\n\n  \
+             tip: KIND is ellipse, rectangle, triangle, pentagon, hexagon, heptagon or octagon\n\n\
              Usage: taxel sweep <KIND|--picture <NAME|FILE>>\n",
         ),
         (

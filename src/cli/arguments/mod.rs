@@ -11,11 +11,14 @@
 //! | `recognise` | the same for `recognise` |
 //! | `groups` | the commands by what they are for, as the help lists them |
 //! | `help` | the longer texts of the help |
+//! | `advice` | what helps where arguments are refused |
 //! | `request` | from what clap has read to a `Request` |
 //!
 //! Everything that can be wrong with the arguments alone is found here, before a file is read or a thread started.
 
 pub(super) mod help;
+
+mod advice;
 
 pub(super) mod parameters;
 

@@ -3,14 +3,14 @@
 //!
 //! Settings are resolved on the way, since they decide about defaults: the sensor of a figure, the pitch of a table.
 
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
-use clap::builder::StyledStr;
-use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 
+use crate::cli::arguments::advice::advised;
 use crate::cli::arguments::definitions;
 use crate::cli::arguments::flags::{self, required, unhandled_subcommand};
 use crate::cli::arguments::frames::FramesArguments;
@@ -187,11 +187,13 @@ pub(crate) enum Form {
 /// # Errors
 /// [`CliError::Usage`] with clap's message; [`CliError::Settings`] for the settings file; [`CliError::Range`] for
 /// values out of range.
-pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
+pub(crate) fn read(arguments: &[OsString]) -> Result<Invocation, CliError> {
     let mut command = groups::grouped(definitions::all());
     let matches = match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => matches,
-        Err(error) if error.use_stderr() => return Err(with_tip(error).into()),
+        Err(error) if error.use_stderr() => {
+            return Err(advised(error, &mut command, arguments).into());
+        }
         Err(help) => {
             let none = Chosen::default();
             return Ok(Invocation {
@@ -214,15 +216,7 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
         });
     };
     if let Some(flag) = Given::of(&matches).first().or(of_screen(&matches)) {
-        let has_flag =
-            |own: &clap::Command| own.get_arguments().any(|own| own.get_long() == Some(&flag));
-        let message = if command.find_subcommand(name).is_some_and(has_flag) {
-            format!("'--{flag}' must come after '{name}'; before it, it is a flag of the screen")
-        } else {
-            format!(
-                "the subcommand '{name}' cannot be used with '--{flag}', which is only for the screen"
-            )
-        };
+        let message = too_early(&flag, name, &command);
         return Err(command.error(ErrorKind::ArgumentConflict, message).into());
     }
     if definitions::WITHOUT_LIBRARY.contains(&name) && (library_named || own.contains_id("library"))
@@ -274,33 +268,24 @@ fn shared_input(matches: &ArgMatches) -> Option<String> {
     ))
 }
 
-/// Endings of files that hold frames. Those of `.txt` and `.json` may as well be imprints and shapes.
-const RECORDINGS: [&str; 8] = ["apd", "asf", "csv", "jsonl", "lst", "mcap", "npy", "npz"];
-
-/// Names the commands that read a recording, where one is given in place of a command.
-fn with_tip(mut error: clap::Error) -> clap::Error {
-    let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidSubcommand) else {
-        return error;
-    };
-    let path = Path::new(given);
-    let ending = path.extension().map(OsStr::to_ascii_lowercase);
-    let is_recording = ending.is_some_and(|ending| RECORDINGS.iter().any(|own| ending == *own));
-    if is_recording && path.is_file() {
-        let tips = [
-            format!("'taxel frames {given}' lists what is in it"),
-            format!("'taxel watch {given}' plays it"),
-        ];
-        let tips = tips.into_iter().map(StyledStr::from).collect();
-        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tips));
-    }
-    error
-}
-
 /// The first flag of the screen that is given. Before a command such a flag would have no effect, so it is refused.
 fn of_screen(matches: &ArgMatches) -> Option<String> {
     let flags = ["color", "theme", "no-mouse", "size", "record"];
     let given = |flag: &&str| matches.value_source(flag) == Some(ValueSource::CommandLine);
     flags.into_iter().find(given).map(str::to_owned)
+}
+
+/// That a flag of the screen stands before the command `name`.
+fn too_early(flag: &str, name: &str, command: &clap::Command) -> String {
+    let has_flag =
+        |own: &clap::Command| own.get_arguments().any(|own| own.get_long() == Some(flag));
+    if command.find_subcommand(name).is_some_and(has_flag) {
+        format!("'--{flag}' must come after '{name}'; before it, it is a flag of the screen")
+    } else {
+        format!(
+            "the subcommand '{name}' cannot be used with '--{flag}', which is only for the screen"
+        )
+    }
 }
 
 /// The settings in effect, from the file, the flags of a command and the environment.

@@ -19,10 +19,12 @@ use crate::cli::error::CliError;
 use crate::cli::input::content;
 use crate::cli::input::content::{InputError, InputSource};
 use crate::cli::input::shapes::Shelf;
+use crate::figure::FigureKind;
 use crate::formats::{ShapeLookup, named_shape, named_shape_of_words};
 use crate::picture::Picture;
 use crate::quote::shortened;
 use crate::recognition::NamedShape;
+use crate::storage::LibraryError;
 
 /// The largest file of shapes.
 const MAX_SET: u64 = 64 << 20;
@@ -33,11 +35,10 @@ const MAX_SET: u64 = 64 << 20;
 /// [`CliError::Set`] with the place of a shape that cannot be read: `parts.jsonl, line 3`; those of files and the
 /// library.
 pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
-    let refused = |error| shelf.refused(error);
     let lookup = |name: &str| {
         shelf
             .imprint(name)
-            .map_err(|error| refused(error).to_string())
+            .map_err(|error| shelf.refused(error).to_string())
     };
     let mut shapes = Vec::new();
     for what in &asked.what {
@@ -57,7 +58,9 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
             lines(&mut file, &name, &lookup, &mut shapes)?;
         } else {
             let name = what.to_string_lossy();
-            let imprint = shelf.imprint(&name).map_err(refused)?;
+            let imprint = shelf
+                .imprint(&name)
+                .map_err(|error| no_shape(error, shelf))?;
             shapes.push(NamedShape::new(name, Picture::at_home(imprint)));
         }
     }
@@ -75,6 +78,17 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
         shapes.extend(library_shapes(shelf)?);
     }
     Ok(shapes)
+}
+
+/// The message about an argument that is no shape; a figure is given by another flag.
+fn no_shape(error: LibraryError, shelf: &Shelf) -> CliError {
+    match &error {
+        LibraryError::Unknown { name } if FigureKind::from_name(name).is_some() => {
+            let near = format!("; {name:?} is a figure: --shape {name}={name}");
+            CliError::NoShape { error, near }
+        }
+        _ => shelf.refused(error),
+    }
 }
 
 /// All shapes of the library, in its order.

@@ -13,6 +13,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use crate::cli::error::CliError;
 use crate::cli::input::content;
 use crate::cli::input::content::{InputError, InputSource};
+use crate::figure::FigureKind;
 use crate::formats::Content;
 use crate::formats::StoredShape;
 use crate::formats::name::folded;
@@ -128,7 +129,7 @@ impl Shelf {
         match (File::open(&path), nowhere) {
             (Ok(file), _) => Ok(Located::File(path, file)),
             (Err(error), Some(CliError::Nowhere { name, .. })) if is_missing(&error) => {
-                let near = self.suggestion(&LibraryError::Unknown { name: name.clone() });
+                let near = self.near_or_figure(&name);
                 Err(CliError::Nowhere { name, near })
             }
             (Err(error), Some(nowhere)) if is_missing(&error) => Err(nowhere),
@@ -136,6 +137,15 @@ impl Shelf {
                 name: InputSource::File(path).name(),
                 error: error.into(),
             }),
+        }
+    }
+
+    /// The end of a message about a name that no stored shape and no file has: that it is a figure, or a shape that is much
+    /// like it.
+    fn near_or_figure(&self, name: &str) -> String {
+        match FigureKind::from_name(name) {
+            Some(_) => format!("; {name:?} is a figure: taxel figure {name}"),
+            None => self.suggestion(&LibraryError::Unknown { name: name.into() }),
         }
     }
 

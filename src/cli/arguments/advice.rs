@@ -1,0 +1,219 @@
+//! What helps where clap refuses the arguments: a tip at the end of its message, or a message in its place.
+//!
+//! ```text
+//! taxel picture washer --side 3   '--side' does not belong to 'picture', which takes --x0, …
+//! taxel sweep washer              tip: for a stored shape, use '--picture washer'
+//! taxel frames.csv                tip: 'taxel frames frames.csv' lists what is in it
+//! ```
+
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+
+use clap::Command;
+use clap::builder::{NonEmptyStringValueParser, StyledStr};
+use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
+
+use crate::cli::arguments::definitions;
+use crate::cli::settings::flags::Chosen;
+use crate::cli::settings::resolved::{Effective, Loaded};
+use crate::figure::FigureKind;
+use crate::parameter::PARAMETERS;
+use crate::quote::as_argument;
+use crate::storage::Library;
+
+/// Endings of files that hold frames. Those of `.txt` and `.json` may as well be imprints and shapes.
+const RECORDINGS: [&str; 8] = ["apd", "asf", "csv", "jsonl", "lst", "mcap", "npy", "npz"];
+
+/// More commands than these say nothing about where a flag belongs.
+const MOST_NAMED: usize = 4;
+
+/// The error of these arguments with what helps.
+pub(super) fn advised(mut error: Error, program: &mut Command, arguments: &[OsString]) -> Error {
+    let tips = match error.kind() {
+        ErrorKind::UnknownArgument => return unknown_flag(error, program),
+        ErrorKind::InvalidSubcommand => for_recording(&error),
+        ErrorKind::InvalidValue => for_no_figure(&error, arguments),
+        ErrorKind::MissingRequiredArgument => for_missing(&error),
+        _ => Vec::new(),
+    };
+    suggest(&mut error, tips.into_iter().map(StyledStr::from).collect());
+    error
+}
+
+/// Ends the message with tips, if there are any.
+fn suggest(error: &mut Error, tips: Vec<StyledStr>) {
+    if !tips.is_empty() {
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tips));
+    }
+}
+
+/// A text that the error quotes.
+fn quoted(error: &Error, kind: ContextKind) -> Option<&str> {
+    match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text),
+        _ => None,
+    }
+}
+
+/// A flag that the command does not have: says where it belongs if another command has it. Otherwise clap's message,
+/// without the advice to pass the flag as a value: nothing here has a name that begins with a dash.
+fn unknown_flag(mut error: Error, program: &mut Command) -> Error {
+    if let Some((names, message)) = misplaced(&error, program) {
+        let refusing = names.iter().try_fold(program, |command, name| {
+            command.find_subcommand_mut(name.as_str())
+        });
+        if let Some(command) = refusing {
+            return command.error(ErrorKind::UnknownArgument, message);
+        }
+    } else if let Some(ContextValue::StyledStrs(mut tips)) = error.remove(ContextKind::Suggested) {
+        tips.retain(|tip| !tip.to_string().contains("' as a value, use '"));
+        suggest(&mut error, tips);
+    }
+    error
+}
+
+/// The command that refuses a flag of another one, and the message about that.
+fn misplaced(error: &Error, program: &Command) -> Option<(Vec<String>, String)> {
+    let flag = quoted(error, ContextKind::InvalidArg)?.strip_prefix("--")?;
+    let names = refusing(error, program);
+    if names.is_empty() {
+        return None;
+    }
+    let own = names
+        .iter()
+        .try_fold(program, |command, name| command.find_subcommand(name))?;
+    let mut owners = Vec::new();
+    add_owners(program, flag, "", &mut owners);
+    // What is not for a command is for the screen, but for the version.
+    if has(program, flag) && flag != "version" {
+        owners.push("the screen".to_owned());
+    }
+    if owners.is_empty() {
+        return None;
+    }
+    let flags = PARAMETERS.iter().map(|row| row.parameter.flag());
+    let (own_flags, others): (Vec<String>, Vec<String>) = flags.partition(|flag| has(own, flag));
+    let mut message = format!("'--{flag}' does not belong to '{}'", names.join(" "));
+    // A single parameter, as the pitch of 'describe', does not tell what was meant.
+    if own_flags.len() > 1 && others.iter().any(|other| other == flag) {
+        let own_flags = own_flags.iter().map(|own| format!("--{own}"));
+        message += &format!(", which takes {}", definitions::list(own_flags, "and"));
+    } else if owners.len() <= MOST_NAMED {
+        message += &format!(", but to {}", definitions::list(owners.into_iter(), "and"));
+    }
+    Some((names, message))
+}
+
+/// The names that lead to the command whose arguments are refused: `model`, `train`. Only its usage tells them.
+fn refusing(error: &Error, program: &Command) -> Vec<String> {
+    let mut names = Vec::new();
+    let Some(ContextValue::StyledStr(usage)) = error.get(ContextKind::Usage) else {
+        return names;
+    };
+    let mut command = program;
+    // Behind `Usage:` and the name of the program.
+    for word in usage.to_string().split_whitespace().skip(2) {
+        let Some(inner) = command.find_subcommand(word) else {
+            break;
+        };
+        names.push(word.to_owned());
+        command = inner;
+    }
+    names
+}
+
+/// Whether a command shows a flag in its help.
+fn has(command: &Command, flag: &str) -> bool {
+    let mut shown = command.get_arguments().filter(|arg| !arg.is_hide_set());
+    shown.any(|arg| arg.get_long() == Some(flag))
+}
+
+/// Adds the commands below this one that have a flag, quoted, with the names that lead to them.
+fn add_owners(command: &Command, flag: &str, path: &str, owners: &mut Vec<String>) {
+    for inner in command.get_subcommands() {
+        let path = format!("{path}{}", inner.get_name());
+        if has(inner, flag) {
+            owners.push(format!("'{path}'"));
+        }
+        add_owners(inner, flag, &format!("{path} "), owners);
+    }
+}
+
+/// Names the commands that read a recording, where one is given in place of a command.
+fn for_recording(error: &Error) -> Vec<String> {
+    let Some(given) = quoted(error, ContextKind::InvalidSubcommand) else {
+        return Vec::new();
+    };
+    let path = Path::new(given);
+    let ending = path.extension().map(OsStr::to_ascii_lowercase);
+    let is_recording = ending.is_some_and(|ending| RECORDINGS.iter().any(|own| ending == *own));
+    if !is_recording || !path.is_file() {
+        return Vec::new();
+    }
+    vec![
+        format!("'taxel frames {given}' lists what is in it"),
+        format!("'taxel watch {given}' plays it"),
+    ]
+}
+
+/// What may have been meant by a word that is no kind of figure. A slip of the keys has a tip already.
+fn for_no_figure(error: &Error, arguments: &[OsString]) -> Vec<String> {
+    let argument = quoted(error, ContextKind::InvalidArg);
+    let given = quoted(error, ContextKind::InvalidValue).filter(|given| !given.is_empty());
+    let (Some(argument), Some(given), None) =
+        (argument, given, error.get(ContextKind::SuggestedValue))
+    else {
+        return Vec::new();
+    };
+    // Only 'sweep' has another argument that may stand in place of the kind.
+    let tip = match (argument, FigureKind::of_other_name(given)) {
+        ("<KIND>" | "[KIND]", Some(known)) => Some(known.to_owned()),
+        ("[KIND]", None) => Some(format!(
+            "for a stored shape, use '--picture {}'",
+            as_argument(given)
+        )),
+        ("<KIND>", None) if is_stored(given, arguments) => Some(format!(
+            "'taxel picture {}' takes a stored shape",
+            as_argument(given)
+        )),
+        _ => None,
+    };
+    tip.into_iter().collect()
+}
+
+/// Whether a shape has this name, in the library that the arguments of `taxel figure` or the settings name.
+fn is_stored(name: &str, arguments: &[OsString]) -> bool {
+    // The same arguments, if any word may be the kind.
+    let lenient = definitions::all().mut_subcommand("figure", |figure| {
+        figure.mut_arg("kind", |kind| {
+            kind.value_parser(NonEmptyStringValueParser::new())
+        })
+    });
+    let Ok(matches) = lenient.try_get_matches_from(arguments) else {
+        return false;
+    };
+    let settings = Loaded::find(matches.get_one::<PathBuf>("config").cloned())
+        .and_then(|loaded| Effective::new(loaded, Chosen::of(&matches), std::env::var_os));
+    settings.is_ok_and(|settings| {
+        let library = settings.library().cloned().map(Library::open);
+        library.is_some_and(|library| library.load(name).is_ok())
+    })
+}
+
+/// What may stand where an argument is missing, if its name does not say it.
+fn for_missing(error: &Error) -> Vec<String> {
+    let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else {
+        return Vec::new();
+    };
+    let lacks = |word: &str| missing.iter().any(|argument| argument.contains(word));
+    let mut tips = Vec::new();
+    if lacks("KIND") {
+        let kinds = FigureKind::ALL.map(|kind| kind.name().to_owned());
+        let kinds = definitions::list(kinds.into_iter(), "or");
+        tips.push(format!("KIND is {kinds}"));
+    }
+    if lacks("--peak") {
+        tips.push("to describe frames, choose some, such as '--peak' or '--all'".to_owned());
+    }
+    tips
+}
