@@ -226,6 +226,21 @@ fn zip_error(error: ZipError) -> ArchiveError {
     })
 }
 
+/// That an archive is of another format: of another kind, or of another version.
+fn other_format(found: &str, expected: &str) -> String {
+    let kind = |format: &str| match format.split_once('/')? {
+        ("taxel-atlas", _) => Some("an atlas of taxel sweep"),
+        ("taxel-model", _) => Some("a model"),
+        _ => None,
+    };
+    match (kind(found), kind(expected)) {
+        (Some(found), Some(expected)) if found != expected => {
+            format!("{found}, expected {expected}")
+        }
+        _ => format!("format: {found:?} is not known here, expected {expected:?}"),
+    }
+}
+
 /// Why an archive cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -246,7 +261,7 @@ pub enum ArchiveError {
     #[error("array {0:?} is not as taxel writes it")]
     Array(&'static str),
     /// Another format, or a newer one.
-    #[error("format: {found:?} is not known here, expected {expected:?}")]
+    #[error("{}", other_format(found, expected))]
     Format {
         /// What it says it is.
         found: String,
@@ -277,6 +292,15 @@ pub enum ArchiveError {
     PartOfModel {
         /// Which part.
         shard: Shard,
+    },
+    /// Text where a model is expected, which may be the set of shapes to train one of.
+    #[cfg(feature = "recognition")]
+    #[error(
+        "not a model; if it is a set of shapes, train it first: taxel model train {path} --out FILE.npz"
+    )]
+    Untrained {
+        /// Its path, as it is typed in a command line.
+        path: String,
     },
     /// Shapes or numbers that make no model.
     #[cfg(feature = "recognition")]

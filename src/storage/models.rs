@@ -7,13 +7,14 @@
 //! ```
 
 use std::fs;
-use std::io::{BufReader, Cursor, ErrorKind};
+use std::io::{BufReader, Cursor, ErrorKind, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::formats::{ArchiveError, Name, read_model, write_model};
+use crate::quote::as_argument;
 use crate::recognition::{Model, Training};
 use crate::storage::atomic_file::{Existing, UnfinishedFile};
 use crate::storage::error::FileError;
@@ -33,8 +34,26 @@ const MAX_CACHED: u64 = 64 << 20;
 /// # Errors
 /// What is wrong with it, with the file's name.
 pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
-    let file = open_archive(path)?;
-    read_model(BufReader::new(file)).map_err(|error| ArchiveFileError::new(path, error))
+    let mut file = BufReader::new(open_archive(path)?);
+    read_model(&mut file).map_err(|error| {
+        let error = match error {
+            ArchiveError::Zip(_) if is_json(&mut file) => ArchiveError::Untrained {
+                path: as_argument(&path.to_string_lossy()),
+            },
+            error => error,
+        };
+        ArchiveFileError::new(path, error)
+    })
+}
+
+/// Whether a file begins like an object of JSON, as a set of shapes does.
+fn is_json(file: &mut (impl Read + Seek)) -> bool {
+    let mut start = Vec::new();
+    let read = file
+        .rewind()
+        .and_then(|()| file.take(1 << 10).read_to_end(&mut start));
+    let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&start);
+    read.is_ok() && start.trim_ascii_start().starts_with(b"{")
 }
 
 /// Reads a whole model from a file, so that it can answer touches.

@@ -242,3 +242,27 @@ fn a_file_that_cannot_be_read_is_named() {
         ".: cannot read: Is a directory (os error 21)",
     );
 }
+
+#[test]
+fn lines_that_another_command_reads_name_it() {
+    let field =
+        "unknown field `figure`, expected one of `format`, `name`, `sensor`, `imprint`, `source`";
+    let pose = "{\"figure\":\"hexagon\",\"side\":3,\"x0\":2,\"y0\":2}\n";
+    let told = |column: u32, what: &str, command: &str| {
+        format!(
+            "standard input: line 1, column {column}: {field}; if this is {what}, use taxel {command}"
+        )
+    };
+    let run = taxel("describe -", pose.repeat(2));
+    refused(&run, 1, &told(9, "a list of poses", "batch"));
+    let shape = "{\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}\n";
+    let run = taxel("describe -", shape);
+    refused(&run, 1, &told(23, "a set of shapes", "model train"));
+    // A stored shape is none of both, whatever made it.
+    let run = taxel("describe -", SHAPE.replace("\"name\"", "\"nom\""));
+    assert!(!run.stderr.contains("use taxel"), "{}", run.stderr);
+    let run = taxel("recognise -", pose);
+    let answer = "{\"error\":\"line 1: expected exactly one of the keys frame (with values), imprint, touches; taxel \
+                  batch makes imprints of poses\"}\n";
+    assert_eq!((run.status, run.stdout.as_str()), (Some(1), answer));
+}

@@ -687,11 +687,29 @@ fn damaged_models_are_refused() {
             run.stderr
         );
     }
-    // An atlas is not a model.
+    // An atlas is not a model, nor is a set of shapes.
     place.done("sweep hexagon --x0 5 --y0 5 --angle 0 --quiet --atlas atlas.npz");
     let run = place.run("model show atlas.npz", "");
-    assert_eq!(run.status, Some(1));
-    assert!(run.stderr.contains("taxel-model/1"), "{}", run.stderr);
+    let kind = "atlas.npz: an atlas of taxel sweep, expected a model";
+    refused(&run, 1, kind);
+    let run = place.run(
+        "sweep hexagon --x0 5 --y0 5 --angle 0 --quiet --resume --atlas m.npz",
+        "",
+    );
+    let kind = "m.npz is of another study (a model, expected an atlas of taxel sweep); ";
+    assert!(
+        run.status == Some(1) && run.stderr.contains(kind),
+        "{}",
+        run.stderr
+    );
+    let untrained = "parts.jsonl: not a model; if it is a set of shapes, train it first: taxel model train parts.jsonl --out \
+                     FILE.npz";
+    for line in [
+        "recognise - --model parts.jsonl",
+        "model confusion parts.jsonl",
+    ] {
+        refused(&place.run(line, "#\n"), 1, untrained);
+    }
     for (one, other, message) in [
         ("atlas", "m", "m.npz: is a model, but atlas.npz is an atlas"),
         ("m", "atlas", "atlas.npz: is an atlas, but m.npz is a model"),

@@ -13,6 +13,7 @@ use std::ffi::OsStr;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
@@ -344,7 +345,7 @@ fn is_line(text: &[u8]) -> Option<bool> {
     /// The only key that matters here; stored shapes have it.
     #[derive(Deserialize)]
     struct FormatKey {
-        format: Option<serde::de::IgnoredAny>,
+        format: Option<IgnoredAny>,
     }
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     if !text.trim_ascii_start().starts_with(b"{") {
@@ -394,6 +395,24 @@ struct LineKeys<'a> {
     /// Its channel. A recording without channels has null there, which is copied like a name.
     #[serde(default, deserialize_with = "given")]
     channel: Option<Box<RawValue>>,
+    /// What a pose has in place of an imprint.
+    figure: Option<IgnoredAny>,
+    /// The same of a stored shape.
+    picture: Option<IgnoredAny>,
+    /// What a shape of a set has besides.
+    name: Option<IgnoredAny>,
+}
+
+impl LineKeys<'_> {
+    /// That the line has none of the keys of a touch.
+    fn no_touch(&self) -> String {
+        let is_source = self.figure.is_some() || self.picture.is_some();
+        match (is_source, &self.name) {
+            (true, None) => format!("{ONE_KEY}; taxel batch makes imprints of poses"),
+            (true, Some(_)) => format!("{ONE_KEY}; taxel model train takes a set of shapes"),
+            (false, _) => ONE_KEY.to_owned(),
+        }
+    }
 }
 
 /// A text for each row, `#` for an active taxel; null of a frame without a threshold.
@@ -461,7 +480,7 @@ impl RecogniseLine {
                     .collect::<Result<_, _>>()?
             }
             (None, Some(_)) => return Err("touches: empty, expected at least one".to_owned()),
-            _ => return Err(ONE_KEY.to_owned()),
+            _ => return Err(keys.no_touch()),
         };
         // Values are not repeated.
         let copied = [
@@ -519,6 +538,9 @@ mod tests {
             "{\"touches\":[]}",
             "{\"frame\":3,\"rule\":null,\"imprint\":null}",
             "{\"imprint\":null,\"touches\":[[\"##\"]]}",
+            "{\"figure\":\"hexagon\",\"side\":3,\"x0\":2,\"y0\":2}",
+            "{\"picture\":\"washer\",\"x0\":2}",
+            "{\"name\":\"ring\",\"picture\":\"washer\"}",
         ] {
             let _ = writeln!(text, "{}", error(line));
         }
@@ -530,7 +552,10 @@ mod tests {
              touches: empty, expected at least one\n\
              imprint: null, as of a frame without a threshold; set one where the frame is read, such as \
              --at-least\n\
-             expected exactly one of the keys frame (with values), imprint, touches\n"
+             expected exactly one of the keys frame (with values), imprint, touches\n\
+             expected exactly one of the keys frame (with values), imprint, touches; taxel batch makes imprints of poses\n\
+             expected exactly one of the keys frame (with values), imprint, touches; taxel batch makes imprints of poses\n\
+             expected exactly one of the keys frame (with values), imprint, touches; taxel model train takes a set of shapes\n"
         );
     }
 }

@@ -6,6 +6,9 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+
 use crate::formats::recording::may_be_recording;
 use crate::formats::shape::MAX_BYTES;
 use crate::formats::{Content, ContentError, read_content};
@@ -63,9 +66,16 @@ pub(crate) enum InputError {
     /// It is neither an imprint nor a stored shape.
     #[error("{}", shortened_message(&.0.to_string()))]
     Content(#[from] ContentError),
-    /// It looks like a recording.
-    #[error("{0}; if this is a recording, use taxel frames")]
-    Recording(Box<InputError>),
+    /// It looks like something that another command reads.
+    #[error("{error}; if this is {what}, use taxel {command}")]
+    Elsewhere {
+        /// Why it is no imprint.
+        error: Box<InputError>,
+        /// What it looks like.
+        what: &'static str,
+        /// The command that reads it.
+        command: &'static str,
+    },
 }
 
 /// Reads an open source. If the first character is `{` it is a stored shape, otherwise an imprint.
@@ -75,10 +85,14 @@ pub(crate) enum InputError {
 pub(crate) fn read_from(source: impl Read) -> Result<Content, InputError> {
     let bytes = bytes(source)?;
     read(&bytes).map_err(|error| {
-        if may_be_recording(&bytes) {
-            InputError::Recording(Box::new(error))
-        } else {
-            error
+        let other = may_be_recording(&bytes).then_some(("a recording", "frames"));
+        match other.or_else(|| lines_of(&bytes)) {
+            Some((what, command)) => InputError::Elsewhere {
+                error: Box::new(error),
+                what,
+                command,
+            },
+            None => error,
         }
     })
 }
@@ -88,6 +102,27 @@ fn read(bytes: &[u8]) -> Result<Content, InputError> {
         return Err(InputError::Large);
     }
     Ok(read_content(bytes)?)
+}
+
+/// What lines of JSON are that hold no imprint but say how to make one, and the command that reads them. The first line
+/// tells; a stored shape has neither of these keys.
+fn lines_of(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
+    /// The keys that tell one kind from another.
+    #[derive(Deserialize)]
+    struct LineKeys {
+        figure: Option<IgnoredAny>,
+        picture: Option<IgnoredAny>,
+        name: Option<IgnoredAny>,
+    }
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut lines = bytes.split(|&byte| byte == b'\n');
+    let first = lines.find(|line| !line.trim_ascii().is_empty())?;
+    let keys: LineKeys = serde_json::from_slice(first).ok()?;
+    keys.figure.or(keys.picture)?;
+    Some(match keys.name {
+        Some(_) => ("a set of shapes", "model train"),
+        None => ("a list of poses", "batch"),
+    })
 }
 
 /// All bytes of a source, up to one more than the limit.
