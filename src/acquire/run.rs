@@ -51,7 +51,7 @@ pub fn acquire(
     consumer: &mut Consumer<'_>,
 ) -> Result<(), AcquireError> {
     let recording = source.recording(options);
-    match recording.map_err(AcquireError::opening)? {
+    match recording.map_err(|error| source.not_opened(error))? {
         Some(path) => playback::run(path, options, stop, consumer),
         None => stream::run(source, options, stop, consumer),
     }

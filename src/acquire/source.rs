@@ -86,7 +86,21 @@ impl FrameSource {
             Self::Tcp(address) => check_address(address),
             Self::Standard | Self::Serial(_) | Self::Fifo(_) => Ok(()),
         };
-        checked.map_err(AcquireError::opening)
+        checked.map_err(|error| self.not_opened(error))
+    }
+
+    /// That it cannot be opened. A name that looks like that of a connection says how one is written.
+    pub(super) fn not_opened(&self, error: io::Error) -> AcquireError {
+        let name = self.name();
+        let is_connection = matches!(self, Self::File(_))
+            && error.kind() == io::ErrorKind::NotFound
+            && !name.contains('/')
+            && check_address(&name).is_ok();
+        if !is_connection {
+            return AcquireError::opening(error);
+        }
+        let text = format!("{error}; a connection is written tcp://{name}");
+        AcquireError::opening(io::Error::new(error.kind(), text))
     }
 
     /// Refuses to record in the file that is watched, whatever its path, or to describe a recording in it.

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use tempfile::TempDir;
 
 use super::Run;
+use super::finish;
 use super::misused;
+use super::program;
 use super::refused;
 use super::run_in;
 
@@ -354,4 +356,24 @@ fn a_library_below_a_file_has_the_shipped_shapes() {
     // A file in place of the folder itself is an error.
     let file = run_in("C.UTF-8", &["library", "list", "--library", &file], b"");
     assert_eq!(file.status, Some(1), "{}", file.stderr);
+}
+
+#[test]
+fn a_file_in_place_of_the_name_says_what_comes_first() {
+    let shelf = Shelf::new();
+    let imprint = shelf.file("imprint.txt", RING);
+    let folder = std::path::Path::new(&imprint).parent().expect("a folder");
+    let save = |what: &str| {
+        let arguments = ["library", "save", "imprint.txt", what];
+        let mut program = program(&arguments, "C.UTF-8");
+        program.current_dir(folder);
+        finish(program.spawn().expect("it starts"), b"")
+    };
+    let missing = |name: &str| format!("no stored shape and no file is called {name:?}");
+    let order = "; the name comes first: taxel library save";
+    let told = missing("ring") + order + " ring imprint.txt";
+    refused(&save("ring"), 1, &told);
+    let told = missing("my ring") + order + " \"my ring\" imprint.txt";
+    refused(&save("my ring"), 1, &told);
+    shelf.refuses("library|save|none.txt|ring", &missing("ring"));
 }

@@ -548,6 +548,18 @@ fn a_connection_that_is_lost_is_made_again() {
     );
 }
 
+#[test]
+fn a_connection_without_its_beginning_says_how_it_is_written() {
+    let message = "robot:7000: cannot open it: No such file or directory (os error 2)";
+    let told = format!("{message}; a connection is written tcp://robot:7000");
+    super::refused(&taxel("watch robot:7000", ""), 1, &told);
+    for name in ["robot:port", "robot:70000", ":7000", "no/robot:7000"] {
+        let run = taxel(&format!("watch {name}"), "");
+        let message = message.replace("robot:7000", name);
+        super::refused(&run, 1, &message);
+    }
+}
+
 /// Frames of JSON lines a tenth of a second apart, by a clock of their own.
 fn clocked(from: f64, frames: u32) -> String {
     // What comes first may be torn.

@@ -299,7 +299,13 @@ fn a_file_that_was_not_changed_lately_ends_where_it_ends() {
 fn a_channel_that_is_not_there_is_refused_and_one_of_a_stream_is_said() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("touch.npy");
-    for name in ["u2.npy", "xsensor.csv", "topics.mcap"] {
+    let one = "no channel is called \"nope\": the recording has one channel, without a name; leave out --channel\n";
+    let several = "no channel is called \"nope\", expected one of ";
+    for (name, expected) in [
+        ("u2.npy", one),
+        ("xsensor.csv", several),
+        ("topics.mcap", several),
+    ] {
         let path = sample(name);
         let listed = refused(
             &format!("frames {path} --channel nope --all --at-least 1"),
@@ -307,7 +313,7 @@ fn a_channel_that_is_not_there_is_refused_and_one_of_a_stream_is_said() {
         );
         let line = format!("watch {path} --channel nope --write {}", file.display());
         let watched = refused(&line, "");
-        assert!(watched.contains("no channel is called \"nope\", expected one of "));
+        assert!(watched.contains(expected), "{name}: {watched}");
         assert_eq!(listed, watched, "{name}");
         assert!(!file.exists());
     }

@@ -11,6 +11,7 @@
 
 use std::ffi::OsStr;
 use std::fmt::{self, Write};
+use std::path::Path;
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
@@ -26,7 +27,7 @@ use crate::description::{RegionKind, regions};
 use crate::formats::Content;
 use crate::formats::name::folded;
 use crate::formats::{Name, StoredShape, json};
-use crate::quote::shortened_message;
+use crate::quote::{as_argument, shortened_message};
 use crate::sensor::Sensor;
 use crate::storage::{Library, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin};
 
@@ -199,7 +200,8 @@ pub(crate) fn show(
 /// # Errors
 /// [`CliError::Taken`] if there is an own shape of that name and `--force` is not given.
 pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String, CliError> {
-    let shape = match shelf.find(what)? {
+    let found = shelf.find(what);
+    let shape = match found.map_err(|error| in_order(error, saving.name.as_str()))? {
         Content::Shape(shape) => shape.renamed(saving.name),
         Content::Imprint(imprint) => StoredShape {
             name: saving.name,
@@ -210,6 +212,19 @@ pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String
     };
     let name = shelf.save(&shape, saving.force)?;
     Ok(format!("saved as {name}\n"))
+}
+
+/// Says which argument comes first, where a file was given in place of the name and the shape cannot be found.
+fn in_order(error: CliError, file: &str) -> CliError {
+    match error {
+        CliError::Nowhere { name, near } if Path::new(file).is_file() => {
+            let (first, then) = (as_argument(&name), as_argument(file));
+            let order = format!("; the name comes first: taxel library save {first} {then}");
+            let near = near + &order;
+            CliError::Nowhere { name, near }
+        }
+        error => error,
+    }
 }
 
 /// Moves an own shape into the trash.

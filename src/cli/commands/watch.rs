@@ -36,7 +36,7 @@ use crate::cli::signals::Signals;
 use crate::formats::json;
 use crate::formats::recording::{
     ChannelChoice, ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent,
-    RecordingMetadata,
+    RecordingMetadata, UNNAMED,
 };
 use crate::formats::stream::{StreamCounts, StreamRefusal};
 use crate::formats::value::counted;
@@ -229,6 +229,11 @@ fn channels(
 
 /// That a recording has no channel of that name, but others.
 pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
+    if names == [UNNAMED] {
+        return format!(
+            "no channel is called {asked:?}: the recording has one channel, without a name; leave out --channel"
+        );
+    }
     format!(
         "no channel is called {asked:?}, expected one of {}{}",
         names.join(", "),

@@ -104,6 +104,9 @@ impl ReadOptions {
     }
 }
 
+/// What a channel without a name is called.
+pub(crate) const UNNAMED: &str = "unnamed";
+
 /// What a recording says of one of its channels. None where it does not say it.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
@@ -135,7 +138,7 @@ pub struct ChannelInfo {
 impl ChannelInfo {
     /// The name that a channel is listed and chosen by: `unnamed` where the recording gives it none.
     pub fn shown_name(&self) -> &str {
-        self.name.as_deref().unwrap_or("unnamed")
+        self.name.as_deref().unwrap_or(UNNAMED)
     }
 
     /// The channel with what the recording does not say itself, but the description beside it does, if there is one.

@@ -98,4 +98,6 @@ pub use description::{FrameMark, RecordedView, RecordingMetadata};
 pub(crate) use detect::{RecordingInput, format_of, may_be_recording, read_as};
 pub use detect::{read, recognised, recognised_input};
 pub use error::RecordingError;
+#[cfg(feature = "cli")]
+pub(crate) use event::UNNAMED;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};

@@ -527,6 +527,8 @@ fn a_source_that_cannot_be_opened_opens_no_page() {
     let folder = folder.path();
     let missing = "error: nope.csv: cannot open it: No such file or directory (os error 2)";
     is_refused(folder, "nope.csv", missing);
+    let connection = "; a connection is written tcp://robot:7000";
+    is_refused(folder, "robot:7000", connection);
     let is_folder = "error: .: cannot open it: Is a directory (os error 21)";
     is_refused(folder, ".", is_folder);
     let no_port = "error: tcp://robot: cannot open it: expected tcp://HOST:PORT";
