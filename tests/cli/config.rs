@@ -94,10 +94,6 @@ fn what_is_unknown_or_unfit_is_refused_with_its_place() {
             ),
         ),
         (
-            "[keys.matrix]\nx = 'togle'\n",
-            "2:5: expected an action of 'taxel config', or \"none\", found \"togle\"",
-        ),
-        (
             "[keys.matrix]\nxy = 'toggle'\n",
             "2:1: \"xy\" is not one key, expected one as in x, <Tab>, <C-x>",
         ),
@@ -110,13 +106,41 @@ fn what_is_unknown_or_unfit_is_refused_with_its_place() {
     }
     for (text, place) in [
         ("theme = \n", "1:"),
-        ("theme = 'dark'\ntheme = 'light'\n", "2:1: "),
         ("é = 1 =\n", "1:"),
         ("[sensor\n", "1:"),
         ("x = 'a\n", "1:"),
     ] {
         let error = Config::read(text).expect_err(text).to_string();
         assert!(error.starts_with(place), "{text}: {error}");
+    }
+}
+
+#[test]
+fn a_wrong_action_and_a_key_that_is_given_twice_are_named() {
+    let actions = "expected an action of 'taxel config', or \"none\"";
+    for (text, expected) in [
+        (
+            "[keys.matrix]\nx = 'togle'\n",
+            format!("2:5: {actions}, found \"togle\"; did you mean \"toggle\"?"),
+        ),
+        (
+            "[keys.matrix]\nx = 'fly'\n",
+            format!("2:5: {actions}, found \"fly\""),
+        ),
+        (
+            "[keys.matrix]\nx = 'toggle'\n\"x\" = 'quit'\n",
+            "3:1: key \"x\" is given twice".to_owned(),
+        ),
+        (
+            "theme = 'dark'\ntheme = 'light'\n",
+            "2:1: key \"theme\" is given twice".to_owned(),
+        ),
+        (
+            "[sensor]\nrows = 8\n[sensor]\n",
+            "3:2: key \"sensor\" is given twice".to_owned(),
+        ),
+    ] {
+        refused(text, &expected);
     }
 }
 

@@ -25,7 +25,7 @@ use crate::sensor::Sensor;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::{Key, parse};
-use crate::tui::keys::keymap::{Change, Keymap, KeymapError};
+use crate::tui::keys::keymap::{Change, Keymap, KeymapError, actions};
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
 /// The word that leaves a choice to the program.
@@ -178,11 +178,7 @@ impl Config {
         if text.len() > MAX_BYTES {
             return Err((0, Wrong::Large));
         }
-        let table = DeTable::parse(text).map_err(|error| {
-            let message = shortened_message(&error.message().replace('\n', "; "));
-            let byte = error.span().map_or(0, |span| span.start);
-            (byte, Wrong::Syntax(message))
-        })?;
+        let table = DeTable::parse(text).map_err(|error| syntax(text, &error))?;
         let mut config = Self::default();
         for entry in entries(table.get_ref()) {
             config.take(text, entry)?;
@@ -274,10 +270,10 @@ impl Config {
             for (key, byte, value) in entries(table(value)?) {
                 let action = match string(value)? {
                     "none" => None,
-                    name => Some(action::named(name).ok_or_else(|| {
-                        let expected = "an action of 'taxel config', or \"none\"".to_owned();
-                        unfit(expected, name, value)
-                    })?),
+                    name => {
+                        let action = action::named(name);
+                        Some(action.ok_or_else(|| no_action(context, name, value))?)
+                    }
                 };
                 let key = one_key(key).ok_or_else(|| (byte, Wrong::Key(shortened_message(key))))?;
                 spans.push((byte, value.span().start));
@@ -399,6 +395,27 @@ fn unknown(found: &str, byte: usize, expected: &[&'static str]) -> Refusal {
 fn unfit(expected: String, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
     let found = format!("{:?}", shortened_message(found));
     (value.span().start, Wrong::Value { expected, found })
+}
+
+/// The error for a word that is no action; one of the place may have been meant.
+fn no_action(context: Context, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
+    let names = actions(context).into_iter().chain(["none"]);
+    let near = did_you_mean(found, names);
+    let expected = "an action of 'taxel config', or \"none\"".to_owned();
+    let found = format!("{:?}{near}", shortened_message(found));
+    (value.span().start, Wrong::Value { expected, found })
+}
+
+/// What is wrong with a text that is not TOML, in a line. The parser does not say which key is there twice.
+fn syntax(text: &str, error: &toml::de::Error) -> Refusal {
+    let span = error.span().unwrap_or(0..0);
+    let message = match (error.message(), text.get(span.clone())) {
+        ("duplicate key", Some(key)) => {
+            format!("key {:?} is given twice", key.trim_matches(['"', '\'']))
+        }
+        (message, _) => message.replace('\n', "; "),
+    };
+    (span.start, Wrong::Syntax(shortened_message(&message)))
 }
 
 /// The error for a value of the wrong type.
