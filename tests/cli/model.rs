@@ -305,7 +305,7 @@ fn shards_and_threads_give_the_same_bytes() {
 fn a_training_is_taken_up_where_it_was_left() {
     let place = Place::new();
     let train = |more: &str| {
-        let coarse = "--positions 5 --angle 0:350:10 --quiet --resume --out part.npz";
+        let coarse = "--positions 5 --angle 0:350:10 --resume --out part.npz";
         place.run(&format!("model train {coarse} {more}"), "")
     };
     let of = "washer parts.jsonl --shard 2/3";
@@ -316,7 +316,14 @@ fn a_training_is_taken_up_where_it_was_left() {
     let kept = first
         .stdout
         .replace("written: ", "kept, complete and part of this study: ");
-    assert_eq!((again.status, again.stdout), (Some(0), kept));
+    assert_eq!((again.status, again.stdout.as_str()), (Some(0), &*kept));
+    // With --quiet neither is said.
+    let summary = kept.split_once('\n').map(|(_, summary)| summary.to_owned());
+    assert_eq!(
+        Some(train(&format!("{of} --quiet")).stdout),
+        summary,
+        "{kept}"
+    );
     assert!(place.read("part.npz") == written);
     for (more, reason) in [
         (

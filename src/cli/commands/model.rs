@@ -128,8 +128,12 @@ fn trained(
         text.insert("file".to_owned(), json!(name));
         json::ascii(&text) + "\n"
     } else {
-        let said = charset.line(&format!("{done}: {name}")).into_owned();
-        said + "\n" + &evaluation::summary(&limit, NamedBy::Imprint)
+        let mut text = evaluation::summary(&limit, NamedBy::Imprint);
+        if !asked.quiet {
+            let said = charset.line(&format!("{done}: {name}")).into_owned();
+            text.insert_str(0, &(said + "\n"));
+        }
+        text
     })
 }
 
