@@ -128,9 +128,9 @@ fn table_rows(pitch: Option<f64>, holes: bool) -> Vec<TableRow> {
     let mut all = Vec::new();
     for descriptor in DESCRIPTORS {
         let (factor, unit) = match descriptor.dimension {
-            Dimension::Count | Dimension::Ratio => (1.0, ""),
+            // An area is in taxels, as its name says.
+            Dimension::Count | Dimension::Ratio | Dimension::Area => (1.0, ""),
             Dimension::Length => (1.0, ", cells"),
-            Dimension::Area => (1.0, ", cells²"),
             Dimension::Direction => (1.0, ", degrees"),
             Dimension::Share => (100.0, ", %"),
         };
