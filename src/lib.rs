@@ -89,12 +89,12 @@
 //!                     storage::AtlasFile, PoseFile, UnfinishedFile
 //! recognition         recognition; formats::model                      sweep
 //! frames              formats::recording, stream                       json
-//! mcap                MCAP files in formats::recording                 frames
+//! mcap (by default)   MCAP files in formats::recording                 frames
 //! png                 formats::Drawing::png
 //! library             storage                                          json
 //! acquire             acquire, on Unix-like systems                    frames, library
 //! tui                 tui                                              library, recognition, acquire, png
-//! cli (the default)   cli, and the program                             tui
+//! cli (by default)    cli, and the program                             tui
 //! ```
 //!
 //! A controller that only needs touches and descriptors uses `default-features = false`.

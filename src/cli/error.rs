@@ -128,8 +128,8 @@ pub(crate) enum CliError {
         /// The ending that is right.
         expected: &'static str,
     },
-    /// A model under the name of a built-in set would never be used.
-    #[error("{name} is the name of a built-in set; choose another")]
+    /// A model under the name of a built-in one would never be used.
+    #[error("{name} is the name of a built-in model; choose another")]
     BuiltInSet {
         /// The name.
         name: Name,

@@ -915,7 +915,7 @@ fn a_built_in_set_is_meant_before_a_file_of_its_name() {
     let train = format!("model train --shape a=hexagon {COARSE} --name");
     for name in ["figures", "Figures-30", "shapes"] {
         let run = place.run(&format!("{train} {name}"), "");
-        let message = format!("{name} is the name of a built-in set; choose another");
+        let message = format!("{name} is the name of a built-in model; choose another");
         refused(&run, 1, &message);
     }
 }

@@ -12,8 +12,8 @@
 pub(crate) const ABOUT: &str = "\
 Which shapes can a robot recognise by touching them once?
 
-Presses figures onto a matrix of tactile sensors, computes the exact imprint and
-describes it. Without a command, opens the screen, where all of this is live.";
+Presses flat shapes onto a tactile sensor, computes their exact imprints and
+describes them. Without a command, opens the screen, where all of this is live.";
 
 /// Below the flags of `taxel --help`: units, exit status and an example of most commands.
 pub(crate) const EXAMPLES: &str = "\
