@@ -293,3 +293,20 @@ fn judged(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answ
     };
     answer
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_whose_odds_differ_by_a_rounding_error_are_tied() {
+        let answer = |other: f64| {
+            let odds = [0.0, f64::NEG_INFINITY, other];
+            let answer = judged(Posterior::of_logarithms(&odds), false, None);
+            (answer.state, answer.shape, answer.tied)
+        };
+        assert_eq!(answer(-1e-14), (AnswerState::Tied, Some(0), vec![0, 2]));
+        assert_eq!(answer(1e-14), (AnswerState::Tied, Some(2), vec![2, 0]));
+        assert_eq!(answer(-1e-9), (AnswerState::Likely, Some(0), vec![]));
+    }
+}

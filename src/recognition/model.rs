@@ -539,3 +539,21 @@ impl Gathered {
         slot
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+
+    #[test]
+    fn a_set_may_have_as_many_shapes_as_its_refusal_says() {
+        let bar = Figure::rectangle(2.0, 1.0).on(&Sensor::default());
+        let bar = bar.expect("in range");
+        let shape = |number: usize| NamedShape::new(number.to_string(), bar);
+        let mut shapes: Vec<NamedShape> = (0..MAX_SHAPES).map(shape).collect();
+        assert_eq!(check_shapes(&shapes), Ok(()));
+        shapes.push(shape(MAX_SHAPES));
+        let refused = check_shapes(&shapes).expect_err("one more");
+        assert_eq!(refused.to_string(), "32769 shapes, expected 1 to 32768");
+    }
+}

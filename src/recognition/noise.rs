@@ -549,4 +549,38 @@ mod tests {
         assert!(own.is_some());
         assert_eq!((mask(2, 5), mask(64, 64)), (own.clone(), own));
     }
+
+    #[test]
+    fn a_likelihood_has_an_upper_bound_until_every_distance_is_counted() {
+        let sensor = Sensor::default();
+        let dot = Figure::rectangle(1.0, 1.0).on(&sensor).expect("in range");
+        let range = |text: &str| text.parse().expect("a range");
+        let ranges = Ranges::default()
+            .with(Axis::X0, range("5"))
+            .with(Axis::Y0, range("5"))
+            .with(Axis::Angle, range("0"));
+        let training = Training::new(
+            [NamedShape::new("dot", dot)],
+            sensor,
+            Anchor::Corner,
+            ranges,
+        );
+        let model = training.expect("a set").run().expect("not stopped");
+        let noise = Noise::new(0.1).expect("in range");
+        let touch: Imprint = "#.".parse().expect("an imprint");
+        let bounds = |touches: &[u64]| {
+            let distances = Distances {
+                least: 0,
+                touches: vec![touches.to_vec()],
+                method: Method::Scan,
+            };
+            model.log_likelihoods(&touch, &distances, &noise)[0]
+        };
+        // In the other place both taxels differ.
+        let [least, most] = bounds(&[1, 0, 1]);
+        assert_eq!(least, most);
+        let exact = least;
+        let [least, most] = bounds(&[1, 0]);
+        assert!(least < exact && exact <= most, "{least} {exact} {most}");
+    }
 }

@@ -510,6 +510,11 @@ mod tests {
             point.error() <= wanted && coarse.is_some_and(|it| it.value - point.value < 0.2)
         });
         assert_eq!(first.map(|point| point.value), Some(found.point.value));
+        // An error that is just reached is small enough.
+        let just = found.point.error();
+        let again = separation.smallest(SizeAxis::Scale, &points, just, &|_| true);
+        let again = again.expect("not stopped").expect("it is reached");
+        assert_eq!((again.point, again.step), (found.point, found.step));
         let never = separation.smallest(SizeAxis::Scale, &points, 0.001, &|_| true);
         assert_eq!(never, Ok(None));
         let at_once = separation.smallest(SizeAxis::Scale, &points[4..], 0.5, &|_| true);
@@ -563,5 +568,20 @@ mod tests {
         };
         assert_eq!(ranges(2.0, 1.5), ranges(1.0, 3.0));
         assert_eq!(ranges(2.0, 1.5)[Axis::ZoomX], DecimalRange::whole(3));
+    }
+
+    #[test]
+    fn a_shape_may_be_as_large_as_the_largest_sensor() {
+        let taxel: crate::imprint::Imprint = "#".parse().expect("rows");
+        let square = Figure::rectangle(1.0, 1.0).on(&Sensor::default());
+        let square = square.expect("in range");
+        for source in [Source::Picture(Picture::at_home(taxel)), square.into()] {
+            let separation = coarse(vec![NamedShape::new("square", source.clone())]);
+            let is_there = |scale: f64| {
+                let scaled = separation.scaled(&source, scale).expect("in range");
+                scaled.is_some()
+            };
+            assert!(is_there(64.0) && !is_there(64.01), "{source:?}");
+        }
     }
 }

@@ -580,6 +580,10 @@ mod tests {
         let touches = model.touches_until(0.4, 10, 0, &|_| true);
         let right = touches.map(|own| own.iter().map(|own| own.right).collect());
         assert_eq!(right, Some(vec![10, 0]));
+        // Each is exactly as probable as that.
+        let half = model.touches_until(0.5, 2, 0, &|_| true);
+        let means = half.map(|own| own.iter().map(|own| own.mean).collect());
+        assert_eq!(means, Some(vec![Some(1.0), Some(1.0)]));
         // They are never told apart, so there is no mean.
         let never = model.touches_until(0.9, 2, 0, &|_| true);
         let means = never.map(|own| {
