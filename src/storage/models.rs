@@ -366,4 +366,37 @@ mod tests {
         let trained = cached_or_trained(None, training(4.0), |_| Err("trained"));
         assert_eq!(trained.err(), Some("trained"));
     }
+
+    #[test]
+    fn of_names_that_differ_in_case_the_very_one_is_meant() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let models = ModelFolder::beside(&folder.path().join("library"));
+        fs::create_dir_all(models.path()).expect("made");
+        for name in ["SET", "set"] {
+            fs::write(models.path().join(format!("{name}.npz")), "").expect("written");
+        }
+        // Only one of them where the file system ignores case.
+        for name in models.names().expect("there") {
+            let file = models.path().join(format!("{name}.npz"));
+            assert_eq!(models.file(&name), file);
+        }
+    }
+
+    #[test]
+    fn a_model_of_fewer_shapes_is_none_of_a_training() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("fewer.npz");
+        let whole = training(4.0);
+        let fewer = || {
+            let grid = &whole.grids()[0];
+            let shapes = whole.shapes()[..1].to_vec();
+            let fewer = Training::new(shapes, *grid.sensor(), Anchor::Centre, *grid.ranges());
+            fewer.expect("a set")
+        };
+        let model = fewer().run().expect("not stopped");
+        let going = AtomicBool::new(false);
+        save_model(&model, &path, Existing::Kept, &going).expect("written");
+        assert!(ModelCache::load(&path, &fewer()).is_some());
+        assert!(ModelCache::load(&path, &whole).is_none());
+    }
 }

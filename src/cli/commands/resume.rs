@@ -154,3 +154,36 @@ impl StudyGrid {
             .or_else(|| Axis::ALL.into_iter().find_map(axis))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+    use super::*;
+    use crate::figure::Figure;
+    use crate::storage::{AtlasFile, Existing};
+    use crate::sweep::Sweep;
+
+    #[test]
+    fn an_atlas_that_was_not_swept_to_the_end_is_not_whole() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("part.npz");
+        let sensor = Sensor::default();
+        let bar = Figure::rectangle(3.0, 2.0).on(&sensor).expect("in range");
+        let grid = PoseGrid::new(bar.into(), sensor, Anchor::Corner, Ranges::default());
+        let grid = grid.expect("in range");
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        let stopped = pool.expect("threads").install(|| {
+            let done = AtomicU64::new(0);
+            let go_on = |poses| done.fetch_add(poses, Ordering::Relaxed) < 100_000;
+            Sweep::new(&grid).progress(&go_on).run()
+        });
+        assert!(!stopped.complete());
+        let file = AtlasFile::new(&path).expect("an archive");
+        let written = file.write(&stopped, Existing::Kept, &AtomicBool::new(false));
+        written.expect("written");
+        let refused = atlas(&path, &grid, Shard::WHOLE).expect_err("not whole");
+        let said = "is not whole (not all of its poses were swept)";
+        assert!(refused.to_string().contains(said), "{refused}");
+    }
+}
