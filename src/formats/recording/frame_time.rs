@@ -308,4 +308,14 @@ mod tests {
             assert_eq!(step(unit, fields), Some(expected), "{fields:?}");
         }
     }
+
+    #[test]
+    fn what_is_less_than_a_picosecond_is_rounded() {
+        let seconds = |text: &str| picoseconds(text.as_bytes(), TimeUnit::Seconds);
+        assert_eq!(seconds("1.0000000000005"), Some(1_000_000_000_001));
+        assert_eq!(seconds("-1,0000000000005"), Some(-1_000_000_000_001));
+        assert_eq!(seconds("1.0000000000004999"), Some(1_000_000_000_000));
+        let nanoseconds = picoseconds(b"0.0005", TimeUnit::Nanoseconds);
+        assert_eq!(nanoseconds, Some(1));
+    }
 }

@@ -549,4 +549,16 @@ mod tests {
         let stream = [whole, torn, torn, "1 x\n\n", torn, whole];
         assert_eq!(decoded(&stream.concat(), None), (vec![(2, 2, 1.0); 2], 4));
     }
+
+    #[test]
+    fn two_frames_alike_are_given_before_a_third_comes() {
+        let mut decoder = LinesDecoder::new(None, true, SourceClock::default());
+        let (mut given, mut counts) = (0, StreamCounts::default());
+        for line in ["1 2", "3 4", "", "5 6", "7 8", ""] {
+            decoder.line(line.as_bytes(), &mut counts, &mut |event| {
+                given += u32::from(matches!(event, StreamEvent::Frame(_)));
+            });
+        }
+        assert_eq!((given, counts.dropped), (2, 0));
+    }
 }
