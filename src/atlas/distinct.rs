@@ -231,3 +231,28 @@ impl Atlas {
         classes.counts()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::pose::{Anchor, PoseGrid, Ranges};
+    use crate::sensor::Sensor;
+    use crate::sweep::Sweep;
+
+    #[test]
+    fn of_imprints_that_are_as_near_the_first_one_is_found() {
+        let sensor = Sensor::default();
+        let bar = Figure::rectangle(3.0, 1.0).on(&sensor).expect("in range");
+        let found = |x0: &str, y0: &str| {
+            let ranges = [x0, y0, "0", "1", "1"].map(|range| range.parse().expect("a range"));
+            let grid = PoseGrid::new(bar.into(), sensor, Anchor::Corner, Ranges::new(ranges));
+            let atlas = Sweep::new(&grid.expect("in range")).run().atlas;
+            let mut between = Imprint::empty(16, 16);
+            (4..7).for_each(|column| between.set(column, 4, true));
+            atlas.find_shifted(&between)
+        };
+        assert_eq!(found("2:6:4", "4"), Some((0, 2, 0)));
+        assert_eq!(found("4", "2:6:4"), Some((0, 0, 2)));
+    }
+}

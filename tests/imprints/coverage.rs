@@ -383,6 +383,20 @@ fn a_figure_that_ends_at_the_rim_does_not_reach_beyond() {
         }
     }
     assert!(beyond_but_for_rounding > 0);
+    let rim = f64::from(SIDE);
+    for (by, expected) in [(1e-12, false), (1e-8, true)] {
+        for ends in [
+            [-by, 1.0, 4.0, 4.0],
+            [1.0, -by, 4.0, 4.0],
+            [1.0, 1.0, rim + by, 4.0],
+            [1.0, 1.0, 4.0, rim + by],
+        ] {
+            let [left, top, right, bottom] = ends;
+            let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
+            let found = reaches_beyond(&Polygon::new(corners), &sensor);
+            assert_eq!(found, expected, "{ends:?}");
+        }
+    }
     let beyond = figure("ellipse radius_x=1 radius_y=1 x0=14.01 y0=3", SIDE);
     assert!(reaches_beyond(&beyond, &sensor));
 }
