@@ -553,6 +553,8 @@ impl Watcher<'_> {
     /// What cannot be decoded without rows and columns is an error.
     fn shaped(&self, counts: &StreamCounts) -> Result<(), CliError> {
         match counts.refusal() {
+            // An echo that leaves out values of some messages is refused, too: its frames would be those of a part.
+            None if counts.cut => Err(self.refused(&StreamRefusal::Cut.to_string())),
             None => Ok(()),
             Some(StreamRefusal::Unknown) => Err(self.unknown()),
             Some(refusal) => Err(self.refused(&refusal.to_string())),

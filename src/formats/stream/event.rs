@@ -127,7 +127,10 @@ const SAMPLE: usize = 40;
 impl StreamCounts {
     /// What has to be stated, or asked for, before any frame can be decoded. None where frames have come, or may come.
     pub fn refusal(&self) -> Option<StreamRefusal> {
-        match self.unshaped.filter(|_| self.frames == 0) {
+        if self.frames > 0 {
+            return None;
+        }
+        match self.unshaped {
             Some(0) if self.unknown => Some(StreamRefusal::Unknown),
             Some(0) => Some(StreamRefusal::Size),
             Some(values) => Some(StreamRefusal::Shape { values }),
@@ -209,3 +212,23 @@ impl StreamRefusal {
 
 /// Takes what a decoder reports.
 pub type StreamSink<'a> = dyn FnMut(StreamEvent<'_>) + 'a;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An echo that left out values once may have been started anew since.
+    #[test]
+    fn what_was_missing_matters_only_until_a_frame_comes() {
+        let mut counts = StreamCounts {
+            bytes: 9,
+            cut: true,
+            ..StreamCounts::default()
+        };
+        assert_eq!(counts.refusal(), Some(StreamRefusal::Cut));
+        assert_eq!(counts.silence(0.0), StreamRefusal::Cut.to_string());
+        counts.frames = 1;
+        assert_eq!(counts.refusal(), None);
+        assert_eq!(counts.silence(0.0), "the source has gone silent");
+    }
+}
