@@ -66,7 +66,7 @@ impl FigureKind {
     /// What is said about a word that is not a figure here, but means one of the seven.
     #[cfg(feature = "json")]
     pub(crate) fn of_other_name(word: &str) -> Option<&'static str> {
-        match word {
+        match word.to_ascii_lowercase().as_str() {
             "circle" => Some("a circle is an ellipse with equal radii"),
             "square" => Some("a square is a rectangle with equal sides"),
             _ => None,

@@ -47,13 +47,14 @@ pub(crate) fn did_you_mean<'a>(wrong: &str, names: impl IntoIterator<Item = &'a 
     }
 }
 
-/// A name as it is typed in a command line: in quotes if it has blanks.
+/// A word as it is typed in a command line: in single quotes if a shell would read it otherwise.
 #[cfg(all(feature = "recognition", feature = "library"))]
-pub(crate) fn as_argument(name: &str) -> String {
-    if name.contains(char::is_whitespace) {
-        format!("{name:?}")
+pub(crate) fn as_argument(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./,:=@%+".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
     } else {
-        name.to_owned()
+        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }
 

@@ -122,17 +122,17 @@ fn a_flag_of_another_command_is_refused_with_what_this_one_takes_or_where_it_bel
     for (line, message) in [
         (
             "figure hexagon --zoom-x 2",
-            "'--zoom-x' does not belong to 'figure', which takes --radius-x, --radius-y, --length, --width, --side, --x0, \
+            "'--zoom-x' does not belong to 'figure'; its parameters are --radius-x, --radius-y, --length, --width, --side, --x0, \
              --y0, --angle, --thickness, --columns, --rows, --threshold and --pitch\n\nUsage: taxel figure ",
         ),
         (
             "picture washer --side 3",
-            "'--side' does not belong to 'picture', which takes --x0, --y0, --angle, --zoom-x, --zoom-y, --columns, --rows, \
+            "'--side' does not belong to 'picture'; its parameters are --x0, --y0, --angle, --zoom-x, --zoom-y, --columns, --rows, \
              --threshold and --pitch\n\nUsage: taxel picture ",
         ),
         (
             "batch --pitch=2",
-            "'--pitch' does not belong to 'batch', which takes --columns, --rows and --threshold\n",
+            "'--pitch' does not belong to 'batch', but to 'figure', 'picture', 'describe', 'export' and 6 more\n",
         ),
         (
             "describe washer --x0 3",
@@ -150,8 +150,20 @@ fn a_flag_of_another_command_is_refused_with_what_this_one_takes_or_where_it_bel
             "describe washer --theme light",
             "'--theme' does not belong to 'describe', but to 'watch', 'config' and the screen\n",
         ),
-        // Too many commands have it.
-        ("batch --json", "'--json' does not belong to 'batch'\n\n"),
+        (
+            "watch - --x0 3",
+            "'--x0' does not belong to 'watch', but to 'figure', 'picture', 'sweep' and 'model train'\n",
+        ),
+        // It has to come later.
+        (
+            "library --json list",
+            "unexpected argument '--json' found\n\n  tip: 'list --json' exists\n",
+        ),
+        // A name may begin with one dash.
+        (
+            "picture -ring",
+            "unexpected argument '-r' found\n\n  tip: to pass '-r' as a value, use '-- -r'\n",
+        ),
         // One that no command has, with no advice to pass it as a value.
         (
             "describe washer --foo 3",
@@ -192,22 +204,22 @@ fn a_word_that_is_no_figure_says_what_it_may_be() {
             Some("a circle is an ellipse with equal radii"),
         ),
         (
-            "sweep|square",
+            "sweep|Square",
             Some("a square is a rectangle with equal sides"),
         ),
         (
             "figure|washer",
-            Some("'taxel picture washer' takes a stored shape"),
+            Some("taxel picture washer takes a stored shape"),
         ),
         (
             "figure|my ring|--json",
-            Some("'taxel picture \"my ring\"' takes a stored shape"),
+            Some("taxel picture 'my ring' takes a stored shape"),
         ),
         ("figure|blob", None),
         ("figure|hexagn", Some("a similar value exists: 'hexagon'")),
         (
             "sweep|washer",
-            Some("for a stored shape, use '--picture washer'"),
+            Some("for a stored shape, use --picture washer"),
         ),
     ] {
         assert_eq!(tip(line).as_deref(), expected, "{line}");
@@ -215,19 +227,25 @@ fn a_word_that_is_no_figure_says_what_it_may_be() {
     for (line, message) in [
         (
             "describe|hexagon",
-            "no stored shape and no file is called \"hexagon\"; \"hexagon\" is a figure: taxel figure hexagon",
+            "no stored shape and no file is called \"hexagon\"; \"hexagon\" is a figure, which taxel figure and taxel sweep take",
         ),
         (
             "recognise|hexagon",
-            "no stored shape and no file is called \"hexagon\"; \"hexagon\" is a figure: taxel figure hexagon",
+            "no stored shape and no file is called \"hexagon\"; \"hexagon\" is a figure, which taxel figure and taxel sweep take",
         ),
         (
             "model|train|hexagon|--out|no.npz",
-            "no shape is called \"hexagon\"; \"hexagon\" is a figure: --shape hexagon=hexagon",
+            "no shape is called \"hexagon\"; \"hexagon\" is a figure: --shape 'hexagon=hexagon side=4'",
         ),
     ] {
         refused(&shelf.run(line, ""), 1, message);
     }
+    let out = shelf.file("hexagon.npz", "");
+    let shape = "--shape|hexagon=hexagon side=4|--x0|7|--y0|7|--angle|0";
+    shelf.does(
+        &format!("model|train|washer|{shape}|--out|{out}|--force|--quiet"),
+        "",
+    );
 }
 
 #[test]

@@ -24,8 +24,8 @@ fn a_recording_in_place_of_a_command_gives_tips() {
     let touch = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scripts/touch.csv");
     let tips = format!(
         "unrecognized subcommand '{touch}'\n\n  \
-         tip: 'taxel frames {touch}' lists what is in it\n  \
-         tip: 'taxel watch {touch}' plays it\n\nUsage: "
+         tip: taxel frames {touch} lists what is in it\n  \
+         tip: taxel watch {touch} plays it\n\nUsage: "
     );
     misused(touch, &tips);
     // No such file; and a file of another kind.

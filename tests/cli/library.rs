@@ -373,7 +373,7 @@ fn a_file_in_place_of_the_name_says_what_comes_first() {
     let order = "; the name comes first: taxel library save";
     let told = missing("ring") + order + " ring imprint.txt";
     refused(&save("ring"), 1, &told);
-    let told = missing("my ring") + order + " \"my ring\" imprint.txt";
+    let told = missing("my ring") + order + " 'my ring' imprint.txt";
     refused(&save("my ring"), 1, &told);
     shelf.refuses("library|save|none.txt|ring", &missing("ring"));
 }

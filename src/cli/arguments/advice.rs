@@ -1,9 +1,9 @@
 //! What helps where clap refuses the arguments: a tip at the end of its message, or a message in its place.
 //!
 //! ```text
-//! taxel picture washer --side 3   '--side' does not belong to 'picture', which takes --x0, …
-//! taxel sweep washer              tip: for a stored shape, use '--picture washer'
-//! taxel frames.csv                tip: 'taxel frames frames.csv' lists what is in it
+//! taxel picture washer --side 3   '--side' does not belong to 'picture'; its parameters are --x0, …
+//! taxel sweep washer              tip: for a stored shape, use --picture washer
+//! taxel frames.csv                tip: taxel frames frames.csv lists what is in it
 //! ```
 
 use std::ffi::{OsStr, OsString};
@@ -24,7 +24,7 @@ use crate::storage::Library;
 /// Endings of files that hold frames. Those of `.txt` and `.json` may as well be imprints and shapes.
 const RECORDINGS: [&str; 8] = ["apd", "asf", "csv", "jsonl", "lst", "mcap", "npy", "npz"];
 
-/// More commands than these say nothing about where a flag belongs.
+/// A message names at most these commands that have a flag.
 const MOST_NAMED: usize = 4;
 
 /// The error of these arguments with what helps.
@@ -36,6 +36,10 @@ pub(super) fn advised(mut error: Error, program: &mut Command, arguments: &[OsSt
         ErrorKind::MissingRequiredArgument => for_missing(&error),
         _ => Vec::new(),
     };
+    if !tips.is_empty() {
+        // A slip of the keys is less likely then: a circle is no rectangle.
+        error.remove(ContextKind::SuggestedValue);
+    }
     suggest(&mut error, tips.into_iter().map(StyledStr::from).collect());
     error
 }
@@ -55,8 +59,8 @@ fn quoted(error: &Error, kind: ContextKind) -> Option<&str> {
     }
 }
 
-/// A flag that the command does not have: says where it belongs if another command has it. Otherwise clap's message,
-/// without the advice to pass the flag as a value: nothing here has a name that begins with a dash.
+/// A flag that the command does not have: says where it belongs if another command has it. Otherwise clap's message. Its
+/// advice to pass the flag as a value stays for one dash only: a name with two is rarer than a misspelt flag.
 fn unknown_flag(mut error: Error, program: &mut Command) -> Error {
     if let Some((names, message)) = misplaced(&error, program) {
         let refusing = names.iter().try_fold(program, |command, name| {
@@ -65,7 +69,9 @@ fn unknown_flag(mut error: Error, program: &mut Command) -> Error {
         if let Some(command) = refusing {
             return command.error(ErrorKind::UnknownArgument, message);
         }
-    } else if let Some(ContextValue::StyledStrs(mut tips)) = error.remove(ContextKind::Suggested) {
+    } else if quoted(&error, ContextKind::InvalidArg).is_some_and(|flag| flag.starts_with("--"))
+        && let Some(ContextValue::StyledStrs(mut tips)) = error.remove(ContextKind::Suggested)
+    {
         tips.retain(|tip| !tip.to_string().contains("' as a value, use '"));
         suggest(&mut error, tips);
     }
@@ -82,6 +88,10 @@ fn misplaced(error: &Error, program: &Command) -> Option<(Vec<String>, String)> 
     let own = names
         .iter()
         .try_fold(program, |command, name| command.find_subcommand(name))?;
+    // A command below this one takes it, and clap says so: it only has to come later.
+    if own.get_subcommands().any(|inner| has(inner, flag)) {
+        return None;
+    }
     let mut owners = Vec::new();
     add_owners(program, flag, "", &mut owners);
     // What is not for a command is for the screen, but for the version.
@@ -94,11 +104,18 @@ fn misplaced(error: &Error, program: &Command) -> Option<(Vec<String>, String)> 
     let flags = PARAMETERS.iter().map(|row| row.parameter.flag());
     let (own_flags, others): (Vec<String>, Vec<String>) = flags.partition(|flag| has(own, flag));
     let mut message = format!("'--{flag}' does not belong to '{}'", names.join(" "));
-    // A single parameter, as the pitch of 'describe', does not tell what was meant.
-    if own_flags.len() > 1 && others.iter().any(|other| other == flag) {
+    // Only of commands that place a shape do the parameters tell what was meant.
+    let places = own_flags.iter().any(|own| own == "x0");
+    if places && others.iter().any(|other| other == flag) {
         let own_flags = own_flags.iter().map(|own| format!("--{own}"));
-        message += &format!(", which takes {}", definitions::list(own_flags, "and"));
-    } else if owners.len() <= MOST_NAMED {
+        let own_flags = definitions::list(own_flags, "and");
+        message += &format!("; its parameters are {own_flags}");
+    } else {
+        let more = owners.len().saturating_sub(MOST_NAMED);
+        owners.truncate(MOST_NAMED);
+        if more > 0 {
+            owners.push(format!("{more} more"));
+        }
         message += &format!(", but to {}", definitions::list(owners.into_iter(), "and"));
     }
     Some((names, message))
@@ -150,9 +167,10 @@ fn for_recording(error: &Error) -> Vec<String> {
     if !is_recording || !path.is_file() {
         return Vec::new();
     }
+    let typed = as_argument(given);
     vec![
-        format!("'taxel frames {given}' lists what is in it"),
-        format!("'taxel watch {given}' plays it"),
+        format!("taxel frames {typed} lists what is in it"),
+        format!("taxel watch {typed} plays it"),
     ]
 }
 
@@ -160,20 +178,24 @@ fn for_recording(error: &Error) -> Vec<String> {
 fn for_no_figure(error: &Error, arguments: &[OsString]) -> Vec<String> {
     let argument = quoted(error, ContextKind::InvalidArg);
     let given = quoted(error, ContextKind::InvalidValue).filter(|given| !given.is_empty());
-    let (Some(argument), Some(given), None) =
-        (argument, given, error.get(ContextKind::SuggestedValue))
-    else {
+    let (Some(argument), Some(given)) = (argument, given) else {
         return Vec::new();
     };
+    let is_kind = ["<KIND>", "[KIND]"].contains(&argument);
+    if let Some(known) = FigureKind::of_other_name(given).filter(|_| is_kind) {
+        return vec![known.to_owned()];
+    }
+    if error.get(ContextKind::SuggestedValue).is_some() {
+        return Vec::new();
+    }
     // Only 'sweep' has another argument that may stand in place of the kind.
-    let tip = match (argument, FigureKind::of_other_name(given)) {
-        ("<KIND>" | "[KIND]", Some(known)) => Some(known.to_owned()),
-        ("[KIND]", None) => Some(format!(
-            "for a stored shape, use '--picture {}'",
+    let tip = match argument {
+        "[KIND]" => Some(format!(
+            "for a stored shape, use --picture {}",
             as_argument(given)
         )),
-        ("<KIND>", None) if is_stored(given, arguments) => Some(format!(
-            "'taxel picture {}' takes a stored shape",
+        "<KIND>" if is_stored(given, arguments) => Some(format!(
+            "taxel picture {} takes a stored shape",
             as_argument(given)
         )),
         _ => None,

@@ -217,10 +217,9 @@ pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String
 /// Says which argument comes first, where a file was given in place of the name and the shape cannot be found.
 fn in_order(error: CliError, file: &str) -> CliError {
     match error {
-        CliError::Nowhere { name, near } if Path::new(file).is_file() => {
+        CliError::Nowhere { name, .. } if Path::new(file).is_file() => {
             let (first, then) = (as_argument(&name), as_argument(file));
-            let order = format!("; the name comes first: taxel library save {first} {then}");
-            let near = near + &order;
+            let near = format!("; the name comes first: taxel library save {first} {then}");
             CliError::Nowhere { name, near }
         }
         error => error,

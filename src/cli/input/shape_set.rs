@@ -19,11 +19,12 @@ use crate::cli::error::CliError;
 use crate::cli::input::content;
 use crate::cli::input::content::{InputError, InputSource};
 use crate::cli::input::shapes::Shelf;
-use crate::figure::FigureKind;
+use crate::figure::{Figure, FigureKind};
 use crate::formats::{ShapeLookup, named_shape, named_shape_of_words};
 use crate::picture::Picture;
 use crate::quote::shortened;
 use crate::recognition::NamedShape;
+use crate::sensor::Sensor;
 use crate::storage::LibraryError;
 
 /// The largest file of shapes.
@@ -82,13 +83,21 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
 
 /// The message about an argument that is no shape; a figure is given by another flag.
 fn no_shape(error: LibraryError, shelf: &Shelf) -> CliError {
-    match &error {
-        LibraryError::Unknown { name } if FigureKind::from_name(name).is_some() => {
-            let near = format!("; {name:?} is a figure: --shape {name}={name}");
-            CliError::NoShape { error, near }
-        }
-        _ => shelf.refused(error),
-    }
+    let kind = match &error {
+        LibraryError::Unknown { name } => FigureKind::from_name(name),
+        _ => None,
+    };
+    let Some(kind) = kind else {
+        return shelf.refused(error);
+    };
+    let figure = Figure::default_of(kind, &Sensor::default());
+    let sizes = kind.sizes().iter().filter_map(|&size| {
+        let value = figure.get(size)?;
+        Some(format!(" {}={value}", size.row().key))
+    });
+    let sizes: String = sizes.collect();
+    let near = format!("; {0:?} is a figure: --shape '{0}={0}{sizes}'", kind.name());
+    CliError::NoShape { error, near }
 }
 
 /// All shapes of the library, in its order.

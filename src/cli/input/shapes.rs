@@ -144,7 +144,7 @@ impl Shelf {
     /// like it.
     fn near_or_figure(&self, name: &str) -> String {
         match FigureKind::from_name(name) {
-            Some(_) => format!("; {name:?} is a figure: taxel figure {name}"),
+            Some(_) => format!("; {name:?} is a figure, which taxel figure and taxel sweep take"),
             None => self.suggestion(&LibraryError::Unknown { name: name.into() }),
         }
     }
