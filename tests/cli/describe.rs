@@ -262,7 +262,7 @@ fn lines_that_another_command_reads_name_it() {
     let run = taxel("describe -", SHAPE.replace("\"name\"", "\"nom\""));
     assert!(!run.stderr.contains("use taxel"), "{}", run.stderr);
     let run = taxel("recognise -", pose);
-    let answer = "{\"error\":\"line 1: expected exactly one of the keys frame (with values), imprint, touches; taxel \
-                  batch makes imprints of poses\"}\n";
+    let answer = "{\"error\":\"line 1: expected exactly one of the keys frame (with values), imprint, touches; if \
+                  this is a list of poses, use taxel batch\"}\n";
     assert_eq!((run.status, run.stdout.as_str()), (Some(1), answer));
 }

@@ -395,23 +395,13 @@ struct LineKeys<'a> {
     /// Its channel. A recording without channels has null there, which is copied like a name.
     #[serde(default, deserialize_with = "given")]
     channel: Option<Box<RawValue>>,
-    /// What a pose has in place of an imprint.
-    figure: Option<IgnoredAny>,
-    /// The same of a stored shape.
-    picture: Option<IgnoredAny>,
-    /// What a shape of a set has besides.
-    name: Option<IgnoredAny>,
 }
 
-impl LineKeys<'_> {
-    /// That the line has none of the keys of a touch.
-    fn no_touch(&self) -> String {
-        let is_source = self.figure.is_some() || self.picture.is_some();
-        match (is_source, &self.name) {
-            (true, None) => format!("{ONE_KEY}; taxel batch makes imprints of poses"),
-            (true, Some(_)) => format!("{ONE_KEY}; taxel model train takes a set of shapes"),
-            (false, _) => ONE_KEY.to_owned(),
-        }
+/// That a line has none of the keys of a touch, or several, and where it belongs.
+fn no_touch(line: &[u8]) -> String {
+    match content::line_of_sources(line) {
+        Some((what, command)) => format!("{ONE_KEY}; if this is {what}, use taxel {command}"),
+        None => ONE_KEY.to_owned(),
     }
 }
 
@@ -480,7 +470,7 @@ impl RecogniseLine {
                     .collect::<Result<_, _>>()?
             }
             (None, Some(_)) => return Err("touches: empty, expected at least one".to_owned()),
-            _ => return Err(keys.no_touch()),
+            _ => return Err(no_touch(line)),
         };
         // Values are not repeated.
         let copied = [
@@ -553,9 +543,9 @@ mod tests {
              imprint: null, as of a frame without a threshold; set one where the frame is read, such as \
              --at-least\n\
              expected exactly one of the keys frame (with values), imprint, touches\n\
-             expected exactly one of the keys frame (with values), imprint, touches; taxel batch makes imprints of poses\n\
-             expected exactly one of the keys frame (with values), imprint, touches; taxel batch makes imprints of poses\n\
-             expected exactly one of the keys frame (with values), imprint, touches; taxel model train takes a set of shapes\n"
+             expected exactly one of the keys frame (with values), imprint, touches; if this is a list of poses, use taxel batch\n\
+             expected exactly one of the keys frame (with values), imprint, touches; if this is a list of poses, use taxel batch\n\
+             expected exactly one of the keys frame (with values), imprint, touches; if this is a set of shapes, use taxel model train\n"
         );
     }
 }

@@ -104,20 +104,24 @@ fn read(bytes: &[u8]) -> Result<Content, InputError> {
     Ok(read_content(bytes)?)
 }
 
-/// What lines of JSON are that hold no imprint but say how to make one, and the command that reads them. The first line
-/// tells; a stored shape has neither of these keys.
+/// What JSON lines hold if not imprints: poses or a set of shapes; and the command that reads them. The first line decides.
 fn lines_of(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut lines = bytes.split(|&byte| byte == b'\n');
+    let first = lines.find(|line| !line.trim_ascii().is_empty())?;
+    line_of_sources(first)
+}
+
+/// The same of one line; None if it is neither. A stored shape has neither of these keys.
+pub(crate) fn line_of_sources(line: &[u8]) -> Option<(&'static str, &'static str)> {
     /// The keys that tell one kind from another.
     #[derive(Deserialize)]
-    struct LineKeys {
+    struct SourceKeys {
         figure: Option<IgnoredAny>,
         picture: Option<IgnoredAny>,
         name: Option<IgnoredAny>,
     }
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let mut lines = bytes.split(|&byte| byte == b'\n');
-    let first = lines.find(|line| !line.trim_ascii().is_empty())?;
-    let keys: LineKeys = serde_json::from_slice(first).ok()?;
+    let keys: SourceKeys = serde_json::from_slice(line).ok()?;
     keys.figure.or(keys.picture)?;
     Some(match keys.name {
         Some(_) => ("a set of shapes", "model train"),
