@@ -571,7 +571,7 @@ fn a_source_is_named_with_the_flags_of_the_command_line() {
     page.frames(1);
     shows(
         &page,
-        &["give --rows and --columns", "--rows R --columns C (after"],
+        &["give --rows and --columns", "after Esc, add them to :watch"],
     );
     then(&mut page, "<Esc>", &[]);
     then(&mut page, &line(" --rows 2 --columns 3 --at-least 4"), &[]);

@@ -157,7 +157,7 @@ impl FrameFeed {
             wanted
         };
         let ended = caught(|| acquire(source, options, stop, &mut consumer));
-        let ended = ended.and_then(|ended| ended.map_err(|error| reason(&error, request)));
+        let ended = ended.and_then(|ended| ended.map_err(|error| reason(&error)));
         if wanted.is_break() {
             return;
         }
@@ -239,7 +239,7 @@ impl FrameFeed {
                 bytes_per_second,
                 counts,
             } => {
-                let why = silence(counts, bytes_per_second, request);
+                let why = silence(counts, bytes_per_second);
                 state(SourceState::Silent(why))
             }
             AcquireEvent::Absent(error) => {
@@ -272,31 +272,28 @@ impl FrameFeed {
 }
 
 /// Why a source cannot be read, and for a page on which no flag can be typed, how to give what is missing.
-fn reason(error: &AcquireError, request: &WatchRequest) -> String {
+fn reason(error: &AcquireError) -> String {
     let hint = match error {
         AcquireError::Recording(RecordingError::Shape { .. } | RecordingError::Columns { .. }) => {
-            size_hint(request)
+            SIZE_HINT
         }
-        _ => String::new(),
+        _ => "",
     };
     format!("{error}{hint}")
 }
 
 /// Why no frame comes. Words that stay true while the silence lasts: a page on which nothing changes sends nothing.
-fn silence(counts: &StreamCounts, bytes_per_second: f64, request: &WatchRequest) -> String {
+fn silence(counts: &StreamCounts, bytes_per_second: f64) -> String {
     let hint = match counts.refusal() {
-        Some(refusal) if refusal.is_of_size() => size_hint(request),
-        _ => String::new(),
+        Some(refusal) if refusal.is_of_size() => SIZE_HINT,
+        _ => "",
     };
     let what = counts.silence(bytes_per_second);
     format!("no frame for more than 2 s: {what}{hint}")
 }
 
-/// The command that gives rows and columns.
-fn size_hint(request: &WatchRequest) -> String {
-    let source = request.source.display();
-    format!(", as in :watch {source} --rows R --columns C (after Esc)")
-}
+/// Where rows and columns are given.
+const SIZE_HINT: &str = "; after Esc, add them to :watch, as in --rows R --columns C";
 
 impl Pending {
     /// Adds a channel.
