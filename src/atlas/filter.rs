@@ -190,8 +190,8 @@ impl AtlasFilter {
     }
 }
 
-/// What other languages write between conditions.
-const JOINING: [&str; 7] = ["and", "AND", "or", "OR", "&", "&&", ","];
+/// What other languages write between conditions, in any case of letters.
+const JOINING: [&str; 5] = ["and", "or", "&", "&&", ","];
 
 /// The condition that a text begins with, and the text behind it.
 fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
@@ -204,7 +204,8 @@ fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
         let end = text.find(char::is_whitespace).map_or(text.len(), |end| end);
         let found = if name.is_empty() { &text[..end] } else { name };
         let found = shortened(found);
-        return Err(if JOINING.contains(&found.as_str()) {
+        let joins = |word: &&str| word.eq_ignore_ascii_case(&found);
+        return Err(if JOINING.iter().any(joins) {
             FilterError::Joined { found }
         } else {
             FilterError::Unknown { found }
@@ -222,6 +223,10 @@ fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
     let rest = rest.trim_start();
     let end = rest.find(char::is_whitespace).map_or(rest.len(), |end| end);
     let (number, rest) = rest.split_at(end);
+    if number.ends_with(',') {
+        let found = ",".to_owned();
+        return Err(FilterError::Joined { found });
+    }
     let value = number.parse().ok().filter(|value: &f64| value.is_finite());
     let Some(value) = value else {
         let (before, found) = (format!("{name}{sign}"), shortened(number));
@@ -365,6 +370,9 @@ mod tests {
             error("na>3 and holes=0"),
             "\"and\": conditions stand side by side and must all hold, as in na>40 holes=0"
         );
+        for text in ["na>3, holes=0", "na>3 , holes=0", "na>3 Or holes=0"] {
+            assert!(error(text).contains("stand side by side"), "{text}");
+        }
         assert_eq!(
             error("na>="),
             "na>=: expected a number after it, found \"\""
