@@ -219,11 +219,11 @@ pub(crate) fn format_in(header: &[u8]) -> Result<String, ArchiveError> {
 /// What is wrong with an archive, in words that do not suppose that one knows its layout. The type of the crate that reads
 /// archives is no part of the interface.
 fn zip_error(error: ZipError) -> ArchiveError {
-    ArchiveError::Zip(match error {
-        ZipError::Io(error) => error.to_string(),
-        ZipError::UnsupportedArchive(what) => what.to_string(),
-        _ => "cut short, damaged, or a file of another kind".to_owned(),
-    })
+    match error {
+        ZipError::Io(error) if error.raw_os_error().is_some() => ArchiveError::Io(error),
+        ZipError::UnsupportedArchive(what) => ArchiveError::Zip(what.to_string()),
+        _ => ArchiveError::Zip("cut short, damaged, or a file of another kind".to_owned()),
+    }
 }
 
 /// That an archive is of another format: of another kind, or of another version.
@@ -295,13 +295,8 @@ pub enum ArchiveError {
     },
     /// Text where a model is expected, which may be the set of shapes to train one of.
     #[cfg(feature = "recognition")]
-    #[error(
-        "not a model; if it is a set of shapes, train it first: taxel model train {path} --out FILE.npz"
-    )]
-    Untrained {
-        /// Its path, as it is typed in a command line.
-        path: String,
-    },
+    #[error("not a model; if it is a set of shapes, 'taxel model train' makes a model of it")]
+    Untrained,
     /// Shapes or numbers that make no model.
     #[cfg(feature = "recognition")]
     #[error(transparent)]

@@ -14,7 +14,6 @@ use std::sync::atomic::AtomicBool;
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::formats::{ArchiveError, Name, read_model, write_model};
-use crate::quote::as_argument;
 use crate::recognition::{Model, Training};
 use crate::storage::atomic_file::{Existing, UnfinishedFile};
 use crate::storage::error::FileError;
@@ -37,9 +36,7 @@ pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
     let mut file = BufReader::new(open_archive(path)?);
     read_model(&mut file).map_err(|error| {
         let error = match error {
-            ArchiveError::Zip(_) if is_json(&mut file) => ArchiveError::Untrained {
-                path: as_argument(&path.to_string_lossy()),
-            },
+            ArchiveError::Zip(_) if is_json(&mut file) => ArchiveError::Untrained,
             error => error,
         };
         ArchiveFileError::new(path, error)

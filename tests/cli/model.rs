@@ -709,8 +709,7 @@ fn damaged_models_are_refused() {
         "{}",
         run.stderr
     );
-    let untrained = "parts.jsonl: not a model; if it is a set of shapes, train it first: taxel model train parts.jsonl --out \
-                     FILE.npz";
+    let untrained = "parts.jsonl: not a model; if it is a set of shapes, 'taxel model train' makes a model of it";
     for line in [
         "recognise - --model parts.jsonl",
         "model confusion parts.jsonl",
