@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::formats::name::{Name, folded};
 use crate::formats::shape::StoredShape;
+#[cfg(feature = "tui")]
 use crate::quote::did_you_mean;
 use crate::storage::atomic_file;
 use crate::storage::atomic_file::sync_folder;
@@ -366,6 +367,7 @@ impl Library {
 
     /// The end of a message about a name that no shape has, or none in the trash: one that is much like it; empty if there is
     /// none, and for other errors.
+    #[cfg(feature = "tui")]
     pub(crate) fn suggestion(&self, error: &LibraryError) -> String {
         match error {
             LibraryError::Unknown { name } => self.list().map_or_else(

@@ -172,6 +172,7 @@ fn is_table(line: &[u8]) -> bool {
 
 /// Whether bytes that are no imprint and no shape look like a recording, for the message about them. Of JSON this is said only
 /// where there is a frame: most is a stored shape with a mistake.
+#[cfg(feature = "tui")]
 pub(crate) fn may_be_recording(bytes: &[u8]) -> bool {
     let frame = b"\"frame\"";
     // PBM and PGM say by themselves what they are.

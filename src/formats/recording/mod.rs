@@ -94,8 +94,10 @@ pub use channel_choice::ChannelChoice;
 #[cfg(feature = "cli")]
 pub(crate) use delimited::read_rows;
 pub use description::{FrameMark, RecordedView, RecordingMetadata};
+#[cfg(feature = "tui")]
+pub(crate) use detect::may_be_recording;
 #[cfg(all(feature = "acquire", unix))]
-pub(crate) use detect::{RecordingInput, format_of, may_be_recording, read_as};
+pub(crate) use detect::{RecordingInput, format_of, read_as};
 pub use detect::{read, recognised, recognised_input};
 pub use error::RecordingError;
 #[cfg(feature = "cli")]
