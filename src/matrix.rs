@@ -41,7 +41,7 @@ impl<T: Copy> Matrix<T> {
     /// let gain = Matrix::from_values(3, 2, vec![1.0, 1.2, 0.9, 1.0, 1.0, 1.1])?;
     /// assert_eq!(gain.get(2, 1), Some(1.1));
     /// let error = Matrix::from_values(3, 2, vec![1.0]).unwrap_err();
-    /// assert_eq!(error.to_string(), "1 value, expected 6 of a matrix of 3 × 2");
+    /// assert_eq!(error.to_string(), "found 1 value, expected 6 for a matrix of 3 × 2");
     /// # Ok::<(), taxel::matrix::MatrixError>(())
     /// ```
     ///
@@ -159,7 +159,7 @@ impl fmt::Display for MatrixError {
                 let expected = u16::from(columns) * u16::from(rows);
                 write!(
                     f,
-                    "{found}, expected {expected} of a matrix of {columns} × {rows}"
+                    "found {found}, expected {expected} for a matrix of {columns} × {rows}"
                 )
             }
         }

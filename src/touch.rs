@@ -68,7 +68,7 @@ impl Plane {
     }
 
     /// The imprint that a shape leaves. It never fails: a shape without a boundary leaves an empty imprint, and so does one
-    /// of your own with a coordinate that is not finite, or an ellipse with one beyond 1e70.
+    /// of your own with a coordinate that is not finite, or an ellipse with one of 1e70 or more.
     pub fn touch(&mut self, solid: &impl Solid) -> Imprint {
         self.areas.clear();
         self.ellipses.clear();

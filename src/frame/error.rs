@@ -144,7 +144,7 @@ impl std::error::Error for FrameError {}
 fn wrong_values((columns, rows): (u16, u16), found: usize) -> String {
     let found = counted(found as u64, "value");
     let expected = u32::from(columns) * u32::from(rows);
-    format!("{found}, expected {expected} of a frame of {columns} × {rows}")
+    format!("found {found}, expected {expected} for a frame of {columns} × {rows}")
 }
 
 /// Refuses a matrix whose size differs from that of the values.

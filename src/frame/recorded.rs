@@ -46,7 +46,8 @@ impl Frame {
         frame
     }
 
-    /// Creates a frame from the values of its cells, row by row; NaN where the sensor has no cell.
+    /// Creates a frame from the values of its cells, row by row; NaN where the sensor has no cell. A value that is infinite or
+    /// beyond [`LARGEST_VALUE`] counts as none.
     ///
     /// ```
     /// use taxel::frame::Frame;
@@ -54,7 +55,7 @@ impl Frame {
     /// assert_eq!((frame.columns(), frame.rows(), frame.cells()), (3, 2, 5));
     /// // The next frame, in the same memory.
     /// frame.set_values(&[0.0, 11.0, f64::NAN, 4.0, 10.0, 0.0])?;
-    /// assert_eq!(frame.set_values(&[0.0]).unwrap_err().to_string(), "1 value, expected 6 of a frame of 3 × 2");
+    /// assert_eq!(frame.set_values(&[0.0]).unwrap_err().to_string(), "found 1 value, expected 6 for a frame of 3 × 2");
     /// # Ok::<(), taxel::frame::FrameError>(())
     /// ```
     ///

@@ -260,6 +260,9 @@ impl TryFrom<f64> for DecimalRange {
     type Error = RangeError;
 
     /// The range of one number.
+    ///
+    /// # Errors
+    /// If it is not finite, or has more than 15 digits or 12 decimals, such as `0.1 + 0.2`.
     fn try_from(value: f64) -> Result<Self, RangeError> {
         value.to_string().parse()
     }
@@ -363,8 +366,8 @@ pub enum RangeError {
     },
     /// More digits than are exact.
     #[error(
-        "\"{text}\" has too many digits: at most 15, and {MAX_PLACES} of them behind the point, each number written to the \
-         finest decimal"
+        "\"{text}\" has too many digits: each number may have 15, {MAX_PLACES} of them behind the point, when all have the \
+         same number of decimals"
     )]
     Digits {
         /// The whole range, shortened.

@@ -385,7 +385,8 @@ impl Model {
         &self.counts[self.starts[key]..self.starts[key + 1]]
     }
 
-    /// Iterates over the keys in their order: the imprint of each, None of the empty key, and the shapes that leave it.
+    /// Iterates over the keys in their order: the imprint of each, None for that of touches that activate nothing, and the
+    /// shapes that leave it.
     ///
     /// ```
     /// use taxel::prelude::*;

@@ -69,7 +69,7 @@ impl FrameTimes {
 
 impl fmt::Display for FrameTimes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [first, last] = [self.first, self.last].map(|time| decimal(time, 6));
+        let [first, last] = [self.first, self.last].map(|time| decimal(time, 9));
         write!(f, "{first} to {last} s")?;
         match self.backwards {
             Some(number) => write!(f, ", goes back at frame {number}"),

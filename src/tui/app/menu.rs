@@ -75,7 +75,7 @@ impl Item<'_> {
         } else if self.binding.keys.is_empty() {
             [keys, ("", Role::Text), (self.name, self.role)]
         } else {
-            // Its key: a capital would be another one.
+            // In lower case, as the key is typed: `S` is another key than `s`.
             let (first, rest) = self.name.split_at(1);
             let first = first.to_lowercase();
             let pieces = [(first.as_str(), Role::Key), (rest, self.role)];

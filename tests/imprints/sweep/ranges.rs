@@ -34,13 +34,13 @@ fn ranges_are_exact_or_refused() {
     assert_eq!(refused("2:1:-1"), refused("1:2:-1"));
     assert_eq!(
         refused("9999999999999999"),
-        "\"9999999999999999\" has too many digits: at most 15, and 12 of them behind the point, each number written to the \
-         finest decimal"
+        "\"9999999999999999\" has too many digits: each number may have 15, 12 of them behind the point, when all have \
+         the same number of decimals"
     );
     assert_eq!(
         refused("0:1e9:1e-9"),
-        "\"0:1e9:1e-9\" has too many digits: at most 15, and 12 of them behind the point, each number written to the finest \
-         decimal"
+        "\"0:1e9:1e-9\" has too many digits: each number may have 15, 12 of them behind the point, when all have the same \
+         number of decimals"
     );
     assert_eq!(
         refused("1:2"),
