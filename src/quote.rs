@@ -48,7 +48,7 @@ pub(crate) fn did_you_mean<'a>(wrong: &str, names: impl IntoIterator<Item = &'a 
 }
 
 /// A word as it is typed in a command line: in single quotes if a shell would read it otherwise.
-#[cfg(all(feature = "recognition", feature = "library"))]
+#[cfg(feature = "cli")]
 pub(crate) fn as_argument(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./,:=@%+".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
