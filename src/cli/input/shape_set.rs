@@ -81,7 +81,7 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
     Ok(shapes)
 }
 
-/// The message about an argument that is no shape; a figure is given by another flag.
+/// The message about an argument that names no shape. For the name of a figure, it shows how `--shape` gives one.
 fn no_shape(error: LibraryError, shelf: &Shelf) -> CliError {
     let kind = match &error {
         LibraryError::Unknown { name } => FigureKind::from_name(name),
