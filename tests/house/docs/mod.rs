@@ -6,6 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use taxel::tui::prompt::commands::commands;
 
@@ -116,25 +117,19 @@ fn hold(path: &Path, wanted: &str) {
     );
 }
 
-/// The blocks as they should be, by their names. They run commands, one after another, so half are made by a second
-/// thread.
+/// The blocks as they should be, by their names. They run commands, and some take much longer than others: each of two
+/// threads makes the next one that is left.
 fn made(blocks: &[Block]) -> BTreeMap<&'static str, String> {
-    let all = |blocks: &[Block]| -> Vec<_> {
-        let made = blocks.iter().map(|(name, make)| (*name, make()));
-        made.collect()
-    };
-    let every_other = |first| {
-        blocks
-            .iter()
-            .skip(first)
-            .step_by(2)
-            .copied()
-            .collect::<Vec<_>>()
+    let next = AtomicUsize::new(0);
+    let some = || {
+        let left = || blocks.get(next.fetch_add(1, Ordering::Relaxed));
+        let made = std::iter::from_fn(left).map(|(name, make)| (*name, make()));
+        made.collect::<Vec<_>>()
     };
     std::thread::scope(|scope| {
-        let others = scope.spawn(|| all(&every_other(1)));
-        let own = all(&every_other(0));
-        let others = others.join().expect("the other half is made, too");
+        let others = scope.spawn(some);
+        let own = some();
+        let others = others.join().expect("the others are made, too");
         own.into_iter().chain(others).collect()
     })
 }
