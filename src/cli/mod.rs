@@ -75,7 +75,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     signals::outlive_file_limit();
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let mut charset = Charset::of(&arguments, std::env::var_os);
-    let failure = match perform(&arguments, &mut charset) {
+    let failure = match perform(arguments, &mut charset) {
         Ok(status) => return status,
         Err(failure) => failure,
     };
@@ -90,7 +90,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 ///
 /// `characters` is the character set for messages: at first that of the locale, then that of the settings, which are
 /// known only once the arguments are read.
-fn perform(arguments: &[OsString], characters: &mut Charset) -> Result<u8, CliError> {
+fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, CliError> {
     let Invocation {
         request,
         library_named,

@@ -209,13 +209,16 @@ fn a_word_that_is_no_figure_says_what_it_may_be() {
         ),
         (
             "figure|washer",
-            Some("taxel picture washer takes a stored shape"),
+            Some("for a stored shape, use taxel picture washer"),
         ),
         (
             "figure|my ring|--json",
-            Some("taxel picture 'my ring' takes a stored shape"),
+            Some("for a stored shape, use taxel picture 'my ring'"),
         ),
-        ("figure|blob", None),
+        (
+            "figure|blob",
+            Some("for a stored shape, use taxel picture blob"),
+        ),
         ("figure|hexagn", Some("a similar value exists: 'hexagon'")),
         (
             "sweep|washer",

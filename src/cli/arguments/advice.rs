@@ -1,4 +1,4 @@
-//! What helps where clap refuses the arguments: a tip at the end of its message, or a message in its place.
+//! Tips about arguments that clap refuses, at the end of its message, and messages that replace it.
 //!
 //! ```text
 //! taxel picture washer --side 3   '--side' does not belong to 'picture'; its parameters are --x0, …
@@ -6,20 +6,17 @@
 //! taxel frames.csv                tip: taxel frames frames.csv lists what is in it
 //! ```
 
-use std::ffi::{OsStr, OsString};
-use std::path::{Path, PathBuf};
+use std::ffi::OsStr;
+use std::path::Path;
 
 use clap::Command;
-use clap::builder::{NonEmptyStringValueParser, StyledStr};
+use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 
 use crate::cli::arguments::definitions;
-use crate::cli::settings::flags::Chosen;
-use crate::cli::settings::resolved::{Effective, Loaded};
 use crate::figure::FigureKind;
 use crate::parameter::PARAMETERS;
 use crate::quote::as_argument;
-use crate::storage::Library;
 
 /// Endings of files that hold frames. Those of `.txt` and `.json` may as well be imprints and shapes.
 const RECORDINGS: [&str; 8] = ["apd", "asf", "csv", "jsonl", "lst", "mcap", "npy", "npz"];
@@ -27,17 +24,17 @@ const RECORDINGS: [&str; 8] = ["apd", "asf", "csv", "jsonl", "lst", "mcap", "npy
 /// A message names at most these commands that have a flag.
 const MOST_NAMED: usize = 4;
 
-/// The error of these arguments with what helps.
-pub(super) fn advised(mut error: Error, program: &mut Command, arguments: &[OsString]) -> Error {
+/// The error with tips, or with a better message.
+pub(super) fn with_tips(mut error: Error, program: &mut Command) -> Error {
     let tips = match error.kind() {
         ErrorKind::UnknownArgument => return unknown_flag(error, program),
         ErrorKind::InvalidSubcommand => for_recording(&error),
-        ErrorKind::InvalidValue => for_no_figure(&error, arguments),
+        ErrorKind::InvalidValue => for_no_figure(&error),
         ErrorKind::MissingRequiredArgument => for_missing(&error),
         _ => Vec::new(),
     };
     if !tips.is_empty() {
-        // A slip of the keys is less likely then: a circle is no rectangle.
+        // A misspelt word is less likely then: a circle is no rectangle.
         error.remove(ContextKind::SuggestedValue);
     }
     suggest(&mut error, tips.into_iter().map(StyledStr::from).collect());
@@ -174,8 +171,8 @@ fn for_recording(error: &Error) -> Vec<String> {
     ]
 }
 
-/// What may have been meant by a word that is no kind of figure. A slip of the keys has a tip already.
-fn for_no_figure(error: &Error, arguments: &[OsString]) -> Vec<String> {
+/// What may have been meant by a word that is no kind of figure. For a misspelt one clap has a tip.
+fn for_no_figure(error: &Error) -> Vec<String> {
     let argument = quoted(error, ContextKind::InvalidArg);
     let given = quoted(error, ContextKind::InvalidValue).filter(|given| !given.is_empty());
     let (Some(argument), Some(given)) = (argument, given) else {
@@ -188,38 +185,13 @@ fn for_no_figure(error: &Error, arguments: &[OsString]) -> Vec<String> {
     if error.get(ContextKind::SuggestedValue).is_some() {
         return Vec::new();
     }
-    // Only 'sweep' has another argument that may stand in place of the kind.
-    let tip = match argument {
-        "[KIND]" => Some(format!(
-            "for a stored shape, use --picture {}",
-            as_argument(given)
-        )),
-        "<KIND>" if is_stored(given, arguments) => Some(format!(
-            "taxel picture {} takes a stored shape",
-            as_argument(given)
-        )),
-        _ => None,
-    };
-    tip.into_iter().collect()
-}
-
-/// Whether a shape has this name, in the library that the arguments of `taxel figure` or the settings name.
-fn is_stored(name: &str, arguments: &[OsString]) -> bool {
-    // The same arguments, if any word may be the kind.
-    let lenient = definitions::all().mut_subcommand("figure", |figure| {
-        figure.mut_arg("kind", |kind| {
-            kind.value_parser(NonEmptyStringValueParser::new())
-        })
-    });
-    let Ok(matches) = lenient.try_get_matches_from(arguments) else {
-        return false;
-    };
-    let settings = Loaded::find(matches.get_one::<PathBuf>("config").cloned())
-        .and_then(|loaded| Effective::new(loaded, Chosen::of(&matches), std::env::var_os));
-    settings.is_ok_and(|settings| {
-        let library = settings.library().cloned().map(Library::open);
-        library.is_some_and(|library| library.load(name).is_ok())
-    })
+    let shape = as_argument(given);
+    match argument {
+        // 'sweep' takes either; its kind may be left out.
+        "[KIND]" => vec![format!("for a stored shape, use --picture {shape}")],
+        "<KIND>" => vec![format!("for a stored shape, use taxel picture {shape}")],
+        _ => Vec::new(),
+    }
 }
 
 /// What may stand where an argument is missing, if its name does not say it.

@@ -10,7 +10,7 @@ use clap::ArgMatches;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 
-use crate::cli::arguments::advice::advised;
+use crate::cli::arguments::advice::with_tips;
 use crate::cli::arguments::definitions;
 use crate::cli::arguments::flags::{self, required, unhandled_subcommand};
 use crate::cli::arguments::frames::FramesArguments;
@@ -187,12 +187,12 @@ pub(crate) enum Form {
 /// # Errors
 /// [`CliError::Usage`] with clap's message; [`CliError::Settings`] for the settings file; [`CliError::Range`] for
 /// values out of range.
-pub(crate) fn read(arguments: &[OsString]) -> Result<Invocation, CliError> {
+pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
     let mut command = groups::grouped(definitions::all());
     let matches = match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => matches,
         Err(error) if error.use_stderr() => {
-            return Err(advised(error, &mut command, arguments).into());
+            return Err(with_tips(error, &mut command).into());
         }
         Err(help) => {
             let none = Chosen::default();
@@ -275,7 +275,7 @@ fn of_screen(matches: &ArgMatches) -> Option<String> {
     flags.into_iter().find(given).map(str::to_owned)
 }
 
-/// That a flag of the screen stands before the command `name`.
+/// The message about a flag of the screen that stands before the command `name`.
 fn too_early(flag: &str, name: &str, command: &clap::Command) -> String {
     let has_flag =
         |own: &clap::Command| own.get_arguments().any(|own| own.get_long() == Some(flag));
