@@ -56,20 +56,16 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
     let read = match file.read(&mut take) {
         // Each line was read as a frame; or the file did not look like a table, because a single column has no
         // separators. It is one table of factors.
-        Err(
-            error @ (RecordingError::Shape { .. }
-            | RecordingError::Columns { .. }
-            | RecordingError::Unknown),
-        ) => match file.read_table(&mut take) {
-            Err(RecordingError::Unknown) => Err(error),
-            read => read,
-        },
+        Err(error) if error.is_of_size() || matches!(error, RecordingError::Unknown) => {
+            match file.read_table(&mut take) {
+                Err(RecordingError::Unknown) => Err(error),
+                read => read,
+            }
+        }
         read => read.map(drop),
     };
     read.map_err(|error| match error {
-        RecordingError::Shape { .. } | RecordingError::Columns { .. } => {
-            file.refused(&"expected a table: a line for each row")
-        }
+        error if error.is_of_size() => file.refused(&"expected a table: a line for each row"),
         error => file.damaged(error),
     })?;
     if is_recording {

@@ -62,6 +62,11 @@ fn prefix(line: Option<u64>, column: Option<u64>) -> String {
 }
 
 impl RecordingError {
+    /// Whether rows and columns would help.
+    pub fn is_of_size(&self) -> bool {
+        matches!(self, Self::Shape { .. } | Self::Columns { .. })
+    }
+
     /// A damage without a place.
     pub(crate) fn damaged(message: impl Into<String>) -> Self {
         let message = message.into();

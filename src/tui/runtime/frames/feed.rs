@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use crate::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, acquire};
-use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingError, RecordingMetadata};
+use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
 use crate::formats::stream::StreamCounts;
 use crate::formats::value::decimal;
 use crate::frame::Frame;
@@ -274,9 +274,7 @@ impl FrameFeed {
 /// Why a source cannot be read, and for a page on which no flag can be typed, how to give what is missing.
 fn reason(error: &AcquireError) -> String {
     let hint = match error {
-        AcquireError::Recording(RecordingError::Shape { .. } | RecordingError::Columns { .. }) => {
-            SIZE_HINT
-        }
+        AcquireError::Recording(error) if error.is_of_size() => SIZE_HINT,
         _ => "",
     };
     format!("{error}{hint}")
