@@ -39,7 +39,7 @@ pub enum RecordError {
     #[error(
         "figure: {found:?} is unknown, expected one of {}{}",
         FigureKind::ALL.map(FigureKind::name).join(", "),
-        meant(found)
+        figure_meant(found)
     )]
     FigureKind {
         /// What was given.
@@ -54,7 +54,7 @@ pub enum RecordError {
 }
 
 /// The end of a message about a figure that there is not: which one was probably meant.
-fn meant(found: &str) -> String {
+fn figure_meant(found: &str) -> String {
     match FigureKind::of_other_name(found) {
         Some(known) => format!("; {known}"),
         None => did_you_mean(found, FigureKind::ALL.map(FigureKind::name)),

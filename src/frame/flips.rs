@@ -287,7 +287,7 @@ mod tests {
         assert_eq!(report.mask().count(), 0);
     }
 
-    /// What these frames show, each so many times.
+    /// The report on these frames, each with the number of times it comes.
     fn shown<const N: usize>(frames: [([&str; 3], usize); N]) -> FlipReport {
         let cells = Imprint::from_rows(["###"; 3].iter().copied()).expect("rows");
         let mut counter = FlipCounter::new(cells);

@@ -397,7 +397,7 @@ struct LineKeys<'a> {
     channel: Option<Box<RawValue>>,
 }
 
-/// That a line has none of the keys of a touch, or several, and where it belongs.
+/// The message about a line with none of the keys of a touch, or several of them; and which command reads it.
 fn no_touch(line: &[u8]) -> String {
     match content::line_of_sources(line) {
         Some((what, command)) => format!("{ONE_KEY}; if this is {what}, use taxel {command}"),

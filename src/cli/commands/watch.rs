@@ -553,7 +553,7 @@ impl Watcher<'_> {
     /// What cannot be decoded without rows and columns is an error.
     fn shaped(&self, counts: &StreamCounts) -> Result<(), CliError> {
         match counts.refusal() {
-            // An echo that leaves out values of some messages is refused, too: its frames would be those of a part.
+            // An echo that leaves out values of some messages is refused, too: the others are not all frames.
             None if counts.cut => Err(self.refused(&StreamRefusal::Cut.to_string())),
             None => Ok(()),
             Some(StreamRefusal::Unknown) => Err(self.unknown()),
