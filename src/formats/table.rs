@@ -211,7 +211,8 @@ impl<'a> Table<'a> {
         let found = lines.clone().count();
         // One more, which may name the separator.
         let mut lines: Vec<(usize, &str)> = lines.take(MOST + 1).collect();
-        let given = lines.first().and_then(|(_, line)| separator(line));
+        let given = lines.first();
+        let given = given.and_then(|(_, line)| named_separator(line.as_bytes()).map(char::from));
         if given.is_some() {
             lines.remove(0);
         }
@@ -334,14 +335,20 @@ impl<'a> Table<'a> {
     }
 }
 
-/// The separator that a first line `sep=;` names, as spreadsheet programs write it.
-fn separator(line: &str) -> Option<char> {
-    let line = bare(line);
-    let (key, mark) = line.split_at_checked(4)?;
-    let mut marks = mark.chars();
-    let mark = marks.next().filter(|_| key.eq_ignore_ascii_case("sep="))?;
-    let usual = matches!(mark, ',' | ';' | '\t' | '|');
-    (usual && marks.all(|rest| rest == mark)).then_some(mark)
+/// The separator that a line `sep=;` names, as spreadsheet programs write it, also in quotes, or with the separators of
+/// empty fields behind it. None of any other line.
+pub(crate) fn named_separator(line: &[u8]) -> Option<u8> {
+    let line = line.trim_ascii();
+    let quoted = line.strip_prefix(b"\"").unwrap_or(line);
+    let (key, marks) = quoted.split_at_checked(4)?;
+    if !key.eq_ignore_ascii_case(b"sep=") {
+        return None;
+    }
+    let marks = marks.strip_suffix(b"\"").unwrap_or(marks);
+    // A tab at the end of the line is a blank, and gone.
+    let mark = marks.first().copied().unwrap_or(b'\t');
+    let is_usual = matches!(mark, b',' | b';' | b'\t' | b'|');
+    (is_usual && marks.iter().all(|&byte| byte == mark)).then_some(mark)
 }
 
 /// The fields of a line; those between spaces where no mark parts them.
@@ -423,6 +430,9 @@ mod tests {
             // Spreadsheets.
             "sep=;\r\n1;0;1\r\n1;1;1\r\n",
             "SEP=|\n1|0|1\n1|1|1",
+            "\"sep=;\"\n1;0;1\n1;1;1\n",
+            "sep=,,,\n1,0,1\n1,1,1\n",
+            "sep=\t\n1\t0\t1\n1\t1\t1\n",
             "1,0;0,0;1,0\n1,0;1,0;1,0\n",
             "1,0,1,\n1,1,1,\n",
             "1;0;1;\n1;1;1;\n",

@@ -30,10 +30,9 @@ use crate::formats::recording::event::{
     ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
 use crate::formats::recording::frame_time::{TableClock, TimeText, TimeUnit};
-use crate::formats::recording::header_line::is_comment;
 use crate::formats::recording::lines::{TextLines, is_blank};
 use crate::formats::recording::moment;
-use crate::formats::recording::separator::Separator;
+use crate::formats::recording::separator::{Separator, is_comment};
 #[cfg(feature = "cli")]
 use crate::formats::recording::side::side;
 use crate::formats::recording::table_layout::{FrameFields, LineLayout, TableLayout, layout};

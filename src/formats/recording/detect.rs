@@ -9,11 +9,10 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use crate::formats::foreign;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
-use crate::formats::recording::header_line::is_comment;
 use crate::formats::recording::lines::is_blank;
 #[cfg(feature = "mcap")]
 use crate::formats::recording::mcap;
-use crate::formats::recording::separator::Separator;
+use crate::formats::recording::separator::{Separator, is_comment};
 use crate::formats::recording::text_row::is_parted_by_cr;
 use crate::formats::recording::{
     delimited, emed, flexitac, json_lines, npz, numpy, popu, ros_text, tekscan, xsensor, zebris,

@@ -6,17 +6,10 @@ use crate::formats::recording::cell_names::{NamedCells, cells, role};
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::lines::{TextLines, is_blank};
 use crate::formats::recording::moment;
-use crate::formats::recording::separator::{self, Separator};
+use crate::formats::recording::separator::{Separator, is_comment};
 
 /// Lines that are compared with the first one, or among each other where nothing names what stands beside the cells.
 pub(super) const COMPARED: u16 = 8;
-
-/// Whether a line is passed over, wherever it stands: a comment, or the line in which spreadsheet programs name their
-/// separator, `sep=;`.
-pub(super) fn is_comment(line: &[u8]) -> bool {
-    let line = line.trim_ascii();
-    separator::is_comment(line) || matches!(line, [b's', b'e', b'p', b'=', _])
-}
 
 /// The first line that is neither blank nor a comment.
 ///

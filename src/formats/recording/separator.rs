@@ -8,6 +8,7 @@
 //! ```
 
 use crate::formats::recording::text_row::{self, Field};
+use crate::formats::table::named_separator;
 
 /// The words for a cell without a value: of C, Python, R and databases, of spreadsheets and of pandas.
 const NONE: [&[u8]; 8] = [
@@ -24,9 +25,11 @@ pub(super) fn is_none(field: &[u8]) -> bool {
     }
 }
 
-/// Whether a line is a comment, wherever it stands: behind `#`, behind `//`, or behind `%` and a blank. A `%` alone may
-/// belong to a name, as in `%time` of ROS, and `#N/A` is a cell.
+/// Whether a line is skipped, wherever it stands: a comment, or the line in which spreadsheet programs name their
+/// separator, `sep=;`. A comment begins with `#`, with `//`, or with `%` and a blank; a `%` alone may belong to a name, as
+/// in `%time` of ROS, and `#N/A` is a cell.
 pub(crate) fn is_comment(line: &[u8]) -> bool {
+    let line = line.trim_ascii();
     let begins = |word: &[u8]| {
         let start = line.get(..word.len());
         start.is_some_and(|start| start.eq_ignore_ascii_case(word))
@@ -35,8 +38,18 @@ pub(crate) fn is_comment(line: &[u8]) -> bool {
         [b'#', ..] => !begins(b"#n/a"),
         [b'/', b'/', ..] | [b'%'] => true,
         [b'%', next, ..] => next.is_ascii_whitespace() || *next == b'%',
+        [b's' | b'S' | b'"', ..] => named_separator(line).is_some(),
         _ => false,
     }
+}
+
+/// A field without the blanks and quotes around it.
+pub(crate) fn unquoted(field: &[u8]) -> &[u8] {
+    let field = field.trim_ascii();
+    let inner = field
+        .strip_prefix(b"\"")
+        .and_then(|field| field.strip_suffix(b"\""));
+    inner.map_or(field, <[u8]>::trim_ascii)
 }
 
 /// What parts the fields of a line.
@@ -71,13 +84,7 @@ impl Separator {
             };
             is_mark && !is_quoted
         };
-        line.split(is_end).map(|field| {
-            let field = field.trim_ascii();
-            let inner = field
-                .strip_prefix(b"\"")
-                .and_then(|field| field.strip_suffix(b"\""));
-            inner.map_or(field, <[u8]>::trim_ascii)
-        })
+        line.split(is_end).map(unquoted)
     }
 
     /// The fields of a line, as [`Self::fields`]; but where one is missing to `expected`, a separator at the end of the line

@@ -14,12 +14,11 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingNote};
 use crate::formats::recording::frame_time::TimeFields;
 use crate::formats::recording::header_line::{
-    COMPARED, count_from_0, first_line, is_comment, is_like_next, is_mostly_numeric, is_ramp,
-    moment_of_row,
+    COMPARED, count_from_0, first_line, is_like_next, is_mostly_numeric, is_ramp, moment_of_row,
 };
 use crate::formats::recording::lines::{TextLines, is_blank, text};
 use crate::formats::recording::moment;
-use crate::formats::recording::separator::{Separator, is_none};
+use crate::formats::recording::separator::{Separator, is_comment, is_none};
 use crate::formats::recording::side::side;
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::recording::unnamed_fields::unnamed_fields;

@@ -8,7 +8,7 @@
 //! 7 3
 //!
 //! 2024-05-01 12:00:00.25,0,12,7,3     a moment at the beginning of a frame's first line is its time
-//! # frame 7       a comment, wherever it stands
+//! # frame 7       a comment, or sep=;, wherever it stands
 //! ```
 //! Of a stream from its beginning, such as a file, the first block may be a frame, or the end of one: its rows and columns
 //! are those of all frames unless the next two blocks agree on more rows. It is provisional until then.
@@ -509,6 +509,9 @@ mod tests {
         let lines = "# two frames\n1,2,3,4\n# and one\n1,2,3,4\n";
         let found = (vec![(2, 2, 1.0); 2], 0);
         assert_eq!(decoded(lines, Some((2, 2))), found);
+        let table = "sep=;\n\"1\";\"2\"\n3;4\n";
+        let found = (vec![(1, 2, 1.0), (1, 2, 3.0)], 0);
+        assert_eq!(decoded(table, Some((1, 2))), found);
     }
 
     #[test]

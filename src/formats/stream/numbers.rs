@@ -1,13 +1,13 @@
 //! The numbers of a line, read as fast as a sensor may send them.
 
-use crate::formats::recording::separator::Separator;
+use crate::formats::recording::separator::{Separator, unquoted};
 use crate::formats::recording::text_row::Field;
 
 /// More digits than these are left to the general reader.
 const FAST_DIGITS: usize = 9;
 
 /// Adds the numbers of a line. They are parted as in a table: by the first of semicolons, commas and tabs that the line has,
-/// with or without blanks, otherwise by blanks. With semicolons, a comma is the decimal sign. An empty field and words such as
+/// with or without blanks, otherwise by blanks; quotes around a number are ignored. With semicolons, a comma is the decimal sign. An empty field and words such as
 /// `nan` stand for no cell; a separator at the end of the line counts for nothing, nor do tabs at both ends. None if there is
 /// anything else, or more than `most`.
 pub(super) fn read(line: &[u8], values: &mut Vec<f64>, most: usize) -> Option<()> {
@@ -57,11 +57,13 @@ pub(super) fn read(line: &[u8], values: &mut Vec<f64>, most: usize) -> Option<()
         while line.get(at).is_some_and(|&byte| !is_separator(byte)) {
             at += 1;
         }
-        values.push(match Separator::Byte(mark).value(&line[start..at]) {
-            Field::Value(value) => value,
-            Field::NoCell => f64::NAN,
-            Field::Wrong => return None,
-        });
+        values.push(
+            match Separator::Byte(mark).value(unquoted(&line[start..at])) {
+                Field::Value(value) => value,
+                Field::NoCell => f64::NAN,
+                Field::Wrong => return None,
+            },
+        );
     }
 }
 
@@ -100,6 +102,8 @@ mod tests {
             ("1,\t\t2", "[1.0, 2.0]"),
             ("#N/A 1 N/A -nan", "[NaN, 1.0, NaN, NaN]"),
             (" , ,, ", "[]"),
+            ("\"1\",\"2.5\",\"\",3", "[1.0, 2.5, NaN, 3.0]"),
+            ("\"1,5\";2", "[1.5, 2.0]"),
         ] {
             let mut values = Vec::new();
             assert_eq!(read(line.as_bytes(), &mut values, 5), Some(()), "{line}");

@@ -417,7 +417,11 @@ fn values_are_counted_where_names_do_not_say_rows_and_columns() {
 
 #[test]
 fn the_line_with_the_separator_of_a_spreadsheet_is_passed_over() {
-    let text = "sep=;\r\ntime;r0c0;r0c1\r\n0,5;1,5;2\r\n1;3;4\r\n";
+    for named in ["sep=;", "SEP=;", "\"sep=;\"", "sep=;;;"] {
+        let text = format!("{named}\r\ntime;r0c0;r0c1\r\n0,5;1,5;2\r\n1;3;4\r\n");
+        assert_eq!(values(&text, None), [[1.5, 2.0], [3.0, 4.0]], "{named}");
+    }
+    let text = "sep=\t\ntime\tr0c0\tr0c1\n0.5\t1.5\t2\n1\t3\t4\n";
     assert_eq!(values(text, None), [[1.5, 2.0], [3.0, 4.0]]);
 }
 
