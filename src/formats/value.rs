@@ -91,6 +91,23 @@ pub fn measured(number: f64, width: usize) -> String {
         .unwrap_or_else(|| fitting(number, width))
 }
 
+/// A share in percent, with one decimal. One that is not quite 0 or 1 does not look so.
+///
+/// ```
+/// use taxel::formats::value::percent;
+/// assert_eq!([0.0, 1e-5, 0.984, 0.9999, 1.0].map(percent), ["0.0 %", "<0.1 %", "98.4 %", ">99.9 %", "100.0 %"]);
+/// ```
+pub fn percent(share: f64) -> String {
+    let percent = share * 100.0;
+    if share > 0.0 && percent < 0.05 {
+        "<0.1 %".to_owned()
+    } else if share < 1.0 && percent >= 99.95 {
+        ">99.9 %".to_owned()
+    } else {
+        format!("{percent:.1} %")
+    }
+}
+
 /// The decimals of the smallest number.
 const MOST_DECIMALS: usize = 1074;
 

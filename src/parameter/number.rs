@@ -28,6 +28,15 @@ pub fn short(number: f64) -> String {
     }
 }
 
+/// A part divided by the whole; 0 if the whole is 0, as in a shard without poses.
+#[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
+pub(crate) fn share(part: u128, whole: u128) -> f64 {
+    if whole == 0 {
+        return 0.0;
+    }
+    part as f64 / whole as f64
+}
+
 /// Rounds to some decimals, so that what computing adds to the last digits neither shows nor drifts: 0.1 + 0.2 is 0.3.
 /// Never a negative zero. A number so large that it has no such decimals remains as it is.
 ///

@@ -17,10 +17,11 @@ use rayon::prelude::*;
 use crate::atlas::{feature_values, features};
 use crate::description::{Description, Descriptor, Value};
 use crate::parameter::named;
+use crate::parameter::number::share;
 use crate::recognition::confusion::ConfusionMatrix;
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::given::{GivenTable, ShapeDescriptor};
-use crate::recognition::model::{Model, share};
+use crate::recognition::model::Model;
 use crate::recognition::simulation::Draw;
 use crate::recognition::templates::Templates;
 

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::parameter::number::share;
 use crate::recognition::confusion::ConfusionMatrix;
-use crate::recognition::model::{Model, NamedShape, ShapeCount, first_of_most, share};
+use crate::recognition::model::{Model, NamedShape, ShapeCount, first_of_most};
 
 /// How well the best classifier of one touch does, over every touch of a model.
 ///

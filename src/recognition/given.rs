@@ -10,9 +10,10 @@ use rayon::prelude::*;
 use crate::atlas::ImprintSummary;
 use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, ExactValue, Value};
 use crate::imprint::Imprint;
+use crate::parameter::number::share;
 use crate::quote::{did_you_mean, shortened};
 use crate::recognition::evaluation::Evaluation;
-use crate::recognition::model::{Model, ShapeCount, first_of_most, share};
+use crate::recognition::model::{Model, ShapeCount, first_of_most};
 use crate::recognition::simulation::{Judgement, NoisyTouches, RecognitionRate};
 
 /// A descriptor that says something about the shape, because it does not change when the imprint is moved.

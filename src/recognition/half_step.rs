@@ -5,8 +5,9 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use crate::imprint::Imprint;
+use crate::parameter::number::share;
 use crate::pose::Axis;
-use crate::recognition::model::{Model, ShapeCount, share};
+use crate::recognition::model::{Model, ShapeCount};
 use crate::recognition::training::{Training, TrainingError};
 use crate::sensor::MAX_SIDE;
 

@@ -71,7 +71,7 @@ pub use noise::{Distances, Method, Noise, NoiseError, UnexplainedDifference};
 pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
 pub use sets::{CellPositions, GridSteps, GridStepsError, default_figures, equal_figures};
+#[cfg(feature = "tui")]
+pub(crate) use simulation::below;
 pub use simulation::{MOST_TOUCHES, NoisyTouches, RecognitionRate, TouchesUntil};
 pub use training::{LEAST_SIDE, Training, TrainingError};
-#[cfg(feature = "tui")]
-pub(crate) use {model::share, simulation::below};

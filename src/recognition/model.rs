@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::sync::OnceLock;
 
 use crate::imprint::Imprint;
+use crate::parameter::number::share;
 use crate::pose::{Anchor, Axis, MAX_POSES, Ranges};
 use crate::quote::shortened;
 use crate::recognition::key::{ImprintKey, KeyTable};
@@ -512,15 +513,6 @@ pub(super) fn first_of_most<T: PartialOrd>(
 ) -> Option<(usize, T)> {
     let larger = |best: (usize, T), next: (usize, T)| if next.1 > best.1 { next } else { best };
     values.into_iter().reduce(larger)
-}
-
-/// A part divided by the whole; 0 if the whole is 0, as in a shard without poses.
-#[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
-pub(crate) fn share(part: u128, whole: u128) -> f64 {
-    if whole == 0 {
-        return 0.0;
-    }
-    part as f64 / whole as f64
 }
 
 /// Keys with their counts, while they are gathered.

@@ -5,13 +5,13 @@
 //! shape is touched with its centre in one cell and at the angles asked for, on a sensor that cuts nothing off, as in a training.
 
 use crate::figure::Figure;
-use crate::parameter::number::to_decimals;
+use crate::parameter::number::{share, to_decimals};
 use crate::parameter::{Parameter, named};
 use crate::pose::{
     Anchor, Axis, DecimalRange, GivenRanges, GridError, PoseGrid, Ranges, Reach, SensorSides,
 };
 use crate::recognition::evaluation::Evaluation;
-use crate::recognition::model::{Model, NamedShape, check_shapes, share};
+use crate::recognition::model::{Model, NamedShape, check_shapes};
 use crate::recognition::sets::CellPositions;
 use crate::recognition::training::{LEAST_SIDE, Training, TrainingError};
 use crate::sensor::Sensor;

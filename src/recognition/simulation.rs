@@ -10,8 +10,9 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 use crate::imprint::Imprint;
+use crate::parameter::number::share;
 use crate::recognition::key::ImprintKey;
-use crate::recognition::model::{Model, add_log_counts, first_of_most, float, share};
+use crate::recognition::model::{Model, add_log_counts, first_of_most, float};
 use crate::recognition::noise::Noise;
 use crate::recognition::scan::shift_count;
 use crate::sensor::Sensor;

@@ -17,8 +17,10 @@ use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
 use crate::cli::output::progress::Progress;
+use crate::formats::value::percent;
 use crate::formats::{ConfusionMap, json};
-use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model, greedy, share};
+use crate::parameter::number::share;
+use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model, greedy};
 use crate::storage::UnfinishedFile;
 
 /// Evaluates a model. Returns what is printed.
@@ -206,10 +208,10 @@ fn file(path: &Path, own: &Evaluation, knows_certain: bool) -> Result<Vec<u8>, C
         name: path.to_string_lossy().into_owned(),
         shapes: own.labels.len(),
     })?;
-    let mut title = format!("error {}", evaluation::percent(own.error()));
+    let mut title = format!("error {}", percent(own.error()));
     if knows_certain {
         let certain = share(own.certain, own.touches);
-        title += &format!(", certain {}", evaluation::percent(certain));
+        title += &format!(", certain {}", percent(certain));
     }
     let map = map.with_title(&title);
     map.content(format).map_err(CliError::Write)

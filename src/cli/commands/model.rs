@@ -31,7 +31,7 @@ use crate::cli::output::evaluation::{self, NamedBy};
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
 use crate::cli::threads;
-use crate::formats::value::counted;
+use crate::formats::value::{counted, percent};
 use crate::formats::{Name, json};
 use crate::memory::MemoryGuard;
 use crate::pose::{Anchor, Axis, Ranges};
@@ -309,7 +309,7 @@ pub(crate) fn show(
         text += &format!("  {}: {}{weight}", shape.name, described(shape));
         if let Some(recall) = limit.recall(index) {
             text += ", recognised in ";
-            text += &evaluation::percent(recall);
+            text += &percent(recall);
         }
         text.push('\n');
     }
@@ -471,7 +471,7 @@ pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String
                 "{}, {}, error {}",
                 counted(model.shapes().len() as u64, "shape"),
                 counted(model.keys().len() as u64, "key"),
-                evaluation::percent(Evaluation::of(model).error())
+                percent(Evaluation::of(model).error())
             ),
             Err(error) => error.to_string(),
         };

@@ -27,16 +27,16 @@ use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::{self, bar, percent, percent_fine};
+use crate::cli::output::evaluation::{self, bar, percent_fine};
 use crate::cli::output::plot;
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
-use crate::formats::value::{counted, grouped};
+use crate::formats::value::{counted, grouped, percent};
 use crate::formats::{LinePlot, json};
 use crate::memory::MemoryGuard;
+use crate::parameter::number::share;
 use crate::recognition::{
     GivenDescriptors, MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate, TouchesUntil,
-    share,
 };
 use crate::sensor::Sensor;
 

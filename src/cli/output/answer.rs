@@ -7,9 +7,10 @@ use serde::ser::{SerializeMap, Serializer};
 use serde_json::value::RawValue;
 
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::{bar, percent};
+use crate::cli::output::evaluation::bar;
 use crate::cli::output::pose::PoseReport;
 use crate::formats::described::Rows;
+use crate::formats::value::percent;
 use crate::imprint::Imprint;
 use crate::parameter::number::short;
 use crate::recognition::{Answer, AnswerState, Evidence, Method, Model, Nearest, Noise};

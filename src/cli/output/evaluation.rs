@@ -22,9 +22,10 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::json;
 
 use crate::cli::output::charset::Charset;
-use crate::formats::value::{counted, decimal, grouped};
+use crate::formats::value::{counted, decimal, grouped, percent};
+use crate::parameter::number::share;
 use crate::recognition::{
-    Classifier, ClassifierEvaluation, ConfusionMatrix, Evaluation, ShapeDescriptor, share,
+    Classifier, ClassifierEvaluation, ConfusionMatrix, Evaluation, ShapeDescriptor,
 };
 
 /// An evaluation as an object of JSON, its keys in the order of the documentation.
@@ -85,12 +86,6 @@ pub(crate) fn number(count: u128) -> serde_json::Value {
         Ok(count) => json!(count),
         Err(_) => json!(count.to_string()),
     }
-}
-
-/// A share as percent.
-/// One decimal: `98.4 %`. A share of 0.99999 is shown as `100.0 %`.
-pub(crate) fn percent(share: f64) -> String {
-    format!("{:.1} %", 100.0 * share)
 }
 
 /// A share as percent, to three decimals.

@@ -15,11 +15,11 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::cli::output::charset::Charset;
-use crate::cli::output::evaluation::{number, percent, percent_fine};
+use crate::cli::output::evaluation::{number, percent_fine};
 use crate::cli::output::plot;
 use crate::formats::json;
 use crate::formats::separation::{SeparationCurve, short, size_label};
-use crate::formats::value::grouped;
+use crate::formats::value::{grouped, percent};
 use crate::pose::DecimalRange;
 use crate::recognition::{SeparationPoint, SizeAxis};
 

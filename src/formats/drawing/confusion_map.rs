@@ -5,7 +5,8 @@
 
 use crate::formats::drawing::page::{DrawingPage, MARGIN, TEXT, width};
 use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
-use crate::formats::value::decimal;
+use crate::formats::value::percent;
+use crate::parameter::number::share;
 
 /// More shapes would make a page that nothing prints.
 const MOST: usize = 64;
@@ -172,7 +173,10 @@ impl MapLayout<'_> {
                     0 => vec![("·".to_owned(), (x, low.1 + TEXT * 1.5))],
                     _ => vec![
                         (count.to_string(), (x, low.1 + TEXT + 3.0)),
-                        (percent(share), (x, low.1 + TEXT * 2.0 + 4.0)),
+                        (
+                            percent(share).replace(".0 %", " %"),
+                            (x, low.1 + TEXT * 2.0 + 4.0),
+                        ),
                     ],
                 };
                 numbers.extend(said);
@@ -233,27 +237,6 @@ impl MapLayout<'_> {
             upright: true,
         });
     }
-}
-
-/// A part of a whole; 0 of nothing.
-#[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
-fn share(part: u128, whole: u128) -> f64 {
-    if whole == 0 {
-        0.0
-    } else {
-        part as f64 / whole as f64
-    }
-}
-
-/// A share in percent, with a decimal where it is not whole; a share that is neither nothing nor all never looks so.
-fn percent(share: f64) -> String {
-    if share > 0.0 && share < 0.0005 {
-        return "<0.1 %".to_owned();
-    }
-    if (0.9995..1.0).contains(&share) {
-        return ">99.9 %".to_owned();
-    }
-    format!("{} %", decimal(100.0 * share, 1))
 }
 
 /// White for a share of 0, the darkest grey for 1.

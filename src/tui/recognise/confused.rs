@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
-use crate::recognition::{Evaluation, Model, ShapeCount, share};
+use crate::parameter::number::share;
+use crate::recognition::{Evaluation, Model, ShapeCount};
 
 /// An imprint of a cell of the confusion matrix, the most frequent one.
 #[derive(Clone, Debug, PartialEq)]

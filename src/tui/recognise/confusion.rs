@@ -6,9 +6,9 @@ use std::sync::Arc;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::value::{counted, grouped};
+use crate::formats::value::{counted, grouped, percent};
 use crate::imprint::Imprint;
-use crate::recognition::share;
+use crate::parameter::number::share;
 use crate::sensor::Sensor;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::{Page, Slot, Wheel};
@@ -19,7 +19,6 @@ use crate::tui::recognise::confused::{Example, worst_cell};
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::quiz::onto;
 use crate::tui::recognise::trained::TrainedModel;
-use crate::tui::recognise::view::percent;
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
@@ -183,7 +182,7 @@ impl Page for Confusion {
         let evaluation = &self.trained.evaluation;
         let title = format!("Confusion: {}", self.trained.choice);
         let error = percent(evaluation.error());
-        let limit = format!("  error {} at best", error.trim_start());
+        let limit = format!("  error {error} at best");
         let shorter = limit.trim_end_matches(" at best");
         let room = usize::from(area.width).saturating_sub(write::width(&title));
         let limit = write::first_fitting(&[&limit, shorter], room);
@@ -335,7 +334,7 @@ fn cell_text(theme: &Theme, count: u128, touches: u128, diagonal: bool) -> Strin
     let percent = percent(share(count, touches));
     let number = match count {
         0 => theme.text("·").into_owned(),
-        _ => percent.trim_end_matches(" %").trim_start().to_owned(),
+        _ => percent.trim_end_matches(" %").to_owned(),
     };
     let number = if count == 0 && theme.ascii {
         ".".to_owned()

@@ -19,10 +19,11 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::value::{counted, decimal, deviation};
+use crate::formats::value::{counted, decimal, deviation, percent};
 use crate::imprint::Imprint;
+use crate::parameter::number::share;
 use crate::pose::{Anchor, Axis};
-use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate, share};
+use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
 use crate::tui::app::page::{Page, PoseLayer, Slot};
 use crate::tui::explore::running::gauge;
 use crate::tui::keys::action;
@@ -190,7 +191,7 @@ impl Panel<'_> {
         self.text(&steps, Role::Quiet);
         let certain = percent_of(evaluation.certain, evaluation.touches);
         let error = percent(evaluation.error());
-        let limit = format!("error {}, certain {certain}", error.trim_start());
+        let limit = format!("error {error}, certain {certain}");
         let [long, short] = ["best possible", "best"].map(|best| format!("{best} {limit}"));
         // The shorter one is for a line; over two the other says more.
         let limits = [&*long, &*short, &*long];
@@ -199,7 +200,7 @@ impl Panel<'_> {
         if let Some(unknown) = trained.unknown_between {
             let text = format!(
                 "between grid points, {} of poses are not in the model",
-                percent(unknown).trim_start()
+                percent(unknown)
             );
             self.text(&text, Role::Quiet);
         }
@@ -301,7 +302,7 @@ impl Panel<'_> {
             (&*name, Role::Text),
             (gap.as_str(), Role::Text),
             (bar.as_str(), Role::Chosen),
-            (&percent(probability), Role::Text),
+            (&format!("{:>PERCENT$}", percent(probability)), Role::Text),
         ];
         write::line(self.buffer, row, self.theme, pieces);
     }
@@ -422,21 +423,7 @@ fn differ(count: u32) -> String {
 
 /// A share of a whole in percent.
 fn percent_of(part: u128, whole: u128) -> String {
-    percent(share(part, whole)).trim_start().to_owned()
-}
-
-/// A probability in percent. What is not quite 0 or 1 does not look so.
-pub(super) fn percent(share: f64) -> String {
-    let percent = share * 100.0;
-    let text = if share > 0.0 && percent < 0.05 {
-        "<0.1".to_owned()
-    } else if share < 1.0 && percent >= 99.95 {
-        ">99.9".to_owned()
-    } else {
-        format!("{percent:.1}")
-    };
-    let width = PERCENT - 2;
-    format!("{text:>width$} %")
+    percent(share(part, whole))
 }
 
 /// The full and the empty columns of a bar; what is above 0 has one at least.
@@ -457,16 +444,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_nearly_certain_does_not_look_certain() {
-        for (share, text) in [
-            (1.0, "  100.0 %"),
-            (0.9999, "  >99.9 %"),
-            (0.5, "   50.0 %"),
-            (0.0001, "   <0.1 %"),
-            (0.0, "    0.0 %"),
-        ] {
-            assert_eq!(percent(share), text);
-        }
+    fn what_is_hardly_possible_has_a_bar() {
         assert_eq!(bar_of(0.0001, 10), (1, 9));
         assert_eq!(bar_of(1.0, 0), (0, 0));
         assert_eq!(bar_of(0.5, 10), (5, 5));

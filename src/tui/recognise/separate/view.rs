@@ -16,7 +16,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::formats::separation::{short, size_label};
-use crate::formats::value::{decimal, grouped};
+use crate::formats::value::{decimal, grouped, percent};
 use crate::recognition::{SizeAxis, SmallestSize};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
@@ -27,7 +27,6 @@ use crate::tui::keys::keymap::Keymap;
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::found::SizeFound;
 use crate::tui::recognise::separate::state::{Separate, SizeWork};
-use crate::tui::recognise::view::percent;
 use crate::tui::widget::curve::Curve;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
@@ -243,10 +242,7 @@ impl Separate {
         let name = |shape| self.request().trained.name(shape);
         let (touched, named) = (name(worst.touched), name(worst.named));
         let share = percent(worst.share);
-        let text = format!(
-            "{place}: {touched} named {named} in {} of its touches",
-            share.trim_start()
-        );
+        let text = format!("{place}: {touched} named {named} in {share} of its touches");
         write::line(buffer, line(1), theme, [(text.as_str(), Role::Text)]);
         if let Some(example) = &worst.example {
             let text = example.in_words(name);
@@ -295,8 +291,8 @@ fn row_cells(size: &SizeFound) -> [String; 5] {
     let point = &size.point;
     [
         format!("{:<8}", short(point.value)),
-        percent(point.error()),
-        percent(point.certain_share()),
+        format!("{:>9}", percent(point.error())),
+        format!("{:>9}", percent(point.certain_share())),
         format!("{:>11}", grouped(point.keys as u128)),
         format!("  {side} × {side}", side = point.side),
     ]
