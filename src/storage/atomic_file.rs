@@ -140,6 +140,16 @@ pub struct FinishedFile {
 }
 
 impl FinishedFile {
+    /// Writes a file's content, and not its name yet.
+    ///
+    /// # Errors
+    /// As for [`UnfinishedFile::new`] and [`UnfinishedFile::finish`].
+    pub fn new(path: &Path, content: &[u8], existing: Existing) -> Result<Self, FileError> {
+        let mut file = UnfinishedFile::new(path, existing)?;
+        file.write(content)?;
+        file.finish()
+    }
+
     /// The path that the file will have.
     pub fn path(&self) -> &Path {
         &self.path

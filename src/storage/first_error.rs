@@ -9,7 +9,7 @@ pub(crate) struct FirstErrorWriter<'a, W> {
     output: W,
     stopped: &'a AtomicBool,
     /// What went wrong first.
-    pub(crate) error: Option<io::Error>,
+    error: Option<io::Error>,
     place: u64,
     end: u64,
     /// No more bytes are written.
@@ -26,6 +26,15 @@ impl<'a, W: Write + Seek> FirstErrorWriter<'a, W> {
             place: 0,
             end: 0,
             most,
+        }
+    }
+
+    /// What became of the writing that said `written`: it may have noticed nothing, or only what followed from the first
+    /// error.
+    pub(crate) fn finish<E: From<io::Error>>(self, written: Result<(), E>) -> Result<(), E> {
+        match self.error {
+            Some(error) => Err(error.into()),
+            None => written,
         }
     }
 

@@ -6,8 +6,9 @@
 //! taxel/models/parts.npz         a model
 //! ```
 
+use std::ffi::OsString;
 use std::fs;
-use std::io::{BufReader, Cursor, ErrorKind, Read, Seek};
+use std::io::{BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
@@ -15,10 +16,9 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::formats::{ArchiveError, Name, read_model, write_model};
 use crate::recognition::{Model, Training};
-use crate::storage::atomic_file::{Existing, UnfinishedFile};
-use crate::storage::error::FileError;
+use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile};
 use crate::storage::first_error::FirstErrorWriter;
-use crate::storage::folder::file_above;
+use crate::storage::folder;
 use crate::storage::sweep_file::{ArchiveFileError, open_archive};
 use crate::sweep::Shard;
 
@@ -82,10 +82,7 @@ pub fn save_model(
     let mut file = UnfinishedFile::new(path, existing)?;
     let mut output = FirstErrorWriter::new(&mut file.output, u64::MAX, stopped);
     let written = write_model(model, &mut output);
-    let written = match output.error {
-        Some(error) => Err(error.into()),
-        None => written,
-    };
+    let written = output.finish(written);
     written.map_err(|error| ArchiveFileError::new(path, error))?;
     Ok(file.finish()?.persist()?)
 }
@@ -137,22 +134,14 @@ impl ModelFolder {
     /// # Errors
     /// Those of the system, but for a folder that does not exist.
     pub fn names(&self) -> Result<Vec<Name>, ArchiveFileError> {
-        let refused = |error| ArchiveFileError::new(&self.0, error);
-        let entries = match fs::read_dir(&self.0) {
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
-            Err(_) if file_above(&self.0).is_some() => return Ok(Vec::new()),
-            entries => entries.map_err(refused)?,
+        let files = folder::names(&self.0)?;
+        let name = |file: &OsString| {
+            let path = Path::new(file);
+            let stem = path.file_stem().and_then(|stem| stem.to_str())?;
+            let is_model = path.extension().is_some_and(|ending| ending == ENDING);
+            Name::new(stem).ok().filter(|_| is_model)
         };
-        let mut names = Vec::new();
-        for entry in entries {
-            let path = entry.map_err(refused)?.path();
-            let stem = path.file_stem().and_then(|stem| stem.to_str());
-            if path.extension().is_some_and(|ending| ending == ENDING)
-                && let Some(name) = stem.and_then(|stem| Name::new(stem).ok())
-            {
-                names.push(name);
-            }
-        }
+        let mut names: Vec<Name> = files.iter().filter_map(name).collect();
         names.sort_by(|one, other| one.as_str().cmp(other.as_str()));
         Ok(names)
     }
@@ -239,9 +228,10 @@ impl ModelCache {
         let mut bytes = Cursor::new(Vec::new());
         let going = AtomicBool::new(false);
         let mut output = FirstErrorWriter::new(&mut bytes, most, &going);
-        let fits = write_model(model, &mut output).is_ok() && output.error.is_none();
-        if fits && fs::create_dir_all(&self.0).is_ok() {
-            let _ = replace_file(path, bytes.get_ref());
+        let written = write_model(model, &mut output);
+        if output.finish(written).is_ok() && fs::create_dir_all(&self.0).is_ok() {
+            let _ = FinishedFile::new(path, bytes.get_ref(), Existing::Replaced)
+                .and_then(FinishedFile::persist);
         }
     }
 }
@@ -266,13 +256,6 @@ pub fn cached_or_trained<'a, E>(
     let model = train(training)?;
     cache.keep(&path, &model);
     Ok(model)
-}
-
-/// Writes a whole file in place of the one of that name, if there is one.
-fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
-    let mut file = UnfinishedFile::new(path, Existing::Replaced)?;
-    file.write(bytes)?;
-    file.finish()?.persist()
 }
 
 /// A short text that differs between models with other contents: 32 hexadecimal digits.

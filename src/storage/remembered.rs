@@ -6,7 +6,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use crate::storage::library::{COMMANDS, FORMS, RECOGNISED_SET};
-use crate::storage::{Existing, Library, UnfinishedFile};
+use crate::storage::{Existing, FinishedFile, Library};
 
 /// No longer file is read: a hundred commands of the longest kind are shorter.
 const MOST_BYTES: u64 = 1 << 17;
@@ -67,10 +67,8 @@ impl RememberedFile {
         }
         let kept = &lines[lines.len().saturating_sub(self.most)..];
         let text: String = kept.iter().map(|line| format!("{line}\n")).collect();
-        let written = UnfinishedFile::new(&self.path, Existing::Replaced).and_then(|mut file| {
-            file.write(text.as_bytes())?;
-            file.finish()?.persist()
-        });
+        let written = FinishedFile::new(&self.path, text.as_bytes(), Existing::Replaced)
+            .and_then(FinishedFile::persist);
         // On a full disk, it is not worth a message.
         drop(written);
     }

@@ -141,10 +141,7 @@ impl AtlasFile {
             AtlasFormat::JsonLines => write_jsonl(result, &mut output).map_err(ArchiveError::from),
             AtlasFormat::Archive => archive::write(result, &mut output),
         };
-        let written = match output.error {
-            Some(error) => Err(error.into()),
-            None => written,
-        };
+        let written = output.finish(written);
         written.map_err(|error| ArchiveFileError::new(&self.path, error))?;
         Ok(file.finish()?)
     }

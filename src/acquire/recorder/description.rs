@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::acquire::recorder::error::{RecorderError, refused};
 use crate::formats::recording::RecordingMetadata;
-use crate::storage::{Existing, FinishedFile, UnfinishedFile};
+use crate::storage::{Existing, FinishedFile};
 
 /// No description is longer.
 const LARGEST_DESCRIPTION: u64 = 1 << 22;
@@ -56,12 +56,7 @@ pub(super) fn prepared(
         path: path.clone(),
         error,
     })?;
-    let prepare = || {
-        let mut file = UnfinishedFile::new(&path, existing)?;
-        file.write(&json)?;
-        file.finish()
-    };
-    prepare().map_err(refused)
+    FinishedFile::new(&path, &json, existing).map_err(refused)
 }
 
 /// Writes the description over the old one, where a full disk has no room for both.

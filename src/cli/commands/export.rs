@@ -14,7 +14,7 @@ use crate::formats::{Drawing, DrawingFormat, ImprintFormat};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::source::Source;
-use crate::storage::{Existing, FileError, FinishedFile, UnfinishedFile};
+use crate::storage::{Existing, FinishedFile};
 
 /// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,7 +158,11 @@ impl Export {
         };
         match &self.path {
             None => Ok(Begun::Content(content)),
-            Some(path) => Ok(Begun::File(finished(path, &content, self.existing)?)),
+            Some(path) => Ok(Begun::File(FinishedFile::new(
+                path,
+                &content,
+                self.existing,
+            )?)),
         }
     }
 }
@@ -216,14 +220,7 @@ pub(crate) fn drawn_format(path: &Path) -> Option<DrawingFormat> {
 
 /// Writes a file: completely or not at all.
 pub(crate) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(), CliError> {
-    Ok(finished(path, content, existing)?.persist()?)
-}
-
-/// Writes a file completely, without its name.
-fn finished(path: &Path, content: &[u8], existing: Existing) -> Result<FinishedFile, FileError> {
-    let mut file = UnfinishedFile::new(path, existing)?;
-    file.write(content)?;
-    file.finish()
+    Ok(FinishedFile::new(path, content, existing)?.persist()?)
 }
 
 /// Looks up a shape and exports it. The drawing of a stored shape shows the outline of what made it.

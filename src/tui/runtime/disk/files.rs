@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::formats::recording::may_be_recording;
 use crate::formats::{Content, imprint_file, read_content};
-use crate::storage::{Existing, UnfinishedFile, location};
+use crate::storage::{Existing, FinishedFile, location};
 use crate::tui::app::message::{FileEvent, OpenedFile};
 use crate::tui::runtime::disk::write_access::WriteAccess;
 use crate::tui::runtime::effect::FileRequest;
@@ -63,10 +63,7 @@ fn open(name: &str) -> Result<OpenedFile, String> {
 
 /// Writes a file as a whole or not at all.
 fn write(path: PathBuf, name: String, content: Vec<u8>, existing: Existing) -> FileEvent {
-    let written = UnfinishedFile::new(&path, existing).and_then(|mut file| {
-        file.write(&content)?;
-        file.finish()?.persist()
-    });
+    let written = FinishedFile::new(&path, &content, existing).and_then(FinishedFile::persist);
     match written {
         Ok(()) => {
             // Where that is not known, the path as it was given.
