@@ -1,6 +1,6 @@
 //! The screen: a terminal program over the same core as the command line.
 //!
-//! The way of one keystroke:
+//! The path of a keystroke:
 //! ```text
 //! terminal   bytes -> Key
 //! keys       lookup(context, key) -> Message       one table of actions, one of default keys

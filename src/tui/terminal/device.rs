@@ -1,7 +1,7 @@
 //! The terminal's two files: standard input and output if these are terminals, otherwise the controlling terminal.
 //!
-//! Reading never blocks. Writing waits while the terminal takes nothing, but a signal or, at the end of the program, a
-//! time limit ends the wait: a line that hangs must not keep the program from ending.
+//! Reading never blocks. Writing waits while the terminal takes nothing, until a signal ends the wait or, at the end
+//! of the program, a time limit: a line that hangs must not keep the program from ending.
 
 use std::io::{self, stdin, stdout};
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd};
@@ -12,41 +12,41 @@ use rustix::fs::{Mode, OFlags, open};
 use rustix::io::{Errno, read, write};
 use rustix::termios::{isatty, tcgetwinsize};
 
-/// The last write of the program is given up after this time if the terminal does not take it.
+/// How long the last write of the program waits if the terminal does not take it.
 const LAST_WRITE: Timespec = Timespec {
     tv_sec: 0,
     tv_nsec: 100_000_000,
 };
 
-/// Larger sizes are mistakes, which would cost gigabytes.
+/// The largest size, in columns and rows; a larger one is a mistake and would cost gigabytes.
 const LARGEST: (u16, u16) = (1000, 500);
 
-/// Where bytes come from and go to.
+/// The terminal's files for input and output.
 #[derive(Debug)]
 pub(in crate::tui) struct Device {
-    /// Where keys come from.
+    /// The file from which keys are read.
     input: OwnedFd,
-    /// Where the screen goes.
+    /// The file to which the screen is written.
     output: OwnedFd,
 }
 
-/// What became of a write.
+/// The result of a write.
 #[derive(Debug, PartialEq, Eq)]
 pub(in crate::tui) enum WriteOutcome {
-    /// All is out.
+    /// All bytes are written.
     All,
-    /// Something else wants attention, and an unknown part is out.
+    /// Something else needs attention; an unknown part of the bytes is written.
     Interrupted,
 }
 
 impl Device {
-    /// Opens it.
+    /// Opens the terminal.
     ///
-    /// The output is opened anew without blocking, so that a line that takes nothing cannot keep the program from
-    /// its end. Where that is not allowed, as after `su`, the file is used as it is.
+    /// The output is opened a second time, non-blocking, so that a line that takes nothing cannot keep the program
+    /// from ending. If that is not allowed, as after `su`, the file is used as it is.
     ///
     /// # Errors
-    /// Where there is no terminal.
+    /// Returns an error if there is no terminal.
     pub(in crate::tui) fn open() -> io::Result<Self> {
         let input = match stdin() {
             file if isatty(&file) => file.as_fd().try_clone_to_owned()?,
@@ -65,12 +65,12 @@ impl Device {
         Ok(Self { input, output })
     }
 
-    /// Where keys come from.
+    /// Returns the file from which keys are read.
     pub(in crate::tui) fn input(&self) -> BorrowedFd<'_> {
         self.input.as_fd()
     }
 
-    /// Reads what is there; none where the terminal is gone.
+    /// Reads the available bytes and returns their number; None if the terminal is gone.
     pub(in crate::tui) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
         match read(&self.input, buffer) {
             Ok(0) => Ok(None),
@@ -80,7 +80,7 @@ impl Device {
         }
     }
 
-    /// Reads up to these bytes and drops what it reads; for a while at most, if they do not come.
+    /// Reads and drops bytes up to and including `end`; gives up after `patience`.
     pub(in crate::tui) fn skip_past(&self, end: &[u8], patience: Duration) {
         let deadline = Instant::now() + patience;
         let (mut buffer, mut read) = ([0; 256], Vec::<u8>::new());
@@ -103,7 +103,7 @@ impl Device {
         }
     }
 
-    /// Writes all of it, unless `attention` becomes readable while the terminal takes nothing.
+    /// Writes all bytes, unless `attention` becomes readable while the terminal takes nothing.
     pub(in crate::tui) fn write(
         &self,
         bytes: &[u8],
@@ -122,7 +122,7 @@ impl Device {
         self.write_waiting(bytes, wait)
     }
 
-    /// The same for last words, which a terminal that takes nothing does not get.
+    /// Writes the last bytes of the program; gives up if the terminal takes none within `LAST_WRITE`.
     pub(in crate::tui) fn write_last(&self, bytes: &[u8]) -> io::Result<WriteOutcome> {
         let wait = || {
             let mut fds = [PollFd::new(&self.output, PollFlags::OUT)];
@@ -131,7 +131,7 @@ impl Device {
         self.write_waiting(bytes, wait)
     }
 
-    /// Writes bytes; waits while the terminal takes none, as long as `wait` allows.
+    /// Writes bytes; while the terminal takes none, calls `wait`, and stops if it returns false.
     fn write_waiting(
         &self,
         bytes: &[u8],
@@ -153,7 +153,7 @@ impl Device {
         Ok(WriteOutcome::All)
     }
 
-    /// Columns and rows; `fallback` for a side that the terminal does not know.
+    /// Returns columns and rows; a side that the terminal does not know is taken from `fallback`.
     pub(in crate::tui) fn size(&self, fallback: (u16, u16)) -> (u16, u16) {
         let known = tcgetwinsize(&self.output).map_or((0, 0), |size| (size.ws_col, size.ws_row));
         let side = |known: u16, otherwise: u16, most: u16| {
@@ -165,7 +165,7 @@ impl Device {
         )
     }
 
-    /// A second pair of names for the same files.
+    /// Duplicates the descriptors of both files.
     pub(in crate::tui) fn try_clone(&self) -> io::Result<Self> {
         Ok(Self {
             input: self.input.try_clone()?,

@@ -1,4 +1,5 @@
-//! The event loop: sleeps until there is a key, a signal or an event of a worker, then updates the state and draws.
+//! The event loop: sleeps until there is a key, a signal or a message from a worker, then updates the state and
+//! draws.
 //!
 //! ```text
 //! poll(terminal, signals, mailbox) -> Ready
@@ -9,8 +10,8 @@
 //! frames      of a source, once the terminal has drawn those before
 //! draw        what has changed, in one write
 //! ```
-//! It sleeps without a time limit while nothing is pending, so an idle program uses no processor time. A terminal that
-//! takes no output does not block signals: writing stops for them, and the next frame repairs the screen.
+//! It sleeps without a time limit while nothing is pending, so an idle program uses no processor time. A terminal
+//! that takes no output does not delay signals: they interrupt writing, and the next frame repairs the screen.
 
 use std::ffi::OsStr;
 use std::io;
@@ -40,10 +41,10 @@ use crate::tui::terminal::settings::TerminalSettings;
 use crate::tui::terminal::signals::{SignalEvent, SignalReceiver};
 use crate::tui::terminal::{job, session};
 
-/// The least time between two pictures of a source of frames.
+/// The least time between two pictures of a source of frames (about 30 a second).
 const PICTURE: Duration = Duration::from_millis(34);
 
-/// Runs the program until it ends, and leaves the terminal as it was. A first message may be sent to it.
+/// Runs the program until it ends, and restores the terminal; see [`super::run`].
 pub(in crate::tui) fn run(
     mut app: App,
     first: Option<Message>,
@@ -52,7 +53,7 @@ pub(in crate::tui) fn run(
     mailbox: Mailbox,
     watch: &mut dyn FnMut(SessionEvent<'_>),
 ) -> io::Result<Outcome> {
-    // Before signals are taken: where the disk hangs here, they still end the program.
+    // Before signals are handled: if the disk hangs here, they still end the program.
     world.remind(&mut app);
     let device = Device::open()?;
     let signals = SignalReceiver::new()?;
@@ -61,18 +62,18 @@ pub(in crate::tui) fn run(
     event_loop.first = first;
     let ended = catch_unwind(AssertUnwindSafe(|| {
         event_loop.run().or_else(|error| match error {
-            // Reading, writing or reopening the terminal may be the first to fail.
+            // Reading, writing or reopening the terminal may be the first call to fail.
             lost if is_lost(&lost) => Ok(Outcome::Hangup),
             error => Err(error),
         })
     }));
     if !matches!(ended, Ok(Ok(Outcome::Quit))) {
-        // The end comes from outside: what is not saved stays in the journal.
+        // The end comes from outside: unsaved work stays in the journal.
         let _ = event_loop
             .world
             .handle(&mut event_loop.app, Message::Terminate);
     }
-    // As in a pipeline: a script must see that the file is not whole.
+    // As in a pipeline: a script must see that the recording is incomplete.
     let failure = last_page(&event_loop.app).and_then(|page| page.recording().write_failure());
     let mut quit = Outcome::Quit;
     if let Some(reason) = failure {
@@ -91,13 +92,13 @@ pub(in crate::tui) fn run(
     }
 }
 
-/// A panic here puts the terminal right before it is reported. One of a worker does not end the loop, and must not
-/// write over the screen: it is printed when the shell has the terminal again.
+/// Makes a panic of this thread restore the terminal before it is reported. A panic of a worker does not end the loop
+/// and must not write over the screen: it is printed when the shell has the terminal again.
 fn leave_on_panic() {
     let (hook, own) = (std::panic::take_hook(), std::thread::current().id());
     std::panic::set_hook(Box::new(move |info| {
         if std::thread::current().id() == own {
-            // Nothing better can be done with an error here than to report the panic all the same.
+            // An error here cannot be handled; the panic is reported all the same.
             let _ = session::leave(true);
             hook(info);
         } else if !session::tell_later(&format!("{info}\n")) {
@@ -106,59 +107,59 @@ fn leave_on_panic() {
     }));
 }
 
-/// What a record of a session is made of.
+/// An event that a record of a session contains.
 #[derive(Clone, Copy, Debug)]
 pub enum SessionEvent<'a> {
-    /// What the user does.
+    /// An input by the user.
     Input(&'a Input),
-    /// Frames have come.
+    /// Frames that have come from a source.
     Frames {
-        /// The name of their source.
+        /// The name of the source.
         source: &'a OsStr,
-        /// How many since the event before.
+        /// The number of frames since the last event.
         count: u64,
     },
 }
 
 /// The loop between the terminal and the program.
 struct EventLoop<'a> {
-    /// Called with what happens, to record it.
+    /// Called with each event, to record it.
     watch: &'a mut dyn FnMut(SessionEvent<'_>),
-    /// The number of the source that is watched, and how many of its frames have been recorded.
+    /// The number of the watched source, and how many of its frames have been recorded.
     recorded: (u64, u64),
     /// The state of the program.
     app: App,
-    /// Library, journal and workers.
+    /// The library, the journal and the workers.
     world: World,
-    /// What the terminal can do.
+    /// The settings of the terminal.
     settings: TerminalSettings,
     /// The terminal.
     device: Device,
-    /// Signals that arrived.
+    /// The signals that have arrived.
     signals: SignalReceiver,
-    /// Messages of the workers.
+    /// The messages of the workers.
     mailbox: Mailbox,
-    /// Makes keys of bytes.
+    /// Turns bytes into keys.
     reader: InputReader,
     /// The screen.
     screen: Terminal<Screen>,
-    /// Whether the mouse is reported now.
+    /// Whether mouse events are reported.
     mouse: bool,
-    /// How the program ended, once it has.
+    /// How the program ended; None while it runs.
     outcome: Option<Outcome>,
-    /// What is sent to the program at its start.
+    /// The message to handle at the start.
     first: Option<Message>,
-    /// When bytes were read last.
+    /// The time of the last read.
     read_at: Instant,
-    /// When frames are taken next: never while none have come.
+    /// The time at which to take frames next; None if there are none.
     frames_due: Option<Instant>,
-    /// When they were taken last.
+    /// The time at which frames were last taken.
     frames_at: Option<Instant>,
-    /// Limits pictures to what the terminal can draw.
+    /// Limits pictures to what the terminal can draw in time.
     pacing: PicturePacing,
 }
 
-/// What the loop was woken for.
+/// The reasons why the loop was woken.
 #[derive(Default)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -167,7 +168,7 @@ struct EventLoop<'a> {
 struct Ready {
     /// There are bytes to read.
     input: bool,
-    /// Nothing came in time.
+    /// Nothing came within the time limit.
     late: bool,
     /// A signal arrived.
     signals: bool,
@@ -178,7 +179,7 @@ struct Ready {
 }
 
 impl<'a> EventLoop<'a> {
-    /// Starts the program on a device that is set up.
+    /// Creates the loop on a device that is set up.
     fn new(
         watch: &'a mut dyn FnMut(SessionEvent<'_>),
         app: App,
@@ -228,7 +229,7 @@ impl<'a> EventLoop<'a> {
         while self.outcome.is_none() {
             let ready = self.wait(self.patience())?;
             self.pacing.on_time(Instant::now());
-            // A signal before keys: who ends the program shall not have to wait for it to read what was typed.
+            // Signals come before keys: ending the program must not wait until it has handled everything typed.
             if ready.signals {
                 self.on_signals()?;
             }
@@ -248,7 +249,8 @@ impl<'a> EventLoop<'a> {
         Ok(self.outcome.unwrap_or(Outcome::Quit))
     }
 
-    /// How long to sleep at most: until half a sequence is what it is, frames are taken, or an answer is given up.
+    /// Returns the longest time to sleep: until an incomplete sequence times out, frames are taken, an answer is
+    /// given up or a change of a file is due.
     fn patience(&self) -> Option<Duration> {
         let reader = self.reader.patience(self.pacing.is_waiting());
         let reader = reader.map(|patience| patience.saturating_sub(self.read_at.elapsed()));
@@ -262,7 +264,7 @@ impl<'a> EventLoop<'a> {
         reader.into_iter().chain(due).min()
     }
 
-    /// Says what changes of files wait for, if that is another thing than before.
+    /// Updates the note about what file changes wait for, if it has changed.
     fn look_at_changes(&mut self) -> io::Result<()> {
         let waiting = self.world.waiting();
         if waiting.as_deref() == self.app.waiting() {
@@ -271,8 +273,8 @@ impl<'a> EventLoop<'a> {
         self.update(Message::Worker(WorkerEvent::Waiting(waiting)))
     }
 
-    /// Takes the frames that have come, if the last picture is old enough and the terminal has drawn it; those that come
-    /// meanwhile are taken together. Returns whether there were any.
+    /// Takes the frames that have come, if the last picture is old enough and the terminal has drawn it; frames that
+    /// come meanwhile are taken together. Returns true if there were any.
     fn take_frames(&mut self) -> io::Result<bool> {
         self.frames_due = None;
         if !self.world.has_frames() || self.pacing.is_waiting() {
@@ -305,7 +307,7 @@ impl<'a> EventLoop<'a> {
                 });
             }
             Ok(_) => {}
-            // A signal also rings its own bell.
+            // A signal is also reported through its own descriptor.
             Err(Errno::INTR) => return Ok(Ready::default()),
             Err(error) => return Err(error.into()),
         }
@@ -342,7 +344,7 @@ impl<'a> EventLoop<'a> {
         messages.try_for_each(|message| self.update(message))
     }
 
-    /// Records how many frames have come since the last input: what it does may depend on the one that is shown.
+    /// Records how many frames have come since the last input: an input may depend on the frame that is shown.
     fn record_frames(&mut self) {
         let Some(page) = last_page(&self.app) else {
             return;
@@ -357,7 +359,7 @@ impl<'a> EventLoop<'a> {
         }
     }
 
-    /// Reads what is there, or takes note that nothing more came in time.
+    /// Reads the available bytes, or handles a timeout.
     fn read(&mut self, ready: &Ready) -> io::Result<()> {
         let inputs = if ready.input {
             let mut buffer = [0; 4096];
@@ -379,7 +381,7 @@ impl<'a> EventLoop<'a> {
             self.record_frames();
             (self.watch)(SessionEvent::Input(&input));
             let message = match input {
-                // Each key where the one before has led.
+                // Each key is looked up in the state to which the one before has led.
                 Input::Key(key) => Some(self.app.meaning(key)),
                 Input::Paste(text) => Some(Message::Paste(text)),
                 Input::Mouse(mouse) => Some(Message::Mouse(mouse)),
@@ -395,7 +397,7 @@ impl<'a> EventLoop<'a> {
         Ok(())
     }
 
-    /// Whether nothing more came in time after half a sequence.
+    /// Returns true if nothing more came in time after an incomplete sequence.
     fn has_timed_out(&self) -> bool {
         let patience = self.reader.patience(self.pacing.is_waiting());
         patience.is_some_and(|patience| self.read_at.elapsed() >= patience)
@@ -427,8 +429,8 @@ impl<'a> EventLoop<'a> {
         Ok(())
     }
 
-    /// Writes what has changed on the screen, in one piece; after new frames the terminal is asked whether it has come so
-    /// far.
+    /// Writes the changes of the screen, in one piece. After new frames, the terminal is asked for its status, to
+    /// learn when it has drawn them.
     fn draw(&mut self, has_frames: bool) -> io::Result<()> {
         let Ok(_) = self.screen.draw(|frame| {
             view(&self.app, frame);
@@ -440,8 +442,8 @@ impl<'a> EventLoop<'a> {
         self.send(&bytes)
     }
 
-    /// Writes something. Where it is cut off, by a signal while the terminal takes nothing, the next frame puts the screen
-    /// right; its first character ends whatever was begun.
+    /// Writes bytes. If a signal interrupts this while the terminal takes nothing, the next frame repairs the screen;
+    /// its first character ends an incomplete sequence.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         if self.device.write(bytes, self.signals.fd())? == WriteOutcome::Interrupted {
             self.redraw();
@@ -450,19 +452,19 @@ impl<'a> EventLoop<'a> {
         Ok(())
     }
 
-    /// Says that something cannot be done here.
+    /// Shows a message that something cannot be done here.
     fn refuse(&mut self, reason: &str) {
         let message = Message::Worker(WorkerEvent::Refused(reason.to_owned()));
         let _ = self.world.handle(&mut self.app, message);
     }
 
-    /// Nothing is known of what the terminal shows: all of it is drawn next time.
+    /// Forgets what the terminal shows, so that all of it is drawn next time.
     fn redraw(&mut self) {
         self.screen.backend_mut().forget();
         let Ok(()) = self.screen.clear();
     }
 
-    /// Asks the terminal for its size and tells the program if it has changed.
+    /// Asks the terminal for its size, and reports a change to the program.
     fn measure(&mut self) {
         let size = size(&self.device, &self.settings);
         let screen = self.screen.backend_mut();
@@ -473,7 +475,7 @@ impl<'a> EventLoop<'a> {
         }
     }
 
-    /// The state knows the size too: it finds what the mouse points at.
+    /// Reports the size to the state, which needs it to find what the mouse points at.
     fn tell_size(&mut self) {
         let Ok(size) = ratatui::backend::Backend::size(self.screen.backend());
         let input = Input::Size(size.width, size.height);
@@ -483,7 +485,7 @@ impl<'a> EventLoop<'a> {
             .handle(&mut self.app, Message::Resized(size.width, size.height));
     }
 
-    /// Gives the terminal back, stops, and takes it again when the shell says so.
+    /// Gives the terminal back, stops, and takes it again when the shell continues the program.
     fn suspend(&mut self) -> io::Result<()> {
         if !job::has_shell() {
             self.refuse("there is no shell to go back to");
@@ -493,7 +495,7 @@ impl<'a> EventLoop<'a> {
             session::tell(&line);
         }
         session::leave(self.pacing.is_asked())?;
-        // From here on a "continue" is the answer to this stop.
+        // From here on, a "continue" is the answer to this stop.
         let before = self.signals.received();
         if let Some(&SignalEvent::End(signal)) = before.first() {
             self.outcome.get_or_insert(Outcome::Signal(signal));
@@ -511,7 +513,7 @@ impl<'a> EventLoop<'a> {
                     SignalEvent::Stop | SignalEvent::Size => {}
                 }
             }
-            // Another thread may be the one that was stopped first.
+            // Another thread may have been stopped first.
             let mut fds = [
                 PollFd::from_borrowed_fd(self.signals.fd(), PollFlags::IN),
                 PollFd::from_borrowed_fd(self.device.input(), PollFlags::empty()),
@@ -526,7 +528,7 @@ impl<'a> EventLoop<'a> {
     /// Takes the terminal back after another program had it.
     fn resume(&mut self) -> io::Result<()> {
         session::enter(&self.device, &self.settings, self.mouse)?;
-        // What was under way, half a key or an answer, the other program has read.
+        // The other program has read the rest of a sequence or an answer.
         self.reader = InputReader::default();
         self.pacing.forget();
         self.measure();
@@ -535,7 +537,7 @@ impl<'a> EventLoop<'a> {
     }
 }
 
-/// The size of the terminal.
+/// Returns the size of the terminal: the one that is set, or the one that the terminal reports.
 fn size(device: &Device, settings: &TerminalSettings) -> Size {
     let (width, height) = settings
         .size
@@ -543,7 +545,7 @@ fn size(device: &Device, settings: &TerminalSettings) -> Size {
     Size { width, height }
 }
 
-/// Whether an error says that the terminal is gone.
+/// Returns true if an error means that the terminal is gone.
 fn is_lost(error: &io::Error) -> bool {
     let lost = [
         Errno::IO,

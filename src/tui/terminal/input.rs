@@ -16,13 +16,14 @@
 //! ESC [ 0 n                         the status of the terminal, which was asked for
 //! ESC ] … BEL   ESC P … ESC \       an answer of the terminal, skipped
 //! ```
-//! Sequences may come in pieces, over a slow line in single bytes. Only a few things have a time limit: an ESC by
-//! itself, which may be a key or the beginning of a sequence; an answer of the terminal to an earlier program, which
-//! would otherwise be read as keys; and the rest of a pasted text. Unknown sequences are skipped as a whole.
+//! Sequences may arrive in pieces, over a slow line in single bytes. Only a few things have a time limit: an ESC by
+//! itself, which may be a key or the beginning of a sequence; an answer of the terminal to an earlier program, whose
+//! rest would otherwise be read as keys; and the rest of a pasted text. Unknown sequences are skipped as a whole.
 //!
-//! ESC before a character is the key Esc, then the character: nothing here is bound to Alt, and a quick Esc over a slow
-//! line arrives together with the next key. ESC ESC is Alt-Esc, one Esc. While the status of the terminal is asked for,
-//! an ESC by itself is a key only when the next byte says so: it may begin the answer, torn by the line.
+//! ESC before a character is the key Esc, then the character: nothing here is bound to Alt, and a quick Esc over a
+//! slow line arrives together with the next key. ESC ESC is Alt-Esc, which is one Esc. While an answer about the
+//! terminal's status is pending, an ESC by itself is a key only if the next byte shows it: it may be the first byte
+//! of the answer, cut off by the line.
 //!
 //! The sequences are those of xterm's ctlseqs and of ECMA-48.
 
@@ -31,50 +32,50 @@ use std::time::Duration;
 use crate::tui::app::message::{Mouse, MouseKind};
 use crate::tui::keys::key::{Arrow, Key};
 
-/// What came in.
+/// An event that the terminal reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Input {
     /// A key.
     Key(Key),
-    /// Text that was pasted, lines ending in `\n`.
+    /// Pasted text, with lines ending in `\n`.
     Paste(String),
-    /// The mouse.
+    /// A press, drag or release of the left button, or a turn of the wheel.
     Mouse(Mouse),
-    /// Not from the keyboard: the screen has this many columns and rows.
+    /// The size of the screen, in columns and rows; it does not come from the keyboard.
     Size(u16, u16),
 }
 
-/// How long half of something waits for the rest.
+/// How long the reader waits for the rest of a sequence.
 const MOMENT: Duration = Duration::from_millis(50);
-/// The same for pasted text, the end of which is lost where the terminal does not send it.
+/// How long the reader waits for the rest of a pasted text; some terminals never send its end.
 const PASTE_MOMENT: Duration = Duration::from_secs(1);
 
-/// No terminal sends a longer sequence.
+/// The greatest number of bytes kept of a sequence; no terminal sends a longer one.
 const LONGEST: usize = 64;
-/// Pasted text is cut at this length; the rest is dropped.
+/// The length at which pasted text is cut off, in bytes; the rest is dropped.
 const LONGEST_PASTE: usize = 1 << 20;
 
-/// Begins a sequence, and is the byte of a key.
+/// The first byte of a sequence, and the byte of the key Esc.
 const ESC: u8 = 0x1b;
-/// Ends an answer.
+/// The byte that ends an answer.
 const BEL: u8 = 0x07;
-/// Ends pasted text.
+/// The sequence that ends pasted text.
 const PASTE_END: &[u8] = b"\x1b[201~";
 
-/// Where the reader is.
+/// The state of the reader: its place in a sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum InputState {
     /// Between keys.
     Ground,
     /// After ESC.
     Escape,
-    /// After an ESC that nothing has followed for a moment, while the status is asked for.
+    /// After an ESC that nothing has followed in time, while an answer about the status is pending.
     LateEscape,
     /// After ESC O.
     Single,
     /// After ESC [.
     Sequence,
-    /// In a function key of the Linux console: ESC [ [, then one more.
+    /// In a function key of the Linux console: ESC [ [, then one more byte.
     Function,
     /// In a mouse report of the old form: three bytes follow ESC [ M.
     OldMouse,
@@ -82,20 +83,20 @@ enum InputState {
     Answer,
     /// In pasted text.
     Paste,
-    /// In a character, of which this many bytes are still to come.
+    /// In a character of several bytes, with the number of bytes still to come.
     Character(u8),
 }
 
-/// Reads bytes as they come.
+/// Reads keys, pastes and mouse events from bytes, as they arrive.
 #[derive(Debug)]
 pub struct InputReader {
-    /// Where in a sequence it is.
+    /// The place in a sequence.
     state: InputState,
     /// The bytes of the sequence so far.
     held: Vec<u8>,
     /// Whether the sequence begins with a second ESC.
     doubled: bool,
-    /// What was read and is not taken yet.
+    /// The events that are read and not yet taken.
     found: Vec<Input>,
     /// Whether the terminal has reported its status.
     has_status: bool,
@@ -114,7 +115,7 @@ impl Default for InputReader {
 }
 
 impl InputReader {
-    /// What these bytes complete.
+    /// Reads bytes and returns the events that they complete.
     pub fn read(&mut self, bytes: &[u8]) -> Vec<Input> {
         for &byte in bytes {
             self.step(byte);
@@ -122,13 +123,13 @@ impl InputReader {
         std::mem::take(&mut self.found)
     }
 
-    /// Returns whether the terminal has reported its status since the last call.
+    /// Returns true if the terminal has reported its status since the last call.
     pub fn take_status(&mut self) -> bool {
         std::mem::take(&mut self.has_status)
     }
 
-    /// How long to wait for more before [`InputReader::on_timeout`]; none: for ever. `is_asked`: whether the terminal is asked
-    /// for its status.
+    /// Returns how long to wait for more bytes before a call of [`InputReader::on_timeout`]; None means for ever.
+    /// `is_asked`: whether an answer about the status is pending.
     pub fn patience(&self, is_asked: bool) -> Option<Duration> {
         match self.state {
             InputState::LateEscape if is_asked => None,
@@ -138,7 +139,7 @@ impl InputReader {
         }
     }
 
-    /// Nothing more came in time.
+    /// Ends an incomplete sequence because no more bytes came in time, and returns the events that this yields.
     pub fn on_timeout(&mut self, is_asked: bool) -> Vec<Input> {
         match self.state {
             InputState::Escape if is_asked => {
@@ -153,12 +154,12 @@ impl InputReader {
         std::mem::take(&mut self.found)
     }
 
-    /// Notes a key.
+    /// Adds a key to the events.
     fn key(&mut self, key: Key) {
         self.found.push(Input::Key(key));
     }
 
-    /// Forgets the sequence.
+    /// Drops the sequence so far.
     fn ground(&mut self) {
         self.state = InputState::Ground;
         self.held.clear();
@@ -203,7 +204,7 @@ impl InputReader {
         }
     }
 
-    /// A string that the terminal sends as an answer: skipped up to its end, BEL or `ESC \`.
+    /// Skips a string that the terminal sends as an answer, up to its end, BEL or `ESC \`.
     fn in_answer(&mut self, byte: u8) {
         match (byte, self.held.pop()) {
             (BEL, _) | (b'\\', Some(ESC)) => self.ground(),
@@ -220,7 +221,7 @@ impl InputReader {
         }
     }
 
-    /// `ESC [ M button x y`, each 32 more than its value.
+    /// Reads a mouse report in the old form: `ESC [ M button x y`, each byte 32 more than its value.
     fn in_old_mouse(&mut self, byte: u8) {
         self.held.push(byte);
         if let [button, x, y] = self.held[..] {
@@ -230,7 +231,7 @@ impl InputReader {
         }
     }
 
-    /// A character of several bytes, of which `left` are still to come.
+    /// Reads a character of several bytes, of which `left` are still to come.
     fn in_character(&mut self, byte: u8, left: u8) {
         if byte & 0xc0 != 0x80 {
             // The character is incomplete, and this byte begins something new.
@@ -250,7 +251,7 @@ impl InputReader {
         }
     }
 
-    /// `ESC [` and then parameters, up to a final byte.
+    /// Reads the parameters after `ESC [`, up to a final byte.
     fn in_sequence(&mut self, byte: u8) {
         match byte {
             b'[' if self.held.is_empty() => self.state = InputState::Function,
@@ -270,7 +271,7 @@ impl InputReader {
         }
     }
 
-    /// A byte between sequences.
+    /// Reads a byte between sequences.
     fn plain(&mut self, byte: u8) {
         match byte {
             ESC => {
@@ -295,7 +296,7 @@ impl InputReader {
         }
     }
 
-    /// The byte after ESC. One that begins no sequence is a key of its own, after Esc.
+    /// Reads the byte after ESC. A byte that begins no sequence is a key of its own, after Esc.
     fn after_escape(&mut self, byte: u8) {
         self.ground();
         match byte {
@@ -314,7 +315,7 @@ impl InputReader {
         }
     }
 
-    /// `ESC [ parameters final`.
+    /// Handles the sequence `ESC [ parameters final`.
     fn sequence(&mut self, parameters: &[u8], last: u8) {
         // Bytes that are not text are not parameters either.
         let Ok(text) = std::str::from_utf8(parameters) else {
@@ -329,7 +330,7 @@ impl InputReader {
         }
         let [first, modifiers, _] = numbers(text);
         let shifted = modifiers.saturating_sub(1) & 1 == 1;
-        // The second number of "1;2:3" tells a key that was let go.
+        // A second number such as "2:3" reports that a key was released.
         let released = text
             .split(';')
             .nth(1)
@@ -369,7 +370,7 @@ impl InputReader {
         }
     }
 
-    /// A key that ends in a letter.
+    /// Adds the key of a sequence that ends in a letter.
     fn letter(&mut self, letter: u8, shifted: bool) {
         let arrow = match letter {
             b'A' => Arrow::Up,
@@ -390,8 +391,8 @@ impl InputReader {
         });
     }
 
-    /// The left button and the wheel. Places count from 1 there and from 0 here; a 0 there, which is wrong, is 0 here
-    /// too.
+    /// Adds an event of the left button or the wheel. In the sequence columns and rows count from 1, in the event
+    /// from 0; a 0 in the sequence, which is wrong, becomes 0.
     fn mouse(&mut self, button: u16, x: u16, y: u16, released: bool) {
         let kind = match button & !0b1_1100 {
             64 => MouseKind::ScrollUp,
@@ -408,19 +409,19 @@ impl InputReader {
         }));
     }
 
-    /// A byte of pasted text.
+    /// Reads a byte of pasted text.
     fn in_paste(&mut self, byte: u8) {
         self.held.push(byte);
         if self.held.ends_with(PASTE_END) {
             self.paste(self.held.len() - PASTE_END.len());
             self.ground();
         } else if self.held.len() > LONGEST_PASTE + PASTE_END.len() {
-            // Keeps what may be the beginning of the end.
+            // Keeps the last bytes, which may be the beginning of the end mark.
             self.held.remove(LONGEST_PASTE);
         }
     }
 
-    /// Notes the first bytes of the pasted text, with line ends as `\n`.
+    /// Adds the first `length` bytes of the pasted text as an event, with line ends as `\n`.
     fn paste(&mut self, length: usize) {
         let text = String::from_utf8_lossy(&self.held[..length.min(LONGEST_PASTE)]);
         let text = text.replace("\r\n", "\n").replace('\r', "\n");
@@ -428,7 +429,8 @@ impl InputReader {
     }
 }
 
-/// The function key of a number before `~`. There are gaps, as between the groups of keys of the VT220.
+/// Returns the function key of a number before `~`. The numbers have gaps, like those between the groups of keys of
+/// the VT220.
 fn function_key(number: u16) -> Option<Key> {
     let groups = [(11..=15, 10), (17..=21, 11), (23..=24, 12)];
     let (_, before) = groups
@@ -437,8 +439,8 @@ fn function_key(number: u16) -> Option<Key> {
     u8::try_from(number - before).ok().map(Key::Function)
 }
 
-/// Up to three numbers between semicolons; 0 for one that is missing or malformed. What follows a colon is a part of a
-/// number, and is skipped.
+/// Reads up to three numbers between semicolons; a missing or malformed one is 0. In each, a colon and what follows
+/// it are skipped.
 fn numbers(text: &str) -> [u16; 3] {
     let mut numbers = [0; 3];
     for (number, part) in numbers.iter_mut().zip(text.split(';')) {

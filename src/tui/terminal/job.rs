@@ -1,7 +1,7 @@
-//! Job control: being stopped and continued by a shell.
+//! Job control: the program is stopped and continued by a shell.
 //!
-//! A program that stops itself without a shell that could continue it would never come back, so the parents of the
-//! process are looked at first.
+//! If the program stopped itself and no shell could continue it, it would never come back. So it looks for a shell
+//! among the parents of the process first.
 
 #[cfg(target_os = "linux")]
 use std::fs;
@@ -10,12 +10,12 @@ use rustix::process::{Signal, kill_current_process_group};
 #[cfg(not(target_os = "linux"))]
 use rustix::process::{getpgid, getsid};
 
-/// Whether anybody is there who would continue the program: a process above it, on the same terminal, that is not of
-/// its own process group. The first process of a connection has none; stopped, it would never come back.
+/// Returns true if somebody could continue the program: a process above it, on the same terminal, in another process
+/// group. The first process of a connection has none; stopped, it would never come back.
 ///
-/// All is read from `/proc`, where a process, group or session that lies outside the program's PID namespace (a
-/// container's) is a plain 0: the system calls answer 0 there too, which is not a process number. A controlling terminal
-/// belongs to one session only, so it tells what the session's number could not.
+/// Everything is read from `/proc`, where a process, group or session outside the program's PID namespace (a
+/// container's) appears as 0; the system calls answer 0 there too, which is not a process number. A controlling
+/// terminal belongs to one session only, so it replaces the session's number.
 #[cfg(target_os = "linux")]
 pub(in crate::tui) fn has_shell() -> bool {
     let Some(own) = Process::read("self") else {
@@ -36,7 +36,8 @@ pub(in crate::tui) fn has_shell() -> bool {
     false
 }
 
-/// Whether a shell is there that would continue the program: the first process of its session, in another process group.
+/// Returns true if there is a shell that could continue the program: the program is in another process group than the
+/// first process of its session.
 #[cfg(not(target_os = "linux"))]
 pub(in crate::tui) fn has_shell() -> bool {
     match (getsid(None), getpgid(None)) {
@@ -45,33 +46,33 @@ pub(in crate::tui) fn has_shell() -> bool {
     }
 }
 
-/// Stops the whole process group, as the terminal itself would: a program that waits for this one (an editor's or a
-/// version control's) must stop too, or the shell would not notice.
+/// Stops the whole process group, as the terminal itself would: a program that waits for this one (an editor or a
+/// version control system) must stop too, or the shell would not notice.
 pub(in crate::tui) fn stop() -> rustix::io::Result<()> {
     kill_current_process_group(Signal::STOP)
 }
 
-/// Of a process: its parent's number, its group's, and its controlling terminal's device number.
+/// Three numbers of a process.
 #[cfg(target_os = "linux")]
 #[derive(Debug, PartialEq)]
 struct Process {
-    /// The parent of the process.
+    /// The number of the parent process.
     parent: u32,
-    /// The process group.
+    /// The number of the process group.
     group: u32,
-    /// The device number of its controlling terminal.
+    /// The device number of the controlling terminal; 0 if there is none.
     terminal: i32,
 }
 
 #[cfg(target_os = "linux")]
 impl Process {
-    /// `/proc/PID/stat`.
+    /// Reads `/proc/PID/stat`; `number` may be `self`.
     fn read(number: &str) -> Option<Self> {
         let stat = fs::read_to_string(format!("/proc/{number}/stat")).ok()?;
         Self::parse(&stat)
     }
 
-    /// `number (name) state parent group session terminal …`; the name may hold anything.
+    /// Parses `number (name) state parent group session terminal …`; the name may contain any character.
     fn parse(stat: &str) -> Option<Self> {
         let (_, rest) = stat.rsplit_once(')')?;
         let mut fields = rest.split_whitespace().skip(1);
@@ -88,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_name_may_hold_anything_and_a_group_outside_the_namespace_is_0() {
+    fn a_name_may_contain_any_character_and_a_group_may_be_0() {
         let stat = "17 (a) S 1) (b) R 4 0 0 34816 17 4194304";
         assert_eq!(
             Process::parse(stat),
@@ -103,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn its_own_parent_is_the_one_that_the_system_names() {
+    fn the_parent_is_the_one_that_the_system_reports() {
         let own = Process::read("self").expect("/proc/self/stat");
         assert_eq!(own.parent, std::os::unix::process::parent_id());
     }

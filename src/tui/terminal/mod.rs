@@ -1,4 +1,4 @@
-//! The real terminal: into raw mode and out of it, bytes in, bytes out.
+//! The real terminal: enters and leaves raw mode, reads and writes bytes.
 //!
 //! ```text
 //! settings   environment and flags -> what this terminal is sent
@@ -13,10 +13,10 @@
 //! outcome    how it ended
 //! event_loop waits for all of them, and for messages from workers (`runtime::mailbox`)
 //! ```
-//! The loop sleeps until there is something to do, without a tick; it writes only where the screen changes, in one
-//! write a frame; and it ends when the terminal is gone, whether or not a signal says so. The terminal is asked for
-//! nothing but its status, after pictures of a source: other answers could be taken for keys, over a slow line or by the
-//! shell.
+//! The loop sleeps until there is something to do, without a tick. It writes only what has changed on the screen, in
+//! one write per frame. It ends when the terminal is gone, whether or not a signal reports this. The terminal is
+//! queried only for its status, after pictures of a source: answers to other queries could be taken for keys, over a
+//! slow line or by the shell.
 
 pub mod settings;
 
@@ -52,12 +52,12 @@ use crate::tui::app::state::App;
 use crate::tui::runtime::World;
 use crate::tui::runtime::mailbox::{Mailbox, Sender};
 
-/// Runs the program until it ends. The terminal is left as it was, after an error, a signal and a panic too, and
-/// unsaved work is in the journal wherever the program may not come back. `first` is sent to it at its start, and later what
-/// comes through the mailbox; `watch` is called with what is recorded.
+/// Runs the program until it ends. The terminal is restored, also after an error, a signal or a panic, and unsaved
+/// work is in the journal wherever the program may not come back. `first` is handled at the start, then the messages
+/// from the mailbox. `watch` is called with every event that a record of the session contains.
 ///
 /// # Errors
-/// Where there is no terminal, or it cannot be read or written.
+/// Returns an error if there is no terminal, or if it cannot be read or written.
 pub fn run(
     app: App,
     first: Option<Message>,

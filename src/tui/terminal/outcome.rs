@@ -6,19 +6,19 @@ use signal_hook::low_level::signal_name;
 /// How the program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// The user left it.
+    /// The user quit.
     Quit,
-    /// The user left it after the recording that the command line asked for had failed.
+    /// The user quit after the recording that the command line asked for had failed.
     RecordingFailed,
-    /// A signal of this number asked for it.
+    /// A signal with this number ended it.
     Signal(i32),
     /// The terminal is gone.
     Hangup,
 }
 
 impl Outcome {
-    /// The exit status: 0, 1 after a failure, or 128 and the signal's number as in a shell; a lost terminal counts as its
-    /// signal.
+    /// Returns the exit status: 0, 1 after a failure, or 128 and the signal's number as in a shell. A lost terminal
+    /// counts as SIGHUP.
     pub fn status(self) -> u8 {
         match self {
             Self::Quit => 0,
@@ -28,8 +28,8 @@ impl Outcome {
         }
     }
 
-    /// The signal that ended it, as scripts name it: `TERM`; a lost terminal counts as its signal. None where it was no
-    /// signal.
+    /// Returns the name of the signal that ended it, as in scripts: `TERM`. A lost terminal counts as SIGHUP. None if
+    /// no signal ended it.
     pub fn signal_name(self) -> Option<&'static str> {
         match self {
             Self::Quit | Self::RecordingFailed => None,

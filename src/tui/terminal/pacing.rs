@@ -1,8 +1,9 @@
 //! Keeps a slow line free for keys: at most one picture of a source is under way.
 //!
 //! On a line that is slower than the source, pictures would queue up in the buffers of the system and of SSH, and the
-//! effect of a key would appear after all of them. How full these buffers are cannot be seen here, so each picture that
-//! only frames have caused ends in a question to the terminal, and the next one waits for the answer:
+//! effect of a key would appear after all of them. The program cannot see how full these buffers are. So each picture
+//! that was drawn only because of new frames ends with a question to the terminal, and the next one waits for the
+//! answer:
 //! ```text
 //! picture, ESC [ 5 n  ->  terminal     device status report (DSR) of ECMA-48
 //!          ESC [ 0 n  <-               the terminal has come this far; the newest frame is drawn next
@@ -12,44 +13,44 @@
 
 use std::time::{Duration, Instant};
 
-/// Asks for the status.
+/// The question about the terminal's status.
 const QUESTION: &[u8] = b"\x1b[5n";
 
-/// After this many questions without any answer, the terminal is taken to give none.
+/// The number of questions without any answer after which the terminal is taken not to answer.
 const TRIES: u32 = 3;
 
-/// The next picture waits this long at most for a first answer, and after each question without one twice as long: a slow
-/// line may take a few seconds for the first screens, and should not be taken for a terminal that gives no answers.
+/// How long the next picture waits for a first answer; it doubles with each question that is not answered. A slow
+/// line may take a few seconds for the first screens, and should not be taken for a terminal that does not answer.
 const FIRST_ANSWER: Duration = Duration::from_secs(1);
 
-/// And this long for a later one: a line may stand still for a while. Only where an answer was lost on the way, as on a
-/// noisy serial line, there is none to wait for.
+/// How long the next picture waits for a later answer: a line may stand still for a while. Only if an answer was
+/// lost, as on a noisy serial line, is there nothing to wait for.
 const NEXT_ANSWER: Duration = Duration::from_secs(10);
 
-/// When the next picture of a source may be drawn.
+/// Decides when the next picture of a source may be drawn.
 #[derive(Debug)]
 pub(in crate::tui) struct PicturePacing {
     /// Whether the terminal answers.
     answers: Answers,
-    /// Questions whose answers are still to come.
+    /// The number of questions whose answers are still to come.
     open: u32,
-    /// Until when the next picture waits for these; None if it does not wait.
+    /// The end of the wait for these answers; None if the next picture does not wait.
     deadline: Option<Instant>,
 }
 
 /// Whether a terminal answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answers {
-    /// It was not asked, or not often.
+    /// It was not asked, or only a few times.
     Unknown,
     /// It has answered.
     Yes,
-    /// It has not, and is asked no more. One that answers late is asked again.
+    /// It has not answered, and is not asked again unless a late answer comes.
     No,
 }
 
 impl PicturePacing {
-    /// Nothing is under way. A terminal that cannot answer is never asked.
+    /// Creates a pacing with no picture under way. A terminal that cannot answer is never asked.
     pub(in crate::tui) fn new(can_answer: bool) -> Self {
         let answers = if can_answer {
             Answers::Unknown
@@ -63,7 +64,7 @@ impl PicturePacing {
         }
     }
 
-    /// The question to send after a picture; empty where nothing would answer.
+    /// Returns the question to send after a picture; it is empty if the terminal would not answer.
     pub(in crate::tui) fn ask(&mut self, now: Instant) -> &'static [u8] {
         let patience = match self.answers {
             Answers::Unknown => FIRST_ANSWER * 2_u32.pow(self.open),
@@ -75,7 +76,7 @@ impl PicturePacing {
         QUESTION
     }
 
-    /// Takes an answer.
+    /// Records that an answer has come.
     pub(in crate::tui) fn on_answer(&mut self) {
         self.answers = Answers::Yes;
         self.open = self.open.saturating_sub(1);
@@ -84,27 +85,27 @@ impl PicturePacing {
         }
     }
 
-    /// No answer will come here: a question was not sent, or another program has read the answers.
+    /// Stops waiting for answers: a question was not sent, or another program has read the answers.
     pub(in crate::tui) fn forget(&mut self) {
         (self.open, self.deadline) = (0, None);
     }
 
-    /// Whether the next picture waits for an answer.
+    /// Returns true if the next picture waits for an answer.
     pub(in crate::tui) fn is_waiting(&self) -> bool {
         self.deadline.is_some()
     }
 
-    /// Whether an answer may still come.
+    /// Returns true if an answer may still come.
     pub(in crate::tui) fn is_asked(&self) -> bool {
         self.open > 0
     }
 
-    /// Until when the next picture waits; None if it does not.
+    /// Returns the time until which the next picture waits; None if it does not wait.
     pub(in crate::tui) fn deadline(&self) -> Option<Instant> {
         self.deadline
     }
 
-    /// Notes what time it is: nothing is waited for beyond the deadline.
+    /// Takes the current time and ends the wait if its deadline has passed.
     pub(in crate::tui) fn on_time(&mut self, now: Instant) {
         if self.deadline.is_none_or(|deadline| deadline > now) {
             return;
@@ -122,7 +123,7 @@ impl PicturePacing {
 mod tests {
     use super::*;
 
-    /// The question after a picture that is drawn as soon as it may be.
+    /// Returns the question after a picture that is drawn as soon as it may be.
     fn next(pacing: &mut PicturePacing, now: Instant) -> &'static [u8] {
         pacing.on_time(pacing.deadline().unwrap_or(now));
         assert!(!pacing.is_waiting());
@@ -138,7 +139,7 @@ mod tests {
             pacing.on_answer();
             assert!(!pacing.is_waiting());
         }
-        // A line may stand still for longer than the first answer is waited for, but not for ever.
+        // A line may stand still for longer than FIRST_ANSWER, but not for ever.
         pacing.ask(start);
         pacing.on_time(start + FIRST_ANSWER);
         assert!(pacing.is_waiting());

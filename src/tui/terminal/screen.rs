@@ -13,14 +13,14 @@
 //! a page of Explore           1498    2504
 //! nothing has changed            0      25
 //! ```
-//! The budgets are 2200 bytes for the first frame, 60 for a cursor move and none for no change (a line of 9600 baud takes
-//! 960 bytes a second), so the stock backend would not do. The difference comes from five things: moves are the shortest
-//! of several, short unchanged stretches are written again instead of jumped over, blanks are erased at once, styles are
-//! changed by their difference, and of several orders the shortest is sent.
+//! The budgets are 2200 bytes for the first frame, 60 for a cursor move and 0 for no change (a line of 9600 baud
+//! takes 960 bytes a second); the stock backend exceeds them. The savings come from five things: the shortest of
+//! several cursor moves is sent, short unchanged stretches are written again instead of jumped over, blanks are
+//! erased at once, styles are changed by their difference, and of several orders of writing the shortest is sent.
 //!
-//! What is taken for granted is what a VT100 does: a character in the last column leaves the cursor there, and a line
+//! The terminal is assumed to behave like a VT100: a character in the last column leaves the cursor there, and a line
 //! feed keeps the column (in raw mode). A character that some terminals may show wider than others is followed by a
-//! move to an address.
+//! move to an absolute position.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -34,49 +34,49 @@ use crate::tui::terminal::settings::Abilities;
 use crate::tui::terminal::style::{CellStyle, PLAIN};
 use crate::tui::widget::number::narrow;
 
-/// A frame of fewer bytes is one packet of a network or less: it arrives in one piece, and goes without the marks of a
-/// synchronized frame.
+/// The size in bytes from which a frame is marked as synchronized. A smaller one fits into one network packet, so it
+/// arrives in one piece without marks.
 const SMALL_FRAME: usize = 256;
 
-/// The terminal shows nothing until the end of the frame (mode 2026).
+/// Makes the terminal hold back what it shows until the end of the frame (mode 2026).
 const BEGIN_SYNCHRONIZED: &[u8] = b"\x1b[?2026h";
-/// The terminal shows the frame.
+/// Makes the terminal show the frame.
 const END_SYNCHRONIZED: &[u8] = b"\x1b[?2026l";
 /// Hides the cursor (mode 25).
 const HIDE_CURSOR: &[u8] = b"\x1b[?25l";
-/// Shows it.
+/// Shows the cursor.
 const SHOW_CURSOR: &[u8] = b"\x1b[?25h";
 /// Erases from the cursor to the end of the line.
 const ERASE_TO_END: &[u8] = b"\x1b[K";
 
-/// Remembers the cursor and the style (DECSC).
+/// Saves the cursor position and the style (DECSC).
 const SAVE_CURSOR: &[u8] = b"\x1b7";
-/// Brings them back (DECRC).
+/// Restores both (DECRC).
 const RESTORE_CURSOR: &[u8] = b"\x1b8";
 /// Moves the cursor up by a row (RI).
 const REVERSE_INDEX: &[u8] = b"\x1bM";
 
-/// Several ways of writing are tried where there are at most this many stretches to write: a frame of more is long
-/// whatever the way, and few of its bytes are moves of the cursor.
+/// The greatest number of stretches for which several ways of writing are tried. A frame with more is long in any
+/// case, and few of its bytes are cursor moves.
 const MOST_TRIED: usize = 40;
 
-/// A terminal's screen behind ratatui, which finds out what has changed.
+/// A terminal's screen, as a backend of ratatui; it finds out what has changed.
 #[derive(Debug)]
 pub struct Screen {
     /// Columns and rows.
     size: Size,
-    /// What the screen shows once no cell is stale.
+    /// The cells that the screen shows once none is stale.
     cells: Vec<Cell>,
-    /// The cells that the terminal does not show yet.
+    /// Whether each cell differs from what the terminal shows.
     stale: Vec<bool>,
-    /// The terminal's cursor; None if it is not certain. A column beyond the last one means the last one, after a character
-    /// was written there.
+    /// The position of the terminal's cursor; None if it is not certain. A column beyond the last one means the last
+    /// one, after a character was written there.
     at: Option<Position>,
     /// The style that is switched on.
     style: CellStyle,
     /// Whether the terminal shows its cursor.
     visible: bool,
-    /// Where the cursor is to be shown.
+    /// The position at which to show the cursor; None to hide it.
     wanted: Option<Position>,
     /// The position that ratatui set last and reads back.
     asked: Position,
@@ -87,7 +87,7 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// An empty screen with a visible cursor.
+    /// Creates an empty screen with a visible cursor.
     pub fn new(size: Size, abilities: Abilities) -> Self {
         let mut screen = Self {
             size,
@@ -122,7 +122,7 @@ impl Screen {
         self.out.clear();
     }
 
-    /// The bytes of the frame, for one write; empty if nothing has changed.
+    /// Returns the bytes of the frame, for one write; empty if nothing has changed.
     pub fn take_frame(&mut self) -> Vec<u8> {
         let shown = self.wanted.is_some();
         let mut out = std::mem::take(&mut self.out);
@@ -132,7 +132,7 @@ impl Screen {
         self.stale.fill(false);
         let large = out.len() > SMALL_FRAME;
         if large && shown && self.visible && !self.abilities.synchronized {
-            // It could be seen moving about.
+            // The moving cursor would be visible.
             out.splice(0..0, HIDE_CURSOR.iter().copied());
             self.visible = false;
         }
@@ -147,7 +147,7 @@ impl Screen {
         out
     }
 
-    /// The shortest of the ways to write what is stale. Where little is, all of them are tried.
+    /// Returns the shortest way to write the stale cells. If there are few stretches, several ways are tried.
     fn shortest(&self) -> Attempt<'_> {
         let runs = self.runs();
         let first = Attempt::new(self).written(&runs, false);
@@ -174,17 +174,18 @@ impl Screen {
         })
     }
 
-    /// The index of a cell.
+    /// Returns the index of a cell.
     fn index(&self, x: u16, y: u16) -> usize {
         usize::from(y) * usize::from(self.size.width) + usize::from(x)
     }
 
-    /// The indices of the cells of a row.
+    /// Returns the indices of the cells of a row.
     fn row(&self, y: u16) -> Range<usize> {
         self.index(0, y)..self.index(self.size.width, y)
     }
 
-    /// Makes a row with a wide character stale: terminals differ in what is left of one that is half overwritten.
+    /// Marks a row as stale if it has a wide character: terminals differ in what they show of one that is half
+    /// overwritten.
     fn renew_wide_row(&mut self, y: u16) {
         let row = self.row(y);
         if self.cells[row.clone()]
@@ -195,7 +196,7 @@ impl Screen {
         }
     }
 
-    /// The stale stretches of all rows, in reading order.
+    /// Returns the stretches of stale cells in all rows, in reading order.
     fn runs(&self) -> Vec<Run> {
         let mut runs = Vec::new();
         for y in 0..self.size.height {
@@ -214,25 +215,25 @@ impl Screen {
     }
 }
 
-/// One way to write what is stale.
+/// A try to write the stale cells in a certain order.
 #[derive(Debug)]
 struct Attempt<'a> {
-    /// What the screen is to show.
+    /// The screen whose cells are written.
     screen: &'a Screen,
-    /// The cells that the terminal does not show yet.
+    /// Whether each cell still differs from what the terminal shows.
     stale: Vec<bool>,
-    /// The terminal's cursor; see [`Screen`].
+    /// The position of the terminal's cursor; see [`Screen`].
     at: Option<Position>,
     /// The style that is switched on.
     style: CellStyle,
-    /// The style with which the cursor was saved in the place where it is wanted.
+    /// The style that was saved together with the wanted cursor position; None if it was not saved.
     saved: Option<CellStyle>,
     /// The bytes so far.
     out: Vec<u8>,
 }
 
 impl<'a> Attempt<'a> {
-    /// Nothing written yet.
+    /// Creates an attempt that has written nothing yet.
     fn new(screen: &'a Screen) -> Self {
         Self {
             screen,
@@ -244,8 +245,8 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// Writes stretches in this order and leaves the cursor where it is wanted. If `saves`, the terminal remembers that place
-    /// on the way and restores it at the end.
+    /// Writes stretches in this order and leaves the cursor at the wanted position. If `saves`, the terminal saves
+    /// the cursor when it passes that position, and restores it at the end.
     fn written(mut self, runs: &[Run], saves: bool) -> Self {
         self.save(saves);
         for run in runs {
@@ -263,7 +264,7 @@ impl<'a> Attempt<'a> {
         self
     }
 
-    /// Lets the terminal remember the cursor with its style, where it is wanted.
+    /// Makes the terminal save the cursor and its style, if `saves` and the cursor is at the wanted position.
     fn save(&mut self, saves: bool) {
         if saves && self.saved.is_none() && self.at.is_some() && self.at == self.screen.wanted {
             self.out.extend(SAVE_CURSOR);
@@ -306,7 +307,7 @@ impl<'a> Attempt<'a> {
         }
     }
 
-    /// How many cells from the first of some on are blank, up to the last of them that is stale.
+    /// Returns the number of blank cells at the start of `cells`, up to the last stale one among them.
     fn blanks(&self, cells: Range<usize>) -> usize {
         let blank = |index: &usize| is_blank(&self.screen.cells[*index]);
         let stretch: Vec<usize> = cells.take_while(blank).collect();
@@ -314,7 +315,7 @@ impl<'a> Attempt<'a> {
         last.map_or(0, |last| last + 1)
     }
 
-    /// Erases with a sequence; erased cells are blank and have no style.
+    /// Erases with the sequence `how`; erased cells are blank and have no style.
     fn erase(&mut self, how: &[u8]) {
         if !self.style.leaves_blanks_plain() {
             self.change_style(PLAIN);
@@ -322,7 +323,7 @@ impl<'a> Attempt<'a> {
         self.out.extend(how);
     }
 
-    /// Switches to a style, if it is another one.
+    /// Switches to another style.
     fn change_style(&mut self, style: CellStyle) {
         if self.screen.abilities.styles {
             style.change(self.style, &mut self.out);
@@ -346,7 +347,7 @@ impl<'a> Attempt<'a> {
             .map(|at| Position { x: at.x + 1, ..at });
     }
 
-    /// Moves the cursor by the fewest bytes.
+    /// Moves the cursor with as few bytes as possible.
     fn go(&mut self, x: u16, y: u16) {
         let target = Position { x, y };
         if self.at == Some(target) {
@@ -362,7 +363,7 @@ impl<'a> Attempt<'a> {
             };
             let returned = [vec![b'\r'], vertical.clone(), self.forward(0, x, y)].concat();
             best = shorter(best, returned);
-            // After the last column only a return or an address is certain.
+            // After the last column, only a carriage return or an absolute position is reliable.
             if at.x < self.screen.size.width {
                 let horizontal = match at.x.checked_sub(x) {
                     Some(left) => shorter(b"\x08".repeat(usize::from(left)), csi(left, 'D')),
@@ -375,7 +376,8 @@ impl<'a> Attempt<'a> {
         self.at = Some(target);
     }
 
-    /// From column `from` to column `to` of a row: by a move, or by writing what stands between again in the present style.
+    /// Moves right from column `from` to column `to` of a row: by a move, or by writing the cells between again if
+    /// they have the current style.
     fn forward(&self, from: u16, to: u16, y: u16) -> Vec<u8> {
         let moved = csi(to - from, 'C');
         let between = self.screen.index(from, y)..self.screen.index(to, y);
@@ -451,7 +453,7 @@ impl Backend for Screen {
         self.clear_region(ClearType::All)
     }
 
-    /// Clears everything in every case: the program has the whole screen.
+    /// Clears the whole screen whatever the type, because the program uses all of it.
     fn clear_region(&mut self, _: ClearType) -> Result<(), Self::Error> {
         self.resize(self.size);
         self.out.clear();
@@ -495,13 +497,13 @@ struct Run {
 }
 
 impl Run {
-    /// Whether a few bytes lead to it from a position.
+    /// Returns true if a position is at most one row and four columns away from the start.
     fn is_near(&self, at: Position) -> bool {
         self.y.abs_diff(at.y) <= 1 && self.columns.start.abs_diff(at.x) <= 4
     }
 }
 
-/// The shorter of two; the first if they are equal.
+/// Returns the shorter of two sequences; the first if they are equally long.
 fn shorter(first: Vec<u8>, second: Vec<u8>) -> Vec<u8> {
     if second.len() < first.len() {
         second
@@ -510,7 +512,7 @@ fn shorter(first: Vec<u8>, second: Vec<u8>) -> Vec<u8> {
     }
 }
 
-/// `ESC [ count final`, without a count of 1; empty for 0.
+/// Returns `ESC [ count final`, without a count of 1; empty for 0.
 fn csi(count: u16, last: char) -> Vec<u8> {
     match count {
         0 => Vec::new(),
@@ -519,7 +521,7 @@ fn csi(count: u16, last: char) -> Vec<u8> {
     }
 }
 
-/// `ESC [ row ; column H`, which every terminal knows.
+/// Returns the move to an absolute position, `ESC [ row ; column H`, which every terminal knows.
 fn absolute(target: Position) -> Vec<u8> {
     let (row, column) = (u32::from(target.y) + 1, u32::from(target.x) + 1);
     match (row, column) {
@@ -531,12 +533,12 @@ fn absolute(target: Position) -> Vec<u8> {
     .into_bytes()
 }
 
-/// Whether a cell looks like an erased one.
+/// Returns true if a cell looks like an erased one.
 fn is_blank(cell: &Cell) -> bool {
     cell.symbol() == " " && CellStyle::of(cell).leaves_blanks_plain()
 }
 
-/// The number of columns that a cell takes.
+/// Returns the number of columns that a cell takes.
 fn columns(cell: &Cell) -> usize {
     match cell.symbol() {
         narrow if is_narrow(narrow) => 1,
@@ -544,7 +546,7 @@ fn columns(cell: &Cell) -> usize {
     }
 }
 
-/// Whether every terminal gives a symbol one column.
+/// Returns true if every terminal gives the symbol one column.
 fn is_narrow(symbol: &str) -> bool {
     let mut characters = symbol.chars();
     let first = characters.next();

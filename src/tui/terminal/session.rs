@@ -1,11 +1,11 @@
-//! Entering and leaving the terminal's modes. Leaving twice does no harm.
+//! Entering and leaving the terminal's modes. Leaving twice is harmless.
 //!
 //! ```text
 //! enter    raw mode, second screen, pasted text marked, mouse reported if it is wanted
 //! leave    the same in reverse, then what was to be printed to standard error
 //! ```
-//! The state in which the terminal was found is kept in one place for the whole process, so that a panic on any thread
-//! can restore it.
+//! The terminal's original state is kept in one place for the whole process, so that a panic on any thread can
+//! restore it.
 
 use std::io::{self, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -19,14 +19,14 @@ use rustix::termios::{OptionalActions, QueueSelector, Termios, tcflush, tcgetatt
 use crate::tui::terminal::device::Device;
 use crate::tui::terminal::settings::TerminalSettings;
 
-/// Buttons, and motion while one is down, places as numbers. Crossterm's own command has every motion reported, a flood on a
-/// slow line.
+/// Reports buttons, and motion while one is down, with positions as numbers. Crossterm's own command reports every
+/// motion, which is a flood on a slow line.
 const MOUSE_ON: &str = "\x1b[?1000h\x1b[?1002h\x1b[?1006h";
 /// Ends the reports of the mouse.
 const MOUSE_OFF: &str = "\x1b[?1006l\x1b[?1002l\x1b[?1000l";
-/// Shows what a frame that was cut off has held back.
+/// Shows the part of an interrupted frame that the terminal has held back.
 const SHOW_FRAME: &str = "\x1b[?2026l";
-/// Marks pasted text.
+/// Starts to mark pasted text.
 const PASTE_ON: &str = "\x1b[?2004h";
 /// Ends the marks around pasted text.
 const PASTE_OFF: &str = "\x1b[?2004l";
@@ -35,36 +35,37 @@ const PLAIN: &str = "\x1b[m";
 /// Moves to the last row: terminals clamp 999 to it.
 const BELOW: &str = "\x1b[999;1H\r\n";
 
-/// The end of the answer of a terminal that is asked for its status: its beginning may have been read already.
+/// The end of the terminal's answer about its status; its beginning may have been read already.
 const STATUS_END: &[u8] = b"0n";
-/// How long the shell waits for the terminal until that answer has come. At most a picture is under way before it.
+/// How long the program waits for that answer before it returns to the shell. At most one picture comes before it.
 const LAST_ANSWER: Duration = Duration::from_millis(500);
 
-/// What has to be put back.
+/// The state to restore on leaving.
 #[derive(Debug)]
 struct SavedTerminal {
     /// The terminal.
     device: Device,
-    /// Its attributes before the program changed them.
+    /// The attributes of the terminal before the program changed them.
     attributes: Termios,
-    /// What it can do.
+    /// The settings of the terminal.
     settings: TerminalSettings,
-    /// Whether the mouse was reported.
+    /// Whether mouse events are reported.
     mouse: bool,
-    /// What is printed to standard error when the shell has the terminal again.
+    /// The text to print to standard error when the shell has the terminal again.
     later: String,
 }
 
-/// The terminal as it was found. Static, because the panic hook restores it, too.
+/// The original state of the terminal; None outside of a session. It is static because the panic hook restores it,
+/// too.
 static SAVED: Mutex<Option<SavedTerminal>> = Mutex::new(None);
 
-/// The terminal as it was found; a panic while it was locked does not matter.
+/// Locks the original state of the terminal; a panic during an earlier lock does not matter.
 fn found() -> MutexGuard<'static, Option<SavedTerminal>> {
     SAVED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Into raw mode, onto the second screen, the mouse as asked for. Inside already, all of it is sent again: somebody
-/// may have changed it while the program was stopped.
+/// Enters raw mode and the second screen, and turns mouse events on if `mouse`. If the program is inside already,
+/// everything is sent again: another program may have changed it while this one was stopped.
 pub(in crate::tui) fn enter(
     device: &Device,
     settings: &TerminalSettings,
@@ -72,7 +73,7 @@ pub(in crate::tui) fn enter(
 ) -> io::Result<()> {
     let mut held = found();
     if held.is_none() {
-        // Before anything is changed, so that all is put right where the change fails half-way.
+        // Before anything is changed, so that everything is restored if the change fails half-way.
         *held = Some(SavedTerminal {
             device: device.try_clone()?,
             attributes: tcgetattr(device.input())?,
@@ -100,8 +101,8 @@ pub(in crate::tui) fn enter(
     device.write_last(hello.as_bytes()).map(drop)
 }
 
-/// Everything as it was found. Outside, nothing. `is_asked`: whether the terminal may have been asked for its status and not
-/// have answered yet; what comes for the program would be typed into the shell.
+/// Restores the terminal; outside of a session, does nothing. `is_asked`: whether an answer about the status may
+/// still come; the shell would take it for typed text.
 pub(in crate::tui) fn leave(is_asked: bool) -> io::Result<()> {
     let Some(found) = found().take() else {
         return Ok(());
@@ -120,8 +121,8 @@ pub(in crate::tui) fn leave(is_asked: bool) -> io::Result<()> {
         push(&mut goodbye, LeaveAlternateScreen);
     }
     if found.settings.abilities.styles {
-        // The first screen comes back with the style that it was left in: that of a frame, where the program was stopped in
-        // the middle of one and took the terminal anew.
+        // The first screen returns with the style that was on when it was left. If the program was stopped in the
+        // middle of a frame and continued, that is a style of the frame.
         goodbye += PLAIN;
     }
     if !has_modes {
@@ -135,20 +136,21 @@ pub(in crate::tui) fn leave(is_asked: bool) -> io::Result<()> {
         let _ = tcflush(found.device.input(), QueueSelector::IFlush);
     }
     let restored = set(&found.device, &found.attributes);
-    // Standard error may be a file: there it is read when the terminal is gone.
+    // Printed last: standard error may be a file, which is read after the terminal is gone.
     eprint(&found.later);
     restored?;
     said.map(drop)
 }
 
-/// Keeps a text for standard error until the terminal is the shell's again. Answers whether the terminal is ours.
+/// Keeps a text to print to standard error on leaving. Returns true if the program has the terminal; otherwise
+/// nothing is kept.
 pub(in crate::tui) fn tell_later(text: &str) -> bool {
     let mut found = found();
     let ours = found.as_mut().map(|found| found.later += text);
     ours.is_some()
 }
 
-/// Prints a text to standard error once the terminal is the shell's again; at once if it is.
+/// Prints a text to standard error: at once, or on leaving if the program has the terminal.
 pub(in crate::tui) fn tell(text: &str) {
     if !tell_later(text) {
         eprint(text);
@@ -160,7 +162,7 @@ fn eprint(text: &str) {
     let _ = io::stderr().write_all(text.as_bytes());
 }
 
-/// What has the mouse reported, or leaves it to the terminal.
+/// Returns the sequence that starts or ends mouse events, and records which.
 pub(in crate::tui) fn set_mouse(on: bool) -> &'static str {
     if let Some(found) = found().as_mut() {
         found.mouse = on;
@@ -168,18 +170,19 @@ pub(in crate::tui) fn set_mouse(on: bool) -> &'static str {
     if on { MOUSE_ON } else { MOUSE_OFF }
 }
 
-/// What puts a text into the clipboard of the user's terminal, which may refuse without saying so (OSC 52).
+/// Returns the sequence that puts a text into the clipboard of the user's terminal (OSC 52); a terminal may ignore
+/// it.
 pub(in crate::tui) fn copied(text: &str) -> String {
     format!("\x1b]52;c;{}\x07", base64(text.as_bytes()))
 }
 
-/// RFC 4648, section 4.
+/// Encodes bytes in base64 (RFC 4648, section 4).
 fn base64(bytes: &[u8]) -> String {
     /// The digits, by value.
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
     for group in bytes.chunks(3) {
-        // Three bytes below an empty one; those that are missing are 0.
+        // Three bytes after an empty one; missing ones are 0.
         let mut joined = [0; 4];
         joined[1..=group.len()].copy_from_slice(group);
         let joined = u32::from_be_bytes(joined);
@@ -192,7 +195,7 @@ fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// Without waiting for output: a line that takes none would never let go.
+/// Sets the attributes without waiting for output: a line that takes none would block for ever.
 fn set(device: &Device, attributes: &Termios) -> io::Result<()> {
     loop {
         match tcsetattr(device.input(), OptionalActions::Now, attributes) {
@@ -202,9 +205,9 @@ fn set(device: &Device, attributes: &Termios) -> io::Result<()> {
     }
 }
 
-/// Appends a command as the terminal reads it.
+/// Appends a command as the bytes for the terminal.
 fn push(text: &mut String, command: impl Command) {
-    // A string takes everything.
+    // Writing to a string cannot fail.
     let _ = command.write_ansi(text);
 }
 
@@ -213,7 +216,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn base64_of_the_standard() {
+    fn base64_matches_the_examples_of_the_standard() {
         for (text, expected) in [
             ("", ""),
             ("f", "Zg=="),

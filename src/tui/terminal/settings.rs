@@ -1,7 +1,7 @@
 //! Decides what to send to the terminal, from the environment and the command line, without asking the terminal.
 //!
-//! `TERM` tells the kind. A terminal that is not named, or is named `dumb`, is taken to move its cursor and no more;
-//! names of video terminals (`vt100`) stand for serial lines.
+//! The variable `TERM` names the kind of terminal. If it is not set, or is `dumb`, the terminal is taken to move its
+//! cursor and no more; names of video terminals (`vt100`) are taken for serial lines.
 
 use std::ffi::OsString;
 
@@ -10,23 +10,23 @@ use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
 /// Kinds of terminals, from the poorest on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TerminalKind {
-    /// Moves its cursor and clears its screen; no styles, no characters but ASCII.
+    /// Moves its cursor and clears its screen; has no styles and only ASCII characters.
     Dumb,
-    /// A video terminal, or a program that is one at the end of a serial line.
+    /// A video terminal, or a program that emulates one at the end of a serial line.
     Serial,
     /// A text console.
     Console,
-    /// A window, or a multiplexer.
+    /// A window of a desktop, or a multiplexer.
     Window,
 }
 
 impl TerminalKind {
-    /// The kind of terminal that the variable `TERM` names.
+    /// Returns the kind of terminal that the variable `TERM` names.
     fn of(term: &str) -> Self {
         let begins = |starts: &[&str]| starts.iter().any(|start| term.starts_with(start));
         match term {
             "" | "dumb" | "unknown" | "network" => Self::Dumb,
-            // Named like the old terminals, but a library for windows.
+            // Its name begins like the old terminals', but it is a library for windows.
             _ if begins(&["vte"]) => Self::Window,
             _ if begins(&["vt", "ansi", "pcansi", "wy"]) => Self::Serial,
             _ if begins(&["linux", "cons25", "bterm", "fbterm"]) => Self::Console,
@@ -34,30 +34,31 @@ impl TerminalKind {
         }
     }
 
-    /// Whether it has a second screen, and can mark pasted text.
+    /// Returns true if it has a second screen and can mark pasted text.
     pub fn has_modes(self) -> bool {
         self >= Self::Console
     }
 
-    /// Whether it may answer a request for its status (DSR), as terminals with the cursor addresses of ECMA-48 do.
+    /// Returns true if it may answer a request for its status (DSR), as terminals with the cursor addresses of
+    /// ECMA-48 do.
     pub fn tells_status(self) -> bool {
         self > Self::Dumb
     }
 
-    /// Whether it may put a text into its clipboard (OSC 52); others would show the text.
+    /// Returns true if it may accept a text for its clipboard (OSC 52); other terminals would show the text.
     pub fn has_clipboard(self) -> bool {
         self == Self::Window
     }
 }
 
-/// What the command line says; nothing where it is silent.
+/// The settings that the command line gives; None where it gives none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flags {
-    /// `--color`; none: automatic.
+    /// `--color`; None chooses automatically.
     pub color: Option<ColorDepth>,
     /// `--theme`.
     pub palette: Option<Palette>,
-    /// Whether characters are ASCII only; none: where the terminal may have no others.
+    /// Whether characters are ASCII only; None decides by the kind of terminal.
     pub ascii: Option<bool>,
     /// `--no-mouse`.
     pub no_mouse: bool,
@@ -68,43 +69,44 @@ pub struct Flags {
 /// What a terminal can do beyond moving its cursor and clearing its screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Abilities {
-    /// Bold, reversed, colours.
+    /// Whether it shows bold, reversed and coloured text.
     pub styles: bool,
-    /// It holds a frame that is marked until all of it is there.
+    /// Whether it can hold back a frame until all of it has arrived (mode 2026).
     pub synchronized: bool,
-    /// It erases a given number of characters in the middle of a row (ECH), as all since the VT220 do.
+    /// Whether it can erase a number of characters in the middle of a row (ECH), as all terminals since the VT220
+    /// can.
     pub erases: bool,
 }
 
-/// What the terminal is sent.
+/// The settings that decide what is sent to the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TerminalSettings {
-    /// What it is.
+    /// The kind of terminal.
     pub kind: TerminalKind,
-    /// Columns and rows that override what the terminal reports.
+    /// Columns and rows that override those that the terminal reports.
     pub size: Option<(u16, u16)>,
-    /// Columns and rows where the terminal does not know them, as serial lines do not.
+    /// Columns and rows to use if the terminal does not know them, as on serial lines.
     pub fallback: (u16, u16),
-    /// Whether buttons of the mouse are reported at the start.
+    /// Whether mouse events are reported at the start.
     pub mouse: bool,
-    /// How many colours.
+    /// The number of colours.
     pub color: ColorDepth,
-    /// Which ones.
+    /// The colours for a dark or a light background.
     pub palette: Palette,
-    /// ASCII characters only.
+    /// Whether to use ASCII characters only.
     pub ascii: bool,
-    /// What else it is sent.
+    /// The further abilities of the terminal.
     pub abilities: Abilities,
 }
 
 impl TerminalSettings {
-    /// Decides from the variables of the environment and from the command line, which wins.
+    /// Decides from the environment variables and from the command line, which takes precedence.
     pub fn from_environment(
         variable: impl Fn(&'static str) -> Option<OsString>,
         flags: &Flags,
     ) -> Self {
         let text = |name| {
-            // A variable that is not set is empty, and so is one that is not text.
+            // A variable that is not set, or is not text, counts as empty.
             let value = variable(name).and_then(|value| value.into_string().ok());
             value.unwrap_or_default()
         };
@@ -139,7 +141,7 @@ impl TerminalSettings {
         }
     }
 
-    /// The look that goes with it.
+    /// Returns the theme that fits the settings.
     pub fn theme(&self) -> Theme {
         Theme {
             ascii: self.ascii,
@@ -150,7 +152,7 @@ impl TerminalSettings {
     }
 }
 
-/// How many colours a window has.
+/// Returns the number of colours of a window.
 fn depth(term: &str, colorterm: &str) -> ColorDepth {
     let has = |ends: &[&str]| ends.iter().any(|end| term.contains(end));
     if matches!(colorterm, "truecolor" | "24bit") || has(&["direct", "truecolor"]) {
@@ -164,7 +166,8 @@ fn depth(term: &str, colorterm: &str) -> ColorDepth {
     }
 }
 
-/// Some terminals tell their colours as "15;0": the last number is the background's, 7 and 15 are white.
+/// Returns the palette for the colours that some terminals report as "15;0": the last number is the background's; 7
+/// and 15 are white.
 fn background(colors: &str) -> Palette {
     match colors.rsplit(';').next() {
         Some("7" | "15") => Palette::Light,
@@ -219,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_follow_the_terminal_unless_somebody_says_otherwise() {
+    fn colours_follow_the_terminal_unless_a_variable_or_flag_overrides_it() {
         assert_eq!(term("linux").color, ColorDepth::Sixteen);
         assert_eq!(term("xterm").color, ColorDepth::Sixteen);
         assert_eq!(term("putty-m1").color, ColorDepth::Sixteen);
@@ -233,7 +236,7 @@ mod tests {
         };
         assert_eq!(with("COLORTERM", "truecolor"), ColorDepth::True);
         assert_eq!(with("NO_COLOR", "1"), ColorDepth::Never);
-        // Empty is as good as unset: https://no-color.org
+        // Empty counts as unset: https://no-color.org
         assert_eq!(with("NO_COLOR", ""), ColorDepth::TwoFiftySix);
         let asked = Flags {
             color: Some(ColorDepth::Sixteen),

@@ -1,5 +1,5 @@
-//! Signals from the system: to end, to stop, to check the size again. Handlers write into a pipe that can be waited for
-//! together with everything else.
+//! Signals from the system: to end, to stop, to check the size again. The handlers write into a pipe, so that the
+//! loop can wait for signals together with everything else.
 
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd};
@@ -12,27 +12,27 @@ use signal_hook::consts::{
 use signal_hook::iterator::backend::SignalDelivery;
 use signal_hook::iterator::exfiltrator::SignalOnly;
 
-/// The signals that are heard. Those of them that mean nothing here would end the program with the terminal as it is, so
-/// they end it like TERM.
+/// The signals that the program handles. Some have no meaning here; unhandled, they would end the program without
+/// restoring the terminal, so they end it like TERM.
 const HEARD: [i32; 14] = [
     SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU,
     SIGABRT, SIGTSTP, SIGCONT, SIGWINCH,
 ];
 
-/// A signal, as far as it matters here.
+/// What a signal asks the program to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::tui) enum SignalEvent {
-    /// End, by this number.
+    /// End; with the number of the signal.
     End(i32),
     /// Stop.
     Stop,
     /// Go on.
     Continue,
-    /// The terminal has another size.
+    /// Check the size of the terminal, which has changed.
     Size,
 }
 
-/// Listens from its making on.
+/// Receives signals, from its creation on.
 #[derive(Debug)]
 pub(in crate::tui) struct SignalReceiver {
     /// Delivers signals through a socket, which the loop waits for.
@@ -40,7 +40,7 @@ pub(in crate::tui) struct SignalReceiver {
 }
 
 impl SignalReceiver {
-    /// Begins to listen.
+    /// Starts to receive signals.
     pub(in crate::tui) fn new() -> io::Result<Self> {
         let (read, write) = UnixStream::pair()?;
         read.set_nonblocking(true)?;
@@ -49,12 +49,12 @@ impl SignalReceiver {
         Ok(Self { delivery })
     }
 
-    /// Readable after a signal has arrived.
+    /// Returns a file descriptor that is readable after a signal has arrived.
     pub(in crate::tui) fn fd(&self) -> BorrowedFd<'_> {
         self.delivery.get_read().as_fd()
     }
 
-    /// The signals since the last call; those that end the program come first.
+    /// Returns the signals since the last call; those that end the program come first.
     pub(in crate::tui) fn received(&mut self) -> Vec<SignalEvent> {
         let mut heard: Vec<SignalEvent> = self
             .delivery

@@ -5,19 +5,19 @@
 //! bold red -> red              ESC [ 22 m
 //! red -> plain                 ESC [ m
 //! ```
-//! A reset followed by the new style is sent instead where that is shorter.
+//! If it is shorter, a reset followed by the new style is sent instead.
 
 use ratatui::buffer::Cell;
 use ratatui::style::{Color, Modifier};
 
-/// How characters are written: colours and attributes.
+/// The style of characters: colours and attributes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::tui) struct CellStyle {
     /// The colour of the text.
     pub(in crate::tui) fore: Color,
     /// The colour behind it.
     pub(in crate::tui) back: Color,
-    /// Bold, dim, underlined, reversed.
+    /// The attributes, such as bold, dim, underlined and reversed.
     pub(in crate::tui) attributes: Modifier,
 }
 
@@ -28,8 +28,8 @@ pub(in crate::tui) const PLAIN: CellStyle = CellStyle {
     attributes: Modifier::empty(),
 };
 
-/// The attributes that are sent: the number that switches one on, the one that switches it off. Bold and dim share
-/// theirs.
+/// The attributes that are sent: the number that switches each on, and the one that switches it off. Bold and dim
+/// share the latter.
 const ATTRIBUTES: [(Modifier, u8, u8); 7] = [
     (Modifier::BOLD, 1, 22),
     (Modifier::DIM, 2, 22),
@@ -41,7 +41,7 @@ const ATTRIBUTES: [(Modifier, u8, u8); 7] = [
 ];
 
 impl CellStyle {
-    /// The style of a cell.
+    /// Returns the style of a cell.
     pub(in crate::tui) fn of(cell: &Cell) -> Self {
         Self {
             fore: cell.fg,
@@ -50,13 +50,13 @@ impl CellStyle {
         }
     }
 
-    /// Whether a blank looks the same as a plain one.
+    /// Returns true if a blank in this style looks like a plain one.
     pub(in crate::tui) fn leaves_blanks_plain(self) -> bool {
         let seen = Modifier::REVERSED | Modifier::UNDERLINED | Modifier::CROSSED_OUT;
         self.back == Color::Reset && !self.attributes.intersects(seen)
     }
 
-    /// The shortest sequence that changes `before` into this one.
+    /// Appends the shortest sequence that changes `before` into this style.
     pub(in crate::tui) fn change(self, before: Self, out: &mut Vec<u8>) {
         if self == before {
             return;
@@ -70,12 +70,12 @@ impl CellStyle {
         });
     }
 
-    /// The parameters that change one style into another, after a reset or without.
+    /// Returns the parameters that change one style into another; with `reset`, they begin with a reset.
     fn steps(self, before: Self, reset: bool) -> Vec<String> {
         let mut steps = Vec::new();
         let mut held = before.attributes;
         if reset {
-            // Empty stands for 0, and is enough where nothing follows.
+            // Empty means 0, and is enough if nothing follows.
             steps.push(if self == PLAIN { "" } else { "0" }.to_owned());
         }
         for (attribute, _, off) in ATTRIBUTES {
@@ -100,12 +100,13 @@ impl CellStyle {
     }
 }
 
-/// The sequence of some parameters.
+/// Returns the sequence with the given parameters.
 fn sgr(steps: &[String]) -> Vec<u8> {
     format!("\x1b[{}m", steps.join(";")).into_bytes()
 }
 
-/// A colour's number, `base` being 30 in front and 40 behind. The sixteen have short ones that every terminal knows.
+/// Returns a colour's parameters; `base` is 30 for text and 40 for the background. The sixteen colours have short
+/// numbers that every terminal knows.
 fn color(color: Color, base: u8) -> String {
     let numbered = |number: u8| (base + number).to_string();
     match color {
@@ -134,7 +135,8 @@ fn color(color: Color, base: u8) -> String {
     }
 }
 
-/// The number of a colour in the table of 256, where its cube of 6 x 6 x 6 has just this one: shorter to say.
+/// Returns the number of a colour in the table of 256 if the table's cube of 6 × 6 × 6 contains exactly this colour:
+/// the number is shorter.
 fn cube(red: u8, green: u8, blue: u8) -> Option<u8> {
     let step = |part: u8| {
         [0, 95, 135, 175, 215, 255]
@@ -150,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn styles_are_told_by_their_difference() {
+    fn styles_are_sent_as_their_difference() {
         let pen = |attributes, fore| CellStyle {
             fore,
             back: Color::Reset,

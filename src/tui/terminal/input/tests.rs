@@ -1,4 +1,4 @@
-//! Keys of many terminals, in pieces and whole.
+//! Reads keys of many terminals, in pieces and whole.
 
 use super::*;
 use crate::tui::keys::key;
@@ -24,7 +24,7 @@ fn keys_of_many_terminals() {
         ("\r\n\t\x08\x7f", "<CR><CR><Tab><BS><BS>"),
         ("\x03\x1a\x0c", "<C-c><C-z><C-l>"),
         ("\x1b[A\x1bOB\x1b[1;2C\x1b[d", "<Up><Down><S-Right><S-Left>"),
-        // Other modifiers count for nothing.
+        // Other modifiers are ignored.
         ("\x1b[1;5A\x1b[1;6A\x1b[1;1A", "<Up><S-Up><Up>"),
         (
             "\x1b[H\x1bOF\x1b[1~\x1b[4~\x1b[7~\x1b[8~",
@@ -49,9 +49,9 @@ fn keys_of_many_terminals() {
         ("\x1b\x1b", "<Esc>"),
         ("\x1b\x1b[A", "<Up>"),
         ("\x1bq\x1b\r", "<Esc>q<Esc><CR>"),
-        // Broken off by another.
+        // Sequences that the next one breaks off.
         ("\x1b[12\x1b[A\x1b[5\rq", "<Up><CR>q"),
-        // Answers to a program before us.
+        // Answers to an earlier program.
         (
             "\x1b]11;rgb:0000/ffff/0000\x1b\\\x1b[?62;22c\x1b]10;x\x07q\x1b[24;80R",
             "q",
@@ -75,14 +75,14 @@ fn an_escape_waits_for_a_moment_and_a_sequence_for_ever() {
 }
 
 #[test]
-fn the_status_of_the_terminal_is_no_key_wherever_it_is_torn() {
+fn the_status_of_the_terminal_is_no_key_wherever_it_is_cut() {
     const STATUS: &[u8] = b"\x1b[0n";
     for cut in 0..STATUS.len() {
         let mut reader = InputReader::default();
         let mut found = reader.read(b"a");
         found.extend(reader.read(&STATUS[..cut]));
         assert!(!reader.take_status());
-        // Nothing comes for long.
+        // No more bytes come for a while.
         if reader.patience(true).is_some() {
             found.extend(reader.on_timeout(true));
         }
@@ -92,7 +92,7 @@ fn the_status_of_the_terminal_is_no_key_wherever_it_is_torn() {
         found.extend(reader.read(b"b"));
         assert_eq!(found, keys("ab"), "{cut}");
     }
-    // One that nobody has asked for is none either.
+    // A status that nobody has asked for is no key either.
     assert_eq!(read(b"\x1b[0nb\x1b[3nc"), keys("bc"));
 }
 
@@ -103,7 +103,7 @@ fn esc_before_the_status_of_the_terminal_is_a_key() {
         assert_eq!(reader.read(bytes.as_bytes()), keys("<Esc>"), "{bytes:?}");
         assert!(reader.take_status());
     }
-    // Long before it, or before another key.
+    // The ESC comes long before the status, or before another key.
     for (bytes, notation) in [
         ("\x1b[0n", "<Esc>"),
         ("\x1b[A", "<Esc><Up>"),
@@ -116,7 +116,7 @@ fn esc_before_the_status_of_the_terminal_is_a_key() {
         found.extend(reader.on_timeout(true));
         assert_eq!(found, []);
         found.extend(reader.read(bytes.as_bytes()));
-        // Nothing is asked any more.
+        // No answer is pending any more.
         assert_eq!(reader.patience(false), bytes.is_empty().then_some(MOMENT));
         found.extend(reader.on_timeout(false));
         assert_eq!(found, keys(notation), "{bytes:?}");
@@ -124,14 +124,14 @@ fn esc_before_the_status_of_the_terminal_is_a_key() {
 }
 
 #[test]
-fn pasted_text_is_no_keys() {
+fn pasted_text_is_not_read_as_keys() {
     let text = |text: &str| vec![Input::Paste(text.to_owned())];
     assert_eq!(
         read(b"\x1b[200~q\x1b[Ay\r\nz\r\x1b[201~"),
         text("q\x1b[Ay\nz\n")
     );
     assert_eq!(read(b"\x1b[200~\x1b[201~"), text(""));
-    // The end is lost.
+    // The end mark is missing.
     assert_eq!(read(b"\x1b[200~1.5"), text("1.5"));
     let long = [
         b"\x1b[200~".to_vec(),
@@ -165,9 +165,9 @@ fn the_mouse_is_read_in_both_forms() {
 }
 
 proptest! {
-    /// Wherever a line cuts the bytes, the same comes out; and nothing makes it fail.
+    /// The events do not depend on where the bytes are cut, and no bytes cause a panic.
     #[test]
-    fn pieces_are_as_good_as_the_whole(
+    fn bytes_in_pieces_give_the_same_events(
         pieces in prop::collection::vec(
             prop_oneof![
                 Just(b"\x1b[A".to_vec()), Just(b"\x1b".to_vec()), Just(b"\x1b[200~".to_vec()),

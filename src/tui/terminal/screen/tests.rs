@@ -1,4 +1,4 @@
-//! After the bytes, an emulator shows exactly what was drawn.
+//! After it has read the bytes, an emulator shows exactly what was drawn.
 
 use super::*;
 use proptest::prelude::*;
@@ -11,7 +11,7 @@ const SIZE: Size = Size {
     height: 5,
 };
 
-/// Where a text stands in which style.
+/// A column, a row, and a text to write there in a style.
 type Writing = (u16, u16, &'static str, Style);
 
 fn emulator(size: Size) -> vt100::Parser {
@@ -19,10 +19,10 @@ fn emulator(size: Size) -> vt100::Parser {
     vt100::Parser::new(side(size.height), side(size.width), 0)
 }
 
-/// Where the cursor is shown, if it is.
+/// The column and row of the cursor; None if it is hidden.
 type ScreenCursor = Option<(u16, u16)>;
 
-/// Draws frames, each made of writings and a cursor; after each the emulator must show what ratatui drew.
+/// Draws frames, each made of texts and a cursor; after each, the emulator must show what ratatui drew.
 fn check(frames: &[(Vec<Writing>, ScreenCursor)], synchronized: bool, erases: bool) {
     let abilities = Abilities {
         styles: true,
@@ -38,7 +38,7 @@ fn check(frames: &[(Vec<Writing>, ScreenCursor)], synchronized: bool, erases: bo
         let Ok(drawn) = terminal.draw(|frame| {
             for &(x, y, text, style) in writings {
                 let (room, buffer) = (usize::from(SIZE.width - x), frame.buffer_mut());
-                // A buffer with half of a wide character is none that ratatui promises to draw.
+                // Ratatui does not promise to draw a buffer with half of a wide character.
                 if x > 0 && columns(&buffer[(x - 1, y)]) > 1 {
                     buffer[(x - 1, y)].set_symbol(" ");
                 }
@@ -63,7 +63,7 @@ fn check(frames: &[(Vec<Writing>, ScreenCursor)], synchronized: bool, erases: bo
     }
 }
 
-/// The emulator shows a buffer, cell by cell.
+/// Asserts that the emulator shows a buffer, cell by cell.
 fn shows(screen: &vt100::Screen, buffer: &Buffer, frame: usize) {
     for position in buffer.area.positions() {
         let (expected, found) = (&buffer[position], screen.cell(position.y, position.x));
@@ -139,7 +139,7 @@ fn writing() -> impl Strategy<Value = Writing> {
 }
 
 proptest! {
-    /// Whatever is drawn after whatever else, the terminal shows it.
+    /// The terminal shows each frame that is drawn, independent of the frames before it.
     #[test]
     fn a_terminal_shows_what_is_drawn(
         frames in prop::collection::vec(
@@ -186,10 +186,10 @@ fn frame_at(before: &[&str], after: &[&str], cursor: (u16, u16)) -> String {
 }
 
 #[test]
-fn the_shortest_way_is_taken() {
+fn the_shortest_sequence_is_sent() {
     assert_eq!(frame(&["abc"], &["abc"]), "", "no change is no bytes");
     assert_eq!(frame(&["abcdef"], &["Abcdef"]), "A\r");
-    // Over what stands between, rather than by a move.
+    // Writes the cells between again, rather than moving over them.
     assert_eq!(frame(&["abcdef"], &["AbcDef"]), "AbcD\r");
     assert_eq!(frame(&["a        f"], &["A        F"]), "A\x1b[8CF\r");
     assert_eq!(frame(&["a", "b"], &["A", "B"]), "A\r\nB\x1b[H");
@@ -199,12 +199,12 @@ fn the_shortest_way_is_taken() {
     assert_eq!(frame(&["abcdefg h"], &["a       h"]), "a\x1b[6X\r");
     assert_eq!(frame(&["abcd h"], &["a    h"]), "a   \r");
     assert_eq!(frame(&["abcdefghijk x"], &["a        jk x"]), "a\x1b[8X\r");
-    // First what is near the cursor, the rest in reading order.
+    // Writes near the cursor first, then the rest in reading order.
     assert_eq!(
         frame_at(&["ab", "", "ab"], &["xb", "", "xb"], (0, 2)),
         "x\x1b[Hx\r\n\n"
     );
-    // The terminal remembers a place where that is shorter than its address.
+    // The terminal saves a position if that is shorter than moving back to it.
     let rows = |last| ["", "", "", "", "", "", "", "", "", "", last];
     assert_eq!(
         frame_at(&rows("abc"), &rows("abx"), (20, 0)),
