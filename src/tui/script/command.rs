@@ -10,8 +10,8 @@
 //! Signal HUP          Wait                Quit                Seed 7
 //! Source touch.csv    Frames 3            the next frames of a file: the clock stands still
 //! ```
-//! Places are column,row of the screen, from 0. `#` begins a comment line. `Quit` holds where the program has ended.
-//! A drag visits its places and no others, as a terminal reports them.
+//! Positions are column,row of the screen, from 0. `#` begins a comment line. `Quit` fails if the program has not
+//! ended. A drag visits the given positions and no others, as a terminal reports them.
 
 use regex_lite::{Regex, RegexBuilder};
 
@@ -20,51 +20,51 @@ use crate::tui::keys::key::{Key, parse};
 use crate::tui::script::setting;
 use crate::tui::script::setting::ScriptSetting;
 
-/// A place of the screen: column, row.
+/// A position on the screen: column, row.
 pub type ScreenPosition = (u16, u16);
 
-/// What a line asks for.
+/// A command, as one line of a script gives it.
 #[derive(Clone, Debug)]
 pub enum ScriptCommand {
-    /// How the program starts, and on what; before all that needs a screen.
+    /// Sets how the program starts, and with what; comes before every command that needs a screen.
     Set(ScriptSetting),
-    /// Another size while the program runs.
+    /// Changes the size while the program runs, to these columns and rows.
     Resize(u16, u16),
-    /// Keys.
+    /// Presses keys.
     Keys(Vec<Key>),
-    /// Characters as they are.
+    /// Types characters as they are.
     Type(String),
-    /// Pasted text.
+    /// Pastes a text.
     Paste(String),
-    /// The left button at a place.
+    /// Clicks the left button at a position.
     Click(ScreenPosition),
-    /// The left button at the first place where a text stands.
+    /// Clicks the left button at the first position where a text stands.
     ClickText(String),
-    /// The left button, held from one place to others.
+    /// Presses the left button at the first position and drags it over the others.
     Drag(Vec<ScreenPosition>),
-    /// The wheel at a place: a number of turns, up if negative.
+    /// Turns the wheel at a position by a number of steps, up if negative.
     Scroll(ScreenPosition, i16),
-    /// Print the screen, under a name.
+    /// Prints the screen, under a name.
     Screen(String),
-    /// Print the state, or the part of it that a JSON pointer names.
+    /// Prints the state, or the part that a JSON pointer names.
     State(String),
-    /// The screen must match.
+    /// Fails unless the screen matches.
     Expect(Regex),
-    /// It must not.
+    /// Fails if the screen matches.
     ExpectNot(Regex),
-    /// A text must stand at a place.
+    /// Fails unless a text stands at a position.
     ExpectAt(ScreenPosition, String),
-    /// A character must have a style.
+    /// Fails unless a character has a style, given by its letter.
     ExpectStyle(ScreenPosition, char),
-    /// What a signal does.
+    /// Does what a signal of this name does.
     Signal(String),
-    /// Everything that is under way is done; it always is.
+    /// Waits for work to finish; it always has.
     Wait,
-    /// The program must have ended.
+    /// Fails unless the program has ended.
     Quit,
-    /// Watch a file with frames, which must be readable; no frame is read yet.
+    /// Watches a file with frames, which must be readable; reads no frame yet.
     Source(String),
-    /// Read and draw the next frames of it. This many must be there.
+    /// Reads and draws this many of the next frames; fails if there are fewer.
     Frames(usize),
 }
 
@@ -93,7 +93,7 @@ const COMMANDS: [&str; 21] = [
     "Quit",
 ];
 
-/// The styles that can be expected, and their letters in printed screens.
+/// The styles that a script can expect, and their letters in printed screens.
 const STYLES: [(&str, char); 4] = [
     ("plain", '.'),
     ("reverse", 'R'),
@@ -101,20 +101,20 @@ const STYLES: [(&str, char); 4] = [
     ("dim", 'D'),
 ];
 
-/// The signals that can be sent.
+/// The signals that a script can send.
 const SIGNALS: [&str; 5] = ["HUP", "INT", "QUIT", "TERM", "TSTP"];
 
-/// Why a line is not a command.
+/// The reason why a line is not a command.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}{message}", line_name(*line))]
 pub struct ScriptError {
-    /// Counted from 1; 0 for keys that are not part of the script.
+    /// The line number, from 1; 0 for keys from the command line (`-k`).
     pub line: usize,
     /// What is wrong, and what was expected.
     pub message: String,
 }
 
-/// How messages name a line of a script.
+/// Returns how messages name a line of a script.
 fn line_name(line: usize) -> String {
     if line == 0 {
         "-k: ".to_owned()
@@ -123,10 +123,10 @@ fn line_name(line: usize) -> String {
     }
 }
 
-/// The commands of a script, each with its line number.
+/// Reads the commands of a script, each with its line number.
 ///
 /// # Errors
-/// The first line that is none.
+/// Returns an error for the first line that is not a command.
 pub fn read(script: &str) -> Result<Vec<(usize, ScriptCommand)>, ScriptError> {
     let lines = script
         .lines()
@@ -202,7 +202,7 @@ fn command(line: &str) -> Result<ScriptCommand, String> {
     }
 }
 
-/// The name of a signal.
+/// Reads the name of a signal.
 fn signal(name: &str) -> Result<ScriptCommand, String> {
     if SIGNALS.contains(&name) {
         return Ok(ScriptCommand::Signal(name.to_owned()));
@@ -215,7 +215,7 @@ fn signal(name: &str) -> Result<ScriptCommand, String> {
     ))
 }
 
-/// A number of frames.
+/// Reads a number of frames.
 fn frames(text: &str) -> Result<usize, String> {
     let number = text
         .parse()
@@ -227,7 +227,7 @@ fn frames(text: &str) -> Result<usize, String> {
     })
 }
 
-/// What random touches are made from.
+/// Reads the seed of random touches.
 fn seed(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| {
         let found = shortened(text);
@@ -238,7 +238,7 @@ fn seed(text: &str) -> Result<u64, String> {
     })
 }
 
-/// Two places or more.
+/// Reads two or more positions.
 fn drag(text: &str) -> Result<ScriptCommand, String> {
     let places: Result<Vec<_>, _> = text.split_whitespace().map(position).collect();
     let places = places?;
@@ -249,7 +249,7 @@ fn drag(text: &str) -> Result<ScriptCommand, String> {
     Ok(ScriptCommand::Drag(places))
 }
 
-/// A place and a number of turns of the wheel, downwards if positive.
+/// Reads a position and a number of steps of the wheel, downwards if positive.
 fn scroll(text: &str) -> Result<ScriptCommand, String> {
     let (at, turns) = two(text)?;
     let number = turns.parse().ok();
@@ -261,7 +261,7 @@ fn scroll(text: &str) -> Result<ScriptCommand, String> {
     Ok(ScriptCommand::Scroll(position(at)?, number))
 }
 
-/// The letter of a style, from its name.
+/// Returns the letter of a style.
 fn style(name: &str) -> Result<char, String> {
     let style = STYLES.iter().find(|(style, _)| *style == name);
     style.map(|(_, letter)| *letter).ok_or_else(|| {
@@ -275,7 +275,7 @@ fn style(name: &str) -> Result<char, String> {
     })
 }
 
-/// A place, and what follows it.
+/// Splits a text into a position and the rest.
 fn two(text: &str) -> Result<(&str, &str), String> {
     let (first, second) = text.split_once(char::is_whitespace).ok_or_else(|| {
         format!(
@@ -286,7 +286,7 @@ fn two(text: &str) -> Result<(&str, &str), String> {
     Ok((first, second.trim()))
 }
 
-/// `80x24`. No terminal is larger than 1000 either way.
+/// Reads a size like `80x24`; columns and rows are at most 1000.
 pub(crate) fn size(text: &str) -> Result<(u16, u16), String> {
     let numbers = text
         .split_once('x')
@@ -301,7 +301,7 @@ pub(crate) fn size(text: &str) -> Result<(u16, u16), String> {
         })
 }
 
-/// `12,5`: column and row of the screen.
+/// Reads a position like `12,5`: column and row of the screen.
 fn position(text: &str) -> Result<ScreenPosition, String> {
     let numbers = text
         .split_once(',')
@@ -310,7 +310,7 @@ fn position(text: &str) -> Result<ScreenPosition, String> {
     numbers.ok_or_else(|| format!("expected column,row like 12,5, found {:?}", shortened(text)))
 }
 
-/// A text in quotes, with the escapes of JSON.
+/// Reads a text in quotes, with the escapes of JSON.
 fn quoted(text: &str) -> Result<String, String> {
     serde_json::from_str(text).map_err(|_| {
         format!(
@@ -320,14 +320,14 @@ fn quoted(text: &str) -> Result<String, String> {
     })
 }
 
-/// The most bytes that a pattern is compiled to: `.{1000}` and no more, since searching a screen takes as many times
-/// longer as this is larger.
+/// The greatest compiled size of a pattern in bytes; it allows `.{1000}` and little more, since the time to search a
+/// screen grows with this size.
 const LARGEST_PATTERN: usize = 1 << 16;
 
-/// The longest pattern: reading one takes a hundred times its length of memory.
+/// The greatest length of a pattern in bytes; reading one takes a hundred times as much memory.
 const LONGEST_PATTERN: usize = 1 << 14;
 
-/// A regular expression between slashes.
+/// Reads a regular expression between slashes.
 fn pattern(text: &str) -> Result<Regex, String> {
     let inner = text
         .strip_prefix('/')

@@ -15,23 +15,23 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Palette, Theme};
 use crate::tui::widget::write;
 
-/// A character's field.
+/// The width of a character's cell, in pixels.
 const WIDTH: u32 = 9;
-/// Pixels of a line.
+/// The height of a character's cell, in pixels.
 const HEIGHT: u32 = 18;
-/// Size of the font in pixels.
+/// The size of the font, in pixels.
 const FONT: u32 = 15;
-/// From the top of the field to the base line.
+/// The distance from the top of a cell to the base line, in pixels.
 const BASE: u32 = 14;
-/// Around the screen.
+/// The width of the margin around the screen, in pixels.
 const MARGIN: u32 = 12;
 
-/// How a run of characters looks.
+/// The style of a run of characters.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct TextStyle {
     /// The colour of the text.
     ink: [u8; 3],
-    /// The colour behind it.
+    /// The colour of the background.
     paper: [u8; 3],
     /// Whether it is bold.
     bold: bool,
@@ -39,7 +39,7 @@ struct TextStyle {
     dim: bool,
 }
 
-/// Ink and paper of a palette.
+/// Returns the colours of text and background of a palette.
 fn colors(palette: Palette) -> ([u8; 3], [u8; 3]) {
     match palette {
         Palette::Dark => ([212, 212, 212], [28, 28, 28]),
@@ -47,7 +47,7 @@ fn colors(palette: Palette) -> ([u8; 3], [u8; 3]) {
     }
 }
 
-/// The drawing of a screen, with a title for those who cannot see it.
+/// Draws a screen as SVG; its title is for people who cannot see it.
 pub(in crate::tui) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String {
     let (ink, paper) = colors(theme.palette);
     let area = buffer.area;
@@ -66,7 +66,7 @@ pub(in crate::tui) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String 
         let mut covered = 0;
         for column in 0..area.width {
             let cell = &buffer[(area.x + column, area.y + row)];
-            // What stands behind a wide character is covered by it.
+            // A wide character covers the cell after it.
             if covered > 0 {
                 covered -= 1;
                 if let Some((.., symbols)) = runs.last_mut() {
@@ -89,7 +89,7 @@ pub(in crate::tui) fn svg(buffer: &Buffer, theme: Theme, title: &str) -> String 
 }
 
 impl TextStyle {
-    /// The style of a cell; reversed cells change their colours here.
+    /// Returns the style of a cell; in reversed cells, ink and paper are exchanged.
     fn of(cell: &ratatui::buffer::Cell, ink: [u8; 3], paper: [u8; 3]) -> Self {
         let color = |color: Color, other: [u8; 3]| match color {
             Color::Rgb(red, green, blue) => [red, green, blue],
@@ -111,12 +111,12 @@ impl TextStyle {
     }
 }
 
-/// The width of a number of columns.
+/// Returns the width of a number of columns, in pixels.
 fn units(columns: usize) -> u32 {
     u32::from(narrow(columns)) * WIDTH
 }
 
-/// The paper where it differs, the blocks, then the text.
+/// Draws a run of characters: the paper if it differs from the screen's, the blocks, then the text.
 fn draw(
     svg: &mut String,
     (column, row): (u16, u16),
@@ -151,7 +151,7 @@ fn draw(
     for (from, text) in pieces(symbols) {
         let length = write::width(&text);
         let (x, y, length) = (x + units(from), y + BASE, units(length));
-        // Cannot fail: a String takes everything.
+        // Writing to a String cannot fail.
         let _ = writeln!(
             svg,
             "<text x=\"{x}\" y=\"{y}\" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\" \
@@ -161,8 +161,8 @@ fn draw(
     }
 }
 
-/// The texts of a run with the columns that they begin at. Two blanks part them: where a viewer has no font of one width
-/// and does not stretch, columns still stand below each other.
+/// Returns the texts of a run with their first columns. Two blanks separate texts: columns stay aligned even if a
+/// viewer has no font of fixed width and does not stretch.
 fn pieces(symbols: &[&str]) -> Vec<(usize, String)> {
     let mut pieces: Vec<(usize, String)> = Vec::new();
     let mut blanks = usize::MAX;
@@ -186,7 +186,7 @@ fn pieces(symbols: &[&str]) -> Vec<(usize, String)> {
     pieces
 }
 
-/// A block character's rectangle: from the top, its height, and how much ink it has in quarters.
+/// Returns the rectangle of a block character: its distance from the top, its height, and its ink in quarters.
 fn block(symbol: &str) -> Option<(u32, u32, u8)> {
     let half = HEIGHT / 2;
     match symbol {
@@ -200,7 +200,7 @@ fn block(symbol: &str) -> Option<(u32, u32, u8)> {
     }
 }
 
-/// A filled rectangle.
+/// Draws a filled rectangle.
 fn rectangle(
     svg: &mut String,
     (x, y): (u32, u32),
@@ -215,14 +215,14 @@ fn rectangle(
         3 => " opacity=\"0.75\"",
         _ => "",
     };
-    // Cannot fail: a String takes everything.
+    // Writing to a String cannot fail.
     let _ = writeln!(
         svg,
         "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{fill}\"{share}/>"
     );
 }
 
-/// A colour as `#rrggbb`.
+/// Formats a colour as `#rrggbb`.
 fn hex([red, green, blue]: [u8; 3]) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
@@ -257,7 +257,7 @@ mod tests {
             assert!(svg.contains(part), "no {part}\n{svg}");
         }
         assert_eq!(svg.matches("<text").count(), 4);
-        // Nothing is seen of what a wide character covers.
+        // The text under a wide character is not drawn.
         let mut buffer = Buffer::empty(Rect::new(0, 0, 6, 1));
         buffer.set_string(0, 0, "foobar", Style::new());
         buffer[(0, 0)].set_symbol("字");

@@ -1,7 +1,8 @@
-//! Records what a user does as a script that does it again, so that a bug report becomes a test.
+//! Records what a user does as a script that repeats it, so that a bug report becomes a test.
 //!
-//! Keys are collected into lines of notation, a press and a release at the same place become a click, a press with
-//! drags becomes a drag. Frames of a recording that come between them are counted; those of a stream are only noted.
+//! Each key is written in notation; a press and a release at the same position become a click, a press with drags
+//! becomes a drag. Frames of a recording that come in between are counted; frames of a stream are only noted in a
+//! comment.
 
 use std::ffi::OsStr;
 use std::fmt::Write;
@@ -14,19 +15,19 @@ use crate::tui::script::setting::ScriptSetting;
 use crate::tui::terminal::input::Input;
 use crate::tui::terminal::{Outcome, SessionEvent};
 
-/// Turns inputs into lines, one after another.
+/// Turns events of a session into lines of a script, one after another.
 #[derive(Clone, Debug)]
 pub struct Recorder {
-    /// The lines that come before the first one, while they are not written.
+    /// The settings to write before the first line; empty after they were written.
     head: String,
-    /// Whether the first size is written already.
+    /// Whether the first size has been written.
     sized: bool,
-    /// Where the button went down, and where it was since.
+    /// The position where the button was pressed, and those to which it was dragged; empty while it is up.
     held: Vec<(u16, u16)>,
 }
 
 impl Recorder {
-    /// A record that begins with how the program was started and what it found.
+    /// Creates a recorder; its script begins with the settings with which the program was started.
     pub fn new(start: &[ScriptSetting]) -> Self {
         let lines = start.iter().map(|setting| format!("{setting}\n"));
         Self {
@@ -36,7 +37,7 @@ impl Recorder {
         }
     }
 
-    /// The lines of what happens; empty where it is part of a line to come.
+    /// Returns the lines for an event; empty if a later event completes them.
     pub fn lines(&mut self, event: SessionEvent<'_>) -> String {
         let mut lines = std::mem::take(&mut self.head);
         let input = match event {
@@ -44,7 +45,7 @@ impl Recorder {
             SessionEvent::Frames { source, count } => return lines + &frames(source, count),
         };
         if !matches!(input, Input::Mouse(_)) {
-            // What comes between press and release ends a drag.
+            // Any other input between press and release ends a drag.
             lines += &self.let_go();
         }
         match input {
@@ -62,22 +63,22 @@ impl Recorder {
         lines
     }
 
-    /// The line of a stored shape that the last input has used. It may stand anywhere in a script.
+    /// Returns the line for a stored shape that the last input has used. It may stand anywhere in a script.
     pub fn shape(&self, shape: StoredShape) -> String {
         format!("{}\n", ScriptSetting::Shape(Box::new(shape)))
     }
 
-    /// The lines of the end: what was under way, and the signal that ended it.
+    /// Returns the last lines: an unfinished drag, and the signal that ended the program.
     pub fn end(&mut self, outcome: Outcome) -> String {
         let mut lines = self.let_go();
         if let Some(name) = outcome.signal_name() {
-            // A string takes everything.
+            // Writing to a string cannot fail.
             let _ = writeln!(lines, "Signal {name}");
         }
         lines
     }
 
-    /// The command for what the mouse did. Presses and drags are held back until the button is released.
+    /// Returns the command for a mouse event. Presses and drags are held back until the button is released.
     fn mouse(&mut self, Mouse { kind, column, row }: Mouse) -> String {
         let here = (column, row);
         match kind {
@@ -93,13 +94,13 @@ impl Recorder {
                 String::new()
             }
             MouseKind::Release => self.let_go(),
-            // Where the wheel does something a drag does nothing, and the other way round.
+            // Where the wheel does something, a drag does nothing, and the other way round.
             MouseKind::ScrollUp => format!("Scroll {column},{row} -1\n"),
             MouseKind::ScrollDown => format!("Scroll {column},{row} 1\n"),
         }
     }
 
-    /// The command for what was held back.
+    /// Returns the command for the events held back.
     fn let_go(&mut self) -> String {
         let way = std::mem::take(&mut self.held);
         let places: Vec<String> = way
@@ -114,7 +115,7 @@ impl Recorder {
     }
 }
 
-/// The line of frames that have come. Those of a stream cannot come again.
+/// Returns the line for frames that have come. Frames of a stream cannot be repeated.
 fn frames(source: &OsStr, count: u64) -> String {
     match FrameSource::new(source) {
         FrameSource::File(_) => format!("Frames {count}\n"),
@@ -133,7 +134,7 @@ mod tests {
     use crate::tui::script::command::read;
 
     #[test]
-    fn what_is_recorded_is_a_script() {
+    fn a_record_can_be_read_as_a_script() {
         let mouse = |kind, column, row| Input::Mouse(Mouse { kind, column, row });
         let inputs = [
             Input::Size(80, 24),

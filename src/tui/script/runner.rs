@@ -9,8 +9,8 @@
 //! --- screen start 80x24 cursor 8,9 ---
 //! n New   l Load   …
 //! ```
-//! A script is read as a whole first: one with a malformed line does nothing at all. Long work is done before the next
-//! command, so that a script prints the same each time.
+//! A script is read as a whole first: if a line is malformed, none is carried out. Long work is finished before the
+//! next command, so that a script always prints the same.
 
 use std::ops::ControlFlow;
 
@@ -31,18 +31,18 @@ pub use crate::tui::script::start::ScriptOptions;
 use crate::tui::script::start::ScriptStart;
 use crate::tui::widget::write;
 
-/// How a script came to its end before the last line.
+/// The reason why a script ended before its last line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScriptFailure {
-    /// An expectation does not hold. The screen is in the message.
+    /// An expectation does not hold. The message contains the screen.
     #[error("line {line}: {message}\n{screen}")]
     Expectation {
-        /// Counted from 1.
+        /// The line number, from 1.
         line: usize,
-        /// Which, and what is there.
+        /// What was expected, and what is there.
         message: String,
-        /// The screen.
+        /// The text of the screen.
         screen: String,
     },
     /// A line is not a command.
@@ -54,20 +54,21 @@ pub enum ScriptFailure {
     /// The output was closed.
     #[error("stopped: the output was closed")]
     Stopped,
-    /// The program ended before the script.
+    /// The program ended before the script did.
     #[error("line {line}: the program had already ended")]
     Ended {
-        /// The first line that could not be done.
+        /// The number of the first line that could not be carried out.
         line: usize,
     },
 }
 
-/// Runs a script in a world, after some keys; `print` takes what it prints, as it comes. Without a script the screen is
-/// printed. A script that sets a library or its shapes has a world of its own instead.
+/// Runs a script in a world, after some keys. `print` gets the output piece by piece, and can stop the script.
+/// Without any command, the screen is printed. A script that sets a library or its shapes has a world of its own
+/// instead.
 ///
 /// # Errors
-/// The first line that is wrong or does not hold; or that `print` breaks it off. A script with a wrong line is not run at
-/// all.
+/// Returns an error for the first line that is malformed or fails, or if `print` stops the script. If a line is
+/// malformed, no line is carried out.
 pub fn run(
     script: &str,
     keys: &[Key],
@@ -81,20 +82,20 @@ pub fn run(
     })
 }
 
-/// What a script shows.
+/// An output of a script.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum ScriptOutput<'a> {
     /// Text to print.
     Text(&'a str),
-    /// The screen that is printed next, and its name, which may be empty.
+    /// The name of a screen, which may be empty, and the session that shows it; its text is printed next.
     Screen(&'a str, &'a Session),
 }
 
-/// The same where screens are wanted as they are too: [`Session::svg`] draws them.
+/// Runs a script like [`run`], but passes each screen itself, too: [`Session::svg`] draws it.
 ///
 /// # Errors
-/// As of [`run`].
+/// Returns the errors of [`run`].
 pub fn run_shown(
     script: &str,
     keys: &[Key],
@@ -123,7 +124,7 @@ pub fn run_shown(
     Ok(())
 }
 
-/// Does a command that changes the program.
+/// Carries out a command that changes the program.
 fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<(), ScriptFailure> {
     if session.app().ended() {
         return Err(ScriptFailure::Ended { line });
@@ -173,9 +174,9 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
             take_frames(session, *count).map_err(|message| fails(session, line, message))?;
         }
         ScriptCommand::Signal(name) if name == "TSTP" => session.send(Message::Redraw),
-        // What is not saved is in the journal already; the program ends without a question.
+        // Unsaved work is in the journal already; the program ends without a question.
         ScriptCommand::Signal(_) => session.send(Message::Terminate),
-        // They are in its library from the start.
+        // The shape is in the library from the start.
         ScriptCommand::Set(ScriptSetting::Shape(_)) => {}
         _ => {
             let message = "Size and Set come before all that needs a screen";
@@ -188,7 +189,7 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
 /// Reads and draws the next frames.
 ///
 /// # Errors
-/// How many there are, and why no more, where there are fewer.
+/// If there are fewer than `count`, returns how many there are and why.
 fn take_frames(session: &mut Session, count: usize) -> Result<(), String> {
     let found = session.frames(count);
     if found == count {
@@ -199,7 +200,7 @@ fn take_frames(session: &mut Session, count: usize) -> Result<(), String> {
     Err(format!("expected {expected}, found {found}: {why}"))
 }
 
-/// Presses the mouse at the first of some places, moves it over the others and lets it go at the last one.
+/// Presses the mouse at the first position, moves it over the others and releases it at the last one.
 fn drag(session: &mut Session, places: &[ScreenPosition]) {
     for (index, &place) in places.iter().enumerate() {
         let kind = if index == 0 {
@@ -214,7 +215,7 @@ fn drag(session: &mut Session, places: &[ScreenPosition]) {
     }
 }
 
-/// Does a command that looks at the program. Answers whether it was one.
+/// Carries out a command that only reads the program. Returns false if the command is not one of these.
 fn look(
     session: &Session,
     line: usize,
@@ -246,7 +247,7 @@ fn look(
     Ok(true)
 }
 
-/// Compares the screen with what a command expects, None if it expects nothing.
+/// Compares the screen with what a command expects; None if the command expects nothing.
 fn expect(session: &Session, command: &ScriptCommand) -> Option<Result<(), String>> {
     let failure = match command {
         ScriptCommand::Expect(pattern) => (!pattern.is_match(&session.screen()))
@@ -277,7 +278,7 @@ fn expect(session: &Session, command: &ScriptCommand) -> Option<Result<(), Strin
     Some(failure.map_or(Ok(()), Err))
 }
 
-/// Shows the screen: as itself, then as text.
+/// Passes on the screen, first as a session, then as text.
 fn show_screen(
     session: &Session,
     name: &str,
@@ -288,7 +289,7 @@ fn show_screen(
     printed(show(ScriptOutput::Text(&screen(session, name, settings))))
 }
 
-/// An error if the reader of the output wants no more.
+/// Returns an error if the reader of the output has stopped the script.
 fn printed(flow: ControlFlow<()>) -> Result<(), ScriptFailure> {
     match flow {
         ControlFlow::Continue(()) => Ok(()),
@@ -296,12 +297,12 @@ fn printed(flow: ControlFlow<()>) -> Result<(), ScriptFailure> {
     }
 }
 
-/// The error of a line that cannot be carried out.
+/// Returns the error for a line that cannot be carried out.
 fn wrong(line: usize, message: String) -> ScriptFailure {
     ScriptError { line, message }.into()
 }
 
-/// The failure of an expectation, with the screen as it was.
+/// Returns the failure of an expectation, with the screen.
 fn fails(session: &Session, line: usize, message: String) -> ScriptFailure {
     let screen = session
         .screen()
@@ -315,7 +316,7 @@ fn fails(session: &Session, line: usize, message: String) -> ScriptFailure {
     }
 }
 
-/// Sends what the mouse did at a position.
+/// Sends a mouse event at a position.
 fn mouse(session: &mut Session, kind: MouseKind, (column, row): ScreenPosition) {
     session.send(Message::Mouse(Mouse { kind, column, row }));
 }
@@ -326,7 +327,7 @@ fn click(session: &mut Session, place: ScreenPosition) {
     mouse(session, MouseKind::Release, place);
 }
 
-/// Where a text stands first.
+/// Returns the first position where a text stands.
 fn find(screen: &str, text: &str) -> Option<ScreenPosition> {
     screen.lines().enumerate().find_map(|(row, line)| {
         let column = write::width(&line[..line.find(text)?]);
@@ -334,7 +335,7 @@ fn find(screen: &str, text: &str) -> Option<ScreenPosition> {
     })
 }
 
-/// The number of the character in a column: a wide one has two.
+/// Returns the index of the character in a column; a wide character takes two columns.
 fn character_at(line: &str, column: u16) -> usize {
     let (mut end, column) = (0, usize::from(column));
     let before = line.chars().take_while(|character| {
@@ -344,12 +345,12 @@ fn character_at(line: &str, column: u16) -> usize {
     before.count() + column.saturating_sub(write::width(line))
 }
 
-/// A row of a screen; empty below the last one.
+/// Returns a row of a screen; empty below the last one.
 fn line_of(grid: &str, row: u16) -> &str {
     grid.lines().nth(row.into()).unwrap_or("")
 }
 
-/// The screen under its header, and its styles if they are asked for.
+/// Returns the screen under its header, and its styles if they are asked for.
 fn screen(session: &Session, name: &str, settings: &ScriptOptions) -> String {
     let (columns, rows) = session.size();
     let cursor = session.cursor();
@@ -379,7 +380,7 @@ fn screen(session: &Session, name: &str, settings: &ScriptOptions) -> String {
     header + &session.screen() + &styles
 }
 
-/// The document, and what `taxel batch` would answer about its imprint.
+/// Returns the document as JSON, with the answer of `taxel batch` for its imprint.
 fn state(session: &Session) -> Value {
     let app = session.app();
     let document = app.shown();

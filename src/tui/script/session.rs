@@ -1,7 +1,7 @@
 //! The program without a terminal: keys in as text, the screen out as text, the same on every machine.
 //!
-//! Keys go through the same table, the same update and the same view as in a terminal. The screen is drawn when it is
-//! looked at: a terminal, too, shows what many keys at once have led to only when all of them are handled.
+//! Keys use the same table, the same update and the same view as in a terminal. The screen is drawn only when it is
+//! read: a terminal, too, shows the effect of several keys only after all of them are handled.
 //!
 //! ```
 //! use taxel::tui::app::state::Options;
@@ -37,25 +37,25 @@ use crate::tui::widget::write;
 pub struct Session {
     /// The state of the program.
     app: App,
-    /// Library, journal and workers.
+    /// The library, the journal and the workers.
     world: World,
     /// A screen in memory.
     screen: RefCell<DrawnScreen>,
 }
 
-/// A screen in memory, drawn when it is looked at.
+/// A screen in memory, drawn when it is read.
 #[derive(Debug)]
 struct DrawnScreen {
-    /// Its cells.
+    /// The cells of the screen.
     buffer: Buffer,
-    /// Where its cursor is; None where it is hidden.
+    /// The position of the cursor; None if it is hidden.
     cursor: Option<Position>,
     /// Whether the state has changed since it was drawn.
     is_stale: bool,
 }
 
 impl DrawnScreen {
-    /// Draws the state onto the screen unless it shows it already.
+    /// Draws the state onto the screen, unless the screen is up to date.
     fn draw(&mut self, app: &App) {
         if std::mem::take(&mut self.is_stale) {
             self.buffer.reset();
@@ -70,7 +70,7 @@ impl Session {
         Self::of(App::new(options), world, width, height)
     }
 
-    /// The same of a program that is made ready already.
+    /// Starts a program whose state exists already.
     pub fn of(app: App, world: World, width: u16, height: u16) -> Self {
         let screen = DrawnScreen {
             buffer: Buffer::empty(Rect::new(0, 0, width, height)),
@@ -96,7 +96,7 @@ impl Session {
     /// Presses keys, given in notation.
     ///
     /// # Errors
-    /// A key that is unknown; none is pressed then.
+    /// Returns an error if a key is unknown; then none is pressed.
     pub fn keys(&mut self, text: &str) -> Result<(), KeyError> {
         for key in parse(text)? {
             self.press(key);
@@ -111,15 +111,15 @@ impl Session {
 
     /// Sends a message.
     pub fn send(&mut self, message: Message) {
-        // What is left to do is for a real terminal.
+        // Effects on a real terminal are ignored.
         let _ = self.world.handle(&mut self.app, message);
         self.screen.get_mut().is_stale = true;
     }
 
-    /// Watches a source of frames; none is read yet.
+    /// Watches a source of frames; reads no frame yet.
     ///
     /// # Errors
-    /// Why it cannot be watched, in a sentence.
+    /// Returns why the source cannot be watched, as a sentence.
     pub fn watch(&mut self, name: &str) -> Result<(), String> {
         let number = |app: &App| last_page(app).map(Live::number);
         let before = number(&self.app);
@@ -133,7 +133,7 @@ impl Session {
         })
     }
 
-    /// Reads the next frames of the source that is watched, at most `count`. Returns how many there were.
+    /// Reads at most `count` of the next frames of the watched source. Returns how many there were.
     pub fn frames(&mut self, count: usize) -> usize {
         let mut frames = 0;
         for message in self.world.next_frames(count) {
@@ -145,7 +145,7 @@ impl Session {
         frames
     }
 
-    /// Why no more frames come of the source that is watched, in a few words.
+    /// Returns why the watched source gives no more frames, in a few words.
     pub(super) fn end_of_frames(&self) -> String {
         let page = last_page(&self.app).filter(|page| !page.stopped());
         match page.map(|page| &page.status().state) {
@@ -155,52 +155,52 @@ impl Session {
         }
     }
 
-    /// Gives the screen another size.
+    /// Changes the size of the screen.
     pub fn resize(&mut self, width: u16, height: u16) {
         let area = Rect::new(0, 0, width, height);
         self.screen.get_mut().buffer.resize(area);
         self.send(Message::Resized(width, height));
     }
 
-    /// The screen as it is now.
+    /// Returns the screen, up to date.
     fn drawn(&self) -> Ref<'_, DrawnScreen> {
         self.screen.borrow_mut().draw(&self.app);
         self.screen.borrow()
     }
 
-    /// The state of the program.
+    /// Returns the state of the program.
     pub fn app(&self) -> &App {
         &self.app
     }
 
-    /// Columns and rows of the screen.
+    /// Returns columns and rows of the screen.
     pub fn size(&self) -> (u16, u16) {
         let area = self.screen.borrow().buffer.area;
         (area.width, area.height)
     }
 
-    /// Where the terminal's cursor is; None where it is hidden.
+    /// Returns the position of the cursor; None if it is hidden.
     pub fn cursor(&self) -> Option<Position> {
         self.drawn().cursor
     }
 
-    /// The screen, a line a row, blanks at the end cut off.
+    /// Returns the text of the screen, one line per row, without blanks at line ends.
     pub fn screen(&self) -> String {
         self.rows(|_, symbol, row| row.push_str(symbol))
     }
 
-    /// The styles of the screen, a letter a character: `R` reversed, `B` bold, `D` dim, `.` plain.
+    /// Returns the styles of the screen, one letter per character: `R` reversed, `B` bold, `D` dim, `.` plain.
     pub fn styles(&self) -> String {
         self.rows(|cell, _, row| row.push(letter(&cell.style())))
     }
 
-    /// The screen as SVG, with a title. Its colours are those of a theme that has all of them, as it is where
+    /// Returns the screen as SVG, with a title. It has the theme's colours if the theme's depth is
     /// [`crate::tui::widget::theme::ColorDepth::True`].
     pub fn svg(&self, title: &str) -> String {
         drawing::svg(&self.drawn().buffer, *self.app.theme(), title)
     }
 
-    /// The rows of the screen; a function adds a cell, of which it gets the symbol too, to its row.
+    /// Returns the rows of the screen. The function `add` gets each cell with its symbol, and the row to append to.
     fn rows(&self, add: impl Fn(&Cell, &str, &mut String)) -> String {
         let buffer = &self.drawn().buffer;
         let width = usize::from(buffer.area.width).max(1);
@@ -211,7 +211,7 @@ impl Session {
             while let Some(cell) = cells.next() {
                 let symbol = cell.symbol();
                 add(cell, symbol, &mut rows);
-                // What stands behind a wide character is covered by it.
+                // A wide character covers the cells after it.
                 for _ in 1..write::width(symbol) {
                     cells.next();
                 }

@@ -1,4 +1,4 @@
-//! Settings of a script, before its first command: how the program starts, and what it finds.
+//! Settings of a script, before its first other command: how the program starts, and what it finds.
 //!
 //! ```text
 //! Size 80x24          Set ascii on        Set theme light    Set color 256
@@ -6,9 +6,9 @@
 //! Set mouse off      Seed 7
 //! Set library "DIR"   Set shape {...}     Set leftover {...}
 //! ```
-//! `shape` puts a shape into the user's library, given as the content of its file in one line; it may also stand between
-//! later commands, and of two of one name the last counts. `leftover` is unsaved work of a program that crashed. Without
-//! `Set library` a script has a library of its own, which is removed after it.
+//! `shape` puts a shape into the user's library; it is given as the content of its file, in one line. It may also
+//! stand between later commands; of two with the same name, the last counts. `leftover` is unsaved work of a program
+//! that crashed. Without `Set library`, a script has a library of its own, which is removed afterwards.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -20,32 +20,32 @@ use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::tui::app::state::Options;
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
-/// One line of it.
+/// A setting, as one line of a script gives it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ScriptSetting {
-    /// A screen with this many columns and rows.
+    /// The size of the screen, in columns and rows.
     Size(u16, u16),
-    /// ASCII characters only, or not.
+    /// Whether to use ASCII characters only.
     Ascii(bool),
-    /// How many colours.
+    /// The number of colours.
     Color(ColorDepth),
-    /// Which ones.
+    /// The colours for a dark or a light background.
     Theme(Palette),
     /// Whether the mouse sets taxels.
     Mouse(bool),
-    /// A quantity of the sensor.
+    /// A parameter of the sensor and its value.
     Sensor(Parameter, f64),
     /// The library's folder.
     Library(PathBuf),
-    /// What random touches are made from.
+    /// The seed of random touches.
     Seed(u64),
-    /// A shape of the user's.
+    /// A shape in the user's library.
     Shape(Box<StoredShape>),
     /// Unsaved work of a program that crashed.
     Leftover(Box<StoredShape>),
 }
 
-/// What can be set.
+/// The names of what can be set.
 const NAMES: [&str; 11] = [
     "ascii",
     "color",
@@ -60,13 +60,13 @@ const NAMES: [&str; 11] = [
     "leftover",
 ];
 
-/// The words for on and off.
+/// The words of a switch.
 const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
 
-/// What follows `Set`.
+/// Reads the text after `Set`.
 ///
 /// # Errors
-/// What is wrong with it, and what was expected.
+/// Returns what is wrong with the text, and what was expected.
 pub fn read(text: &str) -> Result<ScriptSetting, String> {
     let (name, value) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
     let value = value.trim();
@@ -97,7 +97,7 @@ pub fn read(text: &str) -> Result<ScriptSetting, String> {
     }
 }
 
-/// One of several words, with what it stands for.
+/// Returns the meaning of one of several words.
 fn chosen<T: Copy>(name: &str, value: &str, choices: &[(&str, T)]) -> Result<T, String> {
     let choice = choices.iter().find(|(choice, _)| *choice == value);
     choice.map(|(_, meaning)| *meaning).ok_or_else(|| {
@@ -110,13 +110,13 @@ fn chosen<T: Copy>(name: &str, value: &str, choices: &[(&str, T)]) -> Result<T, 
     })
 }
 
-/// A value of a parameter of the sensor.
+/// Reads a value of a parameter of the sensor.
 fn number(parameter: Parameter, value: &str) -> Result<ScriptSetting, ParameterError> {
     let value = Sensor::LARGEST.read(parameter, value)?;
     Ok(ScriptSetting::Sensor(parameter, value))
 }
 
-/// A stored shape as JSON.
+/// Reads a stored shape from JSON.
 fn shape(name: &str, value: &str) -> Result<Box<StoredShape>, String> {
     StoredShape::read(value.as_bytes())
         .map(Box::new)
@@ -124,7 +124,7 @@ fn shape(name: &str, value: &str) -> Result<Box<StoredShape>, String> {
 }
 
 impl fmt::Display for ScriptSetting {
-    /// The line of a script.
+    /// Writes the line of a script.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Size(columns, rows) => write!(f, "Size {columns}x{rows}"),
@@ -144,18 +144,18 @@ impl fmt::Display for ScriptSetting {
     }
 }
 
-/// The word for a value.
+/// Returns the word for a value.
 fn name_of<T: Copy + PartialEq>(value: T, choices: &[(&'static str, T)]) -> &'static str {
     let choice = choices.iter().find(|(_, meaning)| *meaning == value);
     choice.map_or("", |(name, _)| name)
 }
 
-/// A shape as JSON in one line.
+/// Returns a shape as JSON in one line.
 fn in_a_line(shape: &StoredShape) -> String {
     json::text(shape)
 }
 
-/// The lines that tell how the program was started: how it looks and its sensor.
+/// Returns the settings with which the program was started: its appearance, seed and sensor.
 pub fn of_options(options: &Options) -> Vec<ScriptSetting> {
     let (theme, sensor) = (options.theme, options.sensor);
     let look = [
@@ -177,7 +177,7 @@ mod tests {
     use crate::tui::widget::theme::Theme;
 
     #[test]
-    fn what_is_written_is_read() {
+    fn settings_are_read_as_they_were_written() {
         let shape = b"{\"format\":\"taxel-shape/1\",\"name\":\"a b\",\"sensor\":{\"columns\":2,\"rows\":1,\"threshold\":0.1},\
                       \"imprint\":[\"#.\"]}";
         let shape = Box::new(StoredShape::read(shape).expect("a shape"));

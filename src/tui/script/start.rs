@@ -1,4 +1,4 @@
-//! How a script starts: the settings before its first other command, and the shapes that it finds.
+//! The start of a script: the settings before its first other command, and the shapes that it finds.
 
 use std::path::PathBuf;
 
@@ -10,45 +10,48 @@ use crate::tui::runtime::World;
 use crate::tui::script::command::{ScriptCommand, ScriptError};
 use crate::tui::script::setting::ScriptSetting;
 
-/// How a script is run.
+/// The options with which a script is run.
 #[derive(Clone, Debug)]
 pub struct ScriptOptions {
-    /// How the program starts.
+    /// The options with which the program starts.
     pub options: Options,
-    /// Columns and rows of the screen, unless the script says otherwise.
+    /// Columns and rows of the screen, unless the script sets them.
     pub size: (u16, u16),
-    /// Screens with a grid of style letters.
+    /// Whether printed screens have a grid of style letters.
     pub styles: bool,
-    /// Screens and states as JSON lines.
+    /// Whether screens and states are printed as JSON lines.
     pub json: bool,
-    /// What each key means.
+    /// The keys and their actions.
     pub keymap: Keymap,
-    /// The folder that the script may write below; None for anywhere, and any library.
+    /// The only folder below which the script may write; None if it may write anywhere and use any library.
     pub folder: Option<PathBuf>,
 }
 
 /// The start of a script.
 #[derive(Debug)]
 pub(super) struct ScriptStart<'a> {
-    /// How it is run.
+    /// The options, changed by the script's settings.
     pub(super) settings: ScriptOptions,
-    /// How many commands, from the first, describe only the start.
+    /// The number of commands at the beginning that are settings.
     pub(super) lines: usize,
-    /// The line that names a library, and that library.
+    /// The line that sets a library, and that library.
     library: Option<(usize, Library)>,
-    /// The shapes of the user's library; of one name only the last.
+    /// The shapes of the user's library; only the last of those with the same name.
     shapes: Vec<&'a StoredShape>,
     /// Unsaved work, the newest last.
     leftovers: Vec<&'a StoredShape>,
 }
 
 impl<'a> ScriptStart<'a> {
-    /// Reads the start from the commands of a script, each with its line. `settings` hold where it sets nothing.
+    /// Reads the start from the commands of a script, each with its line. `settings` apply where the script sets
+    /// nothing.
     ///
-    /// `Set shape` may also stand later: a record learns only then which shapes are used. They are there from the start.
+    /// `Set shape` may also come later in a script, because a recorder learns only then which shapes are used. These
+    /// shapes, too, exist from the start.
     ///
     /// # Errors
-    /// A setting that is wrong together with others, or that [`ScriptOptions::folder`] forbids.
+    /// Returns an error for a setting that cannot be used together with others, or that [`ScriptOptions::folder`]
+    /// forbids.
     pub(super) fn of(
         commands: &'a [(usize, ScriptCommand)],
         settings: &ScriptOptions,
@@ -89,7 +92,7 @@ impl<'a> ScriptStart<'a> {
         }
     }
 
-    /// Adds a shape, in place of one of the same name.
+    /// Adds a shape, or replaces the one with the same name.
     fn put(&mut self, shape: &'a StoredShape) {
         let same = |own: &&StoredShape| own.name.same(shape.name.as_str());
         match self.shapes.iter().position(same) {
@@ -98,10 +101,10 @@ impl<'a> ScriptStart<'a> {
         }
     }
 
-    /// Takes a setting.
+    /// Applies a setting.
     ///
     /// # Errors
-    /// What is wrong with it, in a sentence.
+    /// Returns what is wrong with the setting, as a sentence.
     fn set(&mut self, line: usize, setting: &'a ScriptSetting) -> Result<(), String> {
         let options = &mut self.settings.options;
         match setting {
@@ -130,10 +133,10 @@ impl<'a> ScriptStart<'a> {
         Ok(())
     }
 
-    /// The world that the script finds: `own`, unless it sets a library or its shapes.
+    /// Returns the world for the script: `own`, unless the script sets a library or its shapes.
     ///
     /// # Errors
-    /// Why its shapes cannot be stored, in a sentence.
+    /// Returns why the shapes cannot be stored, as a sentence.
     pub(super) fn world(&self, own: World) -> Result<World, String> {
         let world = match &self.library {
             Some((_, library)) => World::for_script(library.clone()),
