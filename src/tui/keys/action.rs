@@ -8,9 +8,9 @@
 //! with arguments   "load" Arguments::Shape(Purpose::Load), "Load: bring a stored shape onto the matrix";
 //!                  name   what follows the name             what it does
 //! ```
-//! Everything else refers to the rows. [`crate::tui::keys::default_keys`] gives them keys, with a hint and a line of
-//! help for each place; a settings file gives them other keys, by name; and [`crate::tui::prompt::commands`] makes the
-//! `:` commands of them.
+//! Everything else refers to these rows. [`crate::tui::keys::default_keys`] gives them keys, with a hint and a line
+//! of help for each place; a settings file gives them other keys, by name; and [`crate::tui::prompt::commands`] makes
+//! the `:` commands from them.
 
 use crate::tui::app::message::Purpose;
 use crate::tui::app::message::{Copied, Endpoint, Erase, Layer, Message};
@@ -24,13 +24,13 @@ use crate::tui::recognise::separate::request::SeparationFlags;
 /// Something that a user can ask for.
 #[derive(Debug, PartialEq)]
 pub struct Action {
-    /// Its name, in a settings file and after `:`.
+    /// The name in a settings file and after `:`.
     pub name: &'static str,
-    /// Other spellings after `:`, as "cursor left" for "cursor-left".
+    /// Other spellings after `:`, such as "cursor left" for "cursor-left".
     pub spellings: &'static [&'static str],
-    /// What it does, or the arguments that it needs to do something.
+    /// The message that the action sends, or the arguments that it needs.
     pub does: Does,
-    /// The same in words, for the list of `:` commands; empty where the help of its key says it.
+    /// A description for the list of `:` commands; empty if the help of its key says the same.
     pub help: &'static str,
 }
 
@@ -43,24 +43,24 @@ pub enum Does {
     With(Arguments),
 }
 
-/// What follows the name of a command.
+/// The arguments after the name of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arguments {
-    /// The name of a shape, and what for.
+    /// The name of a shape, and the purpose of the command.
     Shape(Purpose),
     /// The name of a deleted shape.
     Deleted,
     /// A name to save under.
     Name,
-    /// A file, and what for.
+    /// A file, and the purpose of the command.
     File(FilePurpose),
     /// A kind of figure and its parameters.
     Figure,
     /// Parameters of the sensor.
     Sensor,
-    /// Ranges of a sweep.
+    /// The ranges of a sweep.
     Ranges,
-    /// Degrees.
+    /// An angle in degrees.
     Degrees,
     /// Column and row of a taxel.
     Taxel,
@@ -68,7 +68,7 @@ pub enum Arguments {
     Distance,
     /// The name of a set of shapes.
     Model,
-    /// Sizes of a set.
+    /// The sizes of a set.
     Sizes,
     /// A whole number.
     Seed,
@@ -76,7 +76,7 @@ pub enum Arguments {
     FrameSource,
 }
 
-/// What a file is named for.
+/// The purpose for which a file is named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilePurpose {
     /// To open it.
@@ -86,7 +86,7 @@ pub enum FilePurpose {
 }
 
 impl Action {
-    /// Its message; None for a command with arguments.
+    /// Returns the message of the action; None for a command with arguments.
     pub fn message(&self) -> Option<&Message> {
         match &self.does {
             Does::Message(message) => Some(message),
@@ -94,7 +94,7 @@ impl Action {
         }
     }
 
-    /// The arguments that it needs; None for an action that stands alone.
+    /// Returns the arguments that the action needs; None if it needs no arguments.
     pub fn arguments(&self) -> Option<Arguments> {
         match self.does {
             Does::Message(_) => None,
@@ -102,14 +102,14 @@ impl Action {
         }
     }
 
-    /// Whether it sends this message.
+    /// Returns true if the action sends this message.
     pub fn sends(&self, message: &Message) -> bool {
         self.message() == Some(message)
     }
 }
 
 impl Arguments {
-    /// How messages show them.
+    /// Returns how messages show the arguments.
     pub fn form(self) -> &'static str {
         match self {
             Self::Shape(_) | Self::Deleted | Self::Name => "NAME",
@@ -141,8 +141,9 @@ impl Arguments {
     }
 }
 
-/// Rows of the table: `CONSTANT "name" ["spelling"…] message, "help"`, where the help may be left out, and `"name" arguments,
-/// "help"`. A macro, so that the default keys can name each row and the compiler knows the names.
+/// Builds the table from rows `CONSTANT "name" ["spelling"…] message, "help"`, where the help may be left out, and
+/// `"name" arguments, "help"`. It is a macro, so that the default keys can name each row and the compiler checks the
+/// names.
 macro_rules! actions {
     (
         alone {$($constant:ident $name:literal [$($spelling:literal),*] $message:expr $(, $help:literal)?;)+}
@@ -354,7 +355,7 @@ actions! {
     }
 }
 
-/// The action of that name that a key can have.
+/// Returns the action with this name, if a key can have it.
 pub fn named(name: &str) -> Option<&'static Action> {
     let mut all = ACTIONS.iter().copied();
     all.find(|action| action.name == name && action.message().is_some())

@@ -6,19 +6,19 @@ use crate::tui::app::message::Message;
 use crate::tui::keys::action::Action;
 use crate::tui::keys::key::{Arrow, Key};
 
-/// What a place does with a key that has no binding there.
+/// The effect of a key that has no binding in a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Unbound {
-    /// Nothing.
+    /// The key does nothing.
     Ignored,
-    /// A character is typed into the field.
+    /// If the key is a character, it is typed into the field.
     Typed,
 }
 
 use Unbound::{Ignored, Typed};
 
-/// Rows of the table of places: `Place "name in a settings file" "heading in help" unbound keys, outer place`. A key that
-/// means nothing in a place is looked up in the outer one.
+/// Builds the table of places from rows `Place "name in a settings file" "heading in help" unbound keys, outer
+/// place`. A key that has no binding in a place is looked up in the outer one.
 macro_rules! contexts {
     ($($(#[$doc:meta])+ $place:ident $name:literal $title:literal $unbound:expr, $outer:expr;)+) => {
         /// The place where a key is pressed; it decides what the key does.
@@ -31,28 +31,28 @@ macro_rules! contexts {
             /// All places, in the order of help.
             pub const ALL: [Self; [$(Self::$place),+].len()] = [$(Self::$place),+];
 
-            /// Its heading in help.
+            /// Returns the heading of the place in help.
             pub fn title(self) -> &'static str {
                 match self {
                     $(Self::$place => $title,)+
                 }
             }
 
-            /// Its name in a settings file.
+            /// Returns the name of the place in a settings file.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$place => $name,)+
                 }
             }
 
-            /// What it does with a key that has no binding here.
+            /// Returns the effect of a key that has no binding here.
             fn unbound(self) -> Unbound {
                 match self {
                     $(Self::$place => $unbound,)+
                 }
             }
 
-            /// The place where a key that means nothing here is looked up next.
+            /// Returns the place in which to look up a key that has no binding here.
             pub(in crate::tui) fn outer(self) -> Option<Self> {
                 match self {
                     $(Self::$place => $outer,)+
@@ -64,7 +64,7 @@ macro_rules! contexts {
 
 /// The outer place of most places.
 const EVERYWHERE: Option<Context> = Some(Context::Everywhere);
-/// The outer place of what has a field.
+/// The outer place of most places with a field.
 const LINE: Option<Context> = Some(Context::Line);
 /// The outer place of the pages of Explore.
 const EXPLORE: Option<Context> = Some(Context::Explore);
@@ -78,9 +78,9 @@ contexts! {
     Form "form" "In a form" Typed, LINE;
     /// In the list of shapes.
     List "list" "In the list of shapes" Typed, EVERYWHERE;
-    /// In the list of steps.
+    /// In the list of steps, the history.
     History "history" "In the history" Ignored, EVERYWHERE;
-    /// Where two imprints are compared.
+    /// On the page that compares two imprints.
     Compare "compare" "Comparing" Ignored, EVERYWHERE;
     /// In the field for a name.
     Name "name" "Saving" Typed, LINE;
@@ -94,19 +94,19 @@ contexts! {
     Explore "explore" "Exploring, on every page" Ignored, EVERYWHERE;
     /// On the imprints page of Explore.
     Imprints "imprints" "In the list of imprints" Ignored, EXPLORE;
-    /// On its statistics page.
+    /// On the statistics page of Explore.
     Statistics "statistics" "In the statistics" Ignored, EXPLORE;
-    /// On its histogram page.
+    /// On the histogram page of Explore.
     Histogram "histogram" "At the histogram" Ignored, EXPLORE;
-    /// On its map page.
+    /// On the map page of Explore.
     Map "map" "On the map" Ignored, EXPLORE;
-    /// On its scatter page.
+    /// On the scatter page of Explore.
     Scatter "scatter" "At the scatter plot" Ignored, EXPLORE;
-    /// On its page of angles.
+    /// On the angles page of Explore.
     Angles "angles" "At the plot of angles" Ignored, EXPLORE;
     /// In the field for a filter of the list of imprints.
     Filter "filter" "Filtering the list of imprints" Typed, LINE;
-    /// Where a letter is asked for, to mark something or to go to a mark.
+    /// At the question for a letter, to mark something or to go to a mark.
     Mark "mark" "Choosing the letter of a mark" Typed, EVERYWHERE;
     /// In the field for the name of an exported file.
     Export "export" "Exporting" Typed, LINE;
@@ -118,61 +118,61 @@ contexts! {
     Confusion "confusion" "At the confusion matrix" Ignored, EVERYWHERE;
     /// On the page of sizes.
     Separate "separate" "At the sizes of shapes" Ignored, EVERYWHERE;
-    /// At the frames of a sensor.
+    /// On the page that watches the frames of a sensor.
     Live "live" "Watching a sensor" Ignored, EVERYWHERE;
     /// At a yes-or-no question.
     Question "question" "At a question" Ignored, EVERYWHERE;
     /// In the list of keys.
     Help "help" "In the help" Ignored, EVERYWHERE;
-    /// In the field for what is searched for in that list.
+    /// In the field for the text to search for in the list of keys.
     Search "search" "Searching the help" Typed, LINE;
-    /// In any field that is typed into, unless its page gives the key another meaning.
+    /// In any text field, unless its page gives the key another meaning.
     Line "line" "In a line of text" Typed, EVERYWHERE;
-    /// Everywhere, unless the key means something else there.
+    /// Everywhere, unless the place gives the key another meaning.
     Everywhere "everywhere" "Everywhere" Ignored, None;
 }
 
 impl Context {
-    /// The screen that this place is a page of; hints show the keys of both.
+    /// Returns the screen that this place is a page of; hints show the keys of both.
     pub fn screen(self) -> Option<Self> {
         let pages = [Self::Explore, Self::Matrix];
         let own = self.outer().filter(|outer| pages.contains(outer));
         own.filter(|_| self != Self::Grab)
     }
 
-    /// The other pages of the screen that this place is a page of; none where a screen has no pages to turn to.
+    /// Returns the other pages of the same screen; none if the screen has no pages.
     pub(in crate::tui) fn other_pages(self) -> impl Iterator<Item = Self> {
         let turns = |place: Self| place.outer() == EXPLORE;
         let others = Self::ALL.into_iter();
         others.filter(move |other| turns(self) && turns(*other) && *other != self)
     }
 
-    /// Whether a key that means nothing here is looked up in this place, at once or at last.
+    /// Returns true if a key that has no binding here may be looked up in `place`, directly or through other places.
     pub(in crate::tui) fn leads_to(self, place: Self) -> bool {
         std::iter::successors(Some(self), |context| context.outer()).any(|own| own == place)
     }
 
-    /// Whether a character that is not bound is typed into a field.
+    /// Returns true if a character that has no binding is typed into a field.
     pub(in crate::tui) fn takes_text(self) -> bool {
         self.unbound() == Typed
     }
 }
 
-/// A row of the table of keys: some keys of a place, shown together in hints and help.
+/// A row of the table of keys: some keys of a place that are shown together in hints and help.
 #[derive(Clone, Debug)]
 pub struct Binding {
     /// The place.
     pub context: Context,
-    /// The keys, each with its action. Empty after a settings file has taken all of them away.
+    /// The keys, each with its action. Empty after a settings file has taken them all away.
     pub keys: Cow<'static, [(Key, &'static Action)]>,
-    /// A word or two for the line of hints; empty for no hint.
+    /// A word or two for the line of hints; empty if there is no hint.
     pub hint: &'static str,
     /// What the keys do, for help.
     pub help: &'static str,
 }
 
 impl Binding {
-    /// A row of the default keys.
+    /// Creates a row of the default keys.
     pub(in crate::tui) const fn row(
         context: Context,
         keys: &'static [(Key, &'static Action)],
@@ -187,12 +187,12 @@ impl Binding {
         }
     }
 
-    /// Whether one of its keys sends this message.
+    /// Returns true if one of the keys sends this message.
     pub fn does(&self, message: &Message) -> bool {
         self.keys.iter().any(|(_, action)| action.sends(message))
     }
 
-    /// The row without some keys.
+    /// Returns the row without some keys.
     pub(in crate::tui) fn without(&self, others: &[Key]) -> Self {
         let keys = self.keys.iter().filter(|(key, _)| !others.contains(key));
         Self {
@@ -201,7 +201,7 @@ impl Binding {
         }
     }
 
-    /// Its keys as people write them: "Home End"; the four arrows as one word.
+    /// Returns the names of the keys, such as "Home End"; the four arrows are one word.
     pub fn labels(&self) -> String {
         let mut labels = Vec::new();
         for (key, _) in self.keys.iter() {
@@ -213,7 +213,7 @@ impl Binding {
         labels.join(" ")
     }
 
-    /// "arrows" or "Shift-arrows" if the key is one of four that are all in this row.
+    /// Returns "arrows" or "Shift-arrows" if the key is one of four arrows that are all in this row.
     fn all_arrows(&self, key: Key) -> Option<&'static str> {
         let (shown, label): (fn(Arrow) -> Key, _) = match key {
             Key::Arrow(_) => (Key::Arrow, "arrows"),
@@ -225,13 +225,15 @@ impl Binding {
         all.iter().all(bound).then_some(label)
     }
 
-    /// Its keys in short, for hints: the first one, or the first two that do different things if both are short.
+    /// Returns the names of the keys for hints: the first one, or, if both are short, the first two that do different
+    /// things.
     pub fn short_labels(&self) -> String {
         let parts = self.short_parts().into_iter();
         parts.map(|(label, _)| label).collect()
     }
 
-    /// The same in parts, each with the action that a click on it does: none for the four arrows together.
+    /// Returns the parts of [`Self::short_labels`], each with the action of a click on it; the four arrows together
+    /// have no action.
     pub fn short_parts(&self) -> Vec<(String, Option<&'static Action>)> {
         if let Some(arrows) = self.keys.iter().find_map(|(key, _)| self.all_arrows(*key)) {
             return vec![(arrows.to_owned(), None)];
@@ -246,7 +248,7 @@ impl Binding {
             Some((second, other)) if first.len() + second.len() <= 9 => {
                 vec![(first, Some(action)), (format!(" {second}"), Some(other))]
             }
-            // Two long names with one beginning.
+            // Two long names that begin alike.
             Some((second, other)) if second == "PageDown" && first == "PageUp" => {
                 vec![(first, Some(action)), ("/Down".to_owned(), Some(other))]
             }

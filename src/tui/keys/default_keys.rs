@@ -1,10 +1,10 @@
 //! The default keys: for each place its keys with their actions, a hint for the bottom of the screen and a line of
 //! help.
 //!
-//! Help, hints, the menu and `docs/keys.md` are made from it; a key that is not in it does nothing. A settings file can
-//! give the actions of a place other keys: [`crate::tui::keys::keymap`]. Hint and help stand here and not with the action
-//! because the same action means different things in different places: Enter takes a figure, starts a sweep, writes a
-//! file.
+//! Help, hints, the menu and `docs/keys.md` are made from this table; a key that is not in it does nothing. A
+//! settings file can give the actions of a place other keys: [`crate::tui::keys::keymap`]. Hint and help are part of
+//! the place, not of the action, because the same action means different things in different places: Enter takes a
+//! figure, starts a sweep, writes a file.
 //!
 //! The arrows move the cursor, not `hjkl`: `l` is Load, as in the paper's menu.
 
@@ -20,17 +20,17 @@ use Key::{
 
 /// The first function key.
 const F1: Key = Key::Function(1);
-/// The left arrow, as most rows have it.
+/// The left arrow.
 const LEFT: Key = Key::Arrow(Left);
 /// The right arrow.
 const RIGHT: Key = Key::Arrow(Right);
-/// The arrow up.
+/// The up arrow.
 const UP: Key = Key::Arrow(Up);
-/// The arrow down.
+/// The down arrow.
 const DOWN: Key = Key::Arrow(Down);
 
-/// Rows by place: `[key => ACTION, ...] hint help`. A macro, so that a row stays a line where the formatter would make
-/// eight of it. What is worth knowing of a place stands above it.
+/// Builds the table from rows `[key => ACTION, ...] hint help`, grouped by place. It is a macro, so that a row stays
+/// on one line; the formatter would make eight of it. Notes about a place are above it.
 macro_rules! table {
     ($($(#[$doc:meta])* $place:ident {$(
         [$($key:expr => $action:ident),+] $hint:literal $help:literal;
@@ -39,10 +39,10 @@ macro_rules! table {
     };
 }
 
-/// The default keys, in the order of help and hints; the first seven rows are the paper's options and make the menu.
+/// The default keys, in the order of help and hints; the first seven rows are the paper's options and form the menu.
 pub static DEFAULT_KEYS: &[Binding] = table! {
-    /// The first seven rows are the menu, in its order. A digit does nothing by itself: it is a count for the key that
-    /// follows.
+    /// The first seven rows are the menu, in its order. A digit does nothing by itself: it is a count for the next
+    /// key.
     Matrix {
         [Char('n') => NEW] "" "New: empty the matrix, to draw by hand";
         [Char('l') => LOAD] "" "Load: bring a stored shape onto the matrix";
@@ -91,7 +91,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "Help: all keys";
     }
 
-    /// Only what differs from the matrix: any other key does what it does there.
+    /// Only the differences from the matrix: any other key does what it does there.
     Grab {
         [LEFT => NUDGE_LEFT, RIGHT => NUDGE_RIGHT, UP => NUDGE_UP, DOWN => NUDGE_DOWN]
             "move" "move the shape by a step";
@@ -101,7 +101,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Esc => PUT_BACK] "put back" "put it back where it was, and let go";
     }
 
-    /// Characters that have no row are typed into the field with the focus.
+    /// Characters without a row are typed into the field that has the focus.
     Form {
         [Tab => NEXT, BackTab => PREVIOUS] "field" "next, previous field";
         [LEFT => LEFT, RIGHT => RIGHT, UP => UP, DOWN => DOWN]
@@ -114,7 +114,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "these keys";
     }
 
-    /// Where a question has no "no" of its own, `n` only closes it. A key without a row leaves it open.
+    /// If a question has no answer "no", `n` only closes it. A key without a row leaves it open.
     Question {
         [Char('y') => ACCEPT] "yes" "yes";
         [Char('n') => DECLINE] "no" "no; unsaved work from last time goes to the trash";
@@ -136,7 +136,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "these keys";
     }
 
-    /// To move in the list changes nothing; the matrix follows only on Enter.
+    /// Moving in the list changes nothing; the matrix follows only on Enter.
     History {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "earlier, later step";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten steps back, forward";
@@ -168,7 +168,8 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [F1 => HELP] "help" "these keys";
     }
 
-    /// Up and Down are for earlier commands, as in a shell; fields that stand one above the other have them to move.
+    /// Up and Down recall earlier commands, as in a shell; in forms, whose fields stand one above the other, they
+    /// move.
     Command {
         [Enter => ACCEPT] "run" "run the command";
         [Tab => NEXT] "complete" "complete the word";
@@ -187,14 +188,14 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('?') => HELP] "help" "these keys";
     }
 
-    /// Ctrl-C stops the work as it closes a page elsewhere, and quits while a worker does not stop.
+    /// Ctrl-C stops the work, as it closes a page elsewhere; it quits if a worker does not stop.
     Running {
         [Esc => STOP, Char('s') => STOP, Ctrl('g') => STOP]
             "stop" "stop; a sweep keeps what is complete";
         [Ctrl('c') => QUIT] "" "stop; again while it stops: quit at once";
     }
 
-    /// A page of Explore looks here for keys that it has no row for.
+    /// The pages of Explore look here for keys that have no row there.
     Explore {
         [Char('1') => IMPRINTS,
             Char('2') => STATISTICS,
@@ -216,7 +217,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "close" "back to the matrix; the results are kept";
     }
 
-    /// Enter takes the first pose of the selected imprint: of its poses the one that the sweep came to first.
+    /// Enter takes the first pose of the selected imprint, which is the one that the sweep reached first.
     Imprints {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "" "previous, next imprint";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten imprints back, forward";
@@ -251,7 +252,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Home => FIRST, End => LAST] "" "first, last descriptor";
     }
 
-    /// Keys move in the grid of poses, never between its points: each pose that can be reached was asked for.
+    /// Keys move in the grid of poses, never between its points: every pose that can be reached is part of the sweep.
     Map {
         [LEFT => CURSOR_LEFT, RIGHT => CURSOR_RIGHT, UP => CURSOR_UP, DOWN => CURSOR_DOWN]
             "" "to the next pose; each letter or colour is an imprint";
@@ -295,7 +296,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('g') => FOLLOW] "list" "go to the imprint of that pose in the list";
     }
 
-    /// The list follows as one types; Esc brings back the filter and the row that were there before.
+    /// The list changes with every character typed; Esc restores the earlier filter and row.
     Filter {
         [Enter => ACCEPT] "keep" "keep the filter; an empty one shows all imprints";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "leave the list as it was";
@@ -314,7 +315,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [F1 => HELP] "help" "these keys";
     }
 
-    /// What has no row goes to the matrix: one draws, moves and turns while the answer follows.
+    /// Keys without a row go to the matrix: the user can draw, move and turn while the answer follows.
     Recognise {
         [Char('t') => QUIZ] "quiz" "quiz: name the shape that left a random touch";
         [Char('a') => KEEP, Char('x') => FORGET]
@@ -330,7 +331,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "close" "stop training; back to the descriptors";
     }
 
-    /// Letters choose a shape by the beginning of its name, and digits name one at once; so help is F1.
+    /// Letters choose a shape by the beginning of its name, and a digit names one at once by its number; so help is F1.
     Quiz {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "choose" "previous, next shape, or by its first letter";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten shapes back, forward";
@@ -352,7 +353,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "close" "back to Recognise";
     }
 
-    /// While sizes are still looked at, Enter is refused, and Esc stops the work and leaves the page open.
+    /// While sizes are being checked, Enter is refused, and Esc stops the work and leaves the page open.
     Separate {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "size" "previous, next size";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten sizes back, forward";
@@ -367,7 +368,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "close" "stop the work; back to Recognise";
     }
 
-    /// All four arrows move in the history of frames: the page has no cursor that they could move.
+    /// All four arrows move in the history of frames: the page has no cursor to move.
     Live {
         [Char('t') => TARE, Char('T') => NO_TARE]
             "tare" "subtract the median of the last 30 frames; no tare";
@@ -397,7 +398,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "close" "stop watching; w on the matrix watches again";
     }
 
-    /// Esc leaves the search first, so that it does not close more than is meant; the other keys close help at once.
+    /// Esc only leaves the search first, so that it does not close too much; the other keys close help at once.
     Help {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "scroll" "scroll by a line";
         [PageUp => SCREEN_UP, PageDown => SCREEN_DOWN, Char(' ') => SCREEN_DOWN]
@@ -409,14 +410,14 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Esc => CANCEL, Ctrl('g') => CANCEL] "" "leave the search; without one: close";
     }
 
-    /// Help follows as one types; Esc brings back the lines and the search that were there before.
+    /// Help follows with every character typed; Esc restores the earlier lines and search.
     Search {
         [Enter => ACCEPT] "keep" "keep the search, to go to other matches";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "back to where the search began";
         [F1 => HELP] "help" "these keys";
     }
 
-    /// Forms and prompts look here for keys that they have no row for.
+    /// Forms and prompts look here for keys that have no row there.
     Line {
         [LEFT => LEFT, RIGHT => RIGHT] "" "move in the line";
         [Home => TO_START, End => TO_END] "" "to its start, its end";
@@ -433,5 +434,5 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
     }
 };
 
-/// Number of rows at the head of the table that make the menu.
+/// The number of rows at the head of the table that form the menu.
 pub const MENU: usize = 7;

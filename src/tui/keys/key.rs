@@ -1,26 +1,26 @@
 //! Keys, and their notation: `f<Right><Tab>4.00<Enter>`.
 //!
-//! Only keys that arrive on every terminal: no Alt, no Ctrl with a digit. A character stands for itself, `<lt>` for
-//! `<`; named keys and Ctrl stand in angle brackets, so does a character by its number, `<U+3000>`; `<3x:Down>` repeats
-//! one.
+//! There are only keys that arrive from every terminal: no Alt, no Ctrl with a digit. A character is written as
+//! itself, but `<` as `<lt>`. Named keys and Ctrl are written in angle brackets, and so is a character given by its
+//! number, `<U+3000>`. `<3x:Down>` repeats a key.
 
 use std::fmt;
 
 /// One of the four arrows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrow {
-    /// To smaller x.
+    /// Towards smaller x.
     Left,
-    /// To larger x.
+    /// Towards larger x.
     Right,
-    /// To smaller y.
+    /// Towards smaller y.
     Up,
-    /// To larger y.
+    /// Towards larger y.
     Down,
 }
 
 impl Arrow {
-    /// The step (dx, dy) in the plane's frame.
+    /// Returns the step (dx, dy) in the plane's frame.
     pub fn step(self) -> (i8, i8) {
         match self {
             Self::Left => (-1, 0),
@@ -34,13 +34,13 @@ impl Arrow {
 /// A key that was pressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// A character, Shift already in it.
+    /// A character, as Shift has changed it.
     Char(char),
     /// Ctrl with a lower-case letter.
     Ctrl(char),
     /// An arrow.
     Arrow(Arrow),
-    /// An arrow with Shift, where the terminal sends it.
+    /// An arrow with Shift, on terminals that send it.
     ShiftArrow(Arrow),
     /// Home.
     Home,
@@ -58,15 +58,15 @@ pub enum Key {
     Tab,
     /// Shift-Tab.
     BackTab,
-    /// Delete to the left.
+    /// Backspace, which deletes to the left.
     Backspace,
-    /// Delete to the right.
+    /// Delete, which deletes to the right.
     Delete,
     /// A function key, 1 to 12.
     Function(u8),
 }
 
-/// Names in brackets; the first of a key is the one that is written.
+/// The names in angle brackets. If a key has several, the first one is written.
 const NAMES: [(&str, Key); 34] = [
     ("Left", Key::Arrow(Arrow::Left)),
     ("Right", Key::Arrow(Arrow::Right)),
@@ -105,13 +105,13 @@ const NAMES: [(&str, Key); 34] = [
 ];
 
 impl fmt::Display for Key {
-    /// The notation.
+    /// Writes the notation of the key.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (*self, NAMES.iter().find(|(_, key)| key == self)) {
             (Self::Char('>'), _) => f.write_str(">"),
             (_, Some((name, _))) => write!(f, "<{name}>"),
             (Self::Ctrl(letter), _) => write!(f, "<C-{letter}>"),
-            // In a script blanks at the end of a line do not count.
+            // At the end of a script's line, blanks are ignored.
             (Self::Char(blank), _) if blank.is_whitespace() || blank.is_control() => {
                 write!(f, "<U+{:04X}>", u32::from(blank))
             }
@@ -122,7 +122,7 @@ impl fmt::Display for Key {
 }
 
 impl Key {
-    /// How people write it: in hints, help and tables.
+    /// Returns the name of the key in hints, help and tables.
     pub fn label(self) -> String {
         match self {
             Self::Char(' ') => "Space".to_owned(),
@@ -137,36 +137,36 @@ impl Key {
     }
 }
 
-/// Why a text is not a sequence of keys: what stands where, in characters from 1.
+/// The reason why a text is not a sequence of keys, with the position and text of the wrong key.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KeyError {
-    /// No key has that name.
+    /// No key has this name.
     #[error("key {found:?} at character {at} is unknown; write a single '<' as <lt>")]
     Unknown {
-        /// Where.
+        /// The position in the text, in characters from 1.
         at: usize,
-        /// What.
+        /// The text of the key.
         found: String,
     },
-    /// It would go on for hours.
+    /// There are too many keys; they would take hours.
     #[error(
         "key {found:?} at character {at}: a key repeats at most 10,000 times, and all keys together are at most 200,000"
     )]
     TooMany {
-        /// Where.
+        /// The position in the text, in characters from 1.
         at: usize,
-        /// What.
+        /// The text of the key.
         found: String,
     },
 }
 
-/// The most keys that one repetition gives: a slip of the pen must not take hours.
+/// The greatest number of keys from one repetition: a typing mistake must not take hours.
 const MOST_REPEATED: usize = 10_000;
-/// The most keys that a text gives.
+/// The greatest number of keys from one text.
 const MOST_KEYS: usize = 200_000;
 
-/// The keys of a text in notation.
+/// Reads the keys of a text in notation.
 ///
 /// ```
 /// use taxel::tui::keys::key::{Key, Arrow, parse};
@@ -175,7 +175,7 @@ const MOST_KEYS: usize = 200_000;
 /// ```
 ///
 /// # Errors
-/// The first name in brackets that is unknown.
+/// Returns an error for the first name in brackets that is unknown, or if there are too many keys.
 pub fn parse(text: &str) -> Result<Vec<Key>, KeyError> {
     let mut keys = Vec::new();
     let (mut rest, mut at) = (text, 1);
@@ -192,7 +192,7 @@ pub fn parse(text: &str) -> Result<Vec<Key>, KeyError> {
             if times.is_empty() || !times.bytes().all(|digit| digit.is_ascii_digit()) {
                 return Err(unknown());
             }
-            // A number that is too large to be read is too many, too.
+            // A number too large to be read is too many, too.
             let times = times.parse().unwrap_or(usize::MAX);
             if times > MOST_REPEATED || keys.len() + times > MOST_KEYS {
                 return Err(KeyError::TooMany { at, found: found() });
@@ -207,7 +207,7 @@ pub fn parse(text: &str) -> Result<Vec<Key>, KeyError> {
     Ok(keys)
 }
 
-/// The key of a name between angle brackets, without them.
+/// Returns the key of a name, given without its angle brackets.
 fn named(name: &str) -> Option<Key> {
     let ctrl = || {
         let letter = name
@@ -235,7 +235,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_read() {
+    fn keys_are_read_as_they_were_written() {
         let named = NAMES.iter().map(|&(_, key)| key);
         let others = [
             'a', '<', '>', '#', '"', '\u{3000}', '\u{2028}', '\t', '\u{7f}', '你',

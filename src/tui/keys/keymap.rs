@@ -1,8 +1,8 @@
-//! The keys in use: the default keys with the changes of a settings file.
+//! The keys in use: the default keys with the changes from a settings file.
 //!
-//! A change gives a key of a place to one of the actions of that place, or to none. Changes that would surprise are
-//! refused: the same key twice, taking away the last key of an action without giving it a new one, a letter where text
-//! is typed, and any change of Ctrl-C, which always closes what is open.
+//! A change gives a key of a place to one of the actions of that place, or makes it do nothing. Changes that would
+//! surprise are refused: changing the same key twice, taking away the last key of an action without giving it a new
+//! one, a letter where text is typed, and any change of Ctrl-C, which always closes what is open.
 //!
 //! ```
 //! use taxel::tui::app::message::Message;
@@ -24,7 +24,7 @@ use crate::tui::keys::binding::{Binding, Context};
 use crate::tui::keys::default_keys::DEFAULT_KEYS;
 use crate::tui::keys::key::Key;
 
-/// Closes what is open everywhere; on the matrix it quits.
+/// The key that closes what is open everywhere; on the matrix it quits.
 const WAY_OUT: Key = Key::Ctrl('c');
 
 /// A change of one key in one place.
@@ -38,14 +38,14 @@ pub struct Change {
     pub action: Option<&'static Action>,
 }
 
-/// Why a change is refused.
+/// The reason why a change is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KeymapError {
-    /// Ctrl-C.
+    /// The key is Ctrl-C.
     #[error("{WAY_OUT} always closes what is open and cannot be changed")]
     WayOut,
-    /// A letter where text is typed.
+    /// The key is a letter, in a place where text is typed.
     #[error("{0} types text here; choose a key like <C-x>")]
     Text(Key),
     /// The key is changed twice.
@@ -64,7 +64,7 @@ pub enum KeymapError {
     },
 }
 
-/// What each key does in each place.
+/// The action of each key in each place.
 #[derive(Clone, Debug)]
 pub struct Keymap {
     /// A row for each row of the default keys, in the same order.
@@ -72,7 +72,7 @@ pub struct Keymap {
 }
 
 impl Default for Keymap {
-    /// The default keys.
+    /// Returns the default keys.
     fn default() -> Self {
         Self {
             rows: DEFAULT_KEYS.to_vec(),
@@ -81,10 +81,10 @@ impl Default for Keymap {
 }
 
 impl Keymap {
-    /// The default keys with changes.
+    /// Returns the default keys with changes.
     ///
     /// # Errors
-    /// The index of the first change that is refused, and why.
+    /// Returns the index of the first change that is refused, and the reason.
     pub fn with(changes: &[Change]) -> Result<Self, (usize, KeymapError)> {
         for (index, change) in changes.iter().enumerate() {
             allowed(change, &changes[..index]).map_err(|error| (index, error))?;
@@ -99,20 +99,20 @@ impl Keymap {
         Ok(Self { rows })
     }
 
-    /// Its rows: those of the default keys, in the same order.
+    /// Returns a row for each row of the default keys, in the same order.
     pub fn rows(&self) -> &[Binding] {
         &self.rows
     }
 
-    /// The rows of one place.
+    /// Returns the rows of one place.
     pub fn of(&self, context: Context) -> impl Iterator<Item = &Binding> {
         self.rows
             .iter()
             .filter(move |binding| binding.context == context)
     }
 
-    /// The message of a key pressed in a place. A key that means nothing there is looked up in the places around it;
-    /// then a character is typed if the place has a field.
+    /// Returns the message of a key pressed in a place. A key that has no binding there is looked up in the outer
+    /// places; if it has none there either, a character is typed if the place has a field.
     pub fn lookup(&self, context: Context, key: Key) -> Option<Message> {
         let mut place = Some(context);
         while let Some(here) = place {
@@ -128,7 +128,7 @@ impl Keymap {
         }
     }
 
-    /// The first key of an action as people write it, in a place or in those around it; `:name` if it has no key.
+    /// Returns the name of the first key of an action, in a place or its outer places; `:name` if it has no key.
     pub fn label(&self, context: Context, action: &Action) -> String {
         let places = std::iter::successors(Some(context), |place| place.outer());
         let mut keys = places
@@ -144,14 +144,14 @@ impl Keymap {
 pub enum HelpLine {
     /// The heading of a place.
     Place(Context),
-    /// The keys of a row, and what they do.
+    /// The names of the keys of a row, and what they do.
     Keys(String, &'static str),
     /// The rest of a text that does not fit on one line.
     More(&'static str),
 }
 
-/// The lines of help in a place: on the matrix, where a user begins, all rows; elsewhere the rows of the place and of
-/// those around it, without keys that have another meaning in the inner one, then those of the screen's other pages.
+/// Returns the lines of help in a place. On the matrix, where a user begins, these are all rows; elsewhere the rows
+/// of the place and its outer places, without keys that an inner one binds, then those of the screen's other pages.
 pub fn help(context: Context, keymap: &Keymap) -> Vec<HelpLine> {
     let whole = |place| section(place, keymap, &[]);
     if context == Context::Matrix {
@@ -168,7 +168,7 @@ pub fn help(context: Context, keymap: &Keymap) -> Vec<HelpLine> {
     lines
 }
 
-/// The heading and the rows of a place, without keys that are taken; nothing where no row is left.
+/// Returns the heading and the rows of a place, without the keys in `taken`; nothing if no row is left.
 fn section(place: Context, keymap: &Keymap, taken: &[Key]) -> Vec<HelpLine> {
     let rows = keymap.of(place).map(|row| row.without(taken));
     let rows = rows.filter(|row| taken.is_empty() || !row.keys.is_empty());
@@ -180,7 +180,7 @@ fn section(place: Context, keymap: &Keymap, taken: &[Key]) -> Vec<HelpLine> {
     lines
 }
 
-/// Checks a change by itself, given those before it.
+/// Checks a change by itself, given the changes before it.
 fn allowed(change: &Change, before: &[Change]) -> Result<(), KeymapError> {
     let Change {
         context,
@@ -233,7 +233,7 @@ fn lasting(change: &Change, rows: &[Binding]) -> Result<(), KeymapError> {
     })
 }
 
-/// A row after the changes. A new key comes before the others of its action, so that hints show it.
+/// Returns a row after the changes. A new key comes before the others of its action, so that hints show it.
 fn changed(row: &Binding, changes: &[Change]) -> Binding {
     let here = || {
         changes
@@ -264,14 +264,14 @@ fn changed(row: &Binding, changes: &[Change]) -> Binding {
     }
 }
 
-/// The default rows of a place.
+/// Returns the default rows of a place.
 fn default_rows(context: Context) -> impl Iterator<Item = &'static Binding> + Clone {
     DEFAULT_KEYS
         .iter()
         .filter(move |binding| binding.context == context)
 }
 
-/// The names of a place's actions, in the order of the default keys.
+/// Returns the names of a place's actions, in the order of the default keys.
 pub fn actions(context: Context) -> Vec<&'static str> {
     let mut names = Vec::new();
     for (_, action) in default_rows(context).flat_map(|row| row.keys.iter()) {
@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn without_changes_every_key_means_what_the_table_says() {
+    fn without_changes_every_key_does_what_the_table_says() {
         let keymap = Keymap::default();
         for binding in DEFAULT_KEYS {
             for (key, action) in binding.keys.iter() {
@@ -357,7 +357,7 @@ mod tests {
             (Some(Message::Redo), Some(Message::Undo))
         );
         assert_eq!(matrix('d'), None);
-        // What is held looks on the matrix for what it does not know.
+        // While a shape is held, keys without a binding are looked up on the matrix.
         assert_eq!(keymap.lookup(Grab, Key::Char('x')), Some(Message::Toggle));
         assert_eq!(keymap.lookup(Form, Key::Ctrl('n')), Some(Message::Field(1)));
         assert_eq!(keymap.label(Matrix, &action::TOGGLE), "x");
@@ -367,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn what_would_surprise_is_refused() {
+    fn surprising_changes_are_refused() {
         use Context::{Everywhere, List, Matrix};
         let free = change(Matrix, "x", "toggle");
         for (wrong, message) in [

@@ -1,4 +1,4 @@
-//! Keys: their notation, what each does in each place, and the user's changes.
+//! Keys: their notation, what each of them does in each place, and the user's changes.
 //!
 //! ```text
 //! key            keys and their notation        action         the table of actions
