@@ -1,16 +1,16 @@
 //! Fields of parameters. They know the table of parameters but no shapes.
 //!
-//! A [`ParameterField`] is the text of one parameter; a [`ParameterForm`] is a list of them, one of which may have the
-//! focus. A field converts its text when it is asked for its value, and never keeps a value beside the text, so what
-//! one sees is what counts. The exception is the value that a field starts with, which stays exact as long as its text
-//! is not changed. What a field allows is what files, flags and commands allow.
+//! A [`ParameterField`] is the text of one parameter; a [`ParameterForm`] is a list of them, one of which may have
+//! the focus. A field converts its text when it is asked for its value, and never keeps a value beside the text, so
+//! the visible text is what counts. The exception is the initial value of a field, which stays exact as long as its
+//! text is not changed. A field allows the same values as files, flags and commands.
 
 use crate::parameter::{Parameter, ParameterError};
 use crate::sensor::Sensor;
 use crate::tui::app::message::Message;
 use crate::tui::widget::text_field::TextField;
 
-/// No field takes more characters.
+/// The greatest number of characters in a field.
 const LONGEST: usize = 24;
 
 /// A text field of one parameter.
@@ -22,15 +22,15 @@ pub struct ParameterField {
     optional: bool,
     /// The text.
     input: TextField,
-    /// What stood there at first, which is always taken: a shape that was moved or loaded may have more decimals
-    /// than the form's own.
+    /// The initial value, which is always accepted: a shape that was moved or loaded may have more decimals than the
+    /// form shows.
     initial: Option<f64>,
-    /// That value as text.
+    /// The initial value as text.
     initial_text: String,
 }
 
 impl ParameterField {
-    /// A field that shows a value; empty without one.
+    /// Creates a field that shows a value; it is empty if there is none.
     pub fn new(parameter: Parameter, value: Option<f64>, optional: bool) -> Self {
         let text = value.map_or(String::new(), |value| parameter.format(value));
         let mut input = TextField::new(text.clone(), LONGEST);
@@ -44,7 +44,7 @@ impl ParameterField {
         }
     }
 
-    /// Which parameter it sets.
+    /// Returns the parameter that the field sets.
     pub fn parameter(&self) -> Parameter {
         self.parameter
     }
@@ -54,17 +54,17 @@ impl ParameterField {
         self.optional
     }
 
-    /// Its text.
+    /// Returns the text of the field.
     pub fn text(&self) -> &str {
         self.input.text()
     }
 
-    /// Whether it was changed since it was made.
+    /// Returns true if the text differs from the initial one.
     pub fn changed(&self) -> bool {
         self.text() != self.initial_text
     }
 
-    /// Where its cursor stands, in columns.
+    /// Returns the position of the cursor, in columns.
     pub fn cursor(&self) -> usize {
         self.input.cursor()
     }
@@ -74,10 +74,10 @@ impl ParameterField {
         self.input.fresh()
     }
 
-    /// The value in the text; none of an empty field that may be empty.
+    /// Returns the value of the text; None if the field is optional and empty.
     ///
     /// # Errors
-    /// What is wrong with the text.
+    /// Returns an error that says what is wrong with the text.
     pub fn value(&self, sensor: &Sensor) -> Result<Option<f64>, ParameterError> {
         if self.text() == self.initial_text && (self.initial.is_some() || self.optional) {
             return Ok(self.initial);
@@ -95,8 +95,8 @@ impl ParameterField {
         }
     }
 
-    /// Adds one unit of the last decimal, or subtracts it. An empty field starts with the default; a text that is no
-    /// number stays.
+    /// Adds or subtracts one unit of the last decimal. An empty field gets the default; a text that is not a number
+    /// is kept.
     fn step(&mut self, direction: i8, sensor: &Sensor) {
         let value = match self.value(sensor) {
             Ok(Some(value)) => sensor.step(self.parameter, value, i32::from(direction)),
@@ -111,7 +111,7 @@ impl ParameterField {
     }
 }
 
-/// Fields, one of which has the focus; or none, where something beside the form has it.
+/// A list of fields. One of them has the focus, or none if something beside the form has it.
 #[derive(Clone, Debug)]
 pub struct ParameterForm {
     /// The fields, from the top.
@@ -123,7 +123,7 @@ pub struct ParameterForm {
 }
 
 impl ParameterForm {
-    /// A form for a sensor; no field has the focus.
+    /// Creates a form for a sensor; no field has the focus.
     pub fn new(fields: Vec<ParameterField>, sensor: Sensor) -> Self {
         Self {
             fields,
@@ -132,27 +132,27 @@ impl ParameterForm {
         }
     }
 
-    /// Its fields, from the top.
+    /// Returns the fields, from the top.
     pub fn fields(&self) -> &[ParameterField] {
         &self.fields
     }
 
-    /// Takes the fields out.
+    /// Returns the fields and drops the form.
     pub fn into_fields(self) -> Vec<ParameterField> {
         self.fields
     }
 
-    /// The sensor, which bounds the values.
+    /// Returns the sensor, which bounds the values.
     pub fn sensor(&self) -> &Sensor {
         &self.sensor
     }
 
-    /// Which field has the focus.
+    /// Returns the index of the field with the focus.
     pub fn focus(&self) -> Option<usize> {
         self.focus
     }
 
-    /// Gives a field the focus, or none.
+    /// Gives the focus to a field, or to none.
     pub fn set_focus(&mut self, focus: Option<usize>) {
         self.focus = focus.map(|index| index.min(self.fields.len().saturating_sub(1)));
         if let Some(field) = self.focused() {
@@ -160,7 +160,7 @@ impl ParameterForm {
         }
     }
 
-    /// The value of a parameter; none where its field is empty, wrong or missing.
+    /// Returns the value of a parameter; None if its field is empty, invalid or missing.
     pub fn value(&self, parameter: Parameter) -> Option<f64> {
         let field = self
             .fields
@@ -169,25 +169,25 @@ impl ParameterForm {
         field.value(&self.sensor).ok().flatten()
     }
 
-    /// The first field that is wrong, and why.
+    /// Returns the index of the first invalid field, and its error.
     pub fn error(&self) -> Option<(usize, ParameterError)> {
         let mut fields = self.fields.iter().enumerate();
         fields.find_map(|(index, field)| Some((index, field.value(&self.sensor).err()?)))
     }
 
-    /// The field that has the focus.
+    /// Returns the field with the focus.
     fn focused(&mut self) -> Option<&mut ParameterField> {
         self.fields.get_mut(self.focus?)
     }
 
-    /// Types, moves or deletes in the field that has the focus.
+    /// Passes a message to the field with the focus: it types, moves the cursor or deletes.
     pub fn take(&mut self, message: &Message) {
         if let Some(field) = self.focused() {
             field.input.take(message);
         }
     }
 
-    /// Changes the number in the field by its last decimal.
+    /// Changes the number in the field with the focus by one unit of its last decimal.
     pub fn step(&mut self, direction: i8) {
         let sensor = self.sensor;
         if let Some(field) = self.focused() {

@@ -1,30 +1,30 @@
 //! The lines of a form in its pane.
 //!
-//! With enough room each field has two lines, the second for errors, and so has the kind; otherwise one. The field that has the focus is
-//! always visible: fields above it scroll out of a low pane.
+//! If there is enough room, the kind and each field have two lines, the second one for errors; otherwise one. The
+//! field with the focus is always visible: in a low pane, fields above it scroll out.
 
 use ratatui::layout::Rect;
 
 use crate::tui::form::state::FormDialog;
 use crate::tui::widget::number::narrow;
 
-/// Where the lines of a form are.
+/// The positions of a form's lines.
 #[derive(Clone, Copy, Debug)]
 pub struct FormRows {
-    /// The line of the kind, where there is one.
+    /// The line of the kind; None if the form has no kind.
     pub kind: Option<u16>,
-    /// Lines above the fields.
+    /// The number of lines above the fields.
     head: u16,
-    /// Lines a field has: two where there is room for an error under it.
+    /// The number of lines per field: 2 if there is room for an error under it, otherwise 1.
     pub spacing: u16,
     /// The index of the first visible field.
     first: usize,
-    /// How many fields there is room for.
+    /// The number of fields that fit.
     visible: usize,
 }
 
 impl FormRows {
-    /// The lines of a form in its pane; the field that has the focus is visible.
+    /// Computes the lines of a form in its pane, so that the field with the focus is visible.
     pub fn of(area: Rect, dialog: &FormDialog) -> Self {
         let fields = dialog.form().fields().len();
         let kinds = u16::from(dialog.kind().is_some());
@@ -48,7 +48,7 @@ impl FormRows {
         }
     }
 
-    /// The visible fields, by number, each with its line from the top of the pane.
+    /// Returns the index of each visible field, with its line from the top of the pane.
     pub fn fields(&self, count: usize) -> impl Iterator<Item = (usize, u16)> {
         let rows = *self;
         (rows.first..count.min(rows.first + rows.visible))

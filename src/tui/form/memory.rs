@@ -1,12 +1,13 @@
-//! The values that forms were accepted with last: the next form begins with them, also in the next run.
+//! The values that were accepted last in forms: the next form begins with them, also in the next run.
 //!
-//! A line for each kind of figure, the last accepted one last, and one for the ranges of Explore:
+//! There is a line for each kind of figure, the last accepted one last, and a line for the ranges of Explore:
 //! ```text
 //! figure ellipse columns 16 rows 16 radius_x 3 radius_y 4 x0 5 y0 5 angle 0
 //! ranges picture centre columns 16 rows 16 angle 0:89:1 zoom_x 1
 //! ```
-//! A figure suits the sensor that it was placed on, and is taken only for one of as many columns and rows. Ranges of x0 and
-//! y0 suit one shape on one sensor, so they are taken only for another of its kind there, and only where they were typed.
+//! A figure fits the sensor on which it was placed, and is used only for a sensor with the same columns and rows.
+//! Ranges of x0 and y0 fit one shape on one sensor; they are kept only if they were typed, and used only for a shape
+//! of the same kind on a sensor of the same size.
 
 use std::collections::BTreeMap;
 
@@ -19,46 +20,47 @@ use crate::sensor::Sensor;
 const FIGURE: &str = "figure";
 /// The word before ranges.
 const RANGES: &str = "ranges";
-/// The parameters that say the size of a sensor.
+/// The parameters that give the size of a sensor.
 const SIDES: [Parameter; 2] = [Parameter::Columns, Parameter::Rows];
 
-/// What is remembered. The default remembers nothing: forms begin with the defaults each time, as a script needs it.
+/// The remembered values. The default remembers nothing: forms always begin with the defaults, as a script needs it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FormMemory {
-    /// Whether anything is remembered.
+    /// Whether values are remembered.
     keeps: bool,
-    /// Figures, each kind once, the last accepted one last.
+    /// One figure of each kind, the last accepted one last.
     figures: Vec<RememberedFigure>,
-    /// Ranges.
+    /// The ranges of the last sweep.
     ranges: Option<RememberedRanges>,
 }
 
-/// A figure as numbers: which are in range, a sensor says.
+/// A figure as plain numbers; whether they are in range depends on the sensor.
 #[derive(Clone, Debug, PartialEq)]
 struct RememberedFigure {
-    /// Its kind.
+    /// The kind of the figure.
     kind: FigureKind,
     /// Columns and rows of its sensor.
     sides: (u8, u8),
-    /// The values that it has.
+    /// The values of its parameters.
     values: Vec<(Parameter, f64)>,
 }
 
 /// Ranges of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RememberedRanges {
-    /// What the shape is called.
+    /// The name of the kind of shape.
     pub of: String,
     /// Columns and rows of the sensor.
     pub sides: (u8, u8),
-    /// What x0 and y0 place.
+    /// The point of the shape that x0 and y0 place.
     pub anchor: Anchor,
-    /// The ranges that were asked for, in the order of their fields.
+    /// The ranges that were typed, in the order of their fields.
     pub ranges: Vec<(Axis, DecimalRange)>,
 }
 
 impl RememberedRanges {
-    /// The range for an axis of a shape on a sensor; None if none is remembered that suits it.
+    /// Returns the range of an axis for a kind of shape on a sensor; None if no range is remembered, or if it does
+    /// not fit.
     pub fn get(&self, of: &str, sensor: &Sensor, axis: Axis) -> Option<DecimalRange> {
         let place = matches!(axis, Axis::X0 | Axis::Y0);
         let suits = of == self.of && self.sides == sides(sensor);
@@ -71,7 +73,7 @@ impl RememberedRanges {
 }
 
 impl FormMemory {
-    /// One that remembers, with what lines say; those that say nothing are left out.
+    /// Creates a memory that remembers, with the values in the given lines; malformed lines are ignored.
     pub fn read(lines: &[String]) -> Self {
         let mut memory = Self {
             keeps: true,
@@ -94,7 +96,7 @@ impl FormMemory {
         memory
     }
 
-    /// What is remembered, as lines.
+    /// Returns the remembered values as lines.
     pub fn lines(&self) -> Vec<String> {
         let figure = |figure: &RememberedFigure| {
             let mut line = format!("{FIGURE} {}", figure.kind.name()) + &on(figure.sides);
@@ -126,19 +128,19 @@ impl FormMemory {
         });
     }
 
-    /// Remembers ranges.
+    /// Remembers the ranges of a sweep.
     pub fn note_ranges(&mut self, ranges: RememberedRanges) {
         if self.keeps {
             self.ranges = Some(ranges);
         }
     }
 
-    /// The kind of the last figure.
+    /// Returns the kind of the last figure.
     pub fn last_kind(&self) -> Option<FigureKind> {
         self.figures.last().map(|figure| figure.kind)
     }
 
-    /// The last figure of a kind; None if there is none, or not one for this sensor.
+    /// Returns the last figure of a kind; None if there is none, or if it was placed on a sensor of another size.
     pub fn figure(&self, kind: FigureKind, sensor: &Sensor) -> Option<Figure> {
         let mut own = self.figures.iter().filter(|figure| figure.kind == kind);
         let own = own.find(|figure| figure.sides == sides(sensor))?;
@@ -150,12 +152,12 @@ impl FormMemory {
         Figure::new(kind, sensor, value).ok()
     }
 
-    /// The last ranges.
+    /// Returns the last ranges.
     pub fn ranges(&self) -> Option<&RememberedRanges> {
         self.ranges.as_ref()
     }
 
-    /// A figure in place of the one of its kind, behind the others.
+    /// Adds a figure after the others, and removes the old one of its kind.
     fn add(&mut self, figure: RememberedFigure) {
         if self.keeps {
             self.figures.retain(|other| other.kind != figure.kind);
@@ -164,18 +166,18 @@ impl FormMemory {
     }
 }
 
-/// Columns and rows of a sensor.
+/// Returns columns and rows of a sensor.
 fn sides(sensor: &Sensor) -> (u8, u8) {
     (sensor.columns(), sensor.rows())
 }
 
-/// The same in a line.
+/// Returns columns and rows as part of a line.
 fn on((columns, rows): (u8, u8)) -> String {
     let [across, down] = SIDES.map(|side| side.row().key);
     format!(" {across} {columns} {down} {rows}")
 }
 
-/// What a line says of them.
+/// Reads columns and rows from a line; None if they are missing or malformed.
 fn sides_of(pairs: &[&str]) -> Option<(u8, u8)> {
     let side = |parameter: Parameter| {
         let mut pairs = pairs.chunks_exact(2);
@@ -186,7 +188,7 @@ fn sides_of(pairs: &[&str]) -> Option<(u8, u8)> {
     Some((side(columns)?, side(rows)?))
 }
 
-/// The figure that a line says; None if it says none.
+/// Reads a figure from a line; None if the line is malformed.
 fn figure_of(kind: &str, pairs: &[&str]) -> Option<RememberedFigure> {
     let kind = FigureKind::from_name(kind)?;
     let mut known = BTreeMap::new();
@@ -206,7 +208,7 @@ fn figure_of(kind: &str, pairs: &[&str]) -> Option<RememberedFigure> {
     })
 }
 
-/// The ranges that a line says; None if it says none.
+/// Reads ranges from a line; None if the line is malformed.
 fn ranges_of(of: &str, anchor: &str, pairs: &[&str]) -> Option<RememberedRanges> {
     let anchor = Anchor::from_name(anchor)?;
     let range = |pair: &[&str]| {
@@ -229,7 +231,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_noted_comes_back_and_nonsense_is_left_out() {
+    fn noted_values_are_read_back_and_malformed_lines_are_ignored() {
         let sensor = Sensor::default();
         let mut memory = FormMemory::read(&[]);
         let ellipse = Figure::ellipse(2.5, 1.005).at(-1.0, 3.0).on(&sensor);
@@ -271,7 +273,7 @@ mod tests {
         assert_eq!(found("ellipse", &sensor, Axis::X0), Some(place));
         assert_eq!(found("picture", &sensor, Axis::X0), None);
         assert_eq!(found("picture", &sensor, Axis::Angle), Some(angles));
-        // What fits on another sensor as well is not in its place there.
+        // Values that are in range on another sensor, too, would be in the wrong place there.
         let other = Sensor::new(16, 17).expect("in range");
         assert_eq!(read.figure(FigureKind::Ellipse, &other), None);
         assert_eq!(found("ellipse", &other, Axis::X0), None);

@@ -1,9 +1,9 @@
 //! The state of the forms of Figure, Picture and the sensor.
 //!
-//! A form keeps three documents: the one before it was opened, which Cancel goes back to; the one that its fields make,
+//! A form keeps three documents: the one before it was opened, to which Cancel returns; the one that its fields make,
 //! which the matrix shows while all fields are valid; and the last one before the present field was edited, which the
-//! matrix shows while that field is invalid. The third one matters because a text that becomes invalid may have been
-//! valid on the way, like the 1 on the way to 17.
+//! matrix shows while that field is invalid. The third one is needed because a text that becomes invalid may have
+//! been valid on the way, such as the 1 on the way to 17.
 
 use crate::figure::{Figure, FigureKind};
 use crate::formats::value::counted;
@@ -19,44 +19,45 @@ use crate::tui::form::memory::FormMemory;
 use crate::tui::keys::key::Arrow;
 use crate::tui::widget::number::around;
 
-/// What a form is about.
+/// The subject of a form.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FormSubject {
-    /// A figure of a kind, which can be changed in the form.
+    /// A figure of a kind; the form can change the kind.
     Figure(FigureKind),
-    /// A stored imprint, by its name.
+    /// A stored imprint, with its name.
     Picture(String, Box<Imprint>),
     /// The sensor.
     Sensor,
 }
 
-/// A form with what it would make of the matrix.
+/// A form, with the document that it makes.
 #[derive(Clone, Debug)]
 pub struct FormDialog {
-    /// What the form is about.
+    /// The subject of the form.
     subject: FormSubject,
     /// The fields of the subject.
     form: ParameterForm,
     /// Fields of other kinds of figure, kept as they were typed.
     hidden: Vec<ParameterField>,
-    /// The values of figures that were accepted before.
+    /// The values of the figures accepted so far.
     memory: FormMemory,
-    /// What the fields had at first: the shape on the matrix, or a new one.
+    /// The source of the first values: the shape on the matrix, or a new one.
     begun: Option<Source>,
-    /// What is on the matrix without the form.
+    /// The document on the matrix without the form.
     before: Document,
-    /// Its imprint.
+    /// The imprint of that document.
     before_imprint: Imprint,
-    /// The document that the fields make, while all of them are valid.
+    /// The document that the fields make while all are valid, otherwise `settled`.
     shown: Document,
-    /// What they made of it before the field that has the focus was typed in. A field that becomes wrong may have been
-    /// right on the way, "1" on the way to "17": the matrix does not stay there.
+    /// The document that the fields made before the text of the field with the focus was changed. A text that becomes
+    /// invalid may have been valid on the way, such as "1" on the way to "17", and the matrix must not keep that
+    /// value.
     settled: Document,
 }
 
 impl FormDialog {
-    /// The form of a figure: of the one on the matrix, or a new one with the values that were accepted last; at first an
-    /// ellipse.
+    /// Creates the form of a figure: of the one on the matrix, or of a new one with the values accepted last; the
+    /// first kind is the ellipse.
     pub fn figure(before: &Document, memory: &FormMemory) -> Self {
         let figure = if let Some(Source::Figure(figure)) = before.source {
             figure
@@ -73,7 +74,7 @@ impl FormDialog {
         dialog
     }
 
-    /// The figure that its fields make; None if they make another thing.
+    /// Returns the figure that the fields make; None if the form is not about a figure.
     pub fn made_figure(&self) -> Option<&Figure> {
         match (&self.subject, &self.shown.source) {
             (FormSubject::Figure(_), Some(Source::Figure(figure))) => Some(figure),
@@ -81,7 +82,7 @@ impl FormDialog {
         }
     }
 
-    /// The form of a picture, which starts just where it is.
+    /// Creates the form of a picture, which starts at its present position.
     pub fn picture(before: &Document, picture: Picture, name: String) -> Self {
         let imprint = Box::new(*picture.imprint());
         let shown = Document::touched(before.sensor, Source::Picture(picture));
@@ -90,14 +91,14 @@ impl FormDialog {
         dialog
     }
 
-    /// The form of the sensor.
+    /// Creates the form of the sensor.
     pub fn sensor(before: &Document) -> Self {
         let mut dialog = Self::new(FormSubject::Sensor, before, before.clone());
         dialog.form.set_focus(Some(0));
         dialog
     }
 
-    /// A form that shows a document; no field has the focus.
+    /// Creates a form that shows a document; no field has the focus.
     fn new(subject: FormSubject, before: &Document, shown: Document) -> Self {
         let form = ParameterForm::new(Vec::new(), before.sensor);
         let mut dialog = Self {
@@ -115,12 +116,12 @@ impl FormDialog {
         dialog
     }
 
-    /// What it is about.
+    /// Returns the subject of the form.
     pub fn subject(&self) -> &FormSubject {
         &self.subject
     }
 
-    /// Its heading.
+    /// Returns the heading of the form.
     pub fn title(&self) -> String {
         match &self.subject {
             FormSubject::Figure(_) => "Figure".to_owned(),
@@ -129,7 +130,7 @@ impl FormDialog {
         }
     }
 
-    /// The kind of figure that is chosen; none where there is nothing to choose.
+    /// Returns the chosen kind of figure; None if the form is not about a figure.
     pub fn kind(&self) -> Option<FigureKind> {
         match self.subject {
             FormSubject::Figure(kind) => Some(kind),
@@ -137,17 +138,17 @@ impl FormDialog {
         }
     }
 
-    /// The fields.
+    /// Returns the fields.
     pub fn form(&self) -> &ParameterForm {
         &self.form
     }
 
-    /// What the matrix shows.
+    /// Returns the document that the matrix shows.
     pub fn shown(&self) -> &Document {
         &self.shown
     }
 
-    /// What would be lost, in a sentence.
+    /// Returns a warning if active taxels would be lost.
     pub fn warning(&self) -> Option<String> {
         let (columns, rows) = (self.shown.sensor.columns(), self.shown.sensor.rows());
         let all = self.before_imprint;
@@ -156,7 +157,7 @@ impl FormDialog {
         (lost > 0).then(|| format!("{taxels} will be cut"))
     }
 
-    /// The parameters of the subject, in the order of their fields.
+    /// Returns the parameters of the subject, in the order of their fields.
     fn parameters(&self) -> Vec<Parameter> {
         match self.subject {
             FormSubject::Figure(kind) => kind.parameters().to_vec(),
@@ -165,14 +166,14 @@ impl FormDialog {
         }
     }
 
-    /// The fields of the subject: those that were typed in before as they were, the others with its own values.
+    /// Makes the fields of the subject: edited ones keep their text, the others get the subject's values.
     fn fill(&mut self) {
         let (sensor, focus) = (*self.form.sensor(), self.form.focus());
         let mut known = std::mem::take(&mut self.hidden);
         known.extend(
             std::mem::replace(&mut self.form, ParameterForm::new(Vec::new(), sensor)).into_fields(),
         );
-        // A figure of another kind is another figure: what the one on the matrix has does not stick to it.
+        // A figure of another kind is another figure: it does not take over values of the one on the matrix.
         known.retain(ParameterField::changed);
         let parameters = self.parameters();
         let fields = parameters.into_iter().map(|parameter| {
@@ -190,8 +191,8 @@ impl FormDialog {
         self.form.set_focus(focus);
     }
 
-    /// A field with the value of the shape that the form began with, or the default; a figure of another kind has the values
-    /// that one was accepted with last, or its defaults.
+    /// Creates a field with the value of the shape with which the form began, or the default. For another kind of
+    /// figure, it has the value accepted last for this kind, or the default.
     fn new_field(&self, parameter: Parameter, sensor: &Sensor) -> ParameterField {
         let own = match (&self.subject, &self.begun) {
             (FormSubject::Figure(kind), begun)
@@ -211,7 +212,7 @@ impl FormDialog {
         ParameterField::new(parameter, value, optional)
     }
 
-    /// Gives the fields the defaults of what the form is about; a picture's are those of the place where it was stored.
+    /// Sets the fields to the defaults of the subject; those of a picture are the position at which it was stored.
     pub fn set_defaults(&mut self) {
         let (sensor, focus) = (self.before.sensor, self.form.focus());
         match &self.subject {
@@ -224,7 +225,7 @@ impl FormDialog {
             }
             FormSubject::Sensor => self.shown = self.before.on(Sensor::default()),
         }
-        // Nor do other kinds of figure begin with anything else from here on.
+        // Other kinds of figure, too, begin with their defaults from now on.
         self.memory = FormMemory::default();
         self.hidden.clear();
         self.form = ParameterForm::new(Vec::new(), sensor);
@@ -232,7 +233,7 @@ impl FormDialog {
         self.edit(|form| form.set_focus(focus));
     }
 
-    /// Changes the fields by `change`, and the matrix follows.
+    /// Changes the fields by `change`, and updates the document that the matrix shows.
     pub fn edit(&mut self, change: impl FnOnce(&mut ParameterForm)) {
         change(&mut self.form);
         if let Ok(document) = self.made() {
@@ -246,7 +247,7 @@ impl FormDialog {
         }
     }
 
-    /// What the fields make of the matrix; while one of them is wrong, there is no answer.
+    /// Returns the document that the fields make, or the error of the first invalid field.
     fn made(&self) -> Result<Document, ParameterError> {
         if let Some((_, error)) = self.form.error() {
             return Err(error);
@@ -277,7 +278,7 @@ impl FormDialog {
         }
     }
 
-    /// Goes `by` rows on; the kind is a row above the fields, and the last row is followed by the first.
+    /// Moves the focus by `by` rows. The kind is the row above the fields; after the last row comes the first.
     pub fn move_focus(&mut self, by: i8) {
         let head = usize::from(self.kind().is_some());
         let now = self.form.focus().map_or(0, |index| index + head);
@@ -285,7 +286,7 @@ impl FormDialog {
         self.edit(|form| form.set_focus(next.checked_sub(head)));
     }
 
-    /// An arrow: chooses the kind, moves in a field or to another one.
+    /// Handles an arrow: chooses the kind, moves in a field or to another field.
     pub fn choose(&mut self, arrow: Arrow) {
         match (self.form.focus(), arrow) {
             (None, Arrow::Left) => self.next_kind(FigureKind::ALL.len() - 1, |_| true),
@@ -296,8 +297,8 @@ impl FormDialog {
         }
     }
 
-    /// A character: into the field; on the kind, the next kind that begins with it. No kind begins with a digit, a sign
-    /// or a point: these begin the number in the first field.
+    /// Handles a character: types it into the field; on the kind, chooses the next kind that begins with it. No kind
+    /// begins with a digit, a sign or a point: such a character begins the number in the first field.
     pub fn insert(&mut self, character: char) {
         if self.form.focus().is_none() && begins_number(character) {
             self.move_focus(1);
@@ -311,7 +312,8 @@ impl FormDialog {
         }
     }
 
-    /// Pasted text: into the field; on the kind, the kind of that name. Returns whether it had a use.
+    /// Handles pasted text: types it into the field; on the kind, chooses the kind with that name. Returns false if
+    /// there is no such kind.
     pub fn paste(&mut self, text: &str) -> bool {
         let name = text.trim().to_lowercase();
         let on_kind = self.form.focus().is_none() && self.kind().is_some();
@@ -326,7 +328,7 @@ impl FormDialog {
         true
     }
 
-    /// The first kind, `step` after `step` from the present one on, that fits; the present one where none does.
+    /// Chooses the first kind that fits, in steps of `step` from the present one; keeps the present one if none fits.
     fn next_kind(&mut self, step: usize, fits: impl Fn(FigureKind) -> bool) {
         let kinds = FigureKind::ALL;
         let own = |kind: FigureKind| kinds.iter().position(|&other| other == kind);
@@ -344,12 +346,12 @@ impl FormDialog {
     }
 }
 
-/// Whether a number may begin with a character.
+/// Returns true if a number may begin with this character.
 fn begins_number(character: char) -> bool {
     matches!(character, '0'..='9' | '-' | '+' | '.')
 }
 
-/// A figure of a kind: as it was accepted last, or with the defaults.
+/// Creates a figure of a kind, with the values accepted last or the defaults.
 fn new_figure(kind: FigureKind, sensor: &Sensor, memory: &FormMemory) -> Figure {
     let known = memory.figure(kind, sensor);
     known.unwrap_or_else(|| Figure::default_of(kind, sensor))

@@ -1,7 +1,7 @@
-//! What messages do in a form.
+//! The effects of messages in a form.
 //!
 //! Accept puts the form's document onto the matrix if all fields are valid; otherwise it moves the focus to the first
-//! one that is not, and says what is wrong. Everything else edits the fields, and the matrix follows.
+//! invalid field and shows its error. Every other message edits the fields, and the matrix follows.
 
 use crate::figure::FigureKind;
 use crate::tui::app::change::{refuse, replace};
@@ -12,7 +12,7 @@ use crate::tui::form::state::FormDialog;
 use crate::tui::keys::key::Arrow;
 use crate::tui::runtime::effect::Effect;
 
-/// Handles a message. The form goes back onto the stack unless it is accepted.
+/// Handles a message. The form stays open unless it is accepted.
 pub(in crate::tui) fn update(
     app: &mut App,
     mut dialog: Box<FormDialog>,
@@ -33,7 +33,7 @@ pub(in crate::tui) fn update(
             }
         },
         Message::Field(by) => dialog.move_focus(by),
-        // A click on the kind, when it has the focus already: the next kind.
+        // A click on the kind, if it already has the focus, chooses the next kind.
         Message::ToField(None) if dialog.form().focus().is_none() => dialog.choose(Arrow::Right),
         Message::ToField(field) => dialog.edit(|form| form.set_focus(field)),
         Message::Choose(arrow) => dialog.choose(arrow),

@@ -10,9 +10,9 @@
 //!   empty: solid                                      a remark on a field that may be empty
 //! ! 3 active taxels will be cut                       what would be lost (sensor only)
 //! ```
-//! In a narrow pane what a field takes stands under it, and an error takes that place. In a low pane every field has
-//! one line, and an error stands in place of what the field takes. The matrix beside the form shows what its fields
-//! make.
+//! In a narrow pane, the range of a field stands under it, and an error replaces the range there. In a low pane every
+//! field has one line, and an error replaces the range. The matrix beside the form shows the shape or sensor that the
+//! fields make.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -32,12 +32,12 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Columns of a label.
+/// The width of a label, in columns.
 const LABEL: usize = 10;
-/// Columns of the text of a field.
+/// The width of a field's text, in columns.
 const INPUT: usize = 9;
 
-/// A pane from this width on has room for the range beside the field.
+/// The least width of a pane in which the range stands beside the field, in columns.
 const WIDE: u16 = 40;
 
 impl Page for FormDialog {
@@ -70,7 +70,7 @@ impl Page for FormDialog {
     }
 }
 
-/// Draws the form. Returns where the text cursor is.
+/// Draws the form. Returns the position of the text cursor.
 fn draw(theme: &Theme, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     write::clear(buffer, area);
     write::line(
@@ -132,7 +132,7 @@ fn draw(theme: &Theme, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> 
     cursor
 }
 
-/// The kind between angle brackets, and the letters that choose one.
+/// Draws the kind between angle brackets, and the letters that choose one.
 fn draw_kind(theme: &Theme, kind: FigureKind, focused: bool, buffer: &mut Buffer, row: Rect) {
     let label = format!("{:LABEL$}", "Kind");
     let name = format!("{:<9}", kind.name());
@@ -158,7 +158,7 @@ fn draw_kind(theme: &Theme, kind: FigureKind, focused: bool, buffer: &mut Buffer
     write::line(buffer, row, theme, pieces);
 }
 
-/// Draws label and text. Returns where the text cursor would be.
+/// Draws label and text of a field. Returns the position that the text cursor has in this field.
 fn draw_field(
     theme: &Theme,
     field: &ParameterField,
@@ -167,7 +167,7 @@ fn draw_field(
     row: Rect,
 ) -> Position {
     let label = format!("{:LABEL$}", field.parameter().row().label);
-    // A field is read from its start; what is typed must be seen.
+    // Without the focus a field is shown from its start; with the focus, its cursor must be visible.
     let at = if focused { field.cursor() } else { 0 };
     let (shown, cursor) = write::field_columns(field.text(), at, INPUT, theme);
     let role = if focused { Role::Focus } else { Role::Text };
@@ -180,8 +180,8 @@ fn draw_field(
     Position::new(row.x + narrow(LABEL + cursor), row.y)
 }
 
-/// What else there is to know about a field, and whether that is about the value it has now: what an empty one means,
-/// and which pitch stands for none.
+/// Returns a remark about a field, and whether it is about the present value: what an empty field means, or which
+/// pitch means that none is set.
 fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<(&'static str, bool)> {
     if field.parameter() == Parameter::Pitch {
         let default = dialog.form().sensor().default_value(Parameter::Pitch);
@@ -201,8 +201,8 @@ fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<(&'static str, 
     }
 }
 
-/// What the field takes, and the remark under it or else behind it. Where there is no room for all of it the unit gives
-/// way first, then the remark, or the range where the remark is about the present value.
+/// Draws the range of a field, and the remark under or behind it. If there is no room for everything, the unit is
+/// left out first, then the remark, or the range if the remark is about the present value.
 fn draw_range(
     theme: &Theme,
     (field, sensor): (&ParameterField, &Sensor),
