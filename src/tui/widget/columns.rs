@@ -9,7 +9,7 @@
 
 use ratatui::text::Span;
 
-/// The columns that a text takes.
+/// Returns the number of columns that a text takes.
 pub fn width(text: &str) -> usize {
     if is_plain(text) {
         return text.len();
@@ -17,12 +17,12 @@ pub fn width(text: &str) -> usize {
     Span::raw(text).width()
 }
 
-/// Whether each byte of a text is a character of one column, as of nearly all text on the screen.
+/// Returns true if each byte of a text is a character of one column, as in nearly all text on the screen.
 fn is_plain(text: &str) -> bool {
     text.bytes().all(|byte| matches!(byte, b' '..=b'~'))
 }
 
-/// As much of the beginning of a text as fits into a number of columns.
+/// Returns the longest beginning of a text that fits into a number of columns.
 pub(in crate::tui) fn head(text: &str, room: usize) -> &str {
     if is_plain(text) {
         return &text[..room.min(text.len())];
@@ -37,8 +37,8 @@ pub(in crate::tui) fn head(text: &str, room: usize) -> &str {
     kept
 }
 
-/// The part of a text in a field of `room` columns that has the cursor in sight, and the column of the cursor in that
-/// part.
+/// Returns the part of a text that a field of `room` columns shows so that the cursor is visible, from its first
+/// character to the end of the text, and the column of the cursor in that part.
 pub fn window(text: &str, cursor: usize, room: usize) -> (&str, usize) {
     let (mut shown, mut column) = (text, cursor);
     while column >= room.max(1)
@@ -51,7 +51,7 @@ pub fn window(text: &str, cursor: usize, room: usize) -> (&str, usize) {
     (shown, column)
 }
 
-/// Breaks a text into lines of at most `room` columns: at spaces, or inside words that are longer, as paths are.
+/// Breaks a text into lines of at most `room` columns: at spaces, or inside longer words, such as paths.
 pub fn broken(text: &str, room: usize) -> Vec<&str> {
     let mut lines = Vec::new();
     let mut rest = text.trim();
@@ -60,7 +60,7 @@ pub fn broken(text: &str, room: usize) -> Vec<&str> {
         let end = if fits.len() == rest.len() {
             rest.len()
         } else {
-            // A character that is wider than the room goes into a line all the same.
+            // A character that is wider than the room still takes a line.
             let first = rest.chars().next().map_or(1, char::len_utf8);
             let space =
                 rest[..fits.len() + usize::from(rest[fits.len()..].starts_with(' '))].rfind(' ');
@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_typed_is_seen_where_the_cursor_is() {
+    fn the_cursor_in_a_field_is_always_visible() {
         for (text, cursor, expected) in [
             ("1234", 4, ("1234", 4)),
             ("12345", 5, ("2345", 4)),

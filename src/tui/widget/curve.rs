@@ -1,4 +1,4 @@
-//! A curve in an area of the screen: a share of touches over sizes, with its axes, a level and a cursor.
+//! A curve in an area of the screen: a share of touches against sizes, with axes, a level and a cursor.
 //!
 //! ```text
 //! error in %
@@ -19,20 +19,20 @@ use crate::tui::widget::theme::{Role, Theme};
 /// A curve.
 #[derive(Clone, Copy, Debug)]
 pub struct Curve<'a> {
-    /// What the upward axis and the other one are.
+    /// The labels of the upward axis and of the axis to the right.
     pub labels: [&'a str; 2],
-    /// Its points: a value and a share, in the order of the line.
+    /// The points of the curve: a value and a share, in the order in which the line connects them.
     pub points: &'a [(f64, f64)],
     /// The values along the axis, in ascending order.
     pub values: &'a [f64],
-    /// A share that is marked.
+    /// The share at which a dotted line is drawn.
     pub level: f64,
     /// The value under the cursor.
     pub at: Option<f64>,
 }
 
 impl Curve<'_> {
-    /// Draws it, with shares in percent. Nothing where there is no room.
+    /// Draws the curve, with shares in percent; draws nothing if there is no room.
     pub fn draw(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) {
         let x = axis_ends(self.values.iter().copied());
         let percent = |(value, share): (f64, f64)| (value, 100.0 * share);

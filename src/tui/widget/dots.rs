@@ -1,10 +1,10 @@
-//! Lines finer than characters: eight dots per character, two across and four down, shown as Braille. If the terminal
-//! has no Braille, the nearest ASCII stroke stands for the dots of a character.
+//! Lines finer than characters: each character has eight dots, two across and four down, shown as Braille. If the
+//! terminal has no Braille, an ASCII stroke that looks similar replaces the dots of a character.
 
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::Theme;
 
-/// Dots of a character: across and down.
+/// The number of dots in a character: across and down.
 pub const DOTS: (u16, u16) = (2, 4);
 
 /// The bit of each dot in a Braille character, by row and column.
@@ -16,16 +16,16 @@ pub type DotPosition = (f64, f64);
 /// A field of dots, as large as some characters of the screen.
 #[derive(Clone, Debug)]
 pub struct DotCanvas {
-    /// Characters across.
+    /// The number of characters across.
     columns: u16,
-    /// Characters down.
+    /// The number of characters down.
     rows: u16,
     /// The dots of each character as bits, row by row; 0 for a blank one.
     characters: Vec<u8>,
 }
 
 impl DotCanvas {
-    /// An empty field of this many characters.
+    /// Creates an empty field of the given size in characters.
     pub fn new(columns: u16, rows: u16) -> Self {
         let count = usize::from(columns) * usize::from(rows);
         Self {
@@ -35,7 +35,7 @@ impl DotCanvas {
         }
     }
 
-    /// The number of dots across and down.
+    /// Returns the number of dots across and down.
     pub fn size(&self) -> DotPosition {
         let (across, down) = DOTS;
         (
@@ -44,7 +44,7 @@ impl DotCanvas {
         )
     }
 
-    /// Sets the dot at a place; none outside of the field.
+    /// Sets the dot at a position; does nothing outside of the field.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -63,12 +63,13 @@ impl DotCanvas {
         }
     }
 
-    /// Sets the dots of a straight line, but for what lies outside.
+    /// Sets the dots of a straight line, as far as they lie in the field.
     pub fn line(&mut self, from: DotPosition, to: DotPosition) {
         self.dashed(from, to, |_| true);
     }
 
-    /// The same, of its dots those that `shown` keeps; they are counted from the start of the visible part.
+    /// Sets those dots of a straight line for whose number `shown` returns true; dots are numbered from the start of
+    /// the visible part.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -86,7 +87,7 @@ impl DotCanvas {
         }
     }
 
-    /// The characters that have dots: column, row, and the dots as bits of Braille.
+    /// Returns the characters with dots: column, row, and the dots as bits of Braille.
     pub fn characters(&self) -> impl Iterator<Item = (u16, u16, u8)> {
         let columns = usize::from(self.columns.max(1));
         let all = self.characters.iter().enumerate();
@@ -95,7 +96,8 @@ impl DotCanvas {
     }
 }
 
-/// The part of a line within `[0, width] × [0, height]`; None where there is none, or a coordinate is not a number.
+/// Returns the part of a line within `[0, width] × [0, height]`; None if there is none, or if a coordinate is not a
+/// number.
 fn clipped(
     from: DotPosition,
     to: DotPosition,
@@ -103,7 +105,7 @@ fn clipped(
 ) -> Option<(DotPosition, DotPosition)> {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let (mut start, mut end) = (0.0_f64, 1.0_f64);
-    // Each border as how fast the line leaves through it, and how far inside it starts.
+    // For each border: how fast the line leaves through it, and how far inside it starts.
     for (speed, inside) in [
         (-dx, from.0),
         (dx, width - from.0),
@@ -126,7 +128,7 @@ fn clipped(
     (start <= end).then(|| (at(start), at(end)))
 }
 
-/// The character for some dots: Braille, or where the terminal has none a stroke that lies like them.
+/// Returns the character for some dots: Braille, or a similar stroke if the terminal has no Braille.
 pub fn glyph(theme: &Theme, dots: u8) -> char {
     if !theme.ascii && !theme.console {
         return char::from_u32(0x2800 + u32::from(dots)).unwrap_or(' ');
@@ -181,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_outside_or_no_number_sets_nothing() {
+    fn dots_outside_or_at_nan_are_not_set() {
         let beyond = drawn(false, (-1e9, 0.5), (1e9, 0.5));
         assert_eq!(beyond, "⠉⠉⠉\n   ", "the visible part of a long line");
         for far in [f64::NAN, f64::INFINITY, -1e9] {

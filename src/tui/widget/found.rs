@@ -1,6 +1,6 @@
-//! How a text is found in a line, and marked.
+//! Finds a text in a line, and marks it.
 //!
-//! Letters find capitals, too, unless the text has a capital itself: `u` finds both, `U` only the one.
+//! Small letters also find capitals, unless the wanted text has a capital itself: `u` finds both, `U` only `U`.
 //!
 //! ```
 //! use taxel::tui::widget::found::{contains, marked};
@@ -12,12 +12,12 @@
 
 use crate::tui::widget::theme::Role;
 
-/// Whether a text has what is searched for. Nothing has the empty text.
+/// Returns true if a text contains the wanted text; the empty text is never found.
 pub fn contains(text: &str, wanted: &str) -> bool {
     first(text, wanted).is_some()
 }
 
-/// A text in pieces: what was searched for in the role of matches, the rest in a role of its own.
+/// Splits a text into pieces: every match has the role [`Role::Match`], the rest the given role.
 pub fn marked<'a>(text: &'a str, wanted: &str, role: Role) -> Vec<(&'a str, Role)> {
     let (mut pieces, mut rest) = (Vec::new(), text);
     while let Some((start, end)) = first(rest, wanted) {
@@ -30,7 +30,7 @@ pub fn marked<'a>(text: &'a str, wanted: &str, role: Role) -> Vec<(&'a str, Role
     pieces
 }
 
-/// The bytes of a text where what is searched for stands first.
+/// Returns the byte range of the first match in a text.
 fn first(text: &str, wanted: &str) -> Option<(usize, usize)> {
     if wanted.is_empty() {
         return None;
@@ -46,18 +46,18 @@ fn first(text: &str, wanted: &str) -> Option<(usize, usize)> {
     })
 }
 
-/// A search in a list that found something.
+/// A search in a list, at one of its matches.
 #[derive(Clone, Debug)]
 pub struct Search {
-    /// What is searched for.
+    /// The text that is searched for.
     wanted: String,
-    /// The entry of the list that one has come to.
+    /// The index of the entry at which the search is.
     entry: usize,
 }
 
 impl Search {
-    /// The search at the first entry that has it from `from` on, or else before that; None where no entry does. `matches`
-    /// are the entries that have it, in ascending order, here and below.
+    /// Creates a search at the first match from the entry `from` on, or else at the first match of all; None if there
+    /// is no match. `matches` are the indices of the matching entries, in ascending order, here and below.
     pub fn new(wanted: &str, matches: &[usize], from: usize) -> Option<Self> {
         let ahead = matches.iter().find(|&&entry| entry >= from);
         let &entry = ahead.or(matches.first())?;
@@ -65,18 +65,18 @@ impl Search {
         Some(Self { wanted, entry })
     }
 
-    /// What is searched for.
+    /// Returns the text that is searched for.
     pub fn wanted(&self) -> &str {
         &self.wanted
     }
 
-    /// The entry that one has come to.
+    /// Returns the index of the entry at which the search is.
     pub fn entry(&self) -> usize {
         self.entry
     }
 
-    /// Goes from an entry to the next match, or to the previous one if `by` is negative; the first follows the last.
-    /// Answers whether there is one.
+    /// Goes from an entry to the next match, or to the previous one if `by` is negative; after the last match comes
+    /// the first. Returns false if there is no match.
     pub fn go(&mut self, from: usize, by: i8, matches: &[usize]) -> bool {
         let next = if by > 0 {
             let ahead = matches.iter().find(|&&entry| entry > from);
@@ -91,7 +91,7 @@ impl Search {
         next.is_some()
     }
 
-    /// Which match one has come to, counted from 1, and of how many.
+    /// Returns the number of the match at which the search is, from 1, and the number of all matches.
     pub fn number(&self, matches: &[usize]) -> (usize, usize) {
         let before = matches.iter().filter(|&&entry| entry < self.entry);
         (before.count() + 1, matches.len())
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn matches_are_gone_through_round_and_round() {
+    fn after_the_last_match_comes_the_first() {
         let matches = [2, 5, 9];
         let mut search = Search::new("x", &matches, 6).expect("found");
         assert_eq!((search.entry(), search.number(&matches)), (9, (3, 3)));

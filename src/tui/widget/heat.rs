@@ -1,13 +1,13 @@
-//! How values look: shades of characters, and colours of even steps from dark to light.
+//! The look of values: shades of characters, and colours in even steps from dark to light.
 //!
-//! The colours are those of a perceptual palette: each step is as much lighter as the one before, so that nothing looks
-//! like an edge where there is none. On a light background they go the other way. Shades say the same without colours.
+//! The colours are those of a perceptual palette: each step looks equally large, so that nothing looks like an edge
+//! where there is none. On a light background they are reversed. Shades show the same without colours.
 
 use ratatui::style::{Color, Style};
 
 use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
 
-/// Colours from dark to light: of the sixteen, of the 256, and as red, green, blue.
+/// The colours from dark to light: one of the sixteen, one of the 256, and red, green, blue.
 const TONES: [(Color, u8, [u8; 3]); 9] = [
     (Color::Blue, 53, [68, 1, 84]),
     (Color::Blue, 54, [71, 45, 123]),
@@ -20,7 +20,7 @@ const TONES: [(Color, u8, [u8; 3]); 9] = [
     (Color::Yellow, 220, [253, 231, 37]),
 ];
 
-/// The shades, that of nothing first.
+/// Returns the characters of the shades; the first one is for zero.
 pub(in crate::tui) fn shades(theme: &Theme) -> &'static [char] {
     if theme.ascii {
         &['.', ':', '-', '=', '+', '*', '#', '%', '@']
@@ -29,7 +29,8 @@ pub(in crate::tui) fn shades(theme: &Theme) -> &'static [char] {
     }
 }
 
-/// Which of a number of steps a share of the range has: the first up to 0, the others part the rest evenly.
+/// Returns the step of a share of the range, from 0: shares up to 0 have the first step, the other steps divide the
+/// rest evenly.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -45,7 +46,7 @@ fn step(share: f64, steps: usize) -> usize {
     }
 }
 
-/// The character of a share of the range; a blank for a cell that does not exist.
+/// Returns the character for a share of the range; a blank for NaN, a cell that does not exist.
 pub(in crate::tui) fn shade(theme: &Theme, share: f64) -> char {
     let shades = shades(theme);
     if share.is_nan() {
@@ -55,13 +56,13 @@ pub(in crate::tui) fn shade(theme: &Theme, share: f64) -> char {
     }
 }
 
-/// Whether halves of a character can have colours of their own.
+/// Returns true if the two halves of a character can have different colours.
 pub(in crate::tui) fn has_halves(theme: &Theme) -> bool {
     let many = matches!(theme.depth, ColorDepth::TwoFiftySix | ColorDepth::True);
     many && !theme.ascii && theme.palette != Palette::Mono
 }
 
-/// The colour of a share of the range; None for nothing and where there are no colours.
+/// Returns the colour for a share of the range; None for shares up to 0, and if there are no colours.
 pub(in crate::tui) fn color(theme: &Theme, share: f64) -> Option<Color> {
     let step = step(share, TONES.len() + 1).checked_sub(1)?;
     let (named, index, [red, green, blue]) = match theme.palette {
@@ -77,12 +78,12 @@ pub(in crate::tui) fn color(theme: &Theme, share: f64) -> Option<Color> {
     }
 }
 
-/// The style of a share of the range.
+/// Returns the style for a share of the range.
 pub(in crate::tui) fn style(theme: &Theme, share: f64) -> Style {
     color(theme, share).map_or(Style::new(), |color| Style::new().fg(color))
 }
 
-/// What marks the edge of the imprint.
+/// Returns the character that marks the edge of the imprint.
 pub(in crate::tui) fn edge(theme: &Theme) -> char {
     if theme.ascii { 'o' } else { '•' }
 }
@@ -91,7 +92,7 @@ pub(in crate::tui) fn edge(theme: &Theme) -> char {
 mod tests {
     use super::*;
 
-    /// Relative luminance, from 0 to 1.
+    /// Returns the relative luminance, from 0 to 1.
     fn luminance(rgb: [u8; 3]) -> f64 {
         let linear = rgb.map(|part| libm::pow(f64::from(part) / 255.0, 2.2));
         0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
@@ -112,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn shades_part_the_range_evenly() {
+    fn shades_divide_the_range_evenly() {
         let shown = |ascii| {
             let theme = Theme::plain(ascii);
             let shares = [f64::NAN, -1.0, 0.0, 0.01, 0.25, 0.26, 0.75, 0.76, 1.0, 9.0];

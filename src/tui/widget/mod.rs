@@ -1,4 +1,4 @@
-//! What views are made of.
+//! The parts that views are made of.
 //!
 //! ```text
 //! text_field   a line of text that is edited         theme       styles and characters

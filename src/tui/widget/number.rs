@@ -1,17 +1,18 @@
-//! Numbers of things on the screen: in the integer types of the terminal and of the matrix, and in circles.
+//! Numbers for the screen: lengths in the integer types of the terminal and of the matrix, and indices that wrap
+//! around.
 
-/// A number of columns or lines of the screen, or the largest that a screen can have.
+/// Converts a number of columns or lines; a larger one than a screen can have becomes the largest `u16`.
 pub(in crate::tui) fn narrow(length: impl TryInto<u16>) -> u16 {
     length.try_into().unwrap_or(u16::MAX)
 }
 
-/// A number of taxels, or more than any matrix has.
+/// Converts a number of taxels; a larger one becomes 255, more than any matrix has.
 pub(in crate::tui) fn taxels(length: impl TryInto<u8>) -> u8 {
     length.try_into().unwrap_or(u8::MAX)
 }
 
-/// The index `by` steps after `now` (before it if negative) among `count`, which must not be 0. The first follows the
-/// last.
+/// Returns the index `by` steps after `now` (before it if negative) among `count` indices; `count` must not be 0.
+/// After the last index comes the first.
 ///
 /// ```
 /// use taxel::tui::widget::number::around;

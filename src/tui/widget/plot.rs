@@ -1,4 +1,4 @@
-//! Two axes with their numbers, around a field of dots.
+//! Two axes with numbers, around a field of dots.
 //!
 //! ```text
 //! p                             the label of the upward axis
@@ -7,7 +7,7 @@
 //!    └────┬────┬────
 //!        18   20     na         the numbers of the other axis, and its label
 //! ```
-//! Numbers that have no room are left out. Where the terminal has no Braille, lines are shown as strokes.
+//! Numbers without room are left out. If the terminal has no Braille, lines are shown as strokes.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -19,34 +19,34 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Characters between two numbers of the axis to the right, about.
+/// The approximate distance between two numbers of the axis to the right, in characters.
 const APART: u16 = 10;
-/// Lines between two numbers of the upward axis, about.
+/// The approximate distance between two numbers of the upward axis, in lines.
 const LINES: u16 = 2;
 
-/// The marks of points: each for this many that share a character, and more.
+/// The marks for points, each with the least number of points in a character that it stands for.
 const MARKS: [(u32, char); 4] = [(1, '·'), (2, 'o'), (10, 'O'), (100, '@')];
 
-/// What the marks mean.
+/// The explanation of the marks.
 const LEGEND: &str = "· 1   o 2–9   O 10–99   @ 100+";
 
 /// A field between two axes.
 #[derive(Clone, Debug)]
 pub struct PlotField {
-    /// The characters of the field.
+    /// The area of the field, without axes.
     pub field: Rect,
     /// The ends of the axis to the right.
     x: (f64, f64),
     /// The ends of the upward axis.
     y: (f64, f64),
-    /// Where the upward axis has numbers.
+    /// The numbers of the upward axis: value and text.
     upwards: Vec<(f64, String)>,
-    /// The whole plot.
+    /// The area of the whole plot.
     area: Rect,
 }
 
 impl PlotField {
-    /// The field in an area, between axes with these ends; None where there is no room for any.
+    /// Creates a plot in an area, between axes with these ends; None if there is no room.
     pub fn of(area: Rect, x: (f64, f64), y: (f64, f64)) -> Option<Self> {
         let height = area.height.checked_sub(3).filter(|&height| height > 0)?;
         let upwards = axis_marks(y, (height / LINES).max(1));
@@ -67,12 +67,12 @@ impl PlotField {
         })
     }
 
-    /// An empty canvas of the field's size.
+    /// Creates an empty canvas of the field's size.
     pub fn canvas(&self) -> DotCanvas {
         DotCanvas::new(self.field.width, self.field.height)
     }
 
-    /// Where a point lies among the dots.
+    /// Returns the position of a point among the dots.
     pub fn dot(&self, (x, y): (f64, f64)) -> DotPosition {
         let wide = f64::from(self.field.width) * f64::from(DOTS.0);
         let high = f64::from(self.field.height) * f64::from(DOTS.1);
@@ -80,7 +80,7 @@ impl PlotField {
         (share(x, self.x) * wide, (1.0 - share(y, self.y)) * high)
     }
 
-    /// The character in which a point lies, None if it lies outside.
+    /// Returns the character in which a point lies; None if it lies outside.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -94,7 +94,7 @@ impl PlotField {
         inside.then(|| Position::new(self.field.x + x as u16, self.field.y + y as u16))
     }
 
-    /// The point in the middle of a character of the field; None outside of it.
+    /// Returns the point in the middle of a character of the field; None outside.
     pub fn point(&self, at: Position) -> Option<(f64, f64)> {
         self.field.contains(at).then(|| {
             let middle =
@@ -108,7 +108,7 @@ impl PlotField {
         })
     }
 
-    /// Draws both axes with numbers, and what they are: upwards first.
+    /// Draws both axes with numbers and labels; the upward axis has the first label.
     pub fn draw_axes(&self, theme: &Theme, buffer: &mut Buffer, [upward, right]: [&str; 2]) {
         write::line(buffer, self.area, theme, [(upward, Role::Key)]);
         self.draw_frame(theme, buffer);
@@ -116,7 +116,7 @@ impl PlotField {
         self.draw_across(theme, buffer, right);
     }
 
-    /// Both axes without marks.
+    /// Draws both axes without marks.
     fn draw_frame(&self, theme: &Theme, buffer: &mut Buffer) {
         let [across, down, corner] = if theme.ascii {
             ['-', '|', '+']
@@ -133,7 +133,7 @@ impl PlotField {
         }
     }
 
-    /// The marks and numbers of the upward axis; two numbers never share a line.
+    /// Draws the marks and numbers of the upward axis; two numbers never share a line.
     fn draw_upwards(&self, theme: &Theme, buffer: &mut Buffer) {
         let left = self.field.x - 1;
         let middle = f64::midpoint(self.x.0, self.x.1);
@@ -155,7 +155,7 @@ impl PlotField {
         }
     }
 
-    /// The marks and numbers of the other axis, and what it is; numbers that have no room are left out.
+    /// Draws the marks, numbers and label of the axis to the right; numbers without room are left out.
     fn draw_across(&self, theme: &Theme, buffer: &mut Buffer, label: &str) {
         let bottom = self.field.bottom();
         let width = narrow(write::width(label));
@@ -182,7 +182,7 @@ impl PlotField {
         }
     }
 
-    /// A line of the plot, from its left edge on.
+    /// Returns a line of the plot, from its left edge.
     fn line_at(&self, y: u16) -> Rect {
         Rect {
             y,
@@ -201,7 +201,8 @@ impl PlotField {
         }
     }
 
-    /// Draws points into the field, in each character a mark by how many there are, and above it what the marks mean.
+    /// Draws points into the field, as marks that show how many points share a character, and explains the marks
+    /// above.
     pub fn draw_points(
         &self,
         theme: &Theme,
@@ -238,7 +239,7 @@ impl PlotField {
             LEGEND.to_owned()
         };
         let width = narrow(write::width(&legend));
-        // Beside the label of the axis, which is a word.
+        // The label of the axis on the same line is only a word.
         if width < self.field.width {
             let place = write::right_of(self.line_at(self.area.y), self.area.right() - width);
             write::line(buffer, place, theme, [(legend.as_str(), Role::Quiet)]);
@@ -246,7 +247,7 @@ impl PlotField {
     }
 }
 
-/// Says under the title of a page that it has no room for its plot.
+/// Writes under the title of a page that there is no room for its plot.
 pub fn draw_no_room(theme: &Theme, buffer: &mut Buffer, page: Rect) {
     let text = "no room for the plot";
     write::line(buffer, write::row(page, 1), theme, [(text, Role::Quiet)]);
@@ -306,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mark_says_how_many_points_share_a_character() {
+    fn a_mark_shows_how_many_points_share_a_character() {
         let area = Rect::new(0, 0, 50, 9);
         let times = |count: usize, x: f64| std::iter::repeat_n((x, 0.0), count);
         let points: Vec<(f64, f64)> = [(1, 1.0), (9, 3.0), (10, 5.0), (99, 7.0), (100, 9.0)]
@@ -334,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn a_character_has_the_point_in_its_middle_and_no_area_is_too_small() {
+    fn characters_and_points_match_and_small_areas_are_safe() {
         let area = Rect::new(3, 2, 40, 12);
         let field = PlotField::of(area, (0.0, 10.0), (-1.0, 1.0)).expect("room");
         for place in field.field.positions() {

@@ -1,7 +1,7 @@
 //! A line of text that is typed and edited, the same in forms, lists and prompts.
 //!
-//! A field that was just entered is replaced by what is typed next, as in most programs with forms; to move the cursor
-//! first keeps the text.
+//! In a field that was just entered, the next typed character replaces the text, as in most programs with forms;
+//! moving the cursor first keeps the text.
 //!
 //! ```
 //! use taxel::tui::app::message::{Endpoint, Message};
@@ -26,14 +26,14 @@ use crate::tui::keys::key::Arrow;
 pub struct TextField {
     /// The text and the cursor.
     input: Input,
-    /// The most characters that can be typed.
+    /// The greatest number of characters that can be typed.
     longest: usize,
-    /// The field was just entered: what is typed replaces everything.
+    /// Whether the field was just entered, so that the next typed character replaces the text.
     fresh: bool,
 }
 
 impl TextField {
-    /// A field that starts with a text, its cursor at the end. No more than `longest` characters are typed into it.
+    /// Creates a field with a text and the cursor at its end. At most `longest` characters can be typed.
     pub fn new(text: impl Into<String>, longest: usize) -> Self {
         Self {
             input: Input::new(text.into()),
@@ -42,7 +42,7 @@ impl TextField {
         }
     }
 
-    /// The cursor comes to this field: it stands at the end, and what is typed next replaces everything.
+    /// Enters the field: puts the cursor at the end, and lets the next typed character replace the text.
     pub fn enter(&mut self) {
         self.edit(InputRequest::GoToEnd);
         self.fresh = true;
@@ -53,23 +53,23 @@ impl TextField {
         self.fresh
     }
 
-    /// What stands in it.
+    /// Returns the text of the field.
     pub fn text(&self) -> &str {
         self.input.value()
     }
 
-    /// Where its cursor stands, in columns.
+    /// Returns the position of the cursor, in columns.
     pub fn cursor(&self) -> usize {
         self.input.visual_cursor()
     }
 
-    /// Puts another text in its place, the cursor at the end.
+    /// Replaces the text, and puts the cursor at its end.
     pub fn set(&mut self, text: impl Into<String>) {
         self.input = Input::new(text.into());
         self.fresh = false;
     }
 
-    /// Does what a message means in a line of text. Returns whether it means anything there.
+    /// Handles a message. Returns false if it means nothing in a line of text.
     pub fn take(&mut self, message: &Message) -> bool {
         let replaces = matches!(
             message,
@@ -83,7 +83,8 @@ impl TextField {
         taken
     }
 
-    /// Does what a message means in a line of text. Returns whether it means anything there.
+    /// Does what a message means, without regard to [`Self::fresh`]. Returns false if it means nothing in a line of
+    /// text.
     fn does(&mut self, message: &Message) -> bool {
         let request = match message {
             Message::Type(character) => {
@@ -91,7 +92,7 @@ impl TextField {
                 return true;
             }
             Message::Paste(text) => {
-                // A line break ends a word, and has no other place in a line.
+                // A line break separates words; a line of text has no other place for it.
                 let lines = text.split(['\r', '\n']).map(str::trim);
                 let lines: Vec<&str> = lines.filter(|line| !line.is_empty()).collect();
                 let text = lines.join(" ");
@@ -111,14 +112,14 @@ impl TextField {
         true
     }
 
-    /// Control characters have no place in a line.
+    /// Inserts a character if there is room; control characters are dropped.
     fn insert(&mut self, character: char) {
         if !character.is_control() && self.text().chars().count() < self.longest {
             self.edit(InputRequest::InsertChar(character));
         }
     }
 
-    /// Performs a request of the crate below.
+    /// Performs a request of the crate `tui_input`.
     fn edit(&mut self, request: InputRequest) {
         // The result only says whether anything changed.
         let _ = self.input.handle(request);
@@ -155,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_typed_into_a_field_that_was_just_entered_replaces_everything() {
+    fn typing_into_a_field_that_was_just_entered_replaces_its_text() {
         let entered = |messages: &[Message]| {
             let mut field = TextField::new("abc", 6);
             field.enter();
@@ -179,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn it_takes_no_more_than_it_has_room_for_and_nothing_that_steers_a_terminal() {
+    fn a_field_limits_its_length_and_drops_control_characters() {
         let pasted = Message::Paste("  d\u{1b}\te f g\n".to_owned());
         assert_eq!(after(&[pasted]), ("abcde ".to_owned(), 6));
         let lines = Message::Paste("1\r\n\n2\r3".to_owned());

@@ -1,7 +1,7 @@
-//! How things look: a style for each role, and the characters of taxels, bars and signs.
+//! The look of the screen: a style for each role, and the characters of taxels, bars and signs.
 //!
-//! Nothing is expressed by colour alone: a character or a word says the same. The characters of the Unicode set are
-//! those that the fonts of text consoles have (code page 437).
+//! Nothing is expressed by colour alone: a character or a word says the same. The Unicode characters are those that
+//! the fonts of text consoles have (code page 437).
 //!
 //! ```
 //! use taxel::tui::widget::theme::{Role, Theme};
@@ -14,12 +14,12 @@ use std::borrow::Cow;
 
 use ratatui::style::{Color, Modifier, Style};
 
-/// What a piece of text on the screen is for.
+/// The purpose of a piece of text on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Ordinary text.
     Text,
-    /// Rulers, units, explanations.
+    /// A ruler, unit or explanation.
     Quiet,
     /// A key that can be pressed.
     Key,
@@ -35,19 +35,19 @@ pub enum Role {
     Inactive,
     /// An active taxel that the nearest imprint does not have.
     Surplus,
-    /// An inactive taxel that it has.
+    /// An inactive taxel that the nearest imprint has.
     Missing,
-    /// Where the cursor is.
+    /// The position of the cursor.
     Cursor,
     /// The field that has the focus.
     Focus,
     /// A text that was searched for.
     Match,
-    /// Something is wrong.
+    /// An error.
     Error,
 }
 
-/// The letter of a style in printed screens. No role has another style than these, and colours.
+/// Returns the letter of a style in printed screens. Roles have no other styles than these, apart from colours.
 pub fn letter(style: &Style) -> char {
     let has = |modifier| style.add_modifier.contains(modifier);
     if has(Modifier::REVERSED) {
@@ -61,20 +61,20 @@ pub fn letter(style: &Style) -> char {
     }
 }
 
-/// How many colours the terminal has.
+/// The number of colours of the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColorDepth {
-    /// None, or none are wanted.
+    /// No colours, or none wanted.
     Never,
     /// The eight colours and their bright variants, in the tones that the user chose for the terminal.
     Sixteen,
-    /// The table of 256.
+    /// The table of 256 colours.
     TwoFiftySix,
-    /// Any.
+    /// Any colour.
     True,
 }
 
-/// What the colours are chosen for.
+/// The background for which colours are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Palette {
     /// A dark background.
@@ -86,7 +86,7 @@ pub enum Palette {
 }
 
 impl ColorDepth {
-    /// All of them by their names in flags and files.
+    /// All depths, with their names in flags and files.
     pub const NAMES: [(&'static str, Self); 4] = [
         ("never", Self::Never),
         ("16", Self::Sixteen),
@@ -96,7 +96,7 @@ impl ColorDepth {
 }
 
 impl Palette {
-    /// All of them by their names in flags and files.
+    /// All palettes, with their names in flags and files.
     pub const NAMES: [(&'static str, Self); 3] = [
         ("dark", Self::Dark),
         ("light", Self::Light),
@@ -104,27 +104,27 @@ impl Palette {
     ];
 }
 
-/// How much the terminal can show.
+/// The look of the screen, as far as it depends on the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Theme {
-    /// ASCII characters only.
+    /// Whether to use ASCII characters only.
     pub ascii: bool,
-    /// A text console, whose font has no Braille.
+    /// Whether the terminal is a text console, whose font has no Braille.
     pub console: bool,
-    /// How many colours.
+    /// The number of colours.
     pub depth: ColorDepth,
-    /// Which ones.
+    /// The colours for a dark or a light background, or none.
     pub palette: Palette,
 }
 
-/// The two characters of a taxel that is one column or two columns wide.
+/// The characters of a taxel; only the first one is used if a taxel is one column wide.
 pub type Glyphs = [char; 2];
 
-/// One colour in each depth: of the sixteen, of the 256, and as red, green, blue.
+/// A colour in each depth: one of the sixteen, one of the 256, and red, green, blue.
 type Tone = (Color, u8, [u8; 3]);
 
-/// The colours of a palette. Bright ones of the sixteen are left out: some terminals show them as bold, some not at
-/// all.
+/// Returns the colour of a role in a palette. Bright colours of the sixteen are not used: some terminals show them as
+/// bold, some not at all.
 fn tone(role: Role, palette: Palette) -> Option<Tone> {
     match (palette, role) {
         (Palette::Dark, Role::Title) => Some((Color::Cyan, 80, [95, 215, 215])),
@@ -145,7 +145,7 @@ fn tone(role: Role, palette: Palette) -> Option<Tone> {
     }
 }
 
-/// Colours of things side by side.
+/// The colours that distinguish things side by side, on a dark background.
 const DARK_TINTS: [Tone; 6] = [
     (Color::Cyan, 80, [95, 215, 215]),
     (Color::Yellow, 221, [255, 215, 95]),
@@ -154,7 +154,7 @@ const DARK_TINTS: [Tone; 6] = [
     (Color::Magenta, 176, [215, 135, 215]),
     (Color::Red, 203, [255, 95, 95]),
 ];
-/// The same on a light background.
+/// The same colours on a light background.
 const LIGHT_TINTS: [Tone; 6] = [
     (Color::Cyan, 31, [0, 135, 175]),
     (Color::Magenta, 130, [175, 95, 0]),
@@ -165,7 +165,7 @@ const LIGHT_TINTS: [Tone; 6] = [
 ];
 
 impl Theme {
-    /// No colours.
+    /// Creates a theme without colours.
     pub const fn plain(ascii: bool) -> Self {
         Self {
             ascii,
@@ -175,7 +175,7 @@ impl Theme {
         }
     }
 
-    /// The style of a role.
+    /// Returns the style of a role.
     pub fn style(&self, role: Role) -> Style {
         let style = match role {
             Role::Quiet | Role::Inactive => Style::new().add_modifier(Modifier::DIM),
@@ -193,7 +193,7 @@ impl Theme {
         }
     }
 
-    /// A style with a colour, as far as the terminal has colours.
+    /// Adds a colour to a style, as far as the terminal has colours.
     fn coloured(self, style: Style, (named, index, [red, green, blue]): Tone) -> Style {
         match self.depth {
             ColorDepth::Never => style,
@@ -203,7 +203,7 @@ impl Theme {
         }
     }
 
-    /// The style of one of many things that lie side by side, by a number: the same colour comes back after six.
+    /// Returns the style of one of several things side by side, by its number; the colours repeat after six.
     pub fn tint(&self, number: usize) -> Style {
         let tints = match self.palette {
             Palette::Dark => &DARK_TINTS,
@@ -213,7 +213,7 @@ impl Theme {
         self.coloured(Style::new(), tints[number % tints.len()])
     }
 
-    /// The characters of a taxel, by its role.
+    /// Returns the characters of a taxel, by its role.
     pub fn taxel(&self, role: Role) -> Glyphs {
         match (role, self.ascii) {
             (Role::Chosen, true) => ['#', '#'],
@@ -229,7 +229,7 @@ impl Theme {
         }
     }
 
-    /// The characters of a coverage from 0 to 1, five shades.
+    /// Returns the characters for a coverage from 0 to 1, in five shades.
     pub fn shade(&self, coverage: f64) -> Glyphs {
         let shades = if self.ascii {
             ['.', ':', '+', '%', '#']
@@ -246,7 +246,7 @@ impl Theme {
         [shades[shade], if shade == 0 { ' ' } else { shades[shade] }]
     }
 
-    /// The characters of a bar: full, half full, empty.
+    /// Returns the characters of a bar: full, half full, empty.
     pub fn bar(&self) -> [char; 3] {
         if self.ascii {
             ['#', '=', '.']
@@ -255,8 +255,8 @@ impl Theme {
         }
     }
 
-    /// The character for two taxels, one above the other, of which the upper and the lower may be active. In ASCII only the
-    /// upper one is shown.
+    /// Returns the character for two taxels, one above the other; `upper` and `lower` say which are active. In ASCII
+    /// only the upper one is shown.
     pub fn half(&self, upper: bool, lower: bool) -> char {
         match (self.ascii, upper, lower) {
             (true, true, _) => '#',
@@ -268,9 +268,9 @@ impl Theme {
         }
     }
 
-    /// The character of two taxels, one above the other, by their roles, and the role that it is drawn in. Where only one
-    /// is active, the described region has half blocks and the others quarters. A hole that is described is seen beside
-    /// what surrounds it: `b` has it below, `p` above.
+    /// Returns the character for two taxels with these roles, one above the other, and the role in which to draw it.
+    /// If only one is active, the described region has half blocks and the others quarters. A described hole stays
+    /// visible beside an active taxel: `b` has the hole below, `p` above.
     pub fn two_taxels(&self, upper: Role, lower: Role) -> (char, Role) {
         use Role::{Active, Chosen, Hole};
         let quarters = !self.ascii && !self.console;
@@ -292,8 +292,8 @@ impl Theme {
         }
     }
 
-    /// The mark of the cursor on one of two taxels in a character: it points to the taxel, and is a letter where that is
-    /// active.
+    /// Returns the mark of the cursor on one of two taxels in a character: it points to the taxel, and is a letter if
+    /// that taxel is active.
     pub fn half_cursor(&self, lower: bool, active: bool) -> char {
         match (lower, active) {
             (false, false) => '^',
@@ -303,7 +303,7 @@ impl Theme {
         }
     }
 
-    /// What marks the ends where there is more to see: above, below, left, right.
+    /// Returns the marks for more content above, below, left, right.
     pub fn more(&self) -> [char; 4] {
         if self.ascii {
             ['^', 'v', '<', '>']
@@ -312,7 +312,7 @@ impl Theme {
         }
     }
 
-    /// What marks the heading that rows are sorted by, from the largest on or from the smallest.
+    /// Returns the mark of the heading by which rows are sorted, in descending or ascending order.
     pub fn sorted(&self, descending: bool) -> char {
         match (self.ascii, descending) {
             (true, true) => 'v',
@@ -322,12 +322,12 @@ impl Theme {
         }
     }
 
-    /// What stands for a value that does not exist.
+    /// Returns the text for a value that does not exist.
     pub fn none(&self) -> &'static str {
         if self.ascii { "-" } else { "–" }
     }
 
-    /// A text with the characters that the terminal has.
+    /// Converts a text to the characters that the terminal has.
     pub fn text<'a>(&self, text: &'a str) -> Cow<'a, str> {
         if !self.ascii || text.is_ascii() {
             return Cow::Borrowed(text);
@@ -336,8 +336,8 @@ impl Theme {
     }
 }
 
-/// The spelling in ASCII of a sign that the program writes, None for any other character. The screen and the command
-/// line share this table.
+/// Returns the spelling in ASCII of a sign that the program writes; None for any other character. The screen and the
+/// command line share this table.
 pub(crate) fn spelling(sign: char) -> Option<&'static str> {
     Some(match sign {
         '°' => " deg",
@@ -353,7 +353,7 @@ pub(crate) fn spelling(sign: char) -> Option<&'static str> {
     })
 }
 
-/// The nearest text in ASCII: "17°" becomes "17 deg". A character without a spelling becomes a question mark, so that
+/// Converts a text to ASCII: "17°" becomes "17 deg". A character without a spelling becomes a question mark, so that
 /// the columns of the screen stay in place.
 fn to_ascii(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());

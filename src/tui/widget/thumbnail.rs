@@ -1,5 +1,4 @@
-//! A small picture of an imprint: a column for each taxel, two rows in a line by half blocks, or a row in a line in
-//! ASCII.
+//! A small picture of an imprint, with one column per taxel. A line shows two rows by half blocks, in ASCII one row.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -9,14 +8,15 @@ use crate::tui::widget::number::taxels;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Columns and lines that an imprint takes.
+/// Returns the number of columns and lines that an imprint takes.
 pub fn size(theme: &Theme, imprint: &Imprint) -> (u16, u16) {
     let rows = u16::from(imprint.rows());
     let lines = if theme.ascii { rows } else { rows.div_ceil(2) };
     (imprint.columns().into(), lines)
 }
 
-/// Draws an imprint from the top left corner of an area on; of one that is larger, the part around its active taxels.
+/// Draws an imprint from the top left corner of an area; if it is larger than the area, the part around its active
+/// taxels.
 pub fn draw(theme: &Theme, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
     let step: u8 = if theme.ascii { 1 } else { 2 };
     let (columns, rows) = (imprint.columns(), imprint.rows());
@@ -32,7 +32,7 @@ pub fn draw(theme: &Theme, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
             (middle.saturating_sub(seen / 2) / step * step).min(last)
         };
         left = from(middle(bounds.left, bounds.right), width, columns, 1);
-        // Rows stay paired as they are in the whole.
+        // The same rows share a line as in the whole imprint.
         top = from(middle(bounds.top, bounds.bottom), height, rows, step);
     }
     for (line, row) in (top..rows).step_by(step.into()).enumerate() {

@@ -1,7 +1,7 @@
 //! Writing text into the screen's buffer.
 //!
-//! Text has a [`Role`], and the theme decides its style and characters. It is cut at the edge of its area, with an
-//! ellipsis so that one sees that something is missing. All functions accept any area, also an empty one or one beyond
+//! Text has a [`Role`], from which the theme decides its style and characters. Text is cut at the edge of its area,
+//! and an ellipsis shows that something is missing. All functions accept any area, also an empty one or one beyond
 //! the buffer.
 //!
 //! ```
@@ -22,8 +22,8 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 
-/// Writes pieces of text, each in its role, into the first line of an area; the first that does not fit is cut
-/// short with an ellipsis, and the others are left out. Answers where the text ends.
+/// Writes pieces of text, each in its role, into the first line of an area. The first piece that does not fit is cut
+/// short with an ellipsis, and the following ones are left out. Returns the column after the text.
 pub fn line<'a>(
     buffer: &mut Buffer,
     area: Rect,
@@ -46,8 +46,8 @@ pub fn line<'a>(
     x
 }
 
-/// A text in a number of columns: as it is if it fits, not counting spaces at its end, otherwise shortened with an
-/// ellipsis.
+/// Fits a text into a number of columns: unchanged if it fits without the spaces at its end, otherwise shortened with
+/// an ellipsis.
 pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
     if width(text) <= room {
         return Cow::Borrowed(text);
@@ -66,13 +66,13 @@ pub fn fitted<'a>(text: &'a str, room: usize, theme: &Theme) -> Cow<'a, str> {
     Cow::Owned(format!("{}{ellipsis}", kept.trim_end()))
 }
 
-/// The first of several texts that fits into a number of columns, or the last one if none does.
+/// Returns the first of several texts that fits into a number of columns, or the last one if none does.
 pub fn first_fitting<'a>(texts: &[&'a str], room: usize) -> &'a str {
     let fitting = texts.iter().find(|text| width(text) <= room);
     fitting.or(texts.last()).copied().unwrap_or("")
 }
 
-/// The line of an area that lies `index` below its top; empty where the area ends before.
+/// Returns the line `index` below the top of an area; it is empty if the area ends before.
 pub fn row(area: Rect, index: usize) -> Rect {
     let index = narrow(index);
     let inside = index < area.height;
@@ -83,7 +83,7 @@ pub fn row(area: Rect, index: usize) -> Rect {
     }
 }
 
-/// The index of the first visible row, with the selected one as near to the middle as the ends allow.
+/// Returns the index of the first visible row, so that the selected row is as near to the middle as the ends allow.
 pub(in crate::tui) fn first_of(visible: u16, rows: usize, selected: usize) -> usize {
     let visible = usize::from(visible);
     selected
@@ -91,7 +91,7 @@ pub(in crate::tui) fn first_of(visible: u16, rows: usize, selected: usize) -> us
         .min(rows.saturating_sub(visible))
 }
 
-/// The part of an area that begins a number of lines below its top.
+/// Returns the part of an area that begins `lines` below its top.
 pub fn below(area: Rect, lines: u16) -> Rect {
     let lines = lines.min(area.height);
     Rect {
@@ -101,7 +101,7 @@ pub fn below(area: Rect, lines: u16) -> Rect {
     }
 }
 
-/// The part of an area right of `x`.
+/// Returns the part of an area to the right of `x`.
 pub fn right_of(area: Rect, x: u16) -> Rect {
     let x = x.clamp(area.x, area.right());
     Rect {
@@ -111,9 +111,9 @@ pub fn right_of(area: Rect, x: u16) -> Rect {
     }
 }
 
-/// The part of a text in a field of `room` columns that has the cursor in sight, and the column of the cursor in it. An
-/// ellipsis at its start stands for what is hidden there. The part goes on to the end of the text: whoever writes it marks
-/// what has no room there, which is never under the cursor.
+/// Returns the part of a text that a field of `room` columns shows so that the cursor is visible, and the column of
+/// the cursor in that part. An ellipsis at its start stands for the hidden text before. The part extends to the end
+/// of the text: the caller shortens it at the right, which never hides the character under the cursor.
 pub fn field_text<'a>(
     text: &'a str,
     cursor: usize,
@@ -141,7 +141,7 @@ pub fn field_text<'a>(
     (Cow::Owned(marked), column)
 }
 
-/// The same, filled up with spaces or shortened to exactly `room` columns.
+/// Returns the text of a field like [`field_text`], padded with spaces or shortened to exactly `room` columns.
 pub fn field_columns(text: &str, cursor: usize, room: usize, theme: &Theme) -> (String, usize) {
     let (shown, column) = field_text(text, cursor, room, theme);
     let shown = fitted(&shown, room, theme);
@@ -149,8 +149,8 @@ pub fn field_columns(text: &str, cursor: usize, room: usize, theme: &Theme) -> (
     (format!("{shown}{fill}"), column)
 }
 
-/// A prompt: a label, the text of a field, and a remark after it. Returns where the cursor is. If the text is too
-/// long, the part before the cursor is shown after an ellipsis.
+/// Writes a prompt: a label, the text of a field, and a remark after it. Returns the position of the cursor. If the
+/// text is too long, the part around the cursor is shown, after an ellipsis.
 pub fn prompt(
     buffer: &mut Buffer,
     area: Rect,
@@ -176,8 +176,8 @@ pub fn clear(buffer: &mut Buffer, area: Rect) {
     }
 }
 
-/// Writes a text over as many lines as it needs, and answers how many these are. If the area has fewer, the text ends
-/// in an ellipsis.
+/// Writes a text over several lines, and returns the number of lines that it needs. If the area has fewer, the text
+/// ends in an ellipsis.
 pub fn wrapped(buffer: &mut Buffer, area: Rect, theme: &Theme, text: &str, role: Role) -> usize {
     let text = theme.text(text);
     let room = usize::from(area.width);
@@ -187,7 +187,7 @@ pub fn wrapped(buffer: &mut Buffer, area: Rect, theme: &Theme, text: &str, role:
         line(buffer, row(area, index), theme, [(piece, role)]);
     }
     if let Some(&piece) = lines.get(last) {
-        // What is left over makes the last line too long, which shortens it.
+        // The whole rest makes the last line too long, so that it ends in an ellipsis.
         let rest = if last + 1 < lines.len() {
             lines[last..].join(" ")
         } else {
@@ -203,7 +203,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_too_long_is_shortened_and_says_so() {
+    fn a_text_that_is_too_long_ends_in_an_ellipsis() {
         let (unicode, ascii) = (Theme::plain(false), Theme::plain(true));
         for (text, room, expected) in [
             ("washer", 6, "washer"),
@@ -232,7 +232,7 @@ mod tests {
             ("12345", 5, ("…345", 4)),
             ("12345", 0, ("12345", 0)),
             ("字字字", 6, ("… 字", 4)),
-            // The character under the cursor is seen, though more follows.
+            // The character under the cursor is visible, though more text follows.
             ("1234567", 3, ("1234567", 3)),
             ("1234567", 4, ("…34567", 3)),
         ] {
