@@ -7,27 +7,27 @@ use crate::imprint::Imprint;
 use crate::parameter::number::share;
 use crate::recognition::{Evaluation, Model, ShapeCount};
 
-/// An imprint of a cell of the confusion matrix, the most frequent one.
+/// The most frequent imprint of a cell of the confusion matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Example {
-    /// The imprint, cut to its box; None of a touch that leaves nothing.
+    /// The imprint, cut to its box; None for a touch that leaves nothing.
     pub imprint: Option<Imprint>,
     /// The shapes that leave it.
     counts: Vec<ShapeCount>,
 }
 
-/// Which imprint is the example of each cell of the confusion matrix. All are found at once: a model may have millions of
-/// imprints, and no key waits for them.
+/// An example imprint for each cell of the confusion matrix. All are found in advance: a model may have millions of
+/// imprints, and no key must wait for them.
 #[derive(Clone, Debug)]
 pub struct Examples {
-    /// For each cell, by the shapes that touch and are named, in how many poses the first one leaves the example, and which
-    /// imprint of the model that is.
+    /// For each cell, given by the touching shape and the named shape: the number of poses in which the first leaves
+    /// the example, and the index of that imprint in the model.
     cells: BTreeMap<(usize, usize), (u64, usize)>,
 }
 
 impl Examples {
-    /// Those of a model: of the imprints that a shape leaves and that are named as another one, the one that it leaves in
-    /// the most poses; the first of equals.
+    /// Finds the examples of a model: of the imprints that one shape leaves and that are named as another, the one
+    /// that the first shape leaves in the most poses; the first of several.
     pub fn of(model: &Model) -> Self {
         let mut cells = BTreeMap::new();
         for key in 0..model.keys().len() {
@@ -43,7 +43,7 @@ impl Examples {
         Self { cells }
     }
 
-    /// That of a cell of the same model; None if there is none.
+    /// Returns the example of a cell of the same model; None if there is none.
     pub fn get(&self, model: &Model, cell: (usize, usize)) -> Option<Example> {
         let &(_, key) = self.cells.get(&cell)?;
         Some(Example {
@@ -54,7 +54,7 @@ impl Examples {
 }
 
 impl Example {
-    /// Which shapes leave it, and in how many poses.
+    /// Describes which shapes leave the imprint, and in how many poses.
     pub fn in_words<'a>(&self, name: impl Fn(usize) -> &'a str) -> String {
         let leaves = self.counts.iter().map(|own| {
             let name = name(own.shape.into());
@@ -65,8 +65,8 @@ impl Example {
     }
 }
 
-/// The cell beside the diagonal with the most touches, of equals the first: the shape that touches, the shape that is
-/// named. None of a single shape.
+/// Returns the cell beside the diagonal with the most touches, the first of several: the touching shape and the named
+/// shape. None for a single shape.
 pub fn worst_cell(evaluation: &Evaluation) -> Option<(usize, usize)> {
     let cells = evaluation.confusion.cells();
     let wrong = cells.filter(|(row, column, _)| row != column);
@@ -78,18 +78,18 @@ pub fn worst_cell(evaluation: &Evaluation) -> Option<(usize, usize)> {
 /// A shape that is taken for another one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConfusedPair {
-    /// The number of the shape that touches.
+    /// The index of the touching shape.
     pub touched: usize,
-    /// The number of the shape that is named.
+    /// The index of the named shape.
     pub named: usize,
-    /// The share of the touches of the first that are named so.
+    /// The share of the touching shape's touches that are named so.
     pub share: f64,
-    /// An imprint that is taken so.
+    /// An imprint that is named so.
     pub example: Option<Example>,
 }
 
 impl ConfusedPair {
-    /// The pair of a model that is confused in the most touches; None if none is confused.
+    /// Returns the pair of a model that is confused in the most touches; None if none is confused.
     pub fn worst(model: &Model, evaluation: &Evaluation) -> Option<Self> {
         let (touched, named) = worst_cell(evaluation)?;
         let confusion = &evaluation.confusion;

@@ -23,25 +23,25 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
-/// The matrix, as it is looked at.
+/// The page of the confusion matrix.
 #[derive(Clone, Debug)]
 pub struct Confusion {
     /// The model.
     trained: Arc<TrainedModel>,
-    /// The cell under the cursor: the shape that touches, the shape that is named.
+    /// The cell under the cursor: the touching shape, the named shape.
     cell: (usize, usize),
-    /// An imprint of that cell; None if there is none.
+    /// An example imprint of that cell; None if there is none.
     example: Option<Example>,
 }
 
-/// Columns of a cell.
+/// The width of a cell, in columns.
 const CELL: u16 = 7;
 
-/// The most columns of a name.
+/// The greatest width of a name, in columns.
 const NAME: usize = 12;
 
 impl Confusion {
-    /// The matrix of a model, the cursor on the pair of shapes that is confused most.
+    /// Creates the page of a model, with the cursor on the pair of shapes that is confused most.
     pub fn new(trained: Arc<TrainedModel>) -> Self {
         let worst = worst_cell(&trained.evaluation);
         let mut page = Self {
@@ -53,19 +53,19 @@ impl Confusion {
         page
     }
 
-    /// Number of shapes.
+    /// Returns the number of shapes.
     fn count(&self) -> usize {
         self.trained.model.shapes().len()
     }
 
-    /// The imprint of the cell on a sensor of the user's if it fits on that, otherwise on that of the model; and the
-    /// sensor. None if there is none.
+    /// Returns the imprint of the cell, on the user's sensor if it fits there, otherwise on the model's sensor; and
+    /// that sensor. None if the cell has no imprint.
     pub fn imprint_on(&self, sensor: Sensor) -> Option<(Sensor, Imprint)> {
         let imprint = self.example.as_ref()?.imprint?;
         Some(onto(&imprint, sensor, *self.trained.model.sensor()))
     }
 
-    /// Puts the cursor onto a cell, or onto the nearest one.
+    /// Puts the cursor onto a cell, or onto the nearest one if there is no such cell.
     fn go_to(&mut self, (row, column): (usize, usize)) {
         let last = self.count() - 1;
         self.cell = (row.min(last), column.min(last));
@@ -90,25 +90,25 @@ impl Confusion {
     }
 }
 
-/// Where the parts of the page are.
+/// The areas of the parts of the page.
 struct ConfusionPanes {
     /// The headings of the columns.
     head: Rect,
     /// The rows of the matrix.
     rows: Rect,
-    /// Columns of a label.
+    /// The width of a row's label, in columns.
     label: u16,
     /// The first visible row and column.
     first: (usize, usize),
-    /// How many columns are visible.
+    /// The number of visible columns of the matrix.
     columns: usize,
-    /// What the cursor is on, in words.
+    /// The description of the cell under the cursor.
     detail: Rect,
-    /// Its imprint, where there is room beside the matrix.
+    /// The example imprint of that cell; None if there is no room beside the matrix.
     picture: Option<Rect>,
 }
 
-/// Lines for what the cursor is on.
+/// The number of lines for the description of the cell under the cursor.
 const DETAIL: u16 = 2;
 
 impl ConfusionPanes {
@@ -120,7 +120,7 @@ impl ConfusionPanes {
         let label = narrow(count.to_string().len() + 1 + name + 1);
         let beside = area.width.saturating_sub(label);
         let all = narrow(count).saturating_mul(CELL);
-        // Beside the matrix there is an imprint, unless that would leave too few columns.
+        // An imprint stands beside the matrix, unless that would leave too few columns.
         let picture = 18;
         let with_picture = all.saturating_add(picture) <= beside || beside >= picture + 6 * CELL;
         let room = if with_picture {
@@ -150,7 +150,7 @@ impl ConfusionPanes {
         }
     }
 
-    /// The columns of the screen that a column of the matrix has.
+    /// Returns the area of a cell in a row of the screen.
     fn cell(&self, row: Rect, index: usize) -> Rect {
         let x = row.x + self.label + narrow(index).saturating_mul(CELL);
         let cell = write::right_of(row, x);
@@ -227,7 +227,7 @@ impl Page for Confusion {
 }
 
 impl Confusion {
-    /// The numbers of the columns; on their left, how many rows and columns are hidden on each side.
+    /// Draws the numbers of the columns, and to their left how many rows and columns are hidden on each side.
     fn draw_head(&self, theme: &Theme, panes: &ConfusionPanes, buffer: &mut Buffer) {
         let (row, column) = panes.first;
         let after = |end: usize| self.count().saturating_sub(end);
@@ -261,7 +261,7 @@ impl Confusion {
         }
     }
 
-    /// A row: its number and name, and its cells. Returns where the cursor is, if it is here.
+    /// Draws a row: its number and name, and its cells. Returns the position of the cursor if it is in this row.
     fn draw_row(
         &self,
         theme: &Theme,
@@ -303,7 +303,7 @@ impl Confusion {
         cursor
     }
 
-    /// What the cursor is on.
+    /// Draws the description of the cell under the cursor.
     fn draw_detail(&self, theme: &Theme, panes: &ConfusionPanes, buffer: &mut Buffer) {
         let (row, column) = self.cell;
         let confusion = &self.trained.evaluation.confusion;
@@ -329,7 +329,7 @@ impl Confusion {
     }
 }
 
-/// A cell: percent of its row; the diagonal in brackets, nothing as a dot.
+/// Returns the text of a cell: percent of its row, in brackets on the diagonal; a dot for none.
 fn cell_text(theme: &Theme, count: u128, touches: u128, diagonal: bool) -> String {
     let percent = percent(share(count, touches));
     let number = match count {

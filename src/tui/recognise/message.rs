@@ -10,36 +10,36 @@ use crate::tui::recognise::separate::found::SizesFound;
 use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::trained::TrainedModel;
 
-/// What a key or a command asks for.
+/// A request by a key or a command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecogniseMessage {
-    /// To open the page.
+    /// Opens the page.
     Open,
-    /// To open it with a set.
+    /// Opens the page with a set.
     Choose(ModelChoice),
-    /// Another set, by how many places it comes after the present one.
+    /// Chooses another set, so many places after the present one.
     NextSet(i8),
-    /// A random shape of the set touches the matrix.
+    /// Touches the matrix with a random shape of the set.
     Touch,
-    /// To keep the touch on the matrix as one of several of the same shape.
+    /// Keeps the touch on the matrix as one of several of the same shape.
     Keep,
-    /// To forget the touches that were kept.
+    /// Forgets the kept touches.
     Forget,
-    /// To show the outlines of the poses that may have left the imprint, or hide them.
+    /// Shows or hides the outlines of the poses that may have left the imprint.
     Poses,
-    /// The confusion matrix.
+    /// Shows the confusion matrix.
     Confusion,
-    /// The limit of the set against the size of its shapes.
+    /// Shows the limit of the set against the size of its shapes.
     Separate(SeparationFlags),
-    /// Another wanted error there: a smaller one below 0.
+    /// Chooses another wanted error on the page of sizes: a larger one, or a smaller one if negative.
     Want(i8),
-    /// Random touches from this seed on.
+    /// Starts the random touches from this seed.
     Seed(u64),
-    /// To select a row of a list, counted from 0.
+    /// Selects a row of a list, counted from 0.
     Select(usize),
-    /// To write the sizes into a file of that name.
+    /// Writes the sizes into a file with this name.
     WriteSizes(String),
-    /// To select a cell of the confusion matrix: row, column.
+    /// Selects a cell of the confusion matrix: row, column.
     SelectCell(usize, usize),
 }
 
@@ -50,46 +50,46 @@ pub struct PoseSearch {
     pub trained: Arc<TrainedModel>,
     /// The imprint.
     pub imprint: Imprint,
-    /// The number of the shape that the answer names; None if it names none.
+    /// The index of the shape that the answer names; None if it names none.
     pub named: Option<usize>,
 }
 
-/// What it found.
+/// The result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
     /// The nearest imprint that a shape of the set leaves.
     pub nearest: Option<Nearest>,
-    /// The number of the named shape, or of that of the nearest imprint if none is named, and in which poses it leaves
-    /// the nearest imprint.
+    /// The index of the named shape, or of the nearest imprint's shape if none is named, and the poses in which it
+    /// leaves the nearest imprint.
     pub pose: Option<(usize, PoseEstimate)>,
-    /// Some of these poses, the likeliest first.
+    /// Some of these poses, the most likely first.
     pub poses: Vec<PlacedSource>,
-    /// Why the poses were not found, if they need more memory than there is.
+    /// The reason why the poses were not found, if they need more memory than there is.
     pub refused: Option<String>,
 }
 
-/// A model, or why there is none.
+/// A model, or the reason why there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared {
     /// The number of the piece of work.
     pub number: u64,
-    /// The names of the models that are stored.
+    /// The names of the stored models.
     pub stored: Vec<Name>,
-    /// The model, or why there is none.
+    /// The model, or the reason why there is none.
     pub trained: Result<Arc<TrainedModel>, String>,
 }
 
-/// What the worker reports.
+/// A report from the worker.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecognitionEvent {
-    /// A training of that number began; how many poses it has.
+    /// A training began: its number, and its number of poses.
     Begun(u64, u64),
-    /// The work of that number is no longer waited for; what it does, in a few words.
+    /// The work with this number is no longer waited for; its description, in a few words.
     GivenUp(u64, String),
     /// A model is ready, or there is none.
     Prepared(Box<Prepared>),
-    /// The search of that number is over: what it found, or why it failed.
+    /// The search with this number has ended: its result, or the reason why it failed.
     Looked(u64, Result<Box<Look>, String>),
-    /// Sizes were looked at.
+    /// Some sizes were evaluated.
     Sizes(Box<SizesFound>),
 }

@@ -1,4 +1,4 @@
-//! Recognise: names the shape on the matrix from one touch or several, and how far that can be trusted.
+//! Recognise: names the shape on the matrix from one or several touches, and shows how far the name can be trusted.
 //!
 //! ```text
 //! trained     a model, how well it tells its shapes apart, and examples

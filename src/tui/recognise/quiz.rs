@@ -20,21 +20,21 @@ use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// A shape that is to be named.
+/// A shape whose name is asked for.
 #[derive(Clone, Debug)]
 pub struct Quiz {
-    /// The set that it is of.
+    /// The model of the shape's set.
     trained: Arc<TrainedModel>,
-    /// Its number, which is not shown.
+    /// The index of the shape, which is not shown.
     shape: usize,
-    /// Its touches as they lay on the matrix, the present one last.
+    /// The imprints of its touches on the matrix, the present one last.
     touches: Vec<Imprint>,
-    /// The row of the list that is selected.
+    /// The selected row of the list.
     selected: usize,
 }
 
 impl Quiz {
-    /// A random shape of a set, as likely as its weight says; not touched yet.
+    /// Chooses a random shape of a set, with a probability in proportion to its weight; it has not touched yet.
     pub fn new(trained: Arc<TrainedModel>, random: &mut Pcg64) -> Self {
         let shapes = trained.model.shapes();
         let weights = shapes.iter().map(|shape| u64::from(shape.weight));
@@ -53,8 +53,8 @@ impl Quiz {
         }
     }
 
-    /// Touches with the shape in a random pose of the model's grid. Returns the sensor and the imprint: on a sensor of
-    /// the user's if it fits on that, away from the rim if there is room; otherwise on that of the model.
+    /// Touches with the shape in a random pose of the model's grid. Returns the sensor and the imprint: on the user's
+    /// sensor if it fits there, off the rim if there is room; otherwise on the model's sensor.
     pub fn touch(&mut self, sensor: Sensor, random: &mut Pcg64) -> Option<(Sensor, Imprint)> {
         let grid = self.trained.grid(self.shape)?;
         let pose = grid.pose(below(random, grid.poses()));
@@ -65,40 +65,40 @@ impl Quiz {
         Some((sensor, imprint))
     }
 
-    /// The shape.
+    /// Returns the index of the shape.
     pub fn shape(&self) -> usize {
         self.shape
     }
 
-    /// The name of a shape of the set.
+    /// Returns the name of a shape of the set.
     pub fn name(&self, shape: usize) -> &str {
         self.trained.name(shape)
     }
 
-    /// How often it touched the matrix.
+    /// Returns how often the shape has touched the matrix.
     pub fn touched(&self) -> usize {
         self.touches.len()
     }
 
-    /// Its touches.
+    /// Returns the imprints of the touches.
     pub fn into_touches(self) -> Vec<Imprint> {
         self.touches
     }
 
-    /// The row that is selected: the number of a shape.
+    /// Returns the selected row, which is the index of a shape.
     pub fn selected(&self) -> usize {
         self.selected
     }
 
-    /// Number of shapes of the set.
+    /// Returns the number of shapes of the set.
     fn count(&self) -> usize {
         self.trained.model.shapes().len()
     }
 
-    /// Handles what selects a row; `true` if it names a shape by its number at once.
+    /// Handles a message that selects a row; returns true if it names a shape at once, by its number.
     ///
     /// # Errors
-    /// A character that no shape has, in a sentence.
+    /// Returns a sentence about a character that fits no shape.
     pub fn take(&mut self, message: &Message) -> Result<bool, String> {
         let last = self.count() - 1;
         match *message {
@@ -117,7 +117,8 @@ impl Quiz {
         Ok(false)
     }
 
-    /// A digit names one of the first nine shapes; a letter selects the next shape whose name begins with it.
+    /// Handles a character: a digit names one of the first nine shapes; a letter selects the next shape whose name
+    /// begins with it.
     fn type_character(&mut self, character: char) -> Result<bool, String> {
         if let Some(number) = character.to_digit(10) {
             let row = (number as usize).checked_sub(1);
@@ -138,15 +139,15 @@ impl Quiz {
     }
 }
 
-/// An imprint on the user's sensor if it fits on that, otherwise on that of its model; and the sensor.
+/// Returns an imprint on the user's sensor if it fits there, otherwise on the model's sensor; and that sensor.
 pub(super) fn onto(imprint: &Imprint, sensor: Sensor, own: Sensor) -> (Sensor, Imprint) {
     let moved = |sensor: Sensor| Some((sensor, moved_onto(imprint, &sensor)?));
     let moved = moved(sensor).or_else(|| moved(own));
     moved.unwrap_or((sensor, Imprint::empty(sensor.columns(), sensor.rows())))
 }
 
-/// The same imprint where it fits on a sensor: as near to its own place as that allows, off the rim if there is room.
-/// None if it does not fit.
+/// Moves an imprint onto a sensor: as near to its own place as possible, off the rim if there is room. None if it
+/// does not fit.
 fn moved_onto(imprint: &Imprint, sensor: &Sensor) -> Option<Imprint> {
     let mut moved = Imprint::empty(sensor.columns(), sensor.rows());
     let Some(bounds) = imprint.bounds() else {
@@ -165,10 +166,10 @@ fn moved_onto(imprint: &Imprint, sensor: &Sensor) -> Option<Imprint> {
     Some(moved)
 }
 
-/// Lines above the list; the last of them says how many rows are out of sight.
+/// The number of lines above the list; the last of them shows how many rows are out of sight.
 const HEAD: u16 = 3;
 
-/// The rows of the list, and the number of the first one.
+/// Returns the area of the list, and the index of its first visible row.
 fn rows(quiz: &Quiz, area: Rect) -> (Rect, usize) {
     let rows = write::below(area, HEAD);
     let first = write::first_of(rows.height, quiz.count(), quiz.selected);
@@ -250,7 +251,7 @@ impl Page for Quiz {
         if !list.contains(at) || shape >= self.count() {
             return None;
         }
-        // As in other lists: a click selects, a click on the selected row takes it.
+        // As in other lists, a click selects a row, and a click on the selected row accepts it.
         Some(if shape == self.selected {
             Message::Accept
         } else {
@@ -272,7 +273,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_touch_comes_onto_the_sensor_where_it_fits() {
+    fn a_touch_is_moved_onto_the_sensor_if_it_fits() {
         let read = |text: &str| text.parse::<Imprint>().expect("an imprint");
         let own = read("......\n......\n......\n....##\n....#.\n......");
         let sensor = |columns, rows| Sensor::new(columns, rows).expect("a sensor");

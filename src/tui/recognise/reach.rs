@@ -1,4 +1,5 @@
-//! Where recognition is, on its page or kept while that is closed; and the way of an imprint onto the matrix.
+//! Access to the state of recognition, on its open page or kept while the page is closed; and putting an imprint onto
+//! the matrix.
 
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
@@ -9,7 +10,7 @@ use crate::tui::app::document::Document;
 use crate::tui::app::state::App;
 use crate::tui::recognise::state::Recognition;
 
-/// The state, wherever it is: on the page, or kept while that is closed.
+/// Returns the state of recognition, from its open page or as kept while the page is closed.
 pub(super) fn state(app: &mut App) -> Option<&mut Recognition> {
     let mut dialogs = app.dialogs.iter_mut().rev();
     let open = dialogs.find_map(|dialog| match dialog {
@@ -19,7 +20,7 @@ pub(super) fn state(app: &mut App) -> Option<&mut Recognition> {
     open.or(app.recognition.as_mut()).map(|page| &mut **page)
 }
 
-/// The chosen set, once its model is there.
+/// Returns the chosen set, once its model is ready.
 pub(in crate::tui) fn trained_set(app: &App) -> Option<&ModelChoice> {
     let open = app.dialogs.iter().find_map(|dialog| match dialog {
         Dialog::Recognition(page) => Some(page),
@@ -29,8 +30,8 @@ pub(in crate::tui) fn trained_set(app: &App) -> Option<&ModelChoice> {
     page.trained().map(|trained| &trained.choice)
 }
 
-/// Puts an imprint onto the matrix as if it were drawn: nothing there says what made it. `brought_by` is
-/// the history's name for the step.
+/// Puts an imprint onto the matrix as if it were drawn, without any trace of what made it. `brought_by` is the name
+/// of the step in the history.
 pub(super) fn put(app: &mut App, sensor: Sensor, imprint: &Imprint, brought_by: &str) {
     let mut document = Document::empty(sensor);
     document.edits = *imprint;

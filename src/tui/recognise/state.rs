@@ -1,4 +1,4 @@
-//! The state of recognition: the set and its model, the touches, the answer to them, the quiz's score.
+//! The state of recognition: the set and its model, the touches, the answer about them, the score of the quiz.
 
 use std::sync::Arc;
 
@@ -18,61 +18,61 @@ use crate::tui::widget::number::around;
 /// How far the model of the chosen set is.
 #[derive(Clone, Debug)]
 pub enum ModelState {
-    /// There is none: training was stopped, or failed, or never began.
+    /// There is none: training was stopped, failed or was never begun.
     Missing,
-    /// It is being trained or read.
+    /// The model is being trained or read.
     Preparing(Preparation),
-    /// It is there.
+    /// The model is ready.
     Ready(Arc<TrainedModel>),
 }
 
-/// A model on its way.
+/// A model that is being trained or read.
 #[derive(Clone, Debug)]
 pub struct Preparation {
     /// The number of the piece of work.
     pub number: u64,
-    /// Poses of all shapes, once that is known; a model from a file has none.
+    /// The number of poses of all shapes, once it is known; None for a model from a file.
     pub poses: Option<u64>,
-    /// Poses that are done.
+    /// The number of poses that are done.
     pub done: u64,
     /// Whether a stop was requested.
     pub stopping: bool,
-    /// Whether the page was opened for it.
+    /// Whether the page was opened for this model.
     opened: bool,
-    /// The set that comes back if this one cannot be read.
+    /// The set to return to if this one cannot be read.
     before: Option<Box<SetBefore>>,
 }
 
-/// Why there is no model.
+/// The reason why there is no model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoModel {
-    /// In a sentence.
+    /// The reason, as a sentence.
     pub reason: String,
-    /// Whether the page closes: it was opened for a set that cannot be read.
+    /// Whether the page closes, because it was opened for a set that cannot be read.
     pub closes: bool,
 }
 
-/// The set before another one was chosen.
+/// The set that was chosen before the present one.
 #[derive(Clone, Debug)]
 struct SetBefore {
     /// The set.
     choice: ModelChoice,
-    /// Its model; None if it had none.
+    /// The model of the set; None if it had none.
     trained: Option<Arc<TrainedModel>>,
     /// The touches that were kept.
     kept: Vec<Imprint>,
-    /// The score of its quiz.
+    /// The score of the quiz with this set.
     score: Score,
 }
 
-/// How the quiz goes.
+/// The score of the quiz.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Score {
-    /// Shapes that were to be named.
+    /// The number of shapes that the user was asked to name.
     pub asked: u32,
-    /// How many the user named right.
+    /// The number of shapes that the user named correctly.
     pub right: u32,
-    /// How many the best classifier names right.
+    /// The number of shapes that the best classifier named correctly.
     pub best: u32,
 }
 
@@ -81,55 +81,55 @@ pub struct Score {
 struct Looking {
     /// The number of the piece of work.
     number: u64,
-    /// What is searched.
+    /// The model and the imprint to search for.
     search: PoseSearch,
-    /// Whether a stop was requested; then nothing is taken from it.
+    /// Whether a stop was requested; then its result is dropped.
     stopping: bool,
 }
 
-/// What to do about the search that the page needs.
+/// The next step for the search that the page needs.
 #[derive(Clone, Debug)]
 pub enum LookStep {
-    /// To begin it.
+    /// Begin the search.
     Begin(Box<PoseSearch>),
-    /// To stop the one in progress, which is for something else. The next begins when that one is over, so that there
-    /// are never two.
+    /// Stop the search in progress, which is for something else. The next one begins after that one has ended, so
+    /// that there are never two.
     Stop,
 }
 
 /// The state of the page.
 #[derive(Clone, Debug)]
 pub struct Recognition {
-    /// The set.
+    /// The chosen set.
     choice: ModelChoice,
     /// The names of stored models.
     stored: Vec<Name>,
-    /// Its model.
+    /// The model of the set.
     state: ModelState,
-    /// The touches of the shape that were kept.
+    /// The kept touches of the shape.
     kept: Vec<Imprint>,
     /// The imprint on the matrix.
     present: Imprint,
     /// Whether the last kept touch is the one on the matrix.
     present_kept: bool,
-    /// The answer to all touches; None without a model or a touch.
+    /// The answer about all touches; None without a model or a touch.
     answer: Option<Answer>,
-    /// What was searched last, and what was found; None if that failed.
+    /// The last search and its result; None if it failed.
     searched: Option<(PoseSearch, Option<Box<Look>>)>,
     /// The search in progress.
     looking: Option<Looking>,
-    /// Whether outlines of poses are shown; None for where taxels are large.
+    /// Whether outlines of poses are shown; None shows them if taxels are large.
     outlines: Option<bool>,
     /// The page of sizes, while it is closed.
     pub(super) separate: Option<Box<Separate>>,
     /// The score of the quiz.
     pub(super) score: Score,
-    /// Where random touches come from.
+    /// The generator of random touches.
     pub(super) random: Pcg64,
 }
 
 impl Recognition {
-    /// The seven figures, without a model yet; random touches come from a seed.
+    /// Creates the state with the seven figures, without a model; random touches come from a seed.
     pub fn new(seed: u64) -> Self {
         Self {
             choice: ModelChoice::Figures,
@@ -148,22 +148,22 @@ impl Recognition {
         }
     }
 
-    /// Chooses the set that is there at first, without a model.
+    /// Chooses the first set, without a model.
     pub fn begin_with(&mut self, choice: ModelChoice) {
         self.choice = choice;
     }
 
-    /// The set.
+    /// Returns the chosen set.
     pub fn choice(&self) -> &ModelChoice {
         &self.choice
     }
 
-    /// How far its model is.
+    /// Returns how far the model is.
     pub fn state(&self) -> &ModelState {
         &self.state
     }
 
-    /// Its model, once that is there.
+    /// Returns the model, once it is ready.
     pub fn trained(&self) -> Option<&Arc<TrainedModel>> {
         match &self.state {
             ModelState::Ready(trained) => Some(trained),
@@ -171,11 +171,11 @@ impl Recognition {
         }
     }
 
-    /// The set that comes `by` further on, the first after the last.
+    /// Returns the set `by` places after the chosen one; after the last set comes the first.
     pub fn other(&self, by: i8) -> ModelChoice {
         let stored = self.stored.iter().cloned().map(ModelChoice::Stored);
         let mut all: Vec<ModelChoice> = ModelChoice::BUILT_IN.into_iter().chain(stored).collect();
-        // A stored model that has been deleted stands behind all others.
+        // A stored model that has been deleted comes after all others.
         if !all.contains(&self.choice) {
             all.push(self.choice.clone());
         }
@@ -184,9 +184,9 @@ impl Recognition {
         all.swap_remove(next)
     }
 
-    /// Chooses a set, whose model is prepared by the piece of work of that number. Touches and score begin anew with
-    /// another set. A stored model may be missing or damaged; then the set before it comes back. `opened`: the page was
-    /// opened for it. A search that is still in progress is forgotten: its model is left.
+    /// Chooses a set, whose model is prepared by the work with this number. With another set, touches and score begin
+    /// anew. A stored model may be missing or damaged; then the earlier set returns. `opened`: whether the page was
+    /// opened for this set. A search in progress is forgotten, because it is about the old model.
     pub fn prepare(&mut self, choice: ModelChoice, number: u64, opened: bool) {
         let state = std::mem::replace(&mut self.state, ModelState::Missing);
         let (mut before, trained) = match state {
@@ -218,7 +218,7 @@ impl Recognition {
         self.ask();
     }
 
-    /// The model on its way, if it is that of a piece of work.
+    /// Returns the preparation of the model, if it is the work with this number.
     fn preparation(&mut self, number: u64) -> Option<&mut Preparation> {
         match &mut self.state {
             ModelState::Preparing(preparation) if preparation.number == number => Some(preparation),
@@ -226,21 +226,21 @@ impl Recognition {
         }
     }
 
-    /// Takes how many poses a training has.
+    /// Records the number of poses of a training.
     pub fn take_poses(&mut self, number: u64, poses: u64) {
         if let Some(preparation) = self.preparation(number) {
             preparation.poses = Some(poses);
         }
     }
 
-    /// Takes how far a training is.
+    /// Records the progress of a training.
     pub fn take_progress(&mut self, number: u64, progress: SweepProgress) {
         if let Some(preparation) = self.preparation(number) {
             preparation.done = progress.poses;
         }
     }
 
-    /// Notes that the model on its way should stop; `false` if there is none, or a stop was requested already.
+    /// Requests that the preparation stops; returns false if there is none, or if a stop was requested already.
     pub fn stop(&mut self) -> bool {
         match &mut self.state {
             ModelState::Preparing(preparation) => {
@@ -250,21 +250,21 @@ impl Recognition {
         }
     }
 
-    /// Notes that the model of a piece of work is not waited for any more.
+    /// Records that the work with this number is no longer waited for.
     pub fn leave_model(&mut self, number: u64) {
         if self.preparation(number).is_some() {
             self.state = ModelState::Missing;
         }
     }
 
-    /// Takes a model. Returns why there is none.
+    /// Takes over a prepared model. Returns the reason if there is none.
     pub fn take_model(&mut self, prepared: Prepared) -> Option<NoModel> {
         let preparation = self.preparation(prepared.number)?;
         let (before, opened) = (preparation.before.take(), preparation.opened);
         self.stored = prepared.stored;
         let reason = match prepared.trained {
             Ok(trained) => {
-                // What was taken for the name of a stored model may be that of a file.
+                // What was given as the name of a stored model may be that of a file.
                 self.choice = trained.choice.clone();
                 self.state = ModelState::Ready(trained);
                 self.ask();
@@ -280,7 +280,7 @@ impl Recognition {
         Some(NoModel { reason, closes })
     }
 
-    /// Goes back to the set before.
+    /// Returns to the earlier set.
     fn take_back(&mut self, before: SetBefore) {
         let SetBefore {
             choice,
@@ -295,41 +295,42 @@ impl Recognition {
         self.ask();
     }
 
-    /// The touches that the answer is to: those kept, and the one on the matrix unless it is the last of them or empty.
+    /// Returns the touches that the answer is about: the kept ones, and the one on the matrix unless it is empty or
+    /// is the last kept one.
     pub fn touches(&self) -> Vec<Imprint> {
         let present = (!self.present_kept && !self.present.is_empty()).then_some(self.present);
         self.kept.iter().copied().chain(present).collect()
     }
 
-    /// How many touches were kept.
+    /// Returns the number of kept touches.
     pub fn kept(&self) -> usize {
         self.kept.len()
     }
 
-    /// The imprint on the matrix.
+    /// Returns the imprint on the matrix.
     pub fn present(&self) -> &Imprint {
         &self.present
     }
 
-    /// The answer; None without a model or a touch.
+    /// Returns the answer; None without a model or a touch.
     pub fn answer(&self) -> Option<&Answer> {
         self.answer.as_ref()
     }
 
-    /// The shape that the answer names.
+    /// Returns the index of the shape that the answer names.
     fn named(&self) -> Option<usize> {
         self.answer().and_then(|answer| answer.shape)
     }
 
-    /// What was searched of the imprint on the matrix, once that is known. Touches that are kept or forgotten may change the
-    /// name; then its pose is searched for anew.
+    /// Returns the result of the search for the imprint on the matrix, once it is known. Keeping or forgetting
+    /// touches may change the name; then a new search for its poses begins.
     pub fn look(&self) -> Option<&Look> {
         let (search, look) = self.searched.as_ref()?;
         let is_present = self.search().as_ref() == Some(search);
         look.as_deref().filter(|_| is_present)
     }
 
-    /// The search that the page needs; None without a model or a touch.
+    /// Returns the search that the page needs; None without a model or a touch.
     fn search(&self) -> Option<PoseSearch> {
         let trained = Arc::clone(self.trained()?);
         (!self.present.is_empty()).then(|| PoseSearch {
@@ -339,7 +340,7 @@ impl Recognition {
         })
     }
 
-    /// Takes what is on the matrix now.
+    /// Takes over the imprint on the matrix.
     pub fn show(&mut self, imprint: Imprint) {
         if imprint != self.present {
             self.present = imprint;
@@ -348,7 +349,7 @@ impl Recognition {
         }
     }
 
-    /// Keeps the touch on the matrix; `false` if it is kept already, or nothing is touched.
+    /// Keeps the touch on the matrix; returns false if it is kept already, or if nothing is touched.
     pub fn add_touch(&mut self) -> bool {
         if self.present_kept || self.present.is_empty() {
             return false;
@@ -358,12 +359,12 @@ impl Recognition {
         true
     }
 
-    /// Keeps these touches of a shape in place of all others; the last of them is on the matrix.
+    /// Replaces the kept touches by those of a shape; the last one is on the matrix.
     pub fn set_touches(&mut self, touches: Vec<Imprint>) {
         if let Some(&last) = touches.last() {
             self.present = last;
         }
-        // One touch is that of the matrix.
+        // A single touch is the one on the matrix, which need not be kept.
         self.present_kept = touches.len() > 1;
         self.kept = if self.present_kept {
             touches
@@ -373,7 +374,7 @@ impl Recognition {
         self.ask();
     }
 
-    /// Forgets the touches that were kept; `false` if there were none.
+    /// Forgets the kept touches; returns false if there were none.
     pub fn forget(&mut self) -> bool {
         let any = !self.kept.is_empty();
         self.kept.clear();
@@ -393,8 +394,8 @@ impl Recognition {
         };
     }
 
-    /// What to do about the search that the page needs; None if nothing. Notes that it is done. A search that begins gets
-    /// this number.
+    /// Returns the next step for the search that the page needs, and records it; None if there is nothing to do. A
+    /// search that begins gets this number.
     pub fn step_look(&mut self, number: u64) -> Option<LookStep> {
         let search = self.search();
         if let Some(looking) = &self.looking {
@@ -402,7 +403,7 @@ impl Recognition {
             return (!is_needed && self.stop_look()).then_some(LookStep::Stop);
         }
         let search = search?;
-        // One that failed is not begun again.
+        // A search that failed is not begun again.
         if (self.searched.as_ref()).is_some_and(|(searched, _)| *searched == search) {
             return None;
         }
@@ -414,24 +415,25 @@ impl Recognition {
         Some(LookStep::Begin(Box::new(search)))
     }
 
-    /// Notes that the search in progress should stop; `false` if there is none, or a stop was requested already.
+    /// Requests that the search in progress stops; returns false if there is none, or if a stop was requested
+    /// already.
     pub fn stop_look(&mut self) -> bool {
         let looking = self.looking.as_mut();
         looking.is_some_and(|looking| !std::mem::replace(&mut looking.stopping, true))
     }
 
-    /// Whether outlines of poses are shown; None for where taxels are large.
+    /// Returns whether outlines of poses are shown; None shows them if taxels are large.
     pub fn outlines(&self) -> Option<bool> {
         self.outlines
     }
 
-    /// Shows outlines of poses, or hides them.
+    /// Shows or hides outlines of poses.
     pub fn show_outlines(&mut self, shown: bool) {
         self.outlines = Some(shown);
     }
 
-    /// Takes what the search of a number found. Returns why that is nothing, or not all. A search that was stopped or
-    /// forgotten is only over.
+    /// Takes over the result of the search with this number. Returns the reason if it failed or is incomplete. The
+    /// result of a search that was stopped or forgotten is dropped.
     pub fn take_look(&mut self, number: u64, found: Result<Box<Look>, String>) -> Option<String> {
         let looking = self.looking.take_if(|looking| looking.number == number);
         let looking = looking.filter(|looking| !looking.stopping)?;
@@ -448,7 +450,7 @@ impl Recognition {
 mod tests {
     use super::*;
 
-    /// Has the work of that number prepare a model.
+    /// Prepares a model by the work with this number.
     fn with_model(page: &mut Recognition, choice: ModelChoice, number: u64) {
         page.prepare(choice.clone(), number, false);
         let prepared = Prepared {
@@ -475,7 +477,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_late_of_a_search_in_another_model_changes_nothing() {
+    fn a_late_result_of_a_search_in_another_model_is_dropped() {
         let mut page = Recognition::new(0);
         page.show(touch());
         with_model(&mut page, ModelChoice::Figures, 1);
@@ -501,7 +503,7 @@ mod tests {
         page.show(other);
         assert!(matches!(page.step_look(3), Some(LookStep::Stop)));
         assert!(page.step_look(3).is_none(), "it was stopped");
-        // What a stopped search found is a part, also where the imprint is back.
+        // The result of a stopped search is incomplete, even if the same imprint is on the matrix again.
         page.show(touch());
         assert_eq!(page.take_look(2, Ok(found())), None);
         assert!(page.look().is_none());

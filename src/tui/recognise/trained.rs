@@ -1,4 +1,4 @@
-//! A model that is ready, with what the screen shows of it as a whole.
+//! A trained model, with what the screen shows about it as a whole.
 
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
@@ -9,24 +9,24 @@ use crate::storage::ModelChoice;
 use crate::touch::Plane;
 use crate::tui::recognise::confused::Examples;
 
-/// A model with what is known of it as a whole.
+/// A model, with its evaluation.
 #[derive(Debug)]
 pub struct TrainedModel {
     /// The set.
     pub choice: ModelChoice,
-    /// Its model.
+    /// The model of the set.
     pub model: Model,
     /// How well it tells its shapes apart.
     pub evaluation: Evaluation,
-    /// An imprint of each cell of its confusion matrix.
+    /// An imprint for each cell of its confusion matrix.
     pub examples: Examples,
-    /// Where its grid is coarser than hundredths and whole degrees: the share of poses in these steps that leave an
-    /// imprint which the model does not know.
+    /// The share of poses in hundredths of a cell and whole degrees that leave an imprint which the model does not
+    /// know; None if its grid is as fine.
     pub unknown_between: Option<f64>,
 }
 
 impl PartialEq for TrainedModel {
-    /// Whether they are one: they are never changed.
+    /// Returns true if both are the same object: models are never changed.
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self, other)
     }
@@ -44,13 +44,13 @@ impl TrainedModel {
         }
     }
 
-    /// The name of a shape, counted from 0; empty if there are not that many.
+    /// Returns the name of a shape, by its index; empty if there is no such shape.
     pub fn name(&self, shape: usize) -> &str {
         let shape = self.model.shapes().get(shape);
         shape.map_or("", |shape| &shape.name)
     }
 
-    /// The grid of poses of a shape; None if there are not that many shapes.
+    /// Returns the grid of poses of a shape; None if there is no such shape.
     pub fn grid(&self, shape: usize) -> Option<PoseGrid> {
         grid_of(&self.model, shape, *self.model.ranges())
     }
@@ -58,7 +58,7 @@ impl TrainedModel {
 
 #[cfg(test)]
 impl TrainedModel {
-    /// A small model under the name of a set: a bar of 6 × 2 at every tenth of a cell and ten degrees.
+    /// Creates a small model under the name of a set: a bar of 6 × 2 at every tenth of a cell and every ten degrees.
     pub(in crate::tui) fn of_a_bar(choice: ModelChoice) -> Self {
         use crate::figure::Figure;
         use crate::pose::Anchor;
@@ -83,18 +83,18 @@ impl TrainedModel {
     }
 }
 
-/// The poses of a shape on the sensor of its model, in these ranges: those of the model, or finer ones to try poses
-/// between.
+/// Returns the poses of a shape on the sensor of its model, in the given ranges: those of the model, or finer ones to
+/// try poses in between.
 fn grid_of(model: &Model, shape: usize, ranges: Ranges) -> Option<PoseGrid> {
     let source = model.shapes().get(shape)?.source.clone();
     PoseGrid::new(source, *model.sensor(), model.anchor(), ranges).ok()
 }
 
-/// Poses per shape that are tried.
+/// The number of poses that are tried per shape.
 const TRIED: u32 = 100;
 
-/// The share of random poses in hundredths and whole degrees whose imprint a model does not know. None if its own steps
-/// are as fine.
+/// Returns the share of random poses in hundredths of a cell and whole degrees whose imprint the model does not know;
+/// None if its own steps are as fine.
 fn unknown_between(model: &Model) -> Option<f64> {
     let ranges = model.ranges();
     let axes = [(Axis::X0, 0.01), (Axis::Y0, 0.01), (Axis::Angle, 1.0)];
@@ -122,7 +122,8 @@ fn unknown_between(model: &Model) -> Option<f64> {
     (tried > 0).then(|| f64::from(unknown) / f64::from(tried))
 }
 
-/// The same range in smaller steps, up to before the value that would come next. None if its steps are as small.
+/// Returns a range in smaller steps, which ends just before the value after the range's last one; None if its steps
+/// are about as small already.
 fn finer(range: &DecimalRange, step: f64) -> Option<DecimalRange> {
     if range.count() < 2 || range.step() < 1.5 * step {
         return None;

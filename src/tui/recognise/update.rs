@@ -1,5 +1,5 @@
-//! What messages do on the page of recognition and in its quiz. The answer follows the matrix: `follow` is called
-//! after every message.
+//! The effects of messages on the page of recognition and in its quiz. The answer follows the matrix: [`next_work`]
+//! is called after every message.
 
 use std::sync::Arc;
 
@@ -24,9 +24,9 @@ use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::state::{LookStep, ModelState, NoModel, Recognition};
 use crate::tui::runtime::effect::{Effect, Work};
 
-/// Handles what is asked for over the matrix, with the page open or not.
+/// Handles a request over the matrix, whether the page is open or not.
 pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effect> {
-    // A command may come while the page is closed; what it says has to be seen. Without a model, it comes too early.
+    // A command may come while the page is closed; its result must be visible. Without a model, only that is prepared.
     if app.recognition.is_some() && !matches!(asked, RecogniseMessage::Seed(_)) {
         let choice = match &asked {
             RecogniseMessage::Choose(choice) => Some(choice.clone()),
@@ -85,9 +85,9 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
     }
 }
 
-/// Opens the page, if it is not open, and has the model prepared, of another set or where there is none.
-/// A training may take long: the set that is there or on its way is not prepared again.
-/// The model comes as an event with the number given here; one of another number is out of date.
+/// Opens the page, and has the model prepared if there is none, or if it is that of another set. A training may take
+/// long: a set whose model is ready or on its way is not prepared again. The model arrives as an event with the
+/// number given here; an event with another number is out of date.
 fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
     let closed = app.recognition.take();
     let opened = closed.is_some();
@@ -107,13 +107,13 @@ fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
     Some(Effect::Work(Work::Prepare(number, choice)))
 }
 
-/// Says that what was asked for needs a model: the confusion matrix, the sizes, or a quiz.
+/// Shows that the confusion matrix, the sizes or a quiz needs a model.
 fn not_trained(app: &mut App) {
     refuse(app, "the model is not trained yet");
 }
 
-/// Shows the outlines of poses if they are not seen, otherwise hides them.
-/// They start shown or hidden by how large taxels are, so the switch asks what is seen, not what was set.
+/// Hides the outlines of poses if they are visible, otherwise shows them. At first the size of the taxels decides, so
+/// this depends on what is visible, not on the setting.
 fn show_poses(app: &mut App) {
     let Some(grid) = app.grid() else { return };
     let Some(page) = state(app) else { return };
@@ -130,8 +130,7 @@ fn show_poses(app: &mut App) {
     );
 }
 
-/// Begins a quiz.
-/// Touches kept before are forgotten: they were of another shape, and the answer is about one shape only.
+/// Begins a quiz. Kept touches are forgotten: they were of another shape, and the answer is about one shape only.
 fn touch(app: &mut App) {
     let Some(page) = state(app) else { return };
     let Some(trained) = page.trained().cloned() else {
@@ -142,8 +141,8 @@ fn touch(app: &mut App) {
     touch_again(app, quiz);
 }
 
-/// Puts another touch of the shape onto the matrix, and goes on asking for its name.
-/// The shape stays, and its pose is another one: further touches narrow down what it may be.
+/// Puts another touch of the shape onto the matrix, and keeps asking for its name. The shape stays the same, in
+/// another pose, so that further touches narrow down what it may be.
 fn touch_again(app: &mut App, mut quiz: Quiz) {
     let sensor = app.history.present().sensor;
     let Some(page) = state(app) else { return };
@@ -162,15 +161,15 @@ fn separate(app: &mut App, flags: &SeparationFlags) {
     }
 }
 
-/// Forgets the touches that were kept.
+/// Forgets the kept touches.
 fn forget(app: &mut App) {
     let any = state(app).is_some_and(Recognition::forget);
     let text = ["no touches are kept", "the kept touches are forgotten"][usize::from(any)];
     inform(app, text);
 }
 
-/// Keeps the touch on the matrix.
-/// Kept touches count as touches of one and the same shape; the answer takes them all together.
+/// Keeps the touch on the matrix. Kept touches count as touches of the same shape; the answer considers them all
+/// together.
 fn add_touch(app: &mut App) {
     // A page that was closed has not followed the matrix.
     let imprint = app.reading().imprint;
@@ -186,9 +185,9 @@ fn add_touch(app: &mut App) {
     inform(app, text);
 }
 
-/// Handles a message over the page. What it does not know goes to the matrix.
-/// To close it during a training stops the training first, and the page stays; a second time closes it.
-/// A closed page is kept with its model and its touches.
+/// Handles a message over the page; unknown messages go to the matrix. During a training, Cancel and Quit first stop
+/// the training and leave the page open; a second time they close it. A closed page is kept with its model and its
+/// touches.
 pub(in crate::tui) fn in_recognition(
     app: &mut App,
     mut page: Box<Recognition>,
@@ -213,7 +212,7 @@ pub(in crate::tui) fn in_recognition(
     }
 }
 
-/// Prepares the set again after a stop. One that is there, or on its way, has no need of it.
+/// Prepares the set again after a stop, unless its model is ready or on its way.
 fn prepare_again(app: &mut App) -> Option<Effect> {
     let text = match state(app)?.state() {
         ModelState::Missing => return open(app, None),
@@ -224,7 +223,7 @@ fn prepare_again(app: &mut App) -> Option<Effect> {
     None
 }
 
-/// Keeps the page, which was taken off the stack, until it is opened again. A search in progress is stopped.
+/// Keeps the page, which is no longer on the stack, until it is opened again. A search in progress is stopped.
 fn close(app: &mut App, mut page: Box<Recognition>) -> Option<Effect> {
     let stops = page.stop_look();
     app.recognition = Some(page);
@@ -233,8 +232,8 @@ fn close(app: &mut App, mut page: Box<Recognition>) -> Option<Effect> {
     stops.then_some(Effect::Work(Work::StopLooking))
 }
 
-/// Handles a message in the quiz.
-/// Enter or a digit names the shape; to close the page is to give up, which counts as asked and not as right.
+/// Handles a message in the quiz. Enter or a digit names the shape; closing the page means giving up, which counts as
+/// asked and not as right.
 pub(in crate::tui) fn in_quiz(
     app: &mut App,
     mut quiz: Box<Quiz>,
@@ -261,9 +260,9 @@ pub(in crate::tui) fn in_quiz(
     None
 }
 
-/// Ends the quiz with the selected shape as its name, or without one.
-/// Its touches become the kept ones, so that the panel shows what could be known of them. `best` counts how often the
-/// most probable shape was the right one: nobody is right more often in the long run.
+/// Ends the quiz, with the selected shape as the name or without a name. Its touches become the kept ones, so that
+/// the panel shows what could be known about them. `best` counts how often the most probable shape was the right one:
+/// nobody is right more often in the long run.
 fn guess(app: &mut App, quiz: Quiz, named: bool) {
     let (shape, selected) = (quiz.shape(), quiz.selected());
     let (right, name) = (named && shape == selected, quiz.name(shape).to_owned());
@@ -290,14 +289,14 @@ fn guess(app: &mut App, quiz: Quiz, named: bool) {
     inform(app, text);
 }
 
-/// The key that begins a quiz, for the notice at the end of one.
+/// Returns the key that begins a quiz, for the notice at the end of one.
 fn action_key(app: &App) -> String {
     let context = crate::tui::keys::binding::Context::Recognise;
     app.keymap().label(context, &action::QUIZ)
 }
 
-/// Handles a message over the confusion matrix.
-/// Enter puts the imprint of the cell onto the matrix and closes the page; a cell that stands for no touch is refused.
+/// Handles a message over the confusion matrix. Enter puts the imprint of the cell onto the matrix and closes the
+/// page; it is refused if the cell has no imprint.
 pub(in crate::tui) fn in_confusion(
     app: &mut App,
     mut page: Box<Confusion>,
@@ -316,7 +315,7 @@ pub(in crate::tui) fn in_confusion(
     None
 }
 
-/// Takes what a worker reports.
+/// Handles a report from a worker.
 pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
     let Some(page) = state(app) else { return };
     match event {
@@ -338,8 +337,8 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
     }
 }
 
-/// Handles a training that failed unexpectedly.
-/// The number is of a training or of the work on sizes; a page that waits for other work ignores it.
+/// Handles a training that failed unexpectedly. The number is that of a training or of the work on sizes; a page that
+/// waits for other work ignores it.
 pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) {
     separate::update::on_failure(app, number, reason);
     let prepared = Prepared {
@@ -351,7 +350,7 @@ pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) {
     without_model(app, failed);
 }
 
-/// Says why there is no model, if there is none. A page that was opened for it closes.
+/// If there is no model, shows the reason. A page that was opened for it closes.
 fn without_model(app: &mut App, failed: Option<NoModel>) {
     let Some(NoModel { reason, closes }) = failed else {
         return;
@@ -361,13 +360,13 @@ fn without_model(app: &mut App, failed: Option<NoModel>) {
         && let Some(at) = app.dialogs.iter().position(open)
         && let Dialog::Recognition(page) = app.dialogs.remove(at)
     {
-        // While a model was prepared, nothing was searched.
+        // While a model is prepared, no search is in progress.
         let _ = close(app, page);
     }
     refuse(app, reason);
 }
 
-/// Takes how far a training is.
+/// Handles the progress of a training.
 pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepProgress) {
     separate::update::on_progress(app, number, progress.poses);
     if let Some(page) = state(app) {
@@ -375,13 +374,13 @@ pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepPro
     }
 }
 
-/// The next work for the page of sizes, or for the answer to the imprint of the matrix.
+/// Returns the next work for the page of sizes, or for the answer about the imprint on the matrix.
 pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     separate::update::next_work(app).or_else(|| look(app))
 }
 
-/// Shows the page the imprint of the matrix. Returns the search that its answer needs, or the end of one that it no longer
-/// needs.
+/// Passes the imprint of the matrix to the page. Returns the search that its answer needs, or the request to stop one
+/// that it no longer needs.
 fn look(app: &mut App) -> Option<Effect> {
     let imprint = app.reading().imprint;
     let mut dialogs = app.dialogs.iter_mut();

@@ -36,13 +36,14 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Columns of a percentage with its sign and the space before it.
+/// The width of a percentage with its sign and the space before it, in columns.
 const PERCENT: usize = 9;
 
-/// The most columns of a name.
+/// The greatest width of a name, in columns.
 const NAME: usize = 14;
 
-/// Lines below the list of shapes that are always left free, so that the list has one length for nearly all touches.
+/// The lines below the list of shapes that are always left free, so that the list has the same length for nearly all
+/// touches.
 const BELOW: usize = 6;
 
 impl Page for Recognition {
@@ -119,13 +120,13 @@ impl Page for Recognition {
     }
 }
 
-/// The panel while it is drawn: where it stands, and the line that comes next.
+/// The panel while it is drawn: its area, and the next line.
 struct Panel<'a> {
     theme: &'a Theme,
     keymap: &'a Keymap,
     buffer: &'a mut Buffer,
     area: Rect,
-    /// Counted from the top of the area.
+    /// The next line, counted from the top of the area.
     line: usize,
 }
 
@@ -138,27 +139,27 @@ impl Panel<'_> {
         }
     }
 
-    /// The lines that a text needs.
+    /// Returns the number of lines that a text needs.
     fn lines_of(&self, text: &str) -> usize {
         write::broken(&self.theme.text(text), usize::from(self.area.width)).len()
     }
 
-    /// Leaves a line free where there is room.
+    /// Leaves a line free if there is room.
     fn gap(&mut self) {
         self.line += self.gap_lines();
     }
 
-    /// The lines of a gap.
+    /// Returns the number of lines of a gap.
     fn gap_lines(&self) -> usize {
         usize::from(self.area.height >= 16)
     }
 
-    /// The key of an action on this page, as the user has set it.
+    /// Returns the name of an action's key on this page.
     fn key(&self, action: &'static action::Action) -> String {
         self.keymap.label(Context::Recognise, action)
     }
 
-    /// How far a training is.
+    /// Writes the progress of a training.
     fn preparation(&mut self, preparation: &Preparation) {
         let Some(poses) = preparation.poses else {
             return self.text("being prepared", Role::Text);
@@ -178,7 +179,7 @@ impl Panel<'_> {
         self.text(&text, Role::Quiet);
     }
 
-    /// The grid of a model, and the limit of what one touch tells.
+    /// Writes the grid of a model, and the limit of what one touch tells.
     fn model(&mut self, trained: &TrainedModel) {
         let (model, evaluation) = (&trained.model, &trained.evaluation);
         let ranges = model.ranges();
@@ -193,7 +194,7 @@ impl Panel<'_> {
         let error = percent(evaluation.error());
         let limit = format!("error {error}, certain {certain}");
         let [long, short] = ["best possible", "best"].map(|best| format!("{best} {limit}"));
-        // The shorter one is for a line; over two the other says more.
+        // The shorter text is for a single line; if even that needs two, the longer one says more.
         let limits = [&*long, &*short, &*long];
         let limit = write::first_fitting(&limits, self.area.width.into());
         self.text(limit, Role::Quiet);
@@ -206,7 +207,7 @@ impl Panel<'_> {
         }
     }
 
-    /// The answer, every shape that it may be, and what was searched.
+    /// Writes the answer, every shape that it may be, and the results of the search.
     fn answer(&mut self, page: &Recognition, trained: &TrainedModel) {
         let Some(answer) = page.answer() else {
             let touch = self.key(&action::QUIZ);
@@ -218,7 +219,7 @@ impl Panel<'_> {
         self.text(&verdict, Role::Title);
         let names = answer.ranking.iter().map(|&(shape, _)| trained.name(shape));
         let name = names.map(write::width).fold(0, usize::max).min(NAME);
-        // The lines about the touch come first.
+        // Lines about the touch take precedence over the list.
         let look = page.look().into_iter();
         let look: Vec<_> = look
             .flat_map(|look| self.look_lines(page.present(), look, answer, trained))
@@ -231,7 +232,7 @@ impl Panel<'_> {
         let room = usize::from(self.area.height)
             .saturating_sub(self.line + below)
             .max(1);
-        // The last of these lines says how many are left out, where any are.
+        // If shapes are left out, the last line shows how many.
         let room = if answer.ranking.len() > room {
             (room - 1).max(1)
         } else {
@@ -252,7 +253,7 @@ impl Panel<'_> {
         }
     }
 
-    /// The nearest imprint, and the pose.
+    /// Returns the lines about the nearest imprint and the pose.
     fn look_lines(
         &self,
         present: &Imprint,
@@ -274,11 +275,11 @@ impl Panel<'_> {
             Some(_) => {}
         }
         if let Some((shape, pose)) = &look.pose {
-            // Of shapes that are tied, the pose is that of the first.
+            // If shapes are tied, the pose is that of the first.
             let is_named = answer.state != AnswerState::Tied && answer.shape == Some(*shape);
             let whose = if is_named { "" } else { trained.name(*shape) };
             let [mut position, angle, poses] = pose_lines(trained, whose, pose);
-            // Where lines are scarce, a number counts more than the unit that takes one.
+            // If lines are scarce, a line is worth more than the unit.
             let is_scarce = self.gap_lines() == 0 && self.lines_of(&position) > 1;
             if is_scarce {
                 position.truncate(position.trim_end_matches(" cells").len());
@@ -288,7 +289,7 @@ impl Panel<'_> {
         lines
     }
 
-    /// A shape with its bar.
+    /// Writes a shape with its bar.
     fn shape(&mut self, name: &str, width: usize, probability: f64) {
         let row = write::row(self.area, self.line);
         self.line += 1;
@@ -307,7 +308,7 @@ impl Panel<'_> {
         write::line(self.buffer, row, self.theme, pieces);
     }
 
-    /// The touches that were kept, and the score.
+    /// Returns the lines about the kept touches and the score.
     fn touches(&self, page: &Recognition) -> Vec<String> {
         let mut lines = Vec::new();
         if page.kept() > 0 {
@@ -326,7 +327,7 @@ impl Panel<'_> {
     }
 }
 
-/// The answer in words.
+/// Returns the answer in words.
 fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
     let state = answer.state.name();
     let names: Vec<&str> = match answer.state {
@@ -351,7 +352,7 @@ fn verdict(answer: &Answer, touches: usize, trained: &TrainedModel) -> String {
     format!("{state}{what}{rim}")
 }
 
-/// Which taxels differ from the nearest imprint, with the marks that they have on the matrix.
+/// Explains the marks of taxels on the matrix that differ from the nearest imprint, with their numbers.
 fn legend(present: &Imprint, nearest: &Nearest) -> String {
     let differing = present.differing(&nearest.imprint);
     let surplus = differing.active();
@@ -369,8 +370,8 @@ fn legend(present: &Imprint, nearest: &Nearest) -> String {
 /// The marks of surplus and of missing taxels.
 const MARKS: [char; 2] = ['+', '-'];
 
-/// Where a shape lies: the mean and the spread over the poses that leave the imprint, in lines. `whose` is its name where
-/// the answer does not say it, otherwise empty.
+/// Returns the lines about the pose of a shape: mean and spread over the poses that leave the imprint. `whose` is the
+/// name of the shape if the answer does not name it, otherwise empty.
 fn pose_lines(trained: &TrainedModel, whose: &str, pose: &PoseEstimate) -> [String; 3] {
     let what = match trained.model.anchor() {
         Anchor::Centre => "centre",
@@ -401,13 +402,13 @@ fn pose_lines(trained: &TrainedModel, whose: &str, pose: &PoseEstimate) -> [Stri
     [position, angle, poses]
 }
 
-/// A number to whole ones, half of one up. Formatting alone would make 22 of 22.5 and 24 of 23.5: symmetric shapes often
-/// have a mean that ends so.
+/// Rounds a number to a whole one, with a half rounded up. Formatting alone would make 22 of 22.5 and 24 of 23.5, and
+/// symmetric shapes often have such a mean.
 fn half_up(number: f64) -> f64 {
     (number + 0.5).floor()
 }
 
-/// A standard deviation with all its decimals, so that lines keep their width while a shape is moved.
+/// Formats a standard deviation with all its decimals, so that lines keep their width while a shape is moved.
 fn spread_of(number: f64, decimals: usize) -> String {
     match deviation(number, decimals) {
         little if little.starts_with('<') => little,
@@ -415,18 +416,18 @@ fn spread_of(number: f64, decimals: usize) -> String {
     }
 }
 
-/// A number of taxels that differ.
+/// Returns a number of differing taxels, in words.
 fn differ(count: u32) -> String {
     let verb = if count == 1 { "differs" } else { "differ" };
     format!("{} {verb}", counted(count, "taxel"))
 }
 
-/// A share of a whole in percent.
+/// Formats a share of a whole as percent.
 fn percent_of(part: u128, whole: u128) -> String {
     percent(share(part, whole))
 }
 
-/// The full and the empty columns of a bar; what is above 0 has one at least.
+/// Returns the numbers of full and of empty columns of a bar; a value above 0 has at least one full column.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

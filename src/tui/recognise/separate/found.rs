@@ -1,24 +1,25 @@
-//! What the worker finds about sizes.
+//! The worker's results about sizes.
 
 use crate::recognition::{SeparationPoint, SmallestSize};
 use crate::tui::recognise::confused::ConfusedPair;
 
-/// What was found of one size.
+/// The result for one size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizeFound {
     /// The limit of one touch.
     pub point: SeparationPoint,
-    /// The shape that is taken most often for another one; None if none is.
+    /// The pair that is confused most: a shape and the one for which it is taken; None if no shape is confused.
     pub worst: Option<ConfusedPair>,
 }
 
-/// Some sizes, or the end of the work.
+/// The results for some sizes, or the end of the work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizesFound {
     /// The number of the work.
     pub number: u64,
-    /// Sizes, in their order.
+    /// Results for sizes, in the order of the sizes.
     pub sizes: Vec<SizeFound>,
-    /// At the end of the work: the smallest size that reaches the wanted error, or why the work ended too early.
+    /// At the end of the work: the smallest size that reaches the wanted error, or the reason why the work ended
+    /// early.
     pub end: Option<Result<Option<SmallestSize>, String>>,
 }

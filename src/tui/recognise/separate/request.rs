@@ -1,4 +1,4 @@
-//! What is asked of the page of sizes: a set, sizes, and the steps in which each shape touches.
+//! The request of the page of sizes: a set, sizes, and the steps in which each shape touches.
 
 use std::sync::Arc;
 
@@ -9,39 +9,38 @@ use crate::recognition::{CellPositions, Separation, SizeAxis, TrainingError};
 use crate::tui::prompt::flags;
 use crate::tui::recognise::trained::TrainedModel;
 
-/// The sizes that are looked at unless others are asked for: half as large to three times as large.
+/// The default sizes: from half as large to three times as large.
 const SIZES: &str = "0.5:3:0.1";
 
-/// Steps of a cell in each direction, unless others are asked for. Finer ones show more kinds of imprints, and take
-/// longer.
+/// The default number of steps in a cell in each direction. More steps show more kinds of imprints, and take longer.
 const POSITIONS: CellPositions = CellPositions::COARSE;
-/// Degrees between angles, unless others are asked for.
+/// The default step between angles, in degrees.
 const DEGREES: u32 = 2;
 
-/// The error that is looked for unless another one is asked for.
+/// The default wanted error.
 const WANTED: f64 = 0.01;
 
-/// What is looked at.
+/// A request to evaluate sizes.
 #[derive(Clone, Debug)]
 pub struct SeparationRequest {
-    /// The set.
+    /// The model of the set.
     pub trained: Arc<TrainedModel>,
-    /// What sizes are measured against.
+    /// The quantity that the sizes give: a scale or a pitch.
     pub axis: SizeAxis,
     /// The sizes.
     pub sizes: DecimalRange,
     /// The threshold of the sensor.
     pub threshold: f64,
-    /// Steps of a cell in each direction.
+    /// The number of steps in a cell, in each direction.
     pub positions: CellPositions,
     /// The angles.
     pub angles: DecimalRange,
-    /// The error to reach.
+    /// The wanted error.
     pub wanted: f64,
 }
 
 impl PartialEq for SeparationRequest {
-    /// Whether the same points answer both; the wanted error is only looked up in them.
+    /// Returns true if the same points answer both requests; the wanted error is only looked up in them.
     fn eq(&self, other: &Self) -> bool {
         let key = |own: &Self| (own.axis, own.sizes, own.positions, own.angles);
         self.trained == other.trained
@@ -50,23 +49,23 @@ impl PartialEq for SeparationRequest {
     }
 }
 
-/// What may follow `:separate`. None for what is not given.
+/// The flags that may follow `:separate`; None if a flag is not given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeparationFlags {
-    /// What sizes are measured against, and the sizes.
+    /// The quantity that the sizes give, and the sizes.
     sizes: Option<(SizeAxis, DecimalRange)>,
     /// The threshold.
     threshold: Option<f64>,
-    /// Steps of a cell.
+    /// The number of steps in a cell.
     positions: Option<CellPositions>,
     /// The angles.
     angles: Option<DecimalRange>,
-    /// The error to reach.
+    /// The wanted error.
     wanted: Option<f64>,
 }
 
 impl SeparationFlags {
-    /// Nothing in particular.
+    /// No flags.
     pub const NONE: Self = Self {
         sizes: None,
         threshold: None,
@@ -75,7 +74,7 @@ impl SeparationFlags {
         wanted: None,
     };
 
-    /// The flags, for completion.
+    /// The names of the flags, for completion.
     pub const NAMES: [&'static str; 6] = [
         "--scale",
         "--pitch",
@@ -88,7 +87,7 @@ impl SeparationFlags {
     /// Reads flags, each followed by its value.
     ///
     /// # Errors
-    /// What is wrong with them, in a sentence.
+    /// Returns what is wrong with them, as a sentence.
     pub fn read(words: &[&str]) -> Result<Self, String> {
         let known = |flag: &str| Self::NAMES.into_iter().find(|own| *own == flag);
         let mut flags = Self::NONE;
@@ -103,7 +102,7 @@ impl SeparationFlags {
         Ok(flags)
     }
 
-    /// Takes the value of one flag.
+    /// Takes over the value of one flag.
     fn take(&mut self, flag: &str, text: &str) -> Result<(), String> {
         let range = || {
             let range = text.parse();
@@ -148,7 +147,7 @@ impl SeparationFlags {
         Ok(())
     }
 
-    /// What they ask of a set; what is not given is as usual.
+    /// Returns the request for a set; missing flags have their defaults.
     pub fn request(&self, trained: Arc<TrainedModel>) -> SeparationRequest {
         let scales = || Some((SizeAxis::Scale, SIZES.parse().ok()?));
         let (axis, sizes) = self
@@ -157,7 +156,7 @@ impl SeparationFlags {
             .unwrap_or((SizeAxis::Scale, DecimalRange::whole(1)));
         let ranges = trained.model.ranges();
         let own = &ranges[Axis::Angle];
-        // A model in coarser steps of its own is touched in these.
+        // A model with coarser steps of its own is touched in these.
         let coarse = format!("0:{}:{DEGREES}", 360 - DEGREES).parse().ok();
         let usual = coarse.filter(|_| own.count() == 360);
         let threshold = trained.model.sensor().threshold();
@@ -174,21 +173,21 @@ impl SeparationFlags {
 }
 
 impl SeparationRequest {
-    /// The set in these steps.
+    /// Returns the set with these steps.
     ///
     /// # Errors
-    /// Those of [`Separation::new`], which a trained set has none of.
+    /// Returns the errors of [`Separation::new`], which do not occur with a trained set.
     pub fn separation(&self) -> Result<Separation, TrainingError> {
         let separation = Separation::new(self.trained.model.shapes().to_vec())?;
         Ok(separation.positions(self.positions).angles(self.angles))
     }
 
-    /// The sizes, the smallest first.
+    /// Returns the sizes, the smallest first.
     pub fn values(&self) -> Vec<f64> {
         self.axis.smallest_first(&self.sizes)
     }
 
-    /// The steps in words.
+    /// Returns the steps in words.
     pub fn steps(&self) -> String {
         let positions = match self.positions.get() {
             1 => "one position".to_owned(),
@@ -207,7 +206,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn flags_are_read_or_say_what_is_wrong() {
+    fn flags_are_read_and_errors_name_the_problem() {
         let read = |line: &str| {
             let words: Vec<&str> = line.split_whitespace().collect();
             SeparationFlags::read(&words)

@@ -1,4 +1,4 @@
-//! The state of the page of sizes: what was found so far, the size under the cursor, the work in progress.
+//! The state of the page of sizes: the results so far, the size under the cursor, the work in progress.
 
 use std::sync::Arc;
 
@@ -11,49 +11,49 @@ use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::found::{SizeFound, SizesFound};
 use crate::tui::recognise::separate::request::SeparationRequest;
 
-/// The errors that can be wanted by keys.
+/// The wanted errors that keys can choose.
 const WANTED: [f64; 11] = [
     0.0, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5,
 ];
 
-/// Work in progress.
+/// The work in progress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeWork {
-    /// Its number.
+    /// The number of the work.
     pub number: u64,
-    /// Touches that are done.
+    /// The number of touches that are done.
     pub done: u64,
-    /// Touches of all sizes that it looks at.
+    /// The number of touches of all sizes that it evaluates.
     pub all: u64,
-    /// The error that it looks for.
+    /// The wanted error of its search.
     wanted: f64,
     /// Whether a stop was requested.
     pub stopping: bool,
 }
 
-/// The page.
+/// The page of sizes.
 #[derive(Clone, Debug)]
 pub struct Separate {
-    /// What is looked at.
+    /// The request that the page answers.
     request: Arc<SeparationRequest>,
-    /// What was found, the smallest size first.
+    /// The results, the smallest size first.
     found: Vec<SizeFound>,
-    /// The smallest size that reaches the wanted error, once that was searched.
+    /// The smallest size that reaches the wanted error; None if there is none, or before the search.
     smallest: Option<SmallestSize>,
-    /// Whether it was searched.
+    /// Whether that size was searched for.
     searched: bool,
-    /// Whether the work was stopped, or failed: it continues only on request.
+    /// Whether the work was stopped, or failed: then it continues only on request.
     stopped: bool,
     /// The work in progress.
     work: Option<SizeWork>,
     /// The row of the table under the cursor.
     cursor: usize,
-    /// Whether the user has moved it; until then it goes to the size that is looked for.
+    /// Whether the user has moved the cursor; until then it goes to the wanted size.
     moved: bool,
 }
 
 impl Separate {
-    /// A page that knows of no size yet.
+    /// Creates a page without results.
     pub fn new(request: SeparationRequest) -> Self {
         Self {
             request: Arc::new(request),
@@ -67,39 +67,39 @@ impl Separate {
         }
     }
 
-    /// What is looked at.
+    /// Returns the request that the page answers.
     pub fn request(&self) -> &Arc<SeparationRequest> {
         &self.request
     }
 
-    /// What was found, the smallest size first.
+    /// Returns the results, the smallest size first.
     pub fn found(&self) -> &[SizeFound] {
         &self.found
     }
 
-    /// The row of the table under the cursor.
+    /// Returns the row of the table under the cursor.
     pub fn cursor(&self) -> usize {
         self.cursor
     }
 
-    /// What was found of the size under the cursor.
+    /// Returns the result for the size under the cursor.
     pub fn selected(&self) -> Option<&SizeFound> {
         self.found.get(self.cursor)
     }
 
-    /// The smallest size that reaches the wanted error: None if it was not searched, or there is none.
+    /// Returns the smallest size that reaches the wanted error, or None inside if there is none; None if it was not
+    /// searched for.
     pub fn smallest(&self) -> Option<Option<&SmallestSize>> {
         self.searched.then_some(self.smallest.as_ref())
     }
 
-    /// The work in progress.
+    /// Returns the work in progress.
     pub fn work(&self) -> Option<&SizeWork> {
         self.work.as_ref()
     }
 
-    /// Begins the rest of the work as that of a number: the sizes that are not known yet, and the search. Returns what is
-    /// asked for and the points that are known; None while work is in progress, after it was stopped, or where there is
-    /// nothing to do.
+    /// Begins the remaining work under a number: the sizes without results, and the search. Returns the request and
+    /// the known points; None while work is in progress, after it was stopped, or if there is nothing to do.
     pub fn begin(&mut self, number: u64) -> Option<(Arc<SeparationRequest>, Vec<SeparationPoint>)> {
         if self.work.is_some() || self.searched || self.stopped {
             return None;
@@ -116,30 +116,30 @@ impl Separate {
         Some((Arc::clone(&self.request), self.points()))
     }
 
-    /// The points that are known.
+    /// Returns the known points.
     fn points(&self) -> Vec<SeparationPoint> {
         self.found.iter().map(|size| size.point.clone()).collect()
     }
 
-    /// Notes how far the work of a number is.
+    /// Records the progress of the work with this number.
     pub fn take_progress(&mut self, number: u64, done: u64) {
         if let Some(work) = self.work.as_mut().filter(|work| work.number == number) {
             work.done = done;
         }
     }
 
-    /// Lets stopped work go on; `false` if none was stopped.
+    /// Allows stopped work to continue; returns false if none was stopped.
     pub fn go_on(&mut self) -> bool {
         std::mem::take(&mut self.stopped)
     }
 
-    /// Notes that the work should stop; `false` if there is none, or a stop was requested already.
+    /// Requests that the work stops; returns false if there is none, or if a stop was requested already.
     pub fn stop(&mut self) -> bool {
         let work = self.work.as_mut();
         work.is_some_and(|work| !std::mem::replace(&mut work.stopping, true))
     }
 
-    /// Takes what was found. Returns why the work ended too early.
+    /// Takes over results. Returns the reason if the work ended early.
     pub fn take_found(&mut self, found: SizesFound) -> Option<String> {
         let work = self.work.filter(|work| work.number == found.number)?;
         self.found.extend(found.sizes);
@@ -148,7 +148,7 @@ impl Separate {
         match end {
             Ok(smallest) => {
                 self.smallest = smallest;
-                // Another error may be wanted by now.
+                // Another error may have been chosen meanwhile.
                 self.searched = work.wanted == self.request.wanted;
                 self.go_to_wanted();
                 None
@@ -160,7 +160,8 @@ impl Separate {
         }
     }
 
-    /// Puts the cursor onto the first size that reaches the wanted error, or the last one, unless the user has moved it.
+    /// Puts the cursor onto the first size that reaches the wanted error, or else onto the last size, unless the user
+    /// has moved it.
     fn go_to_wanted(&mut self) {
         if !self.moved {
             let wanted = self.request.wanted;
@@ -170,7 +171,7 @@ impl Separate {
         }
     }
 
-    /// Wants the next smaller or larger error of a list.
+    /// Chooses the next larger wanted error of the list, or the next smaller one if `by` is negative.
     pub fn want(&mut self, by: i8) {
         let now = self.request.wanted;
         let next = match by {
@@ -185,7 +186,7 @@ impl Separate {
         self.want_as(request);
     }
 
-    /// Wants the error of a request for the same sizes.
+    /// Takes over the wanted error from a request for the same sizes.
     pub fn want_as(&mut self, request: SeparationRequest) {
         if self.request.wanted != request.wanted {
             self.searched = false;
@@ -209,10 +210,10 @@ impl Separate {
         self.moved = true;
     }
 
-    /// The content of a file of that name, by its ending: numbers or curves.
+    /// Returns the content of a file with this name, whose extension decides between numbers and curves.
     ///
     /// # Errors
-    /// What was expected of the name.
+    /// Returns what was expected of the name.
     pub fn file(&self, name: &str) -> Result<Vec<u8>, String> {
         let request = &self.request;
         let curves = [SeparationCurve {

@@ -1,4 +1,4 @@
-//! What messages do on the page of sizes.
+//! The effects of messages on the page of sizes.
 
 use crate::formats::separation::size_label;
 use crate::storage::Existing;
@@ -16,7 +16,7 @@ use crate::tui::recognise::separate::request::SeparationRequest;
 use crate::tui::recognise::separate::state::Separate;
 use crate::tui::runtime::effect::{Effect, FileRequest, Work};
 
-/// Opens the page. What was found of the same sizes before is there again.
+/// Opens the page. It still has its earlier results if the sizes are the same.
 pub(in crate::tui::recognise) fn open(app: &mut App, request: SeparationRequest) {
     let known = state(app).and_then(|page| page.separate.take());
     let page = match known {
@@ -30,7 +30,7 @@ pub(in crate::tui::recognise) fn open(app: &mut App, request: SeparationRequest)
     app.dialogs.push(Dialog::Separate(page));
 }
 
-/// What is left of the work of the open page, unless it was begun.
+/// Returns the remaining work of the open page, unless it was begun.
 pub(in crate::tui::recognise) fn next_work(app: &mut App) -> Option<Effect> {
     let number = app.works + 1;
     let (request, known) = page(app)?.begin(number)?;
@@ -87,7 +87,7 @@ pub(in crate::tui) fn in_separate(
     effect
 }
 
-/// Puts the imprint at the cursor onto the matrix; `false` if there is none. The work ends.
+/// Puts the imprint at the cursor onto the matrix. Returns false if there is none, or while work is in progress.
 fn put_example(app: &mut App, page: &Separate) -> bool {
     if page.work().is_some() {
         refuse(app, "the sizes are still being computed");
@@ -113,7 +113,7 @@ fn put_example(app: &mut App, page: &Separate) -> bool {
     true
 }
 
-/// The page, if it is open.
+/// Returns the page, if it is open.
 fn page(app: &mut App) -> Option<&mut Separate> {
     let mut dialogs = app.dialogs.iter_mut().rev();
     dialogs.find_map(|dialog| match dialog {
@@ -122,14 +122,14 @@ fn page(app: &mut App) -> Option<&mut Separate> {
     })
 }
 
-/// Takes what was found.
+/// Takes over results.
 pub(in crate::tui::recognise) fn on_found(app: &mut App, found: SizesFound) {
     if let Some(reason) = page(app).and_then(|page| page.take_found(found)) {
         refuse(app, reason);
     }
 }
 
-/// Handles work of this number that failed unexpectedly.
+/// Handles an unexpected failure of the work with this number.
 pub(in crate::tui::recognise) fn on_failure(app: &mut App, number: u64, reason: &str) {
     let found = SizesFound {
         number,
@@ -139,14 +139,14 @@ pub(in crate::tui::recognise) fn on_failure(app: &mut App, number: u64, reason: 
     on_found(app, found);
 }
 
-/// Takes how far the work of a number is.
+/// Records the progress of the work with this number.
 pub(in crate::tui::recognise) fn on_progress(app: &mut App, number: u64, done: u64) {
     if let Some(page) = page(app) {
         page.take_progress(number, done);
     }
 }
 
-/// Writes the sizes into a file, unless there is one of that name.
+/// Writes the sizes into a file, unless a file with this name exists.
 pub(in crate::tui::recognise) fn write(app: &mut App, name: String) -> Option<Effect> {
     match page(app)?.file(&name) {
         Ok(content) => {

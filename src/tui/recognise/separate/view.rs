@@ -31,37 +31,38 @@ use crate::tui::widget::curve::Curve;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
-/// Columns of the table.
+/// The width of the table, in columns.
 const TABLE: u16 = 48;
 
-/// Lines below the table: what was looked for, the worst pair, its imprint.
+/// The number of lines below the table: the wanted error, the worst pair, its imprint.
 const DETAIL: u16 = 3;
 
-/// Where the parts of the page are.
+/// The areas of the parts of the page.
 struct SeparatePanes {
-    /// The curve; empty where there is no room.
+    /// The curve; empty if there is no room.
     curve: Rect,
     /// The heading of the table.
     head: Rect,
-    /// Its rows.
+    /// The rows of the table.
     rows: Rect,
     /// The first visible row.
     first: usize,
-    /// The imprint, beside the table.
+    /// The example imprint, beside the table.
     picture: Rect,
-    /// What stands below.
+    /// The lines below the table.
     detail: Rect,
 }
 
 impl SeparatePanes {
-    /// Below ten lines the curve is left out, because the table says the same in numbers.
+    /// Divides the page. If there are fewer than ten lines, the curve is left out, because the table says the same in
+    /// numbers.
     fn of(area: Rect, page: &Separate) -> Self {
         let body = write::below(area, 2);
         let body = Rect {
             height: body.height.saturating_sub(DETAIL),
             ..body
         };
-        // The curve has more than half, the table at least four rows and no more than it needs.
+        // The curve gets more than half; the table at least four rows, and no more than it needs.
         let wanted = u16::try_from(page.found().len().max(4)).unwrap_or(u16::MAX);
         let least = body.height.saturating_sub(wanted.saturating_add(1));
         let curve = (body.height * 3 / 5).max(least);
@@ -141,7 +142,7 @@ impl Page for Separate {
 }
 
 impl Separate {
-    /// How far the work is.
+    /// Draws the progress of the work.
     fn draw_work(
         &self,
         theme: &Theme,
@@ -162,7 +163,7 @@ impl Separate {
         gauge(theme, work.done.min(work.all), work.all, buffer, place);
     }
 
-    /// The error against the size.
+    /// Draws the error against the size.
     fn draw_curve(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) {
         let points = self.found().iter().map(|size| &size.point);
         let points: Vec<_> = points.map(|point| (point.value, point.error())).collect();
@@ -177,7 +178,7 @@ impl Separate {
         curve.draw(theme, buffer, area);
     }
 
-    /// What the sizes are.
+    /// Returns the name of the quantity that the sizes give.
     fn size_name(&self) -> &'static str {
         match self.request().axis {
             SizeAxis::Pitch => "pitch/mm",
@@ -185,7 +186,7 @@ impl Separate {
         }
     }
 
-    /// What was found of each size. Returns where the cursor is.
+    /// Draws the results for each size. Returns the position of the cursor.
     fn draw_table(
         &self,
         theme: &Theme,
@@ -221,7 +222,7 @@ impl Separate {
         cursor
     }
 
-    /// What was looked for, and the pair that is confused most at the cursor.
+    /// Draws the result for the wanted error, and the pair that is confused most at the cursor.
     fn draw_detail(
         &self,
         theme: &Theme,
@@ -253,7 +254,7 @@ impl Separate {
         }
     }
 
-    /// What was looked for, and what was found.
+    /// Returns the result for the wanted error, in words.
     fn wanted_text(&self, keymap: &Keymap) -> String {
         let wanted = format!("{} %", decimal(100.0 * self.request().wanted, 3));
         let axis = self.request().axis;
@@ -277,7 +278,7 @@ impl Separate {
     }
 }
 
-/// How a size was searched.
+/// Returns how a size was searched for.
 fn tried(smallest: &SmallestSize) -> String {
     if smallest.step > 0.0 {
         format!(", in steps of {}", short(smallest.step))
@@ -286,7 +287,7 @@ fn tried(smallest: &SmallestSize) -> String {
     }
 }
 
-/// The cells of a row of the table, each with the gap before it.
+/// Returns the cells of a row of the table, each with the gap before it.
 fn row_cells(size: &SizeFound) -> [String; 5] {
     let point = &size.point;
     [
@@ -298,7 +299,7 @@ fn row_cells(size: &SizeFound) -> [String; 5] {
     ]
 }
 
-/// The first cells of a row, as many as have room: a number that is cut would look like another one.
+/// Returns the first cells of a row, as far as they fit: a number that is cut would look like another one.
 fn whole_columns(cells: &[String; 5], room: u16) -> String {
     let mut text = String::new();
     for cell in cells {
