@@ -1,4 +1,4 @@
-//! The two imprints, the view that is chosen, and how they are drawn.
+//! The two imprints, the chosen view, and how they are drawn.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -15,22 +15,22 @@ use crate::tui::widget::number::{around, narrow};
 use crate::tui::widget::theme::{Role, Theme, spelling};
 use crate::tui::widget::write;
 
-/// Columns of the row ruler.
+/// The width of the row ruler, in columns.
 const RULER: u16 = 3;
 
-/// Columns between two columns of the table.
+/// The number of columns between two columns of the table.
 const GAP: u16 = 2;
 
-/// What is shown in one place.
+/// A view of the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ComparedView {
-    /// Which taxels are active in both, in one, in none.
+    /// The taxels that are active in both imprints, in one, or in none.
     Difference,
     /// The first imprint.
     First,
     /// The second one.
     Second,
-    /// The descriptors, where they have no room beside the others.
+    /// The descriptors, if they have no room beside the other views.
     Descriptors,
 }
 
@@ -39,50 +39,51 @@ use ComparedView::{Descriptors, Difference, First, Second};
 /// The views in the order of Tab.
 const VIEWS: [ComparedView; 4] = [Difference, First, Second, Descriptors];
 
-/// The views beside which the descriptors stand.
+/// The views that have the descriptors beside them.
 const GRIDS: &[ComparedView] = VIEWS.split_at(3).0;
 
-/// A row of the table: the symbol of a descriptor, its values, their difference.
+/// A row of the table: the symbol of a descriptor, its two values, their difference.
 type TableRow = [String; 4];
 
-/// Two imprints of one size, and what they are.
+/// Two imprints of the same size, with their names.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// Both, brought to one size.
+    /// The two imprints, resized to the same size.
     imprints: Box<[Imprint; 2]>,
-    /// What each is, for the headings.
+    /// The names of the imprints, for the headings.
     names: [String; 2],
-    /// The descriptors, below a heading.
+    /// The table of descriptors, with a heading.
     table: Vec<TableRow>,
-    /// The index of the view that is shown.
+    /// The index of the chosen view.
     view: usize,
-    /// How many rows of the views and of the table are hidden above, where so many have no room.
+    /// The number of rows of the views and of the table that are hidden above; a part that needs to hide fewer hides
+    /// fewer.
     top: u16,
-    /// How many columns of the views are hidden on the left.
+    /// The number of columns of the views that are hidden on the left.
     left: u16,
 }
 
-/// Where the views and the descriptors stand.
+/// The areas of the views and of the descriptors.
 struct ComparedPanes {
-    /// The views.
+    /// The visible views.
     views: Vec<(ComparedView, Rect)>,
-    /// The descriptors, where they are visible.
+    /// The descriptors; None if they are not visible.
     table: Option<Rect>,
 }
 
-/// Which taxels a view shows.
+/// The taxels that a view shows.
 struct ComparedWindow {
-    /// Characters of a taxel.
+    /// The width of a taxel, in characters.
     cell: u16,
-    /// The first column, and how many there are.
+    /// The first column, and the number of columns.
     columns: (u16, u16),
-    /// The first row, and how many.
+    /// The first row, and the number of rows.
     rows: (u16, u16),
 }
 
 impl Comparison {
-    /// Compares two imprints, given with what they are. Where one has fewer columns or rows, taxels that it does not have
-    /// count as inactive.
+    /// Compares two imprints, given with their names. If one has fewer columns or rows, the missing taxels count as
+    /// inactive.
     pub fn new(first: (String, &Imprint), second: (String, &Imprint)) -> Self {
         let columns = first.1.columns().max(second.1.columns());
         let rows = first.1.rows().max(second.1.rows());
@@ -98,13 +99,13 @@ impl Comparison {
         }
     }
 
-    /// Shows the view that comes `by` further on, the first after the last, in an area of this many columns.
+    /// Shows the view `by` places further on, in an area with this many columns; after the last view comes the first.
     pub fn next_view(&mut self, by: i8, columns: u16) {
         let views = self.views(columns);
         self.view = around(self.view.min(views.len() - 1), by, views.len());
     }
 
-    /// Scrolls to the right and down; negative goes back. Returns whether anything does not fit into the area.
+    /// Scrolls to the right and down, or back if negative. Returns false if everything fits into the area.
     pub fn scroll(&mut self, (columns, rows): (i16, i16), area: Rect) -> bool {
         let (most_left, most_top) = self.hidden(area);
         let moved =
@@ -114,7 +115,7 @@ impl Comparison {
         (most_left, most_top) != (0, 0)
     }
 
-    /// How many columns and rows of what is visible do not fit into the area.
+    /// Returns how many columns and rows do not fit into the area.
     fn hidden(&self, area: Rect) -> (u16, u16) {
         let panes = self.panes(area);
         let [first, _] = &*self.imprints;
@@ -130,12 +131,12 @@ impl Comparison {
         all.fold((0, 0), |most, one| (most.0.max(one.0), most.1.max(one.1)))
     }
 
-    /// How many rows of the table do not fit below its heading in this many lines.
+    /// Returns how many rows of the table do not fit below its heading in this many lines.
     fn rows_beyond(&self, lines: u16) -> u16 {
         narrow(self.table.len()).saturating_sub(lines)
     }
 
-    /// Where the views and the descriptors stand in the area of the page.
+    /// Returns the areas of the views and of the descriptors on the page.
     fn panes(&self, area: Rect) -> ComparedPanes {
         let body = write::below(area, HEADING);
         let table = self.widths().iter().sum::<u16>() + 3 * GAP;
@@ -150,7 +151,7 @@ impl Comparison {
         }
         let all = 3 * self.grid(2) + table <= body.width;
         let shown = if all { GRIDS } else { &[view] };
-        // Taxels of two characters leave the room that the descriptors need, or those of one do.
+        // Taxels of two characters, or else of one, leave the room that the descriptors need.
         let beside = if views == GRIDS { table } else { 0 };
         let room = body.width.saturating_sub(beside).max(self.grid(1));
         let room = room.min(body.width);
@@ -168,7 +169,7 @@ impl Comparison {
         }
     }
 
-    /// Which taxels a view shows in an area: two characters a taxel, or one where there is no room for two.
+    /// Returns the taxels that a view shows in an area: two characters per taxel, or one if there is no room for two.
     fn window(&self, area: Rect) -> ComparedWindow {
         let [first, _] = &*self.imprints;
         let (columns, rows) = (u16::from(first.columns()), u16::from(first.rows()));
@@ -185,12 +186,12 @@ impl Comparison {
         }
     }
 
-    /// Columns of a view with one character a taxel, or with two.
+    /// Returns the width of a view in columns, with this many characters per taxel.
     fn grid(&self, characters: u16) -> u16 {
         RULER + characters * u16::from(self.imprints[0].columns()) + 1
     }
 
-    /// Columns of each column of the table.
+    /// Returns the width of each column of the table.
     fn widths(&self) -> [u16; 4] {
         std::array::from_fn(|column| {
             let widths = self.table.iter().map(|row| ascii_width(&row[column]));
@@ -198,7 +199,7 @@ impl Comparison {
         })
     }
 
-    /// The views that Tab shows in this many columns.
+    /// Returns the views that Tab shows in this many columns.
     fn views(&self, columns: u16) -> &'static [ComparedView] {
         let [symbol, first, second, _] = self.widths();
         let least = symbol + first + second + 2 * GAP;
@@ -209,12 +210,12 @@ impl Comparison {
         }
     }
 
-    /// The taxels in which they differ.
+    /// Returns the number of taxels in which the imprints differ.
     fn differing(&self) -> u32 {
         self.imprints[0].differing(&self.imprints[1]).count()
     }
 
-    /// Draws a view: a heading, the rulers, the taxels. Arrows in the heading say where there are more.
+    /// Draws a view: a heading, the rulers, the taxels. Arrows in the heading show where there are more taxels.
     fn draw_view(&self, view: ComparedView, theme: &Theme, buffer: &mut Buffer, area: Rect) {
         let [first, second] = &*self.imprints;
         let window = self.window(area);
@@ -246,7 +247,7 @@ impl Comparison {
         let every = if cell == 1 { 5 } else { 2 };
         let numbers = (left..left + wide).filter(|column| column.is_multiple_of(every));
         let numbers = numbers.map(|column| (column - left, column.to_string()));
-        // One that does not fit would touch the descriptors.
+        // A number that does not fit would touch the descriptors.
         for (place, number) in
             numbers.filter(|(place, number)| place * cell + narrow(number.len()) <= wide * cell)
         {
@@ -273,8 +274,8 @@ impl Comparison {
         }
     }
 
-    /// Draws the descriptors of both and their differences; without these where they do not fit, since they follow from the
-    /// values. Arrows say where there are more rows.
+    /// Draws the descriptors of both imprints and their differences. If they do not fit, the differences are left
+    /// out, since they follow from the values. Arrows show where there are more rows.
     fn draw_table(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) {
         let widths = self.widths();
         let whole = widths.iter().sum::<u16>() + 3 * GAP <= area.width;
@@ -317,7 +318,8 @@ impl Comparison {
     }
 }
 
-/// The descriptors of the main regions of two imprints, below a heading. Where nothing is active, counts and sums are 0.
+/// Returns the descriptors of the main regions of two imprints, with a heading. If nothing is active, counts and sums
+/// are 0.
 fn table(imprints: &[Imprint; 2]) -> Vec<TableRow> {
     let described = imprints.each_ref().map(|imprint| {
         let regions = regions(imprint);
@@ -344,13 +346,15 @@ fn table(imprints: &[Imprint; 2]) -> Vec<TableRow> {
     std::iter::once(heading).chain(rows).collect()
 }
 
-/// Columns of a text in ASCII, where it is at least as wide: what there is room for does not depend on the terminal.
+/// Returns the width of a text in ASCII, which is at least its width in Unicode: the layout must not depend on the
+/// terminal.
 fn ascii_width(text: &str) -> usize {
     let widths = text.chars().map(|sign| spelling(sign).map_or(1, str::len));
     widths.sum()
 }
 
-/// The characters of a taxel in a view, and their role. A letter beside the shade says which of the two is active.
+/// Returns the characters of a taxel in a view, and their role. A letter instead of the shade shows which of the two
+/// imprints has it active.
 fn signs(theme: &Theme, view: ComparedView, active: (bool, bool)) -> ([char; 2], Role) {
     let role = |on: bool| if on { Role::Chosen } else { Role::Inactive };
     match (view, active) {
@@ -362,13 +366,13 @@ fn signs(theme: &Theme, view: ComparedView, active: (bool, bool)) -> ([char; 2],
     }
 }
 
-/// A value, or a dash.
+/// Formats a value; a missing one is a dash.
 fn text(descriptor: &Descriptor, measured: Value) -> String {
     let text = value::text(measured, descriptor.dimension);
     text.unwrap_or_else(|| "–".to_owned())
 }
 
-/// The second value less the first, None for values that have no difference.
+/// Returns the second value minus the first; None for values that have no difference.
 fn difference(first: Value, second: Value) -> Option<Value> {
     match (first, second) {
         (Value::Count(first), Value::Count(second)) => {
@@ -440,10 +444,10 @@ impl Page for Comparison {
     }
 }
 
-/// Lines above the views.
+/// The number of lines above the views.
 const HEADING: u16 = 1;
 
-/// What is compared with the matrix, cut to what a heading can hold.
+/// Returns the name of what is compared with the matrix, cut to the length that a heading can hold.
 pub fn heading(what: &str) -> String {
     let mut name: String = what.chars().take(LONGEST).collect();
     if name.chars().count() < what.chars().count() {
@@ -452,5 +456,5 @@ pub fn heading(what: &str) -> String {
     name
 }
 
-/// The most characters of a name in the heading.
+/// The greatest number of characters of a name in the heading.
 const LONGEST: usize = 24;

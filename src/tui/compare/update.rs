@@ -1,4 +1,4 @@
-//! Messages over two imprints that are compared.
+//! The effects of messages over two imprints that are compared.
 
 use crate::tui::app::change::inform;
 use crate::tui::app::dialog::Dialog;
@@ -9,7 +9,7 @@ use crate::tui::compare::page::Comparison;
 use crate::tui::keys::key::Arrow;
 use crate::tui::runtime::effect::Effect;
 
-/// Shows another view of two imprints, or scrolls what does not fit.
+/// Shows another view of two imprints, or scrolls parts that do not fit.
 pub(in crate::tui) fn in_comparison(
     app: &mut App,
     mut page: Comparison,
