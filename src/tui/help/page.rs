@@ -1,4 +1,4 @@
-//! The list of keys and what it shows.
+//! The page with the list of keys.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -20,7 +20,7 @@ pub struct Help {
     context: Context,
     /// The index of the first visible line.
     top: usize,
-    /// What is searched for, None for nothing.
+    /// The search; None if there is none.
     search: Option<Search>,
 }
 
@@ -28,7 +28,7 @@ pub struct Help {
 type Lines = Vec<(usize, HelpLine)>;
 
 impl Help {
-    /// The list of a place, from its first line on.
+    /// Creates the list of a place, which starts at its first line.
     pub fn new(context: Context) -> Self {
         Self {
             context,
@@ -37,7 +37,7 @@ impl Help {
         }
     }
 
-    /// Its lines in an area of this many columns and rows, and the index of the first visible one.
+    /// Returns the lines for an area of this many columns and rows, and the index of the first visible one.
     fn lines(&self, keymap: &Keymap, (columns, rows): (u16, u16)) -> (Lines, usize) {
         let broken = |(entry, line)| {
             let lines = broken_line(line, columns.into()).into_iter();
@@ -50,15 +50,15 @@ impl Help {
         (lines, top)
     }
 
-    /// Scrolls down by a number of lines, in an area of this many columns and rows.
+    /// Scrolls down by `lines`, or up if negative, in an area of this many columns and rows.
     pub fn scroll(&mut self, lines: i16, keymap: &Keymap, room: (u16, u16)) {
         let (_, top) = self.lines(keymap, room);
         self.top = top.saturating_add_signed(isize::from(lines));
         (_, self.top) = self.lines(keymap, room);
     }
 
-    /// Searches for a text from the first visible line on, then from the start, and goes to the first match. Answers
-    /// which match that is, counted from 1, and of how many; (0, 0) for none.
+    /// Searches for a text from the first visible line, then from the start, and goes to the first match. Returns the
+    /// number of that match, from 1, and the number of all matches; (0, 0) if there is none.
     pub fn search(&mut self, wanted: &str, keymap: &Keymap, room: (u16, u16)) -> (usize, usize) {
         let entries = matches(self.context, keymap, wanted);
         let (lines, top) = self.lines(keymap, room);
@@ -72,7 +72,8 @@ impl Help {
         number
     }
 
-    /// Goes to the match this many further on, the first follows the last. Answers whether anything was searched for.
+    /// Goes to the match `by` places further on; after the last match comes the first. Returns false if there is no
+    /// search or no match.
     pub fn go_to_match(&mut self, by: i8, keymap: &Keymap, room: (u16, u16)) -> bool {
         let Some(search) = &mut self.search else {
             return false;
@@ -84,19 +85,20 @@ impl Help {
         found
     }
 
-    /// Forgets what was searched for.
+    /// Ends the search.
     pub fn leave_search(&mut self) {
         self.search = None;
     }
 
-    /// Which match one has come to, counted from 1, and of how many; None without a search.
+    /// Returns the number of the match at which the search is, from 1, and the number of all matches; None without a
+    /// search.
     fn number(&self, keymap: &Keymap) -> Option<(usize, usize)> {
         let search = self.search.as_ref()?;
         let entries = matches(self.context, keymap, search.wanted());
         Some(search.number(&entries))
     }
 
-    /// Scrolls, where an entry is out of sight, so that it has a third of the lines above it.
+    /// Makes an entry visible: if it is out of sight, scrolls so that a third of the lines is above it.
     fn show(&mut self, entry: usize, keymap: &Keymap, room: (u16, u16)) {
         let (lines, top) = self.lines(keymap, room);
         let rows = usize::from(room.1);
@@ -110,8 +112,8 @@ impl Help {
         }
     }
 
-    /// A line in pieces, with what is searched for marked; `here`: it is the match that one has come to, and has a sign,
-    /// for terminals that cannot reverse.
+    /// Draws a line, with the matches of the search marked. `here`: the search is at this entry, which then has a
+    /// sign, for terminals that cannot reverse.
     fn draw_line(
         &self,
         theme: &Theme,
@@ -182,12 +184,12 @@ impl Page for Help {
         self.search.is_some() || !matches!(message, Message::Match(_))
     }
 
-    /// Its update leaves the search first.
+    /// The update leaves the search first.
     fn cancels_itself(&self) -> bool {
         self.search.is_some()
     }
 
-    /// Which match one has come to, and which lines are visible, where not all of them are.
+    /// Returns the number of the present match, and, if not all lines are visible, which ones are.
     fn remark(&self, keymap: &Keymap, body: Rect) -> Option<(String, Role)> {
         let (lines, top) = self.lines(keymap, body.as_size().into());
         let last = lines.len().min(top + usize::from(body.height));
@@ -205,7 +207,7 @@ impl Page for Help {
             more.map(|more| format!("lines {}-{last} of {}; {more}", top + 1, lines.len()));
         let found = self.number(keymap);
         let found = found.map(|(number, all)| format!("match {number} of {all}"));
-        // A second line would hide the last one of the list.
+        // A second line would hide the last line of the list.
         let (text, short) = match (found, visible) {
             (None, None) => return None,
             (None, Some(visible)) => (visible, format!("{last} of {}", lines.len())),
@@ -217,7 +219,7 @@ impl Page for Help {
     }
 }
 
-/// The entries of a place's list that have a text, in their keys or in what these do.
+/// Returns the entries of a place's list that contain a text, in their keys or their help.
 fn matches(context: Context, keymap: &Keymap, wanted: &str) -> Vec<usize> {
     let has = |line: &HelpLine| match line {
         HelpLine::Place(context) => contains(context.title(), wanted),
@@ -231,15 +233,15 @@ fn matches(context: Context, keymap: &Keymap, wanted: &str) -> Vec<usize> {
         .collect()
 }
 
-/// The column where the meaning of the keys begins: to the right of the keys, or near the left edge, under them, on a
-/// narrow screen.
+/// Returns the column where the help of the keys begins: to the right of the keys, or on a narrow screen near the
+/// left edge, under them.
 fn indent(columns: usize) -> usize {
-    /// The column of the meaning where there is room beside the keys.
+    /// The column of the help if there is room beside the keys.
     const BESIDE: usize = 26;
     if columns >= BESIDE + 20 { BESIDE } else { 4 }
 }
 
-/// A line of help, broken into as many as it needs.
+/// Breaks a line of help into as many as it needs.
 fn broken_line(line: HelpLine, columns: usize) -> Vec<HelpLine> {
     let HelpLine::Keys(keys, text) = line else {
         return vec![line];

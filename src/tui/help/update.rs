@@ -1,4 +1,4 @@
-//! Messages over help.
+//! The effects of messages in help.
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::dialog::Dialog;
@@ -10,14 +10,15 @@ use crate::tui::runtime::effect::Effect;
 use crate::tui::search::page::{SearchDialog, Searched};
 use crate::tui::search::update::no_search;
 
-/// Handles a message in help, which stays open unless it is closed while something was searched for.
+/// Handles a message in help, which closes on Quit. Cancel leaves the search; without a search, help closes before
+/// Cancel and Quit come here.
 pub(in crate::tui) fn in_help(app: &mut App, mut help: Help, message: &Message) -> Option<Effect> {
     let (keymap, room) = (app.keymap(), app.body_size());
     let mut refused = None;
     match *message {
         Message::Scroll(lines) => help.scroll(lines, keymap, room),
         Message::ScrollScreen(by) => {
-            // A line of the page before stays, to go on reading from.
+            // One line of the page before stays visible, for the reader's orientation.
             let page = room.1.saturating_sub(1).max(1).cast_signed();
             help.scroll(page.saturating_mul(by.into()), keymap, room);
         }
