@@ -1,4 +1,4 @@
-//! The list of steps and what it shows.
+//! The page with the list of steps.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -15,21 +15,21 @@ use crate::tui::widget::write;
 /// The list of steps.
 #[derive(Clone, Debug)]
 pub struct HistoryDialog {
-    /// What each step did, the oldest first.
+    /// The descriptions of the steps, the oldest first.
     steps: Vec<String>,
-    /// How many of them lead to the present state.
+    /// The number of steps that lead to the present state.
     present: usize,
     /// The selected row; row 0 is the state before all steps.
     selected: usize,
-    /// What is searched for, None for nothing.
+    /// The search; None if there is none.
     search: Option<Search>,
 }
 
-/// What row 0 is called.
+/// The name of row 0.
 const START: &str = "the start";
 
 impl HistoryDialog {
-    /// The list, the present state selected.
+    /// Creates the list, with the present state selected.
     pub fn new(steps: Vec<String>, present: usize) -> Self {
         Self {
             steps,
@@ -39,12 +39,12 @@ impl HistoryDialog {
         }
     }
 
-    /// The number of steps that lead to the selected state.
+    /// Returns the number of steps that lead to the selected state.
     pub fn selected(&self) -> usize {
         self.selected
     }
 
-    /// Selects the row `lines` further down; further up if negative.
+    /// Selects the row `lines` further down, or further up if negative.
     pub fn scroll(&mut self, lines: i16) {
         let to = self.selected.saturating_add_signed(lines.into());
         self.selected = to.min(self.steps.len());
@@ -58,8 +58,8 @@ impl HistoryDialog {
         };
     }
 
-    /// Searches for a text from the selected row on, then from the start, and selects the first match. Answers which
-    /// match that is, counted from 1, and of how many; (0, 0) for none.
+    /// Searches for a text from the selected row, then from the start, and selects the first match. Returns the
+    /// number of that match, from 1, and the number of all matches; (0, 0) if there is none.
     pub fn search(&mut self, wanted: &str) -> (usize, usize) {
         let rows = self.matches(wanted);
         let Some(search) = Search::new(wanted, &rows, self.selected) else {
@@ -71,7 +71,8 @@ impl HistoryDialog {
         number
     }
 
-    /// Selects the match this many further on, the first follows the last. Answers whether anything was searched for.
+    /// Selects the match `by` places further on; after the last match comes the first. Returns false if there is no
+    /// search or no match.
     pub fn go_to_match(&mut self, by: i8) -> bool {
         let Some(mut search) = self.search.take() else {
             return false;
@@ -83,24 +84,24 @@ impl HistoryDialog {
         found
     }
 
-    /// Forgets what was searched for.
+    /// Ends the search.
     pub fn leave_search(&mut self) {
         self.search = None;
     }
 
-    /// What each row says, the start first.
+    /// Returns the text of each row, the start first.
     fn rows(&self) -> impl Iterator<Item = &str> {
         std::iter::once(START).chain(self.steps.iter().map(String::as_str))
     }
 
-    /// The rows that have a text.
+    /// Returns the rows that contain a text.
     fn matches(&self, wanted: &str) -> Vec<usize> {
         let rows = self.rows().enumerate();
         let having = rows.filter(|(_, text)| contains(text, wanted));
         having.map(|(row, _)| row).collect()
     }
 
-    /// The first visible row in an area.
+    /// Returns the first visible row in an area.
     fn first(&self, area: Rect) -> usize {
         let visible = area.height.saturating_sub(1);
         write::first_of(visible, self.steps.len() + 1, self.selected)
@@ -135,7 +136,7 @@ impl Page for HistoryDialog {
         for (index, text) in self.rows().enumerate().skip(first).take(visible) {
             let row = write::row(area, index - first + 1);
             let selected = index == self.selected;
-            // Signs beside the reversed row, for terminals that cannot reverse.
+            // Signs mark the rows, too, for terminals that cannot reverse.
             let sign = if selected { '>' } else { ' ' };
             let present = if index == self.present { '*' } else { ' ' };
             let role = if selected { Role::Focus } else { Role::Text };
@@ -150,7 +151,7 @@ impl Page for HistoryDialog {
         cursor
     }
 
-    /// A click selects a row, a click on the selected row goes there.
+    /// Selects a row on a click; a click on the selected row goes to its state.
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
         let line = usize::from(at.y.checked_sub(area.y + 1)?);
         let row = Some(self.first(area) + line).filter(|&row| row <= self.steps.len())?;
@@ -169,12 +170,12 @@ impl Page for HistoryDialog {
         self.search.is_some() || !matches!(message, Message::Match(_))
     }
 
-    /// Its update leaves the search first.
+    /// The update leaves the search first.
     fn cancels_itself(&self) -> bool {
         self.search.is_some()
     }
 
-    /// Which match is selected.
+    /// Returns the number of the selected match.
     fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
         let search = self.search.as_ref()?;
         let rows = self.matches(search.wanted());

@@ -1,4 +1,4 @@
-//! Messages over the list of steps.
+//! The effects of messages over the list of steps.
 
 use crate::tui::app::change::{compare_with, refuse, settle};
 use crate::tui::app::dialog::Dialog;
@@ -11,8 +11,8 @@ use crate::tui::runtime::effect::Effect;
 use crate::tui::search::page::{SearchDialog, Searched};
 use crate::tui::search::update::no_search;
 
-/// Moves in the list of steps, searches in it, or goes to the state after the selected one.
-/// To compare leaves the list open below.
+/// Moves in the list of steps, searches in it, or goes to the state after the selected one. Comparing leaves the list
+/// open below.
 pub(in crate::tui) fn in_history(
     app: &mut App,
     mut list: HistoryDialog,
