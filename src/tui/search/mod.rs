@@ -1,4 +1,5 @@
-//! The search in help and in the history: a prompt at the bottom of the list, which follows as you type.
+//! The search in help and in the history: a prompt at the bottom of the list, which follows with every character
+//! typed.
 //!
 //! ```text
 //! Search: undo   1 of 3          which match is in sight, of how many

@@ -10,7 +10,7 @@ use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::text_field::TextField;
 
-/// Nobody searches for more.
+/// The greatest number of characters of a search.
 const LONGEST: usize = 60;
 
 /// A list that can be searched.
@@ -22,19 +22,19 @@ pub enum Searched {
     History(HistoryDialog),
 }
 
-/// The field, and the list as it was before.
+/// The prompt, with the list as it was before the search.
 #[derive(Clone, Debug)]
 pub struct SearchDialog {
-    /// What was typed.
+    /// The field for the wanted text.
     field: TextField,
-    /// The list as the search found it.
+    /// The list before the search.
     before: Searched,
-    /// Which match is in sight, counted from 1, and of how many; (0, 0) for none.
+    /// The number of the present match, from 1, and the number of all matches; (0, 0) if there is none.
     found: (usize, usize),
 }
 
 impl SearchDialog {
-    /// An empty field over a list.
+    /// Creates an empty prompt over a list.
     pub fn new(before: Searched) -> Self {
         Self {
             field: TextField::new("", LONGEST),
@@ -43,24 +43,24 @@ impl SearchDialog {
         }
     }
 
-    /// Types or deletes in the field, where that is what a message means.
+    /// Edits the field, if the message is an edit.
     pub fn edit(&mut self, message: &Message) {
         self.field.take(message);
     }
 
-    /// The list as the search found it.
+    /// Returns the list before the search.
     pub fn before(&self) -> &Searched {
         &self.before
     }
 
-    /// What was typed if nothing has it, None otherwise.
+    /// Returns the wanted text if it was not found; None otherwise.
     pub fn unfound(&self) -> Option<&str> {
         let text = self.field.text();
         (self.found.1 == 0 && !text.is_empty()).then_some(text)
     }
 
-    /// The list with what was typed searched for, from where it stood; as it stood where nothing is found. `room` has the
-    /// columns and lines of the list.
+    /// Returns the list after a search for the typed text, which starts where the list was; if nothing is found, the
+    /// list as it was. `room` is the size of the list in columns and lines.
     pub fn searched(&mut self, keymap: &Keymap, room: (u16, u16)) -> Searched {
         let (wanted, mut list) = (self.field.text(), self.before.clone());
         self.found = match &mut list {
@@ -89,7 +89,7 @@ impl LinePrompt for SearchDialog {
         &self.field
     }
 
-    /// Which match is in sight; behind an empty field, what can be searched for.
+    /// Returns the number of the match; while the field is empty, what can be searched for.
     fn behind(&self, _columns: u16) -> Cow<'_, str> {
         match (self.found, &self.before) {
             (_, Searched::Help(_)) if self.field.text().is_empty() => {

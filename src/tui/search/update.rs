@@ -1,4 +1,4 @@
-//! Messages at the prompt of a search.
+//! The effects of messages at the prompt of a search.
 
 use crate::tui::app::change::refuse;
 use crate::tui::app::dialog::Dialog;
@@ -10,8 +10,8 @@ use crate::tui::keys::keymap::Keymap;
 use crate::tui::runtime::effect::Effect;
 use crate::tui::search::page::{SearchDialog, Searched};
 
-/// Handles a message in the prompt: the list below follows what is typed, Enter keeps its matches, and Esc takes it back
-/// to where it was.
+/// Handles a message at the prompt: the list below follows what is typed, Enter keeps the matches, and Esc restores
+/// the list as it was before.
 pub(in crate::tui) fn in_search(
     app: &mut App,
     mut dialog: SearchDialog,
@@ -42,7 +42,7 @@ pub(in crate::tui) fn in_search(
     None
 }
 
-/// The notice for the key of the next match if nothing was searched for.
+/// Returns the notice for the key of the next match if there is no search.
 pub(in crate::tui) fn no_search(keymap: &Keymap, context: Context) -> String {
     let key = keymap.label(context, &action::SEARCH);
     format!("nothing to go to: {key} searches")
