@@ -34,7 +34,7 @@ pub struct Action {
     pub help: &'static str,
 }
 
-/// What an action does.
+/// The effect of an action.
 #[derive(Debug, PartialEq)]
 pub enum Does {
     /// Sends a message.

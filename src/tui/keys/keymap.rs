@@ -34,7 +34,7 @@ pub struct Change {
     pub context: Context,
     /// The key.
     pub key: Key,
-    /// Its new action; None to do nothing.
+    /// The new action of the key; None if it does nothing.
     pub action: Option<&'static Action>,
 }
 
@@ -59,7 +59,7 @@ pub enum KeymapError {
     LastKey {
         /// The key.
         key: Key,
-        /// Its action by default.
+        /// The name of its default action.
         action: &'static str,
     },
 }
@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn a_key_is_given_freed_and_exchanged() {
+    fn keys_can_be_added_freed_and_swapped() {
         use Context::{Form, Grab, Matrix};
         let keymap = Keymap::with(&[
             change(Matrix, "x", "toggle"),

@@ -17,7 +17,7 @@ pub enum RecogniseMessage {
     Open,
     /// Opens the page with a set.
     Choose(ModelChoice),
-    /// Chooses another set, so many places after the present one.
+    /// Chooses the set this many places after the present one.
     NextSet(i8),
     /// Touches the matrix with a random shape of the set.
     Touch,

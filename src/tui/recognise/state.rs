@@ -15,7 +15,7 @@ use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::number::around;
 
-/// How far the model of the chosen set is.
+/// The state of the chosen set's model.
 #[derive(Clone, Debug)]
 pub enum ModelState {
     /// There is none: training was stopped, failed or was never begun.
@@ -158,7 +158,7 @@ impl Recognition {
         &self.choice
     }
 
-    /// Returns how far the model is.
+    /// Returns the state of the model.
     pub fn state(&self) -> &ModelState {
         &self.state
     }
@@ -511,7 +511,7 @@ mod tests {
     }
 
     #[test]
-    fn a_search_that_fails_says_why_and_is_not_begun_again() {
+    fn a_failed_search_gives_its_reason_and_is_not_repeated() {
         let mut page = Recognition::new(0);
         page.show(touch());
         with_model(&mut page, ModelChoice::Figures, 1);

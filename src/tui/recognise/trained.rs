@@ -16,7 +16,7 @@ pub struct TrainedModel {
     pub choice: ModelChoice,
     /// The model of the set.
     pub model: Model,
-    /// How well it tells its shapes apart.
+    /// The evaluation, which shows how well the model tells its shapes apart.
     pub evaluation: Evaluation,
     /// An imprint for each cell of its confusion matrix.
     pub examples: Examples,

@@ -1,4 +1,4 @@
-//! The effects of messages on the page of recognition and in its quiz. The answer follows the matrix: [`next_work`]
+//! The effects of messages on the page of recognition and in its quiz. The answer follows the matrix: `next_work`
 //! is called after every message.
 
 use std::sync::Arc;

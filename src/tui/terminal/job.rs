@@ -11,7 +11,7 @@ use rustix::process::{Signal, kill_current_process_group};
 use rustix::process::{getpgid, getsid};
 
 /// Returns true if somebody could continue the program: a process above it, on the same terminal, in another process
-/// group. The first process of a connection has none; stopped, it would never come back.
+/// group. The first process of a connection has no such process; stopped, it would never come back.
 ///
 /// Everything is read from `/proc`, where a process, group or session outside the program's PID namespace (a
 /// container's) appears as 0; the system calls answer 0 there too, which is not a process number. A controlling

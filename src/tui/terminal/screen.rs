@@ -80,7 +80,7 @@ pub struct Screen {
     wanted: Option<Position>,
     /// The position that ratatui set last and reads back.
     asked: Position,
-    /// What the terminal understands.
+    /// The abilities of the terminal.
     abilities: Abilities,
     /// The bytes of the frame so far.
     out: Vec<u8>,

@@ -66,7 +66,7 @@ pub struct Flags {
     pub size: Option<(u16, u16)>,
 }
 
-/// What a terminal can do beyond moving its cursor and clearing its screen.
+/// The abilities of a terminal beyond moving its cursor and clearing its screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Abilities {
     /// Whether it shows bold, reversed and coloured text.

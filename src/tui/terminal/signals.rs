@@ -19,7 +19,7 @@ const HEARD: [i32; 14] = [
     SIGABRT, SIGTSTP, SIGCONT, SIGWINCH,
 ];
 
-/// What a signal asks the program to do.
+/// A request that a signal makes to the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::tui) enum SignalEvent {
     /// End; with the number of the signal.

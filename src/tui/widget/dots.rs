@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_dots_and_strokes() {
+    fn lines_are_drawn_as_dots_or_strokes() {
         assert_eq!(drawn(false, (0.0, 0.5), (5.9, 0.5)), "⠉⠉⠉\n   ");
         assert_eq!(drawn(true, (0.0, 1.5), (5.9, 1.5)), "---\n   ");
         assert_eq!(drawn(true, (0.0, 3.5), (5.9, 3.5)), "___\n   ");

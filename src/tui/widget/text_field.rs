@@ -83,7 +83,7 @@ impl TextField {
         taken
     }
 
-    /// Does what a message means, without regard to [`Self::fresh`]. Returns false if it means nothing in a line of
+    /// Does what a message means, even if the field was just entered. Returns false if it means nothing in a line of
     /// text.
     fn does(&mut self, message: &Message) -> bool {
         let request = match message {

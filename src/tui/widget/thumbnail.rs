@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_row_of_an_odd_number_is_drawn() {
+    fn the_last_of_an_odd_number_of_rows_is_drawn() {
         let mut imprint = Imprint::empty(3, 63);
         imprint.set(1, 62, true);
         for (ascii, height) in [(false, 22), (true, 22)] {

@@ -18,7 +18,7 @@ fn keys(notation: &str) -> Vec<Input> {
 }
 
 #[test]
-fn keys_of_many_terminals() {
+fn keys_of_many_terminals_are_read() {
     for (bytes, notation) in [
         ("aZ\u{e9}\u{4f60} <", "aZ\u{e9}\u{4f60} <lt>"),
         ("\r\n\t\x08\x7f", "<CR><CR><Tab><BS><BS>"),
@@ -63,7 +63,7 @@ fn keys_of_many_terminals() {
 }
 
 #[test]
-fn an_escape_waits_for_a_moment_and_a_sequence_for_ever() {
+fn an_esc_has_a_time_limit_and_a_sequence_has_none() {
     let mut reader = InputReader::default();
     assert_eq!(reader.read(b"\x1b"), []);
     assert_eq!(reader.patience(false), Some(MOMENT));
