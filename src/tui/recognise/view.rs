@@ -445,7 +445,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_hardly_possible_has_a_bar() {
+    fn a_small_probability_still_has_a_bar() {
         assert_eq!(bar_of(0.0001, 10), (1, 9));
         assert_eq!(bar_of(1.0, 0), (0, 0));
         assert_eq!(bar_of(0.5, 10), (5, 5));
