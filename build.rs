@@ -1,4 +1,4 @@
-//! What `taxel --version` says: the version, and for an optimised build the commit that it was made from.
+//! Sets the version that `taxel --version` prints; an optimised build also gets the commit that it was built from.
 //!
 //! The commit comes from `TAXEL_COMMIT` if a packager sets it, from the published package, or from git; without any of
 //! these, only the version is shown. A build for tests has no commit: it would have to be rebuilt after each commit.
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-/// The paths whose changes make a different program.
+/// The paths whose changes can change the program.
 const SOURCES: [&str; 5] = ["src", "library", "build.rs", "Cargo.toml", "Cargo.lock"];
 
-/// Characters of a commit's name: enough for a repository of this size.
+/// The number of characters shown of a commit's name; this is enough for a repository of this size.
 const LENGTH: usize = 9;
 
 fn main() {
@@ -31,10 +31,10 @@ fn main() {
     println!("cargo:rustc-env=TAXEL_VERSION={shown}");
 }
 
-/// The commit that a folder with a package holds, and whether its sources were changed since.
+/// Returns the commit of the package in a folder, with ", changed" if its sources were changed since.
 pub(crate) fn commit(folder: &Path) -> Option<String> {
     packaged(folder).or_else(|| {
-        // A repository around the package that does not contain it says nothing about it.
+        // A repository around the package that does not contain it tells nothing about its commit.
         let top = fs::canonicalize(git(folder, &["rev-parse", "--show-toplevel"])?).ok()?;
         if top != fs::canonicalize(folder).ok()? {
             return None;
@@ -48,18 +48,18 @@ pub(crate) fn commit(folder: &Path) -> Option<String> {
     })
 }
 
-/// The commit that `cargo package` has noted.
+/// Returns the commit that `cargo package` recorded.
 fn packaged(folder: &Path) -> Option<String> {
     let noted = fs::read_to_string(folder.join(".cargo_vcs_info.json")).ok()?;
     let (_, rest) = noted.split_once("\"sha1\"")?;
     let commit = rest.split('"').nth(1)?;
     let short = commit.get(..LENGTH).filter(|_| is_plain(commit))?;
-    // Packed up by `--allow-dirty`.
+    // `cargo package --allow-dirty` packs changed files.
     let changed = noted.contains("\"dirty\": true");
     Some(format!("{short}{}", if changed { ", changed" } else { "" }))
 }
 
-/// Letters and digits only, so that nothing else can get into the program's output.
+/// Returns true if a name has only letters and digits, so that nothing else gets into the program's output.
 fn is_plain(name: &str) -> bool {
     !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_alphanumeric())
 }
@@ -79,7 +79,7 @@ fn watch(folder: &Path) {
     }
 }
 
-/// The variables by which git's hooks name another repository than that of the folder.
+/// The environment variables by which a git hook points git to a repository other than the folder's.
 pub(crate) const OF_GIT: [&str; 4] = [
     "GIT_DIR",
     "GIT_WORK_TREE",
@@ -87,7 +87,7 @@ pub(crate) const OF_GIT: [&str; 4] = [
     "GIT_OBJECT_DIRECTORY",
 ];
 
-/// The answer of git; None if git does not know, or is not installed.
+/// Runs git and returns what it prints; None if it fails or is not installed.
 fn git(folder: &Path, arguments: &[&str]) -> Option<String> {
     let mut command = Command::new("git");
     for variable in OF_GIT {

@@ -17,24 +17,24 @@ pub const NO_ROOM: &str = "no room for a hole: solid";
 /// The kinds of figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum FigureKind {
-    /// Axes along x and y before rotation; a circle if its radii are equal.
+    /// An ellipse with its axes along x and y before rotation; a circle if its radii are equal.
     Ellipse,
-    /// Sides along x and y before rotation.
+    /// A rectangle with its sides along x and y before rotation.
     Rectangle,
-    /// Equilateral.
+    /// An equilateral triangle.
     Triangle,
-    /// Regular.
+    /// A regular pentagon.
     Pentagon,
-    /// Regular.
+    /// A regular hexagon.
     Hexagon,
-    /// Regular.
+    /// A regular heptagon.
     Heptagon,
-    /// Regular.
+    /// A regular octagon.
     Octagon,
 }
 
 impl FigureKind {
-    /// All seven, in the paper's order.
+    /// All seven kinds, in the paper's order.
     pub const ALL: [Self; 7] = [
         Self::Ellipse,
         Self::Rectangle,
@@ -45,7 +45,7 @@ impl FigureKind {
         Self::Octagon,
     ];
 
-    /// Returns its name, in files, flags and on the screen.
+    /// Returns its name in files and flags and on the screen.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ellipse => "ellipse",
@@ -58,12 +58,12 @@ impl FigureKind {
         }
     }
 
-    /// Returns the kind of this name.
+    /// Returns the kind with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// What is said about a word that is not a figure here, but means one of the seven.
+    /// Returns a hint for a word that is not the name of a kind but means one, such as "circle".
     #[cfg(feature = "json")]
     pub(crate) fn of_other_name(word: &str) -> Option<&'static str> {
         match word.to_ascii_lowercase().as_str() {
@@ -90,7 +90,7 @@ impl FigureKind {
         &own[..own.len() - 4]
     }
 
-    /// Number of corners of a regular polygon; None for an ellipse or a rectangle.
+    /// Returns the number of corners of a regular polygon; None for an ellipse or a rectangle.
     fn corners(self) -> Option<u8> {
         match self {
             Self::Ellipse | Self::Rectangle => None,
@@ -124,7 +124,7 @@ named!(FigureKind, "figure", &FigureKind::ALL);
 #[derive(Clone, Copy, PartialEq)]
 pub struct Figure {
     kind: FigureKind,
-    /// The values of `kind.sizes()`; the second is unused where there is only one.
+    /// The values of `kind.sizes()`; the second is unused if there is only one.
     sizes: [f64; 2],
     x0: f64,
     y0: f64,
@@ -134,8 +134,8 @@ pub struct Figure {
 
 /// A figure whose values are not checked yet; [`Self::on`] checks them all.
 ///
-/// Without [`Self::at`] its bounding rectangle starts at the sensor's top left corner; without [`Self::angle`] it is
-/// upright; without [`Self::thickness`] it is solid.
+/// By default its bounding rectangle starts at the sensor's top left corner ([`Self::at`]), it is upright
+/// ([`Self::angle`]) and solid ([`Self::thickness`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use = "only `on` makes a figure of it"]
 pub struct FigureBuilder(Figure);
@@ -177,7 +177,8 @@ impl FigureBuilder {
     /// Returns the figure if its values are in range on a sensor.
     ///
     /// # Errors
-    /// The first value that is out of range; they are checked in the order of [`FigureKind::parameters`].
+    /// Returns the error of the first value that is out of range; values are checked in the order of
+    /// [`FigureKind::parameters`].
     pub fn on(self, sensor: &Sensor) -> Result<Figure, ParameterError> {
         let mut figure = self.0;
         for &parameter in figure.kind.parameters() {
@@ -189,7 +190,7 @@ impl FigureBuilder {
     }
 }
 
-/// The seven kinds; sizes in cell sides.
+/// Constructors for the seven kinds. Sizes are in cell sides.
 impl Figure {
     /// Starts an ellipse with these radii along x and y, before rotation.
     pub fn ellipse(radius_x: f64, radius_y: f64) -> FigureBuilder {
@@ -231,7 +232,7 @@ impl Figure {
     /// Creates a figure from the values that `value` returns for the parameters of its kind, in range on a sensor.
     ///
     /// # Errors
-    /// The first value that is out of range or missing; only the thickness may be missing.
+    /// Returns the error of the first value that is out of range or missing; only the thickness may be missing.
     pub fn new(
         kind: FigureKind,
         sensor: &Sensor,
@@ -253,8 +254,8 @@ impl Figure {
         Ok(figure)
     }
 
-    /// Returns the figure that a new form shows: solid, every other parameter at its default. On a small sensor it lies
-    /// further up and to the left, by whole cells, so that as much of it as possible is on the sensor.
+    /// Returns the figure that a new form shows: solid, with every other parameter at its default. On a small sensor
+    /// it is moved up and to the left by whole cells, so that as much of it as possible is on the sensor.
     pub fn default_of(kind: FigureKind, sensor: &Sensor) -> Self {
         let mut sizes = [1.0; 2];
         for (size, &parameter) in sizes.iter_mut().zip(kind.sizes()) {
@@ -291,7 +292,7 @@ impl Figure {
     /// ```
     ///
     /// # Errors
-    /// If the value is out of range on the sensor, or the figure does not have the parameter.
+    /// Returns an error if the value is out of range on the sensor, or the figure does not have the parameter.
     pub fn with(
         mut self,
         parameter: Parameter,
@@ -302,7 +303,7 @@ impl Figure {
         Ok(self)
     }
 
-    /// Changes one value, or nothing if it is refused.
+    /// Changes one value; changes nothing if the value is refused.
     pub(crate) fn set(
         &mut self,
         parameter: Parameter,
@@ -338,7 +339,8 @@ impl Figure {
         self.kind
     }
 
-    /// Returns one of its values; None for a parameter that it does not have, and for the thickness of a solid figure.
+    /// Returns one of its values; None if the figure does not have this parameter, and for the thickness of a solid
+    /// figure.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
             Parameter::X0 => Some(self.x0),
@@ -352,7 +354,7 @@ impl Figure {
         }
     }
 
-    /// Whether it has a hole: a thickness that leaves room for one.
+    /// Returns true if the figure has a hole: its thickness leaves room for one.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -368,7 +370,8 @@ impl Figure {
         pen.0
     }
 
-    /// Draws an ellipse or a rectangle from half of its extent; the hole's extent is smaller by the wall.
+    /// Draws an ellipse or a rectangle of this half width and half height; its hole is smaller by the wall on each
+    /// side.
     fn draw_round_or_square<T: Real>(&self, half: Point<T>, pen: &mut impl Pen<T>) {
         let centre = Point::new(T::decimal(self.x0), T::decimal(self.y0)).moved(half);
         let turn = Turn::clockwise(T::decimal(self.angle));
@@ -408,12 +411,13 @@ impl Figure {
         }
     }
 
-    /// Draws a regular polygon; a hole is the same polygon about the same centre, its inradius smaller by the wall.
+    /// Draws a regular polygon. Its hole is a polygon of the same kind about the same centre, its inradius smaller by
+    /// the wall.
     fn draw_regular<T: Real>(&self, corners: u8, pen: &mut impl Pen<T>) {
         let (sin, cos) = (T::whole(180) / T::whole(corners.into())).sin_cos_degrees();
         let half_side = T::decimal(self.sizes[0]) * T::HALF;
         let inradius = half_side * cos / sin;
-        // The corners about the centre, clockwise from the left end of the bottom side.
+        // The corners relative to the centre, clockwise from the left end of the bottom side.
         let mut ring = [Point::new(T::ZERO, T::ZERO); 8];
         let ring = &mut ring[..usize::from(corners)];
         let (step_sin, step_cos) = (T::whole(2) * sin * cos, T::ONE - T::whole(2) * sin * sin);
@@ -478,7 +482,7 @@ impl Pen<f64> for HolePen {
 }
 
 impl Figure {
-    /// Its kind with its sizes, as its summary begins: `hexagon side 4.00`.
+    /// Returns the kind with its sizes, which is the beginning of the summary: `hexagon side 4.00`.
     pub fn kind_and_sizes(&self) -> String {
         let sizes = self.kind.sizes().iter().zip(self.sizes);
         let sizes = sizes.map(|(parameter, size)| {
@@ -489,7 +493,7 @@ impl Figure {
 }
 
 impl fmt::Debug for Figure {
-    /// With only the sizes that it has.
+    /// Lists only the sizes that this kind of figure has.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             kind,
@@ -511,7 +515,7 @@ impl fmt::Debug for Figure {
 }
 
 impl fmt::Display for Figure {
-    /// A summary in one line.
+    /// Writes a summary in one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.kind_and_sizes())?;
         let (x0, y0) = (Parameter::X0.format(self.x0), Parameter::Y0.format(self.y0));
@@ -559,7 +563,7 @@ mod tests {
                         low >= 0.0 && low + 0.5 < side,
                         "{figure} on {columns} × {rows}"
                     );
-                    // Wholly, wherever there is room for it.
+                    // It lies wholly on the sensor if there is room for it.
                     let fits = high - low <= side;
                     assert!(!fits || high <= side, "{figure} on {columns} × {rows}");
                 }

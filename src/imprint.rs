@@ -9,7 +9,7 @@ use std::ops::Range;
 use crate::parameter::number::counted;
 use crate::sensor::MAX_SIDE;
 
-/// A binary matrix from 1 × 1 to 64 × 64.
+/// A binary matrix of 1 × 1 to 64 × 64 taxels.
 ///
 /// ```
 /// use taxel::imprint::Imprint;
@@ -25,7 +25,7 @@ pub struct Imprint {
 }
 
 impl Imprint {
-    /// An imprint without active taxels. Sides are clamped to 1 to 64.
+    /// Creates an imprint without active taxels. Sides are clamped to 1 to 64.
     pub fn empty(columns: u8, rows: u8) -> Self {
         Self {
             columns: columns.clamp(1, MAX_SIDE),
@@ -34,27 +34,27 @@ impl Imprint {
         }
     }
 
-    /// Number of columns.
+    /// Returns the number of columns.
     pub fn columns(&self) -> u8 {
         self.columns
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn rows(&self) -> u8 {
         self.rows
     }
 
-    /// The rows from the top, bit `i` for column `i`.
+    /// Returns the rows from the top; bit `i` is column `i`.
     pub fn words(&self) -> &[u64] {
         &self.words[..usize::from(self.rows)]
     }
 
-    /// The rows, mutable. The caller must leave the bits beyond the last column at 0.
+    /// Returns the rows, to change them. The caller must leave the bits beyond the last column at 0.
     pub(crate) fn words_mut(&mut self) -> &mut [u64] {
         &mut self.words[..usize::from(self.rows)]
     }
 
-    /// Sets a whole row; bits beyond the last column are dropped, rows beyond the last one ignored.
+    /// Sets a whole row. Bits beyond the last column and rows beyond the last one are ignored.
     pub fn set_word(&mut self, row: usize, word: u64) {
         let mask = self.mask();
         if let Some(slot) = self.words[..usize::from(self.rows)].get_mut(row) {
@@ -62,7 +62,7 @@ impl Imprint {
         }
     }
 
-    /// Sets rows `2 * pair` and `2 * pair + 1` in the same way.
+    /// Sets rows `2 * pair` and `2 * pair + 1`, like [`Self::set_word`].
     pub(crate) fn set_pair(&mut self, pair: usize, words: [u64; 2]) {
         let mask = self.mask();
         let rows = &mut self.words[..usize::from(self.rows)];
@@ -71,17 +71,17 @@ impl Imprint {
         }
     }
 
-    /// A row full of active taxels.
+    /// Returns the word of a row in which every taxel is active.
     pub fn mask(&self) -> u64 {
         u64::MAX >> (MAX_SIDE - self.columns)
     }
 
-    /// Whether a taxel is active; false beyond the matrix.
+    /// Returns true if a taxel is active; false outside the matrix.
     pub fn get(&self, column: u8, row: u8) -> bool {
         column < self.columns && row < self.rows && self.words[usize::from(row)] >> column & 1 == 1
     }
 
-    /// Makes a taxel active or inactive; does nothing beyond the matrix.
+    /// Makes a taxel active or inactive; does nothing outside the matrix.
     pub fn set(&mut self, column: u8, row: u8, active: bool) {
         if column < self.columns && row < self.rows {
             let word = &mut self.words[usize::from(row)];
@@ -89,22 +89,22 @@ impl Imprint {
         }
     }
 
-    /// Toggles a taxel; does nothing beyond the matrix.
+    /// Toggles a taxel; does nothing outside the matrix.
     pub fn toggle(&mut self, column: u8, row: u8) {
         self.set(column, row, !self.get(column, row));
     }
 
-    /// Number of active taxels.
+    /// Returns the number of active taxels.
     pub fn count(&self) -> u32 {
         self.words().iter().map(|word| word.count_ones()).sum()
     }
 
-    /// Whether no taxel is active.
+    /// Returns true if no taxel is active.
     pub fn is_empty(&self) -> bool {
         self.words().iter().all(|&word| word == 0)
     }
 
-    /// The smallest rectangle of whole taxels around the active ones; None for an empty imprint.
+    /// Returns the smallest rectangle of whole taxels around the active ones; None for an empty imprint.
     pub fn bounds(&self) -> Option<Bounds> {
         let active = |&word: &u64| word != 0;
         let top = self.words().iter().position(active)?;
@@ -115,7 +115,7 @@ impl Imprint {
         Bounds::around(across, top, last + 1 - top)
     }
 
-    /// Whether a taxel in the first or last row or column is active, so that the shape may be cut off.
+    /// Returns true if a taxel in the first or last row or column is active: the shape may be cut off there.
     pub fn touches_rim(&self) -> bool {
         self.bounds().is_some_and(|bounds| {
             bounds.left == 0
@@ -125,7 +125,7 @@ impl Imprint {
         })
     }
 
-    /// The active taxels, (column, row), in reading order.
+    /// Returns the active taxels, (column, row), in reading order.
     pub fn active(&self) -> impl DoubleEndedIterator<Item = (u8, u8)> {
         (0..self.rows).flat_map(move |row| {
             let word = self.words[usize::from(row)];
@@ -135,7 +135,7 @@ impl Imprint {
         })
     }
 
-    /// The taxels in which two imprints differ, on the matrix of this one.
+    /// Returns the taxels in which two imprints differ, on the matrix of this one.
     #[must_use]
     pub fn differing(&self, other: &Self) -> Self {
         let mut differing = *self;
@@ -145,7 +145,7 @@ impl Imprint {
         differing
     }
 
-    /// The taxels that are active in this imprint, in the other, or in both, on the matrix of this one.
+    /// Returns the taxels that are active in either imprint or both, on the matrix of this one.
     ///
     /// ```
     /// use taxel::imprint::Imprint;
@@ -163,13 +163,13 @@ impl Imprint {
         all
     }
 
-    /// The taxels that are active in both imprints, on the matrix of this one.
+    /// Returns the taxels that are active in both imprints, on the matrix of this one.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         self.without(&self.without(other))
     }
 
-    /// The taxels that are active in this imprint but not in the other, on the matrix of this one.
+    /// Returns the taxels that are active in this imprint but not in the other, on the matrix of this one.
     #[must_use]
     pub fn without(&self, other: &Self) -> Self {
         let mut rest = *self;
@@ -179,7 +179,7 @@ impl Imprint {
         rest
     }
 
-    /// The same active taxels on a matrix of another size; taxels beyond it are dropped.
+    /// Returns the same active taxels on a matrix of another size; taxels outside it are dropped.
     #[must_use]
     pub fn resized(&self, columns: u8, rows: u8) -> Self {
         let mut resized = Self::empty(columns, rows);
@@ -191,22 +191,24 @@ impl Imprint {
 }
 
 /// A rectangle of whole taxels, by the plane coordinates of its edges: columns `left..right`, rows `top..bottom`.
-// Four bytes at an odd address, as in an enum, would be copied in parts, and a processor waits for the last one.
+// The alignment is for speed: four bytes at an odd address, as in an enum, would be copied in parts, and the
+// processor would wait for the last part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(align(4))]
 pub struct Bounds {
-    /// First column.
+    /// The first column.
     pub left: u8,
-    /// First row.
+    /// The first row.
     pub top: u8,
-    /// One past the last column.
+    /// The column after the last one.
     pub right: u8,
-    /// One past the last row.
+    /// The row after the last one.
     pub bottom: u8,
 }
 
 impl Bounds {
-    /// Around the columns whose bits are set, and a number of rows from `top` on; None where no bit is set.
+    /// Returns the rectangle of the columns whose bits are set, and of `rows` rows from `top` on; None if no bit is
+    /// set.
     pub(crate) fn around(across: u64, top: usize, rows: usize) -> Option<Self> {
         let side = |count: u32| u8::try_from(count).unwrap_or(MAX_SIDE);
         let row = |row: usize| u8::try_from(row).unwrap_or(MAX_SIDE);
@@ -218,7 +220,7 @@ impl Bounds {
         })
     }
 
-    /// A single taxel; no taxel beyond column or row 254.
+    /// Returns the rectangle of a single taxel. In column or row 255 it is empty.
     pub fn of_taxel(column: u8, row: u8) -> Self {
         Self {
             left: column,
@@ -228,17 +230,17 @@ impl Bounds {
         }
     }
 
-    /// Its columns.
+    /// Returns its columns.
     pub fn columns(&self) -> Range<u8> {
         self.left..self.right
     }
 
-    /// Its rows.
+    /// Returns its rows.
     pub fn rows(&self) -> Range<u8> {
         self.top..self.bottom
     }
 
-    /// Returns the number of its taxels; 0 where its sides are the wrong way round.
+    /// Returns the number of its taxels; 0 if its sides are the wrong way round.
     pub fn area(&self) -> u32 {
         let columns = self.right.saturating_sub(self.left);
         let rows = self.bottom.saturating_sub(self.top);
@@ -247,7 +249,7 @@ impl Bounds {
 }
 
 impl fmt::Display for Imprint {
-    /// One line per row, `#` active, `.` inactive, no line end after the last row.
+    /// Writes one line for each row, `#` for active and `.` for inactive taxels, with no line end after the last row.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (row, line) in self.lines().enumerate() {
             if row > 0 {
@@ -266,7 +268,7 @@ impl fmt::Debug for Imprint {
 }
 
 impl Imprint {
-    /// The rows as text, `#` active, `.` inactive.
+    /// Returns the rows as text, `#` for active and `.` for inactive taxels.
     pub fn lines(&self) -> impl DoubleEndedIterator<Item = String> + ExactSizeIterator {
         (0..self.rows).map(|row| {
             (0..self.columns)
@@ -275,10 +277,11 @@ impl Imprint {
         })
     }
 
-    /// The imprint in rows of `#` and `.`, at most 64 × 64, all of one length.
+    /// Reads an imprint from rows of `#` and `.`, at most 64 × 64, all of the same length.
     ///
     /// # Errors
-    /// If a row differs in length from the first, there is another character, or a side is not 1 to 64.
+    /// Returns an error if a row differs in length from the first, has another character, or if a side is not 1 to
+    /// 64.
     pub fn from_rows<'a>(rows: impl IntoIterator<Item = &'a str>) -> Result<Self, ImprintError> {
         let mut read = ImprintRows::default();
         for row in rows {
@@ -288,20 +291,20 @@ impl Imprint {
     }
 }
 
-/// An imprint of which rows are still being read, one after the other.
+/// An imprint that is being read row by row.
 #[derive(Debug, Default)]
 pub(crate) struct ImprintRows {
-    /// The rows so far in a matrix of [`MAX_SIDE`] rows; None before the first.
+    /// The rows read so far, in a matrix of [`MAX_SIDE`] rows; None before the first.
     imprint: Option<Imprint>,
-    /// How many these are.
+    /// The number of rows read so far.
     count: u8,
 }
 
 impl ImprintRows {
-    /// Takes the next row.
+    /// Adds the next row.
     ///
     /// # Errors
-    /// As for [`Imprint::from_rows`].
+    /// Returns the errors of [`Imprint::from_rows`].
     pub(crate) fn push(&mut self, text: &str) -> Result<(), ImprintError> {
         if self.count == MAX_SIDE {
             return Err(ImprintError::Rows);
@@ -336,10 +339,10 @@ impl ImprintRows {
         Ok(())
     }
 
-    /// The imprint of all rows.
+    /// Returns the imprint of all rows.
     ///
     /// # Errors
-    /// If there is none.
+    /// Returns an error if there are no rows.
     pub(crate) fn imprint(self) -> Result<Imprint, ImprintError> {
         let Self { imprint, count } = self;
         let imprint = imprint.ok_or(ImprintError::Rows)?;
@@ -358,35 +361,35 @@ impl std::str::FromStr for Imprint {
     }
 }
 
-/// The error for rows of text that are not an imprint. Rows and columns count from 1.
+/// The error for rows of text that are not an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ImprintError {
-    /// No rows, or too many.
+    /// There are no rows, or too many.
     Rows,
-    /// A row that is empty or too long.
+    /// A row is empty or too long.
     Columns {
-        /// Which row.
+        /// The row, from 1.
         row: usize,
         /// Its length.
         found: usize,
     },
-    /// A row that is not as long as the first.
+    /// A row is not as long as the first.
     Ragged {
-        /// Which row.
+        /// The row, from 1.
         row: usize,
         /// Its length.
         found: usize,
         /// The length of the first row.
         expected: u8,
     },
-    /// A character other than `#` or `.`.
+    /// A row has a character other than `#` or `.`.
     Character {
-        /// Which row.
+        /// The row, from 1.
         row: usize,
-        /// Which column.
+        /// The column, from 1.
         column: usize,
-        /// The character found there.
+        /// The character found.
         found: char,
     },
 }
@@ -425,7 +428,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_bounds_are_too_odd_to_be_measured() {
+    fn bounds_with_reversed_sides_have_no_area() {
         let bounds = Bounds {
             left: 5,
             top: 0,

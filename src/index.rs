@@ -1,26 +1,27 @@
-//! Whole numbers as indices: the conversions that can lose something, each written and justified here once.
+//! Conversions between integers and indices. Those that can lose something are all here, each with its reason.
 //!
-//! A number that does not fit must never become another number that looks right. Where a type cannot rule it out, it
-//! becomes the largest index or `u32`, which lies beyond every slice, so that looking it up finds nothing.
+//! A number that does not fit must never become another number that looks right. Where the types do not rule this
+//! out, it becomes the largest `usize` or `u32`. That is beyond the end of every slice, so looking it up finds
+//! nothing.
 
 const _: () = assert!(
     usize::BITS >= u32::BITS,
     "a u32 is an index on every supported target"
 );
 
-/// A `u32` as an index; nothing is lost.
+/// Converts a `u32` to an index, without loss.
 #[cfg(any(feature = "sweep", feature = "png", feature = "mcap"))]
 pub(crate) const fn wide(number: u32) -> usize {
     number as usize
 }
 
-/// A `u64` as an index; one beyond the address space lies beyond every slice.
+/// Converts a `u64` to an index. A number beyond the address space becomes an index beyond every slice.
 #[cfg(any(feature = "sweep", all(feature = "acquire", unix)))]
 pub(crate) fn index(number: u64) -> usize {
     usize::try_from(number).unwrap_or(usize::MAX)
 }
 
-/// A signed coordinate as an index; what lies before the first column or row belongs to it.
+/// Converts a signed coordinate to an index. Coordinates before the first column or row become 0.
 pub(crate) const fn from_first(coordinate: i32) -> usize {
     (if coordinate > 0 {
         coordinate.unsigned_abs()
@@ -29,13 +30,14 @@ pub(crate) const fn from_first(coordinate: i32) -> usize {
     }) as usize
 }
 
-/// A number of something in four bytes. Tables with such numbers hold fewer than 2³² entries; `u32::MAX` means none.
+/// Converts a count or an index to four bytes. Tables of such numbers have fewer than 2³² entries; `u32::MAX` means
+/// none.
 #[cfg(feature = "sweep")]
 pub(crate) fn narrow(number: impl TryInto<u32>) -> u32 {
     number.try_into().unwrap_or(u32::MAX)
 }
 
-/// The lower word of a wide number.
+/// Returns the lower 64 bits.
 #[cfg(feature = "sweep")]
 #[expect(
     clippy::cast_possible_truncation,
@@ -56,7 +58,7 @@ mod tests {
 
     #[cfg(feature = "sweep")]
     #[test]
-    fn what_does_not_fit_is_beyond_every_slice() {
+    fn a_number_that_does_not_fit_is_beyond_every_slice() {
         assert_eq!((narrow(7_usize), narrow(1_u64 << 32)), (7, u32::MAX));
         assert_eq!((index(7), wide(7)), (7, 7));
         assert_eq!(lower_word((3 << 64) + 5), 5);

@@ -1,4 +1,4 @@
-//! Arguments in, exit status out.
+//! Runs `taxel::cli` with the arguments of the process, and ends with its exit status.
 
 use std::process::ExitCode;
 

@@ -1,7 +1,7 @@
-//! A bound on the memory of long work: sweeps and trainings, which keep every distinct imprint.
+//! Limits the memory of long work. Sweeps and trainings keep every distinct imprint.
 //!
-//! The program checks its own memory while it works. Tables grow by doubling, so the work is stopped when half of what
-//! is allowed is in use: the next step still fits, and nothing has to be given up in the middle of it.
+//! The program checks its own memory while it works. Tables grow by doubling, so the work stops when half of the
+//! allowed memory is in use: the next step still fits, and none has to be abandoned halfway.
 
 use std::fmt;
 #[cfg(target_os = "linux")]
@@ -15,18 +15,19 @@ use crate::formats::value::counted;
 use crate::pose::PoseGrid;
 use crate::sweep::{Sweep, TimingSample};
 
-/// The least time between two checks.
+/// The shortest time between two checks.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Bytes that an imprint takes in an atlas beside its own: its count, hash, description and the values of its statistics.
+/// Bytes that an imprint takes in an atlas in addition to its own: its count, hash, description and statistics
+/// values.
 const BYTES_BESIDE: u64 = 500;
 
-/// An amount of memory in bytes, written as `2G`, `500M` or `1.5G`: K, M, G and T are 1024, its square, cube and fourth
-/// power.
+/// An amount of memory in bytes, written as `2G`, `500M` or `1.5G`. K is 1024 bytes, M is 1024 K, G is 1024 M, T is
+/// 1024 G.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct MemorySize(pub(crate) u64);
 
-/// The letters of [`MemorySize`] and what they stand for.
+/// The letters of [`MemorySize`] and their numbers of bytes.
 const UNITS: [(char, u64); 4] = [
     ('T', 1 << 40),
     ('G', 1 << 30),
@@ -40,7 +41,7 @@ impl FromStr for MemorySize {
     /// Reads an amount.
     ///
     /// # Errors
-    /// What was expected.
+    /// Returns what was expected.
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         const EXPECTED: &str = "expected an amount of memory such as 2G or 500M";
         let unit = UNITS.iter().find_map(|(letter, bytes)| {
@@ -65,7 +66,7 @@ impl FromStr for MemorySize {
 }
 
 impl fmt::Display for MemorySize {
-    /// Rounded to a tenth: `1.5G`; `12 bytes` where that is less than 1K.
+    /// Writes the amount rounded to a tenth, such as `1.5G`; less than 1K in bytes, such as `12 bytes`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let unit = UNITS.iter().find(|(_, bytes)| self.0 >= *bytes);
         match unit {
@@ -79,21 +80,21 @@ impl fmt::Display for MemorySize {
     }
 }
 
-/// Watches over the memory of a piece of work.
+/// Keeps a piece of work within its memory.
 #[derive(Debug)]
 pub(crate) struct MemoryGuard {
-    /// What the user can do if the memory is too little; the end of each message.
+    /// What the user can do about too little memory; the end of each message.
     advice: &'static str,
-    /// What is allowed; None where the system does not say what is free.
+    /// The allowed memory; None if the system does not tell how much is free.
     allowed: Option<MemorySize>,
-    /// When memory is checked next.
+    /// The time of the next check.
     due: Mutex<Instant>,
-    /// Whether too much has been in use at some time.
+    /// Whether too much memory was in use at a check.
     exceeded: AtomicBool,
 }
 
 impl MemoryGuard {
-    /// A guard with this bound; without one, with all memory that is free and that limits allow.
+    /// Creates a guard with this limit, or if None, with all memory that is free and within the system's limits.
     pub(crate) fn new(allowed: Option<MemorySize>, advice: &'static str) -> Self {
         Self {
             advice,
@@ -103,12 +104,12 @@ impl MemoryGuard {
         }
     }
 
-    /// A guard of a search for poses: all poses of an imprint are kept until they are counted.
+    /// Creates a guard for a search for poses, which keeps all poses of an imprint until they are counted.
     pub(crate) fn of_pose_search() -> Self {
         Self::new(None, "train the model in coarser steps to see poses")
     }
 
-    /// Whether the work may go on. Cheap enough to be asked often.
+    /// Returns true if the work may go on. It is cheap enough to be called often.
     pub(crate) fn allows(&self) -> bool {
         let Some(allowed) = self.allowed else {
             return true;
@@ -116,7 +117,7 @@ impl MemoryGuard {
         if self.exceeded() {
             return false;
         }
-        // Where another thread is looking, this one need not.
+        // If another thread is checking, this one need not.
         if let Ok(mut due) = self.due.try_lock()
             && Instant::now() >= *due
         {
@@ -129,7 +130,7 @@ impl MemoryGuard {
         true
     }
 
-    /// Like [`Self::allows`], but for work in few and large steps: memory is checked each time.
+    /// Like [`Self::allows`], but checks memory at each call: for work in few large steps.
     #[cfg(feature = "cli")]
     pub(crate) fn allows_now(&self) -> bool {
         if let Ok(mut due) = self.due.lock() {
@@ -138,19 +139,19 @@ impl MemoryGuard {
         self.allows()
     }
 
-    /// Whether it has stopped the work.
+    /// Returns true if the work was stopped.
     pub(crate) fn exceeded(&self) -> bool {
         self.exceeded.load(Ordering::Relaxed)
     }
 
-    /// The message after it has stopped the work.
+    /// Returns the message about work that was stopped.
     pub(crate) fn message(&self) -> String {
         let allowed = self.allowed.unwrap_or(MemorySize(0));
         let advice = self.advice;
         format!("stopped: it needs more memory than the {allowed} that it may use; {advice}")
     }
 
-    /// The message where shards cannot be merged within the bound.
+    /// Returns the message about shards that cannot be merged within the limit.
     #[cfg(feature = "cli")]
     pub(crate) fn message_of_merge(&self) -> String {
         let allowed = self.allowed.unwrap_or(MemorySize(0));
@@ -161,10 +162,10 @@ impl MemoryGuard {
         )
     }
 
-    /// Refuses work that is known to need this much.
+    /// Refuses work that needs a known amount of memory, if that is too much.
     ///
     /// # Errors
-    /// A message with both numbers.
+    /// Returns a message with both amounts.
     #[cfg(feature = "cli")]
     pub(crate) fn check_bytes(&self, needed: MemorySize) -> Result<(), String> {
         match self.allowed {
@@ -173,10 +174,10 @@ impl MemoryGuard {
         }
     }
 
-    /// Refuses the sweep of a grid that needs far more than is allowed, before it starts.
+    /// Refuses a sweep, before it starts, if its grid needs far more memory than is allowed.
     ///
     /// # Errors
-    /// A message with the estimate.
+    /// Returns a message with the estimate.
     pub(crate) fn check(&self, grid: &PoseGrid) -> Result<(), String> {
         let Some(allowed) = self.allowed else {
             return Ok(());
@@ -195,7 +196,7 @@ impl MemoryGuard {
     }
 }
 
-/// How much memory the sweep of a grid needs, from the imprints of a small part of it.
+/// Estimates the memory that the sweep of a grid needs, from the imprints of a small part of the grid.
 fn expected(grid: &PoseGrid) -> MemorySize {
     let sample = TimingSample::of(grid);
     let found = Sweep::new(&sample.grid).run().atlas.len();
@@ -211,7 +212,7 @@ fn expected(grid: &PoseGrid) -> MemorySize {
     MemorySize(bytes)
 }
 
-/// A line of one of the system's tables, such as `VmRSS:      5120 kB`.
+/// Reads a line of one of the system's tables, such as `VmRSS:      5120 kB`.
 #[cfg(target_os = "linux")]
 fn listed(table: &str, name: &str) -> Option<MemorySize> {
     let table = std::fs::read_to_string(table).ok()?;
@@ -220,20 +221,20 @@ fn listed(table: &str, name: &str) -> Option<MemorySize> {
     Some(MemorySize(kilobytes * 1024))
 }
 
-/// The memory that the program has in use.
+/// Returns the memory that the program is using.
 #[cfg(target_os = "linux")]
 fn used() -> Option<MemorySize> {
     listed("/proc/self/status", "VmRSS:")
 }
 
-/// The most memory that the program has had in use; None where the system does not say.
+/// Returns the most memory that the program has used at one time; None if the system does not tell.
 #[cfg(all(feature = "cli", target_os = "linux"))]
 pub(crate) fn peak() -> Option<MemorySize> {
     listed("/proc/self/status", "VmHWM:")
 }
 
-/// What the program may use: what the machine has free, with what it uses already, or less where a limit is set for the
-/// process, its control group or a group around that.
+/// Returns how much memory the program may use: the machine's free memory and what the program uses already, or less
+/// if a limit is set for the process, its control group or a group around it.
 #[cfg(target_os = "linux")]
 fn free() -> Option<MemorySize> {
     use rustix::process::{Resource, getrlimit};
@@ -245,7 +246,7 @@ fn free() -> Option<MemorySize> {
     let groups = std::fs::read_to_string("/proc/self/cgroup").ok();
     let files = groups.iter().flat_map(|table| group_limits(table));
     let of_groups = files.filter_map(|file| {
-        // A group without a limit has the word `max`, and the outermost group may have no file.
+        // A group without a limit has the word `max`; the outermost group may have no file.
         let limit = std::fs::read_to_string(file).ok()?;
         limit.trim().parse().ok()
     });
@@ -253,10 +254,10 @@ fn free() -> Option<MemorySize> {
     all.min().map(MemorySize)
 }
 
-/// The files with the limits of control groups, given the table `/proc/self/cgroup`: of the process's own group and of each
-/// one around it.
+/// Returns the files with the memory limits of control groups, from the text of `/proc/self/cgroup`: those of the
+/// process's own group and of every group around it.
 ///
-/// `0::/user.slice/job` is a group of version 2, `9:memory:/job` one of version 1. See cgroups(7).
+/// `0::/user.slice/job` is a group of version 2, `9:memory:/job` is one of version 1. See cgroups(7).
 #[cfg(target_os = "linux")]
 fn group_limits(table: &str) -> Vec<PathBuf> {
     let mut files = Vec::new();
@@ -276,19 +277,19 @@ fn group_limits(table: &str) -> Vec<PathBuf> {
     files
 }
 
-/// Elsewhere the system is not asked.
+/// Returns None: systems other than Linux are not asked.
 #[cfg(all(feature = "cli", not(target_os = "linux")))]
 pub(crate) fn peak() -> Option<MemorySize> {
     None
 }
 
-/// Elsewhere the system is not asked.
+/// Returns None: systems other than Linux are not asked.
 #[cfg(not(target_os = "linux"))]
 fn used() -> Option<MemorySize> {
     None
 }
 
-/// Elsewhere the system is not asked.
+/// Returns None: systems other than Linux are not asked.
 #[cfg(not(target_os = "linux"))]
 fn free() -> Option<MemorySize> {
     None

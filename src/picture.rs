@@ -1,4 +1,4 @@
-//! A picture: a stored imprint that is itself a shape, and is moved, zoomed and turned.
+//! A picture: a stored imprint used as a shape, which can be moved, zoomed and turned.
 //!
 //! Its active taxels are unit squares, and their union is the shape. First, the top left corner of its bounding
 //! rectangle goes to (`x0`, `y0`). Then everything, including that position, is scaled about the origin of the plane.
@@ -22,9 +22,9 @@ pub const PICTURE_PARAMETERS: [Parameter; 5] = [
     Parameter::ZoomY,
 ];
 
-/// A stored imprint and where it goes. Its values are always finite, its zooms above 0.
+/// A stored imprint with its position, angle and zoom. Its values are always finite, its zooms above 0.
 ///
-/// It may carry the name that its imprint is stored under, which is displayed, but neither compared nor written to
+/// It may have the name that its imprint is stored under. The name is displayed, but neither compared nor written to
 /// files.
 ///
 /// ```
@@ -53,7 +53,7 @@ impl PartialEq for Picture {
 
 /// A picture whose values are not checked yet; [`Self::on`] checks them all.
 ///
-/// At first its imprint stays where it is: at its own corner, with angle 0 and zoom 1.
+/// The imprint starts where it is stored: at its own corner, with angle 0 and zoom 1.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use = "only `on` makes a picture of it"]
 pub struct PictureBuilder(Picture);
@@ -80,7 +80,8 @@ impl PictureBuilder {
     /// Returns the picture if its values are in range on a sensor.
     ///
     /// # Errors
-    /// The first value that is out of range; they are checked in the order of [`PICTURE_PARAMETERS`].
+    /// Returns the error of the first value that is out of range; values are checked in the order of
+    /// [`PICTURE_PARAMETERS`].
     pub fn on(mut self, sensor: &Sensor) -> Result<Picture, ParameterError> {
         for (parameter, value) in PICTURE_PARAMETERS.into_iter().zip(&mut self.0.values) {
             *value = sensor.check(parameter, *value)?;
@@ -90,12 +91,12 @@ impl PictureBuilder {
 }
 
 impl Picture {
-    /// Starts a picture of this imprint.
+    /// Starts building a picture of this imprint.
     pub fn of(imprint: Imprint) -> PictureBuilder {
         PictureBuilder(Self::at_home(imprint))
     }
 
-    /// Returns the imprint where it is: its own corner, angle 0, zoom 1.
+    /// Returns a picture of the imprint where it is: at its own corner, with angle 0 and zoom 1.
     pub fn at_home(imprint: Imprint) -> Self {
         let (left, top) = imprint
             .bounds()
@@ -119,7 +120,7 @@ impl Picture {
     /// Creates a picture from the values that `value` returns for [`PICTURE_PARAMETERS`], in range on a sensor.
     ///
     /// # Errors
-    /// The first value that is missing or out of range.
+    /// Returns the error of the first value that is missing or out of range.
     pub fn new(
         imprint: Imprint,
         sensor: &Sensor,
@@ -139,7 +140,8 @@ impl Picture {
     /// Returns the same picture with one value changed; `value` in the parameter's unit.
     ///
     /// # Errors
-    /// If the value is out of range on the sensor, or the parameter is not one of [`PICTURE_PARAMETERS`].
+    /// Returns an error if the value is out of range on the sensor, or the parameter is not one of
+    /// [`PICTURE_PARAMETERS`].
     pub fn with(
         mut self,
         parameter: Parameter,
@@ -150,7 +152,7 @@ impl Picture {
         Ok(self)
     }
 
-    /// Changes one value, or nothing if it is refused.
+    /// Changes one value; changes nothing if the value is refused.
     pub(crate) fn set(
         &mut self,
         parameter: Parameter,
@@ -168,7 +170,7 @@ impl Picture {
         Ok(())
     }
 
-    /// Returns one of its values; None for a parameter that it does not have.
+    /// Returns one of its values; None if a picture does not have this parameter.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         PICTURE_PARAMETERS
             .iter()
@@ -176,13 +178,14 @@ impl Picture {
             .map(|index| self.values[index])
     }
 
-    /// Returns the name that its imprint is stored under; None if it was not given.
+    /// Returns the name that its imprint is stored under, if it was given.
     pub fn name(&self) -> Option<&str> {
         self.name.as_deref()
     }
 
-    /// Returns the corner (`x0`, `y0`, in cells) at which the picture keeps its centre under other zooms, both above 0.
-    /// The corner is not checked: it may be out of range. An empty imprint has no centre, and counts as a point.
+    /// Returns the corner (`x0`, `y0`, in cells) that keeps the centre of the picture in place under other zooms,
+    /// both above 0. The corner may be out of range: it is not checked. An empty imprint has no centre and counts as
+    /// a point.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -207,7 +210,7 @@ impl Picture {
         )
     }
 
-    /// Returns the imprint that is moved.
+    /// Returns the stored imprint.
     pub fn imprint(&self) -> &Imprint {
         &self.imprint
     }
@@ -231,8 +234,8 @@ impl Solid for Picture {
             let y = size(bounds.top, row) * zoom_y - half.y;
             centre.moved(turn.of(Point::new(x, y)))
         };
-        // A side between two rows or two columns is boundary where just one of the two taxels is active. Runs of
-        // such sides in a line are drawn as one edge.
+        // A side between two rows or two columns is part of the boundary if exactly one of its two taxels is active.
+        // A run of such sides in a line is drawn as one edge.
         let word = |row: i32| {
             usize::try_from(row)
                 .ok()
@@ -251,7 +254,7 @@ impl Solid for Picture {
         for column in bounds.left..=bounds.right {
             let bit = |row: u8, column: u8| u64::from(self.imprint.get(column, row)) << row;
             let line = |column: u8| bounds.rows().fold(0, |line, row| line | bit(row, column));
-            // Column −1 wraps to 255, where no taxel is.
+            // Column −1 wraps to 255, which has no taxels.
             let (before, after) = (line(column.wrapping_sub(1)), line(column));
             for (top, bottom) in runs(after & !before) {
                 pen.edge(corner(column, bottom), corner(column, top));
@@ -263,7 +266,7 @@ impl Solid for Picture {
     }
 }
 
-/// Iterates over the runs of ones in a word: the first bit of each and the one past its last.
+/// Iterates over the runs of ones in a word: the first bit of each run, and the bit after its last.
 fn runs(mut word: u64) -> impl Iterator<Item = (u8, u8)> {
     std::iter::from_fn(move || {
         if word == 0 {
@@ -277,7 +280,7 @@ fn runs(mut word: u64) -> impl Iterator<Item = (u8, u8)> {
 }
 
 impl std::fmt::Display for Picture {
-    /// A summary in one line.
+    /// Writes a summary in one line.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let text = |index: usize| PICTURE_PARAMETERS[index].format(self.values[index]);
         f.write_str("picture")?;

@@ -1,20 +1,19 @@
-//! Truncates untrusted text for messages, and finds the name that was meant. Text from files and arguments may be a
-//! megabyte long.
+//! Shortens untrusted text for messages, and suggests the name that was meant. Text from files and arguments may be
+//! megabytes long.
 
-/// Text to be quoted inside a message: at most 40 characters, then `…`.
+/// Shortens text that a message quotes, to at most 40 characters and `…`.
 pub(crate) fn shortened(text: &str) -> String {
     cut(text, 40)
 }
 
-/// A message that quotes untrusted text in full: at most 400 characters, then `…`.
+/// Shortens a message that quotes untrusted text in full, to at most 400 characters and `…`.
 #[cfg(feature = "json")]
 pub(crate) fn shortened_message(message: &str) -> String {
     cut(message, 400)
 }
 
-/// Whether a character shows nothing but changes the text around it, or stands for a blank that looks like nothing:
-/// Unicode's format characters, and letters without a shape of their own, such as the Hangul filler. Text from others
-/// must not hide behind them.
+/// Returns true for invisible characters: Unicode's format characters, which change the text around them, and letters
+/// without a shape of their own, such as the Hangul filler. Untrusted text must not hide anything with them.
 pub(crate) fn is_invisible(character: char) -> bool {
     matches!(
         character,
@@ -25,8 +24,8 @@ pub(crate) fn is_invisible(character: char) -> bool {
     )
 }
 
-/// The end of a message about a wrong name: which of `names` was probably meant; empty if none is similar enough. Of
-/// equally similar names it is one of the same length, else the first. Case is ignored.
+/// Returns the end of a message about a wrong name: the one of `names` that was probably meant, or nothing if none is
+/// similar enough. Among equally similar names it prefers the nearest length, then the first. Case is ignored.
 #[cfg(feature = "json")]
 pub(crate) fn did_you_mean<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let length = |text: &str| text.chars().count();
@@ -37,7 +36,7 @@ pub(crate) fn did_you_mean<'a>(wrong: &str, names: impl IntoIterator<Item = &'a 
     let slips = |name: &'a str| {
         let slips = strsim::osa_distance(&wrong, &name.to_lowercase());
         let (typed, meant) = (length(&wrong), length(name));
-        // One letter in three may be wrong.
+        // One letter in three may differ.
         (3 * slips <= typed.max(meant)).then_some(((slips, typed.abs_diff(meant)), name))
     };
     let nearest = names.into_iter().filter_map(slips);
@@ -47,7 +46,7 @@ pub(crate) fn did_you_mean<'a>(wrong: &str, names: impl IntoIterator<Item = &'a 
     }
 }
 
-/// A word as it is typed in a command line: in single quotes if a shell would read it otherwise.
+/// Writes a word as it is typed on a command line: in single quotes if a shell would otherwise interpret it.
 #[cfg(feature = "cli")]
 pub(crate) fn as_argument(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./,:=@%+".contains(c);
@@ -58,11 +57,11 @@ pub(crate) fn as_argument(word: &str) -> String {
     }
 }
 
-/// The longest name, in characters, that is compared with others.
+/// The length, in characters, above which a name is not compared with others.
 #[cfg(feature = "json")]
 const LONGEST_NAME: usize = 64;
 
-/// The first `longest` characters of a text, with `…` behind them if there are more.
+/// Returns the first `longest` characters of a text, followed by `…` if there are more.
 fn cut(text: &str, longest: usize) -> String {
     match text.char_indices().nth(longest) {
         Some((end, _)) => format!("{}…", &text[..end]),

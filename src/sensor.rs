@@ -1,5 +1,5 @@
-//! The tactile matrix sensor: its columns and rows of square cells, its threshold, its pitch, and the values that it
-//! allows.
+//! The tactile matrix sensor: its columns and rows of square cells, its threshold, its pitch, and the ranges of the
+//! values it allows.
 //!
 //! The ranges of a figure's lengths and positions scale with the larger side of the sensor, so the sensor checks,
 //! parses and steps values: `sensor.check(Parameter::X0, 1.99)`.
@@ -9,7 +9,7 @@ use std::fmt;
 use crate::parameter::{Parameter, ParameterError, Range, Unit, number};
 use crate::quote::shortened;
 
-/// The largest number of columns, and of rows.
+/// The largest number of columns or rows.
 pub const MAX_SIDE: u8 = 64;
 
 /// The parameters of a sensor, in the order of forms.
@@ -20,8 +20,8 @@ pub const SENSOR_PARAMETERS: [Parameter; 4] = [
     Parameter::Pitch,
 ];
 
-/// A sensor. Its values are always in range: columns and rows 1 to 64, threshold in (0, 1],
-/// pitch above 0, up to 1000 mm.
+/// A tactile sensor. Its values are always in range: columns and rows 1 to 64, threshold above 0 up to 1, pitch above
+/// 0 up to 1000 mm.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -41,7 +41,7 @@ pub struct Sensor {
 }
 
 impl Default for Sensor {
-    /// The paper's sensor: 16 × 16 taxels, threshold one half, cells of 1 mm.
+    /// Returns the paper's sensor: 16 × 16 taxels, threshold one half, cells of 1 mm.
     fn default() -> Self {
         Self {
             columns: 16,
@@ -68,7 +68,7 @@ impl fmt::Display for Sensor {
 }
 
 impl Sensor {
-    /// The largest sensor, 64 × 64: it allows every value that some sensor allows.
+    /// The largest sensor, 64 × 64. It allows every value that any sensor allows.
     pub const LARGEST: Self = Self {
         columns: MAX_SIDE,
         rows: MAX_SIDE,
@@ -76,18 +76,18 @@ impl Sensor {
         pitch_mm: 1.0,
     };
 
-    /// Creates a sensor of `columns × rows` taxels, with the threshold and pitch of the default one.
+    /// Creates a sensor of `columns × rows` taxels with the default threshold and pitch.
     ///
     /// # Errors
-    /// If a number is not from 1 to [`MAX_SIDE`].
+    /// Returns an error if a number is not 1 to [`MAX_SIDE`].
     pub fn new(columns: u8, rows: u8) -> Result<Self, ParameterError> {
         Self::default()
             .with(Parameter::Columns, columns.into())?
             .with(Parameter::Rows, rows.into())
     }
 
-    /// Creates a sensor of `columns × rows` taxels, like [`Self::new`]; numbers are clamped to 1 to [`MAX_SIDE`]. So
-    /// every imprint is the whole matrix of some sensor.
+    /// Creates a sensor of `columns × rows` taxels, like [`Self::new`], with both numbers clamped to 1 to
+    /// [`MAX_SIDE`]. So every imprint is the whole matrix of some sensor.
     pub fn clamped(columns: u8, rows: u8) -> Self {
         Self {
             columns: columns.clamp(1, MAX_SIDE),
@@ -99,7 +99,7 @@ impl Sensor {
     /// Returns the same sensor with one of [`SENSOR_PARAMETERS`] changed; `value` in the parameter's unit.
     ///
     /// # Errors
-    /// If the value is out of range, or the parameter is not one of a sensor.
+    /// Returns an error if the value is out of range, or the parameter is not one of [`SENSOR_PARAMETERS`].
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -123,7 +123,8 @@ impl Sensor {
         Ok(self)
     }
 
-    /// Returns the same sensor with another threshold: the share of a cell that makes its taxel active.
+    /// Returns the same sensor with another threshold: the share of a cell that must be covered to make its taxel
+    /// active.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -134,7 +135,7 @@ impl Sensor {
     /// ```
     ///
     /// # Errors
-    /// If it is not above 0, up to 1.
+    /// Returns an error if the threshold is not above 0 and up to 1.
     pub fn with_threshold(self, threshold: f64) -> Result<Self, ParameterError> {
         self.with(Parameter::Threshold, threshold)
     }
@@ -142,12 +143,12 @@ impl Sensor {
     /// Returns the same sensor with another pitch: the side of a cell, in mm.
     ///
     /// # Errors
-    /// If it is not above 0, up to 1000.
+    /// Returns an error if the pitch is not above 0 and up to 1000.
     pub fn with_pitch_mm(self, pitch: f64) -> Result<Self, ParameterError> {
         self.with(Parameter::Pitch, pitch)
     }
 
-    /// Returns one of its values; None for a parameter that a sensor does not have.
+    /// Returns one of its values; None if a sensor does not have this parameter.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
             Parameter::Columns => Some(f64::from(self.columns)),
@@ -158,41 +159,40 @@ impl Sensor {
         }
     }
 
-    /// Number of columns.
+    /// Returns the number of columns.
     pub fn columns(&self) -> u8 {
         self.columns
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn rows(&self) -> u8 {
         self.rows
     }
 
-    /// The larger of the two, which bounds the lengths and positions of figures.
+    /// Returns the larger of columns and rows, which bounds the lengths and positions of figures.
     pub fn side(&self) -> u8 {
         self.columns.max(self.rows)
     }
 
-    /// The share of a cell that makes its taxel active.
+    /// Returns the threshold: the share of a cell that must be covered to make its taxel active.
     pub fn threshold(&self) -> f64 {
         self.threshold
     }
 
-    /// The side of a cell, in mm.
+    /// Returns the side of a cell, in mm.
     pub fn pitch_mm(&self) -> f64 {
         self.pitch_mm
     }
 }
 
-/// The values that a sensor allows.
+/// The ranges of the values that a sensor allows.
 impl Sensor {
-    /// Returns what a parameter may be set to, in forms, files, flags and commands alike.
+    /// Returns the range of a parameter. It is the same in forms, files, flags and commands.
     pub fn range(&self, parameter: Parameter) -> Range {
         parameter.row().range(self.side())
     }
 
-    /// Returns the value in a new form: the parameter's default, or the larger side of a sensor that is too small for
-    /// it.
+    /// Returns the value in a new form: the parameter's default, or on a sensor too small for it, the larger side.
     pub fn default_value(&self, parameter: Parameter) -> f64 {
         let default = parameter.row().default;
         if self.range(parameter).contains(default) {
@@ -202,10 +202,10 @@ impl Sensor {
         }
     }
 
-    /// Returns `value` if the parameter may be set to it, a negative zero as 0.
+    /// Returns `value` if the parameter may have it; a negative zero becomes 0.
     ///
     /// # Errors
-    /// [`ParameterError::Range`], also for NaN and the infinities.
+    /// Returns [`ParameterError::Range`], also for NaN and the infinities.
     pub fn check(&self, parameter: Parameter, value: f64) -> Result<f64, ParameterError> {
         let range = self.range(parameter);
         let whole = parameter.row().unit != Unit::Taxels || value.fract() == 0.0;
@@ -220,27 +220,28 @@ impl Sensor {
         }
     }
 
-    /// Parses a value from the text of a flag, a command or a form's field.
+    /// Reads a value from the text of a flag, a command or a form's field.
     ///
     /// # Errors
-    /// [`ParameterError::Number`] or [`ParameterError::Range`].
+    /// Returns [`ParameterError::Number`] or [`ParameterError::Range`].
     pub fn read(&self, parameter: Parameter, text: &str) -> Result<f64, ParameterError> {
         let value = number::read(text).ok_or_else(|| not_a_number(parameter, text))?;
         self.check(parameter, value)
     }
 
-    /// Returns the next value in steps of the paper's last decimal, up or down by the sign of `direction`: hundredths below
-    /// ten, tenths from ten on, whole degrees. Angles wrap around, other parameters stop at the ends of their range.
+    /// Returns the next value up or down, by the sign of `direction`, in steps of the paper's last decimal:
+    /// hundredths below ten, tenths from ten on, whole degrees. Angles wrap around; other parameters stop at the ends
+    /// of their range.
     pub fn step(&self, parameter: Parameter, value: f64, direction: i32) -> f64 {
-        // From ten up the steps are tenths, from ten down hundredths; below zero likewise, the other way.
+        // At ten, the step up is a tenth and the step down a hundredth; at minus ten, the other way round.
         let towards = match direction {
             1.. if value < 0.0 => value + 0.01,
             ..=-1 if value > 0.0 => value - 0.01,
             _ => value,
         };
         let scale = 10_f64.powi(parameter.decimals_at(towards).into());
-        // A number with more decimals lies between two that a form accepts; one that it accepts may be off by a
-        // rounding when it is counted in its last decimals.
+        // A value with more decimals goes to the next one that a form accepts. A value that a form accepts may be off
+        // by a rounding error once it is multiplied by `scale`, hence the 1e-6.
         let places = value * scale;
         let stepped = match direction {
             1.. => (places + 1e-6).floor() + 1.0,

@@ -18,7 +18,7 @@ use crate::sensor::Sensor;
 pub enum Source {
     /// One of the seven figures.
     Figure(Figure),
-    /// A stored imprint, moved.
+    /// A stored imprint that is moved, zoomed or turned.
     Picture(Picture),
 }
 
@@ -39,7 +39,7 @@ impl Source {
         }
     }
 
-    /// Returns one of its values; None for a parameter that it does not have or that is absent.
+    /// Returns one of its values; None if the source does not have this parameter, or has no value for it.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match self {
             Self::Figure(figure) => figure.get(parameter),
@@ -50,7 +50,7 @@ impl Source {
     /// Returns the same shape with one value changed; `value` in the parameter's unit.
     ///
     /// # Errors
-    /// If the value is out of range on the sensor, or the shape does not have the parameter.
+    /// Returns an error if the value is out of range on the sensor, or the shape does not have the parameter.
     pub fn with(
         mut self,
         parameter: Parameter,
@@ -61,7 +61,7 @@ impl Source {
         Ok(self)
     }
 
-    /// Changes one value, or nothing if it is refused.
+    /// Changes one value; changes nothing if the value is refused.
     pub(crate) fn set(
         &mut self,
         parameter: Parameter,
@@ -87,7 +87,8 @@ impl Source {
         self.kind().map_or("picture", FigureKind::name)
     }
 
-    /// Returns the sense in which it turns as its angle grows, as seen: +1 clockwise, −1 counter-clockwise.
+    /// Returns the direction in which the source turns as its angle grows, as seen: +1 clockwise, −1
+    /// counter-clockwise.
     pub fn sense(&self) -> f64 {
         match self {
             Self::Figure(_) => 1.0,

@@ -1,7 +1,7 @@
 //! One touch: from a shape on a sensor to the coverage of every taxel and the imprint.
 //!
-//! **The rule** (the paper's "50 %"): a taxel is active when the shape covers at least the threshold share of its
-//! cell. What reaches beyond the sensor is cut off.
+//! **The rule** (the paper's "50 %"): a taxel is active if the shape covers at least the threshold share of its cell.
+//! Parts of the shape beyond the sensor are cut off.
 //!
 //! **Exactly the threshold is active**, in real arithmetic, for the decimals that the user wrote. Coverages are first
 //! computed in `f64`, with an error below 1e-11 ([`crate::geometry::cell_area`]). If one lies within 1e-10 of the
@@ -24,15 +24,17 @@ use crate::imprint::Imprint;
 use crate::index::from_first;
 use crate::sensor::Sensor;
 
-/// Coverages this near to the threshold are computed with more digits, for every shape of the program; a share of a
-/// cell.
+/// The distance from the threshold, as a share of a cell, below which a coverage is computed with more digits. It is
+/// wide enough for every shape of the program.
 pub(crate) const DOUBTFUL: f64 = 1e-10;
-/// Coordinates of ellipses are below this: products of four of them are computed, and must be finite.
+/// The limit of an ellipse's coordinates: products of four of them must be finite.
 const ELLIPSE_LIMIT: f64 = 1e70;
-/// User-defined outlines may reach farther than the shapes of the program, and rounding errors grow with coordinates.
+/// A factor for user-defined outlines, which may reach farther than the shapes of the program: rounding errors grow
+/// with the coordinates.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
-/// The sensory plane: a sensor that can be touched repeatedly. A touch allocates only if a coverage is in doubt.
+/// The sensory plane: a sensor that can be touched repeatedly. A touch allocates only if a coverage is near the
+/// threshold.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -53,7 +55,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The plane of a sensor, untouched.
+    /// Creates the untouched plane of a sensor.
     pub fn new(sensor: Sensor) -> Self {
         Self {
             sensor,
@@ -62,13 +64,13 @@ impl Plane {
         }
     }
 
-    /// The sensor.
+    /// Returns the sensor.
     pub fn sensor(&self) -> &Sensor {
         &self.sensor
     }
 
-    /// The imprint that a shape leaves. It never fails: a shape without a boundary leaves an empty imprint, and so does one
-    /// of your own with a coordinate that is not finite, or an ellipse with one of 1e70 or more.
+    /// Returns the imprint that a shape leaves. It never fails. The imprint is empty if the shape has no boundary, or
+    /// if a shape of your own has a coordinate that is not finite, or an ellipse with a coordinate of 1e70 or more.
     pub fn touch(&mut self, solid: &impl Solid) -> Imprint {
         self.areas.clear();
         self.ellipses.clear();
@@ -82,7 +84,7 @@ impl Plane {
         let (round, finite) = (!pen.edges, pen.finite);
         let mut imprint = Imprint::empty(self.sensor.columns(), self.sensor.rows());
         if !finite {
-            // Nothing of it may be left for the next shape.
+            // Nothing of this touch may remain for the next shape.
             self.areas.wipe();
             self.ellipses.clear();
             return imprint;
@@ -100,7 +102,7 @@ impl Plane {
         imprint
     }
 
-    /// Activates the taxels that are covered enough; for most of them, the position of the centre decides.
+    /// Activates the taxels that are covered enough. For most of them, the position of the cell's centre decides.
     fn activate_by_centres(&mut self, solid: &impl Solid, rows: Range<i32>, imprint: &mut Imprint) {
         let columns = imprint.mask();
         let words = imprint.words_mut();
@@ -121,7 +123,7 @@ impl Plane {
         }
     }
 
-    /// Activates the taxels that are covered enough; their areas decide.
+    /// Activates the taxels that are covered enough, as decided by their areas.
     fn activate_by_areas(&self, solid: &impl Solid, imprint: &mut Imprint) {
         let (threshold, doubt) = (self.sensor.threshold(), self.doubt());
         let areas = self.areas.grid();
@@ -153,12 +155,12 @@ impl Plane {
         }
     }
 
-    /// How near to the threshold a coverage of the last touch must be to be in doubt.
+    /// Returns how near to the threshold a coverage of the last touch is in doubt.
     fn doubt(&self) -> f64 {
         DOUBTFUL.max(ROUNDINGS * self.areas.grid().magnitude())
     }
 
-    /// The taxels of a row whose areas are in doubt.
+    /// Returns the taxels of a row whose areas are in doubt.
     fn doubtful(&self, row: usize) -> u64 {
         let (threshold, doubt) = (self.sensor.threshold(), self.doubt());
         let areas = self.areas.grid();
@@ -170,14 +172,15 @@ impl Plane {
         doubtful
     }
 
-    /// The active taxels of a row, those in doubt computed again.
+    /// Returns the active taxels of a row after computing the doubtful ones again.
     #[cold]
     fn decide(&self, solid: &impl Solid, row: usize, mut active: u64, doubtful: u64) -> u64 {
         let Ok(row) = u8::try_from(row) else {
             return active;
         };
         let least = least(self.sensor.threshold());
-        // Several in one row, such as full cells at a threshold of 1, are computed by drawing the shape once.
+        // If several in a row are in doubt, such as full cells at a threshold of 1, the shape is drawn once for all
+        // of them.
         let areas = (doubtful.count_ones() > 1)
             .then(|| row_areas::<Double>(solid, self.sensor.columns(), row));
         for column in 0..self.sensor.columns() {
@@ -192,9 +195,10 @@ impl Plane {
         active
     }
 
-    /// How much of a taxel's cell the shape of the last touch covers, 0 to 1; 0 for a taxel beyond the sensor.
+    /// Returns how much of a taxel's cell the shape of the last touch covers, 0 to 1; 0 for a taxel outside the
+    /// sensor.
     ///
-    /// Takes as long as [`Self::coverages`], which gives those of all taxels.
+    /// It takes as long as [`Self::coverages`], which returns the coverages of all taxels.
     pub fn coverage(&self, column: u8, row: u8) -> f64 {
         let width = self.sensor.columns();
         if column >= width || row >= self.sensor.rows() {
@@ -203,7 +207,7 @@ impl Plane {
         self.coverages()[usize::from(row) * usize::from(width) + usize::from(column)]
     }
 
-    /// All coverages of the last touch in reading order, each 0 to 1.
+    /// Returns all coverages of the last touch in reading order, each 0 to 1.
     pub fn coverages(&self) -> Vec<f64> {
         let width = usize::from(self.sensor.columns());
         let mut all = vec![0.0; width * usize::from(self.sensor.rows())];
@@ -225,17 +229,17 @@ impl Plane {
     }
 }
 
-/// Draws edges at once, and keeps the ellipses: if there is nothing else, their areas may not be needed.
+/// Draws edges at once, and collects ellipses: if a shape has only these, their areas may not be needed.
 struct TouchPen<'a> {
     areas: &'a mut Overlap<f64>,
     ellipses: &'a mut CentreSampling,
-    /// Whether there are edges.
+    /// Whether the shape has edges.
     edges: bool,
-    /// Whether all coordinates are such that areas can be computed.
+    /// Whether all coordinates are finite and small enough to compute areas.
     finite: bool,
 }
 
-/// Whether both coordinates of a point are below a limit; not if one is NaN.
+/// Returns true if both coordinates of a point are below a limit; false if one is NaN.
 fn is_within(point: Point<f64>, limit: f64) -> bool {
     point.x.abs() < limit && point.y.abs() < limit
 }
@@ -269,14 +273,14 @@ impl Pen<f64> for TouchPen<'_> {
     }
 }
 
-/// The least coverage that activates a taxel: the threshold minus the tolerance for ties, but more than 0, so that a
-/// tiny threshold does not activate taxels that are not covered at all.
+/// Returns the least coverage that activates a taxel: the threshold minus the tolerance for ties, but more than 0, so
+/// that a tiny threshold does not activate taxels that are not covered at all.
 pub(crate) fn least(threshold: f64) -> Double {
     Real::max(Double::decimal(threshold) - Double::TIE, Double::TIE)
 }
 
-/// A share of a cell without visible rounding errors: never below 0 or above 1, and exactly 0, ½ or 1 if it is close to
-/// them.
+/// Returns a coverage without visible rounding errors: from 0 to 1, and exactly 0, ½ or 1 if it is close to one of
+/// these.
 fn share(area: f64) -> f64 {
     let near = (area * 2.0).round() / 2.0;
     let area = if (area - near).abs() < f64::TIE {
@@ -284,11 +288,11 @@ fn share(area: f64) -> f64 {
     } else {
         area
     };
-    // A negative zero would be printed as such; `max` may keep it, the sum does not.
+    // A negative zero would be printed as such. `max` may keep it; adding 0 does not.
     area.clamp(0.0, 1.0) + 0.0
 }
 
-/// Whether a shape reaches beyond the sensor by more than a rounding error.
+/// Returns true if a shape reaches beyond the sensor by more than a rounding error.
 pub fn reaches_beyond(solid: &impl Solid, sensor: &Sensor) -> bool {
     Extent::of(solid).is_some_and(|extent| {
         let beyond =
