@@ -1,7 +1,7 @@
 //! Everything that can go wrong on the command line.
 //!
-//! Each failure has its message beside it here, and its exit status in [`CliError::status`]. Text that comes from
-//! files or arguments is shortened before it is quoted, and escaped when it is printed.
+//! The message of each failure is beside it here; its exit status is in [`CliError::status`]. Text from files or
+//! arguments is shortened before it is quoted, and escaped when it is printed.
 
 use std::io;
 use std::path::PathBuf;
@@ -20,56 +20,56 @@ use crate::storage::{ArchiveFileError, FileError, LibraryError};
 use crate::sweep::MergeError;
 use crate::tui::script::runner;
 
-/// The most shapes of a table of pairs; as JSON it takes a gigabyte of memory for this many.
+/// The most shapes for a table of all pairs; as JSON, this many take a gigabyte of memory.
 pub(crate) const MOST_PAIRED: usize = 4096;
 
-/// Why a command failed, or was not done completely.
+/// The reason why a command failed, or was not done completely.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CliError {
     /// The arguments are wrong: clap's own message, with the usage of the command.
     #[error(transparent)]
     Usage(#[from] clap::Error),
-    /// A flag that the others leave nothing to do.
+    /// A flag without effect, given the other arguments.
     #[error("--{flag} has no effect {reason}")]
     Unused {
         /// The flag without its dashes.
         flag: &'static str,
-        /// With or without what.
+        /// The reason: "with …" or "without …" other arguments.
         reason: String,
     },
-    /// A number out of range.
+    /// A number that is out of range.
     #[error("--{flag} {text} {complaint}")]
     Range {
         /// The flag without its dashes.
         flag: String,
-        /// What was given.
+        /// The number as it was typed.
         text: String,
-        /// Which bound it misses, and what is allowed: "is above 16 (allowed: above 0, up to 16)".
+        /// The bound that it misses and the allowed range: "is above 16 (allowed: above 0, up to 16)".
         complaint: String,
     },
-    /// An invalid input file.
+    /// An input file that is invalid.
     #[error("{name}: {error}")]
     Input {
-        /// Its name.
+        /// The name of the file.
         name: String,
         /// What is wrong with it.
         error: InputError,
     },
-    /// A source of frames without a byte.
+    /// A source of frames that is empty.
     #[error("{name} is empty")]
     Empty {
-        /// Its name.
+        /// The name of the source.
         name: String,
     },
-    /// Some lines of a batch were wrong. The answer to each contains its own message.
+    /// Some lines of a batch were wrong. The answer to each of them contains its own message.
     #[error("{bad} of {lines} lines could not be answered")]
     Lines {
-        /// How many were wrong.
+        /// The number of wrong lines.
         bad: u64,
-        /// How many there were, not counting blank ones.
+        /// The number of all lines except blank ones.
         lines: u64,
     },
-    /// Lines cannot be read, or not to their end.
+    /// Lines cannot be read, or not to the end.
     #[error("{name}: cannot read: {error}")]
     Read {
         /// The file, or standard input.
@@ -77,94 +77,94 @@ pub(crate) enum CliError {
         /// The system's reason.
         error: io::Error,
     },
-    /// Standard output failed.
+    /// Standard output cannot be written to.
     #[error("cannot write to standard output: {0}")]
     Write(io::Error),
-    /// The library cannot do it: no such shape, no folder, a damaged file.
+    /// An operation of the library failed: no such shape, no folder, a damaged file.
     #[error("{}", shortened_message(&.0.to_string()))]
     Library(#[from] LibraryError),
-    /// The argument is neither the name of a shape nor a file.
+    /// An argument is neither the name of a shape nor a file.
     #[error("no stored shape and no file is called {name:?}{near}")]
     Nowhere {
         /// The argument.
         name: String,
-        /// The name of a stored shape that is nearly the same, as the end of the message.
+        /// The end of the message: a stored shape with a similar name.
         near: String,
     },
-    /// No shape has that name, in the library or in its trash.
+    /// No shape has this name in the library or in its trash.
     #[error("{}{near}", shortened_message(&error.to_string()))]
     NoShape {
-        /// Which name it is, and where it is not.
+        /// The name, and where it was not found.
         error: LibraryError,
-        /// A name that is nearly the same, as the end of the message.
+        /// The end of the message: a similar name.
         near: String,
     },
-    /// A shape of a set that cannot be read.
+    /// A shape of a set cannot be read.
     #[error("{place}: {error}")]
     Set {
         /// The file and the line, or the flag.
         place: String,
-        /// What is wrong.
+        /// The reason.
         error: String,
     },
-    /// A training that is refused.
+    /// A training is refused.
     #[error(transparent)]
     Training(#[from] TrainingError),
-    /// A training of poses that the sensor cuts off.
+    /// A training is refused because the sensor cuts off some poses.
     #[error("{error}; {remedy}, or allow it with --allow-cut")]
     Cut {
-        /// How many poses of which shape.
+        /// The shape, and the number of its poses that are cut off.
         error: TrainingError,
-        /// What helps.
+        /// The advice to the user.
         remedy: &'static str,
     },
-    /// A file that cannot be of that form.
+    /// A file name with the wrong extension for its content.
     #[error("{name}: {what} is written as {expected}")]
     Ending {
-        /// Its name.
+        /// The file name.
         name: String,
-        /// What was to be written.
+        /// The content to be written.
         what: &'static str,
-        /// The ending that is right.
+        /// The right extension.
         expected: &'static str,
     },
-    /// A model under the name of a built-in one would never be used.
+    /// A model would get the name of a built-in one, and never be used.
     #[error("{name} is the name of a built-in model; choose another")]
     BuiltInSet {
         /// The name.
         name: Name,
     },
-    /// A built-in model has no file to delete.
+    /// A built-in model cannot be deleted: it has no file.
     #[error("{name} is built in and cannot be deleted")]
     BuiltInModel {
         /// The name.
         name: Name,
     },
-    /// The argument is neither the name of a set of shapes nor a file.
+    /// An argument is neither the name of a set of shapes nor a file.
     #[error("{0}")]
     NoSet(String),
-    /// A matrix on which none of a shape's imprints fits.
+    /// None of a shape's imprints fits on the matrix.
     #[error("{name}: none of its imprints fits on {columns} × {rows} taxels")]
     NoTouch {
         /// The first such shape.
         name: String,
         /// Columns of the matrix.
         columns: u8,
-        /// Its rows.
+        /// Rows of the matrix.
         rows: u8,
     },
-    /// There is no model of that name beside the library.
+    /// No model beside the library has this name.
     #[error("no model is called {name:?}; 'taxel model list' shows all{near}")]
     NoModel {
         /// The argument.
         name: String,
-        /// The name of a model that is nearly the same, as the end of the message.
+        /// The end of the message: a model with a similar name.
         near: String,
     },
-    /// An invalid noise.
+    /// A noise that is invalid.
     #[error(transparent)]
     Noise(#[from] NoiseError),
-    /// A mask of another size than the imprint.
+    /// A mask that differs in size from the imprint.
     #[error("--mask has {} × {} taxels, the imprint {} × {}", mask.0, mask.1, imprint.0, imprint.1)]
     Mask {
         /// Columns and rows of the mask.
@@ -177,40 +177,40 @@ pub(crate) enum CliError {
     NotInModel {
         /// The name.
         name: String,
-        /// The name of a shape that is nearly the same, as the end of the message.
+        /// The end of the message: a shape with a similar name.
         near: String,
     },
-    /// `--expect` names another shape than the answer, or than some of the answers.
+    /// The answer, or one of several, differs from the shape that `--expect` names.
     #[error("--expect: expected {expected:?}, found {found}")]
     Unexpected {
-        /// The name.
+        /// The expected name.
         expected: String,
-        /// What was answered, in words.
+        /// The answer, in words.
         found: String,
     },
-    /// A set that is too large to be drawn.
+    /// A set with too many shapes for a drawing.
     #[error("{name}: {shapes} shapes, and a drawing shows at most 64; .csv takes all")]
     TooManyShapes {
         /// The file.
         name: String,
-        /// How many.
+        /// The number of shapes.
         shapes: usize,
     },
-    /// A set that is too large for a table of all pairs.
+    /// A set with too many shapes for a table of all pairs.
     #[error("--pairs: the model has {shapes} shapes (allowed: up to {MOST_PAIRED})")]
     TooManyPairs {
-        /// How many.
+        /// The number of shapes.
         shapes: usize,
     },
-    /// A size or a threshold at which a set cannot be evaluated.
+    /// A set cannot be evaluated at one of the sizes and thresholds.
     #[error("{place}: {error}")]
     Separation {
         /// The size and the threshold.
         place: String,
-        /// Why not.
+        /// The reason.
         error: TrainingError,
     },
-    /// There is a shape or a file of that name already.
+    /// A shape or a file of this name exists already.
     #[error("{name:?} already exists; --force replaces it")]
     Taken {
         /// The name.
@@ -219,44 +219,44 @@ pub(crate) enum CliError {
     /// A file cannot be written.
     #[error("{name}: cannot write: {error}")]
     File {
-        /// Its name, or that of its folder.
+        /// The name of the file or of its folder.
         name: String,
-        /// Why not.
+        /// The system's reason.
         error: io::Error,
     },
     /// Some shapes of the library are damaged. Each has been listed.
     #[error("{broken} of {shapes} shapes cannot be read")]
     Shapes {
-        /// How many are damaged.
+        /// The number of damaged shapes.
         broken: usize,
-        /// How many there are.
+        /// The number of all shapes.
         shapes: usize,
     },
-    /// The settings file cannot be read, or has an error in it.
+    /// The settings file cannot be read, or has an error.
     #[error("{place}: {message}")]
     Settings {
-        /// Its name, with line and column if they are known.
+        /// The file's name, with line and column if they are known.
         place: String,
-        /// What is wrong.
+        /// The reason.
         message: String,
     },
     /// A script cannot be read.
     #[error("{name}: {error}")]
     NoScript {
-        /// Its name.
+        /// The script's name.
         name: String,
-        /// Why not.
+        /// The reason.
         error: InputError,
     },
-    /// A script failed: an expectation, a command, or the program ended too early.
+    /// A script failed: an expectation or a command failed, or the program ended too early.
     #[error("{}{failure}", name.as_ref().map_or_else(String::new, |name| format!("{name}: ")))]
     Script {
-        /// Its name; None for the keys of `--keys`.
+        /// The script's name; None for the keys of `--keys`.
         name: Option<String>,
-        /// What failed.
+        /// The failure.
         failure: runner::ScriptFailure,
     },
-    /// `--record` names a file that exists.
+    /// `--record` names a file that exists already.
     #[error("{name} already exists and is not replaced; {free} is free")]
     Recorded {
         /// Its name.
@@ -267,9 +267,9 @@ pub(crate) enum CliError {
     /// The file of `--record` cannot be created.
     #[error("{name}: cannot record: {error}")]
     Record {
-        /// Its file's name.
+        /// The file's name.
         name: String,
-        /// Why not.
+        /// The system's reason.
         error: io::Error,
     },
     /// A sweep or a training needs more memory than it may use.
@@ -278,61 +278,61 @@ pub(crate) enum CliError {
     /// The ranges do not make a grid for the shape.
     #[error("{}", with_flag(.0))]
     Grid(#[from] GridError),
-    /// A recording is damaged, or no recording.
+    /// A recording is damaged, or the file is not a recording.
     #[error("{name}: {}", shortened_message(&.error.to_string()))]
     Recording {
-        /// Its name.
+        /// The recording's name.
         name: String,
-        /// What is wrong with it, and where.
+        /// The reason, and where it is in the recording.
         error: RecordingError,
     },
-    /// Frames cannot be recorded.
+    /// Recording frames failed.
     #[error("{error}{help}", error = .0, help = advice(.0))]
     Recorder(RecorderError),
-    /// A recording does not have what is asked for.
+    /// A recording does not have what was asked for.
     #[error("{name}: {}", shortened_message(.message))]
     Frames {
-        /// Its name.
+        /// The recording's name.
         name: String,
         /// What is wrong, and what would be right.
         message: String,
     },
-    /// `--resume` finds a file that is not this shard.
+    /// `--resume` finds a file that is not the file of this shard.
     #[error(
         "{name} is {what} ({reason}); remove it, or use --force instead of --resume to replace it"
     )]
     NotResumed {
-        /// Its name.
+        /// The file's name.
         name: String,
-        /// What it is: damaged, or of another study.
+        /// What the file is: damaged, or of another study.
         what: &'static str,
-        /// Why.
+        /// The reason.
         reason: String,
     },
-    /// An atlas cannot be read; or it cannot be written, or the file of all poses.
+    /// An atlas cannot be read or written, or the file of all poses cannot be written.
     #[error(transparent)]
     SweepFile(ArchiveFileError),
-    /// A shard that does not fit the others, or that would be replaced.
+    /// A shard does not fit the others, or it would be replaced.
     #[error("{}: {reason}", shortened_message(&path.to_string_lossy()))]
     Shard {
-        /// Its file.
+        /// The shard's file.
         path: PathBuf,
-        /// Why it is refused.
+        /// The reason why it is refused.
         reason: String,
     },
-    /// The shards are not those of one grid, or some are missing or given twice.
+    /// The shards are not from one grid, or some are missing or given twice.
     #[error(transparent)]
     Merge(#[from] MergeError),
     /// A signal stopped the command.
     #[error("stopped; nothing was written")]
     Stopped {
-        /// The exit status, as a shell reports it for a program that the signal ended.
+        /// The exit status that a shell reports for a program ended by this signal.
         status: u8,
     },
-    /// The system does not allow more threads or signal handlers.
+    /// The system does not provide threads or signal handlers.
     #[error("{0}")]
     System(io::Error),
-    /// The screen cannot be opened: no terminal, or it failed.
+    /// The screen cannot be opened, or it failed.
     #[error("{0}")]
     Screen(io::Error),
 }
@@ -359,7 +359,7 @@ impl From<ArchiveFileError> for CliError {
     }
 }
 
-/// What helps where frames cannot be recorded, as the end of a message.
+/// Returns advice for frames that cannot be recorded, as the end of the message.
 fn advice(error: &RecorderError) -> &'static str {
     match error {
         RecorderError::Exists { .. } => "; --force replaces it",
@@ -367,7 +367,7 @@ fn advice(error: &RecorderError) -> &'static str {
     }
 }
 
-/// The message about ranges; a number out of range is named by its flag, as in [`CliError::Range`].
+/// Returns the message about ranges. A number out of range is named by its flag, as in [`CliError::Range`].
 fn with_flag(error: &GridError) -> String {
     match error {
         GridError::Parameter(error @ ParameterError::Range { value, .. }) => {
@@ -379,12 +379,12 @@ fn with_flag(error: &GridError) -> String {
 }
 
 impl CliError {
-    /// Whether the reader of our output has closed it, as in `taxel batch | head -1`. That is not an error.
+    /// Returns true if the reader of our output has closed it, as in `taxel batch | head -1`. This is not an error.
     fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::Write(error) | Self::Screen(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
 
-    /// The exit status; see the table in [`crate::cli`].
+    /// Returns the exit status; see the table in [`crate::cli`].
     pub(crate) fn status(&self) -> u8 {
         match self {
             _ if self.is_closed_pipe() => 0,
@@ -406,7 +406,7 @@ impl CliError {
         }
     }
 
-    /// The message for standard error, with its line end; None for a closed pipe.
+    /// Returns the message for standard error, with its line end; None for a closed pipe.
     pub(crate) fn message(&self, charset: Charset) -> Option<String> {
         match self {
             _ if self.is_closed_pipe() => None,

@@ -1,6 +1,6 @@
-//! The command line: `taxel COMMAND`, defined in `arguments`; the screen if no command is given.
+//! The command line: `taxel COMMAND`, as defined in `arguments`. Without a command the screen opens.
 //!
-//! The way of a command through the folders of this room, which are listed below in this order:
+//! A command passes through the folders of this room, which are declared below in this order:
 //! ```text
 //! arguments -> clap (arguments/definitions) -> Request (arguments/request)
 //!   + settings: flag, environment, file, default (settings/)
@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Answers go to standard output. Messages go to standard error, one line each; those about failures start with
-//! `error:`. The exit status:
+//! `error:`. The exit status is:
 //!
 //! | status | meaning |
 //! |---|---|
@@ -20,8 +20,8 @@
 //! | 3 | the program ended before its script did; an answer is not the expected one |
 //! | 128 + n | signal n ended the command |
 //!
-//! A closed pipe, as in `taxel batch | head -1`, is not an error: the program stops and returns 0. Only the screen
-//! writes escape codes, and the progress bar of a sweep, if standard error is a terminal.
+//! A closed pipe, as in `taxel batch | head -1`, is not an error: the program stops and returns 0. Escape codes are
+//! written only by the screen, and by the progress bar of a sweep if standard error is a terminal.
 
 mod error;
 
@@ -69,8 +69,8 @@ use crate::tui::live::request::WatchRequest;
 
 /// Runs the program with the given arguments and returns its exit status. The first argument is the program's own name.
 ///
-/// Everything the user sees is written here or below: the answer to standard output, messages to standard error. If
-/// standard error cannot be written to, the exit status still tells what happened.
+/// All output is written here or below: the answer to standard output, messages to standard error. If standard error
+/// cannot be written to, the exit status still tells what happened.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     signals::outlive_file_limit();
     let arguments: Vec<OsString> = arguments.into_iter().collect();
@@ -80,16 +80,16 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Err(failure) => failure,
     };
     if let Some(message) = failure.message(charset) {
-        // Where not even this can be written, the exit status still tells.
+        // If not even this can be written, the exit status still tells.
         let _ = io::stderr().lock().write_all(message.as_bytes());
     }
     failure.status()
 }
 
-/// Reads the arguments and runs the command that they ask for. Returns the exit status.
+/// Reads the arguments and runs their command. Returns the exit status.
 ///
-/// `characters` is the character set for messages: at first that of the locale, then that of the settings, which are
-/// known only once the arguments are read.
+/// `characters` is the character set for messages. It starts as that of the locale and becomes that of the settings,
+/// which are known only after the arguments are read.
 fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, CliError> {
     let Invocation {
         request,
@@ -111,23 +111,23 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
     Ok(status)
 }
 
-/// What every command may use, whatever its arguments are.
+/// What every command may use.
 struct Surroundings {
     /// The settings in effect.
     settings: Effective,
-    /// The library, files and standard input, where shapes are found by name.
+    /// The place where shapes are found by name: the library, files and standard input.
     shelf: Shelf,
-    /// The characters that the answer may consist of.
+    /// The characters that an answer may contain.
     charset: Charset,
 }
 
 impl Surroundings {
-    /// Runs a command, prints its answer and returns the exit status: 0 unless the command has another one of its own.
+    /// Runs a command, prints its answer and returns the exit status: 0 unless the command has a status of its own.
     fn run(&self, request: Request) -> Result<u8, CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
         match request {
             Request::Screen(size, record) => return self.screen(size, record, None),
-            // On a terminal the frames are looked at; in a pipeline they are answered.
+            // On a terminal, a page shows the frames; in a pipeline, they are answered in lines.
             Request::Watch(asked) if !asked.json && io::stdout().is_terminal() => {
                 return self.screen(None, None, Some(watch::request(&asked, shelf)?));
             }
@@ -182,7 +182,7 @@ impl Surroundings {
         Ok(0)
     }
 
-    /// Opens the screen, on the page of a source of frames if one is given.
+    /// Opens the screen; if a source of frames is given, on the page that shows it.
     fn screen(
         &self,
         size: Option<(u16, u16)>,
@@ -193,7 +193,7 @@ impl Surroundings {
         screen::screen(&self.settings, size, record, shelf, charset, watched)
     }
 
-    /// Touches a figure or a picture and prints what there is to say about its imprint.
+    /// Touches a figure or a picture and prints its imprint, with notes on standard error.
     fn touch(
         &self,
         source: Source,
@@ -209,7 +209,7 @@ impl Surroundings {
         Ok(())
     }
 
-    /// Runs `taxel sweep`. What was chosen because it was not given is a note on standard error.
+    /// Runs `taxel sweep`. Notes on standard error tell which values were chosen because they were not given.
     fn sweep(&self, asked: SweepArguments) -> Result<(), CliError> {
         let (source, sensor) = match asked.what {
             Swept::Figure(figure, sensor) => (figure, sensor),
@@ -225,7 +225,7 @@ impl Surroundings {
         print(&text)
     }
 
-    /// Runs `taxel frames`. Answers that were made before an error are printed.
+    /// Runs `taxel frames`. If an error occurs, the answers made before it are still printed.
     fn frames(&self, asked: &FramesArguments, form: Form, kept: Kept) -> Result<(), CliError> {
         let processing = input::processing::processing(&asked.processing)?;
         let model = asked.naming.find(&self.shelf)?;
@@ -271,7 +271,7 @@ impl Surroundings {
     /// Runs a subcommand of `taxel library`.
     ///
     /// # Errors
-    /// [`CliError::Shapes`] if `check` finds a damaged file, after all of them are printed.
+    /// Returns [`CliError::Shapes`] if `check` finds damaged files, after it has printed all of them.
     fn library(&self, asked: LibraryCommand) -> Result<(), CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
         let text = match asked {
@@ -286,7 +286,7 @@ impl Surroundings {
                 charset.lines(&library::restore(shelf, name.as_str())?)
             }
             LibraryCommand::Path => {
-                // As the system has it, so that other programs find it whatever its bytes are.
+                // The path is written byte for byte, so that other programs find the folder.
                 let folder = shelf.library()?.folder().to_owned();
                 return write(&[folder.as_os_str().as_encoded_bytes(), b"\n"].concat());
             }
@@ -300,7 +300,7 @@ impl Surroundings {
     }
 }
 
-/// Writes a note to standard error. A note that cannot be written is dropped: it is not part of the answer.
+/// Writes a note to standard error. If it cannot be written, it is dropped: it is not part of the answer.
 fn note(text: &str, charset: Charset) {
     let _ = writeln!(io::stderr().lock(), "{}", charset.line(text));
 }
@@ -310,10 +310,10 @@ fn print(text: &str) -> Result<(), CliError> {
     write(text.as_bytes())
 }
 
-/// Writes bytes to standard output, at once.
+/// Writes bytes to standard output and flushes it.
 ///
 /// # Errors
-/// [`CliError::Write`], which is not reported if the pipe was closed at its other end.
+/// Returns [`CliError::Write`], which is not reported if the pipe was closed at its other end.
 fn write(bytes: &[u8]) -> Result<(), CliError> {
     let mut output = io::stdout().lock();
     output

@@ -12,18 +12,18 @@ use crate::cli::error::CliError;
 use crate::memory::MemoryGuard;
 use crate::recognition::TrainingError;
 
-/// Signals that stop the work, each with the exit status that a shell reports for it: 128 and its number.
+/// The signals that stop the work, each with the exit status that a shell reports for it: 128 plus its number.
 const STOPPING: [(i32, u8); 3] = [(SIGINT, 130), (SIGTERM, 143), (SIGHUP, 129)];
 
-/// Lets a write beyond the limit of a file's size (`ulimit -f`) fail as one on a full disk does. Otherwise its signal
-/// would end the program with the terminal as it is.
+/// Lets a write beyond the limit of file sizes (`ulimit -f`) fail like a write to a full disk. Otherwise the signal
+/// would end the program and leave the terminal as it is.
 pub(crate) fn outlive_file_limit() {
-    // Without it the signal keeps its meaning, and nothing else is lost.
+    // If this fails, the signal only keeps its usual effect.
     let _ = flag::register(SIGXFSZ, Arc::default());
 }
 
-/// Whether SIGHUP is ignored and has to stay so, as `nohup` asks for. Where the system does not say, it may be without a
-/// terminal.
+/// Returns true if SIGHUP is ignored and must stay so, as `nohup` asks. If the system does not tell, SIGHUP counts as
+/// ignored when standard error is not a terminal.
 fn hangup_is_ignored() -> bool {
     let ignored = || {
         let status = fs::read_to_string("/proc/self/status").ok()?;
@@ -36,9 +36,10 @@ fn hangup_is_ignored() -> bool {
     ignored().unwrap_or_else(|| !io::stderr().is_terminal())
 }
 
-/// Whether the work is to stop. A second signal ends the program at once, as if none were caught.
+/// Records whether a signal asks to stop the work. A second signal ends the program at once, as if it were not
+/// caught.
 pub(crate) struct Signals {
-    /// Whether one came.
+    /// Whether a signal came.
     pub(crate) stopped: Arc<AtomicBool>,
     /// The index in [`STOPPING`] of the signal that came last.
     last: Arc<AtomicUsize>,
@@ -48,7 +49,7 @@ impl Signals {
     /// Catches the signals from now on.
     ///
     /// # Errors
-    /// If the system does not allow it.
+    /// Returns the system's error if it does not allow this.
     pub(crate) fn catch() -> io::Result<Self> {
         let (stopped, last) = (Arc::default(), Arc::default());
         for (index, &(signal, status)) in STOPPING.iter().enumerate() {
@@ -62,7 +63,7 @@ impl Signals {
         Ok(Self { stopped, last })
     }
 
-    /// The error of a command that failed: a signal stopped it, if one came; else its own error.
+    /// Returns the error of a command that failed: "stopped" if a signal came, else its own error.
     pub(crate) fn failure_or(&self, error: CliError) -> CliError {
         if self.stopped.load(Ordering::Relaxed) {
             self.failure()
@@ -71,7 +72,7 @@ impl Signals {
         }
     }
 
-    /// The error of a training: one that was stopped says whether memory ran short or a signal came.
+    /// Returns the error of a training. If it was stopped, the error tells whether memory ran short or a signal came.
     pub(crate) fn training_failure(&self, error: TrainingError, memory: &MemoryGuard) -> CliError {
         match error {
             TrainingError::Stopped if memory.exceeded() => CliError::Memory(memory.message()),
@@ -80,7 +81,7 @@ impl Signals {
         }
     }
 
-    /// The error of a command that the last signal stopped.
+    /// Returns the error of a command that was stopped by the last signal.
     pub(crate) fn failure(&self) -> CliError {
         let (_, status) = STOPPING[self.last.load(Ordering::Relaxed)];
         CliError::Stopped { status }

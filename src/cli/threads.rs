@@ -6,10 +6,11 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::cli::error::CliError;
 
-/// A pool of `jobs` threads, 0 for one a core; of this thread alone where the system gives no others.
+/// Creates a pool of `jobs` threads, or if 0, one per core. If the system provides none, the pool is this thread
+/// alone.
 ///
 /// # Errors
-/// Where this thread is in such a pool already.
+/// Returns an error if this thread is in such a pool already.
 pub(crate) fn pool(jobs: usize) -> Result<ThreadPool, CliError> {
     let pool = ThreadPoolBuilder::new().num_threads(jobs).build();
     let pool = pool.or_else(|_| {
@@ -19,10 +20,10 @@ pub(crate) fn pool(jobs: usize) -> Result<ThreadPool, CliError> {
     pool.map_err(|error| CliError::System(io::Error::other(error)))
 }
 
-/// Does work that uses all cores in a thread pool of its own: the global pool fails permanently if it gets no threads.
+/// Runs work that uses all cores in a thread pool of its own: the global pool fails for good if it gets no threads.
 ///
 /// # Errors
-/// Those of the work.
+/// Returns the errors of the work.
 pub(crate) fn on_all_cores<R: Send>(
     work: impl FnOnce() -> Result<R, CliError> + Send,
 ) -> Result<R, CliError> {

@@ -1,4 +1,4 @@
-//! Tips about arguments that clap refuses, at the end of its message, and messages that replace it.
+//! Tips for arguments that clap refuses, added to its message, and messages that replace it.
 //!
 //! ```text
 //! taxel picture washer --side 3   '--side' does not belong to 'picture'; its parameters are --x0, …
@@ -18,13 +18,13 @@ use crate::figure::FigureKind;
 use crate::parameter::PARAMETERS;
 use crate::quote::as_argument;
 
-/// Endings of files that hold frames. Those of `.txt` and `.json` may as well be imprints and shapes.
+/// Extensions of files that contain frames. `.txt` and `.json` are left out: such files may be imprints and shapes.
 const RECORDINGS: [&str; 8] = ["apd", "asf", "csv", "jsonl", "lst", "mcap", "npy", "npz"];
 
-/// A message names at most these commands that have a flag.
+/// The most commands that a message about a flag lists.
 const MOST_NAMED: usize = 4;
 
-/// The error with tips, or with a better message.
+/// Returns the error with tips, or with a better message.
 pub(super) fn with_tips(mut error: Error, program: &mut Command) -> Error {
     let tips = match error.kind() {
         ErrorKind::UnknownArgument => return unknown_flag(error, program),
@@ -34,7 +34,7 @@ pub(super) fn with_tips(mut error: Error, program: &mut Command) -> Error {
         _ => Vec::new(),
     };
     if !tips.is_empty() {
-        // A misspelt word is less likely then: a circle is no rectangle.
+        // A misspelt word is less likely then: a circle is not a misspelt rectangle.
         error.remove(ContextKind::SuggestedValue);
     }
     suggest(&mut error, tips.into_iter().map(StyledStr::from).collect());
@@ -48,7 +48,7 @@ fn suggest(error: &mut Error, tips: Vec<StyledStr>) {
     }
 }
 
-/// A text that the error quotes.
+/// Returns a text that the error quotes.
 fn quoted(error: &Error, kind: ContextKind) -> Option<&str> {
     match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text),
@@ -56,8 +56,9 @@ fn quoted(error: &Error, kind: ContextKind) -> Option<&str> {
     }
 }
 
-/// A flag that the command does not have: says where it belongs if another command has it. Otherwise clap's message. Its
-/// advice to pass the flag as a value stays for one dash only: a name with two is rarer than a misspelt flag.
+/// Returns the error for a flag that the command does not have. If another command has it, the message says so;
+/// otherwise it is clap's. clap's advice to pass the flag as a value is kept only for flags with one dash: a value
+/// that begins with two is rarer than a misspelt flag.
 fn unknown_flag(mut error: Error, program: &mut Command) -> Error {
     if let Some((names, message)) = misplaced(&error, program) {
         let refusing = names.iter().try_fold(program, |command, name| {
@@ -75,7 +76,7 @@ fn unknown_flag(mut error: Error, program: &mut Command) -> Error {
     error
 }
 
-/// The command that refuses a flag of another one, and the message about that.
+/// Returns the command that refuses a flag of another command, and the message about it.
 fn misplaced(error: &Error, program: &Command) -> Option<(Vec<String>, String)> {
     let flag = quoted(error, ContextKind::InvalidArg)?.strip_prefix("--")?;
     let names = refusing(error, program);
@@ -85,13 +86,13 @@ fn misplaced(error: &Error, program: &Command) -> Option<(Vec<String>, String)> 
     let own = names
         .iter()
         .try_fold(program, |command, name| command.find_subcommand(name))?;
-    // A command below this one takes it, and clap says so: it only has to come later.
+    // If a subcommand of this command takes the flag, clap says so: the flag only has to come later.
     if own.get_subcommands().any(|inner| has(inner, flag)) {
         return None;
     }
     let mut owners = Vec::new();
     add_owners(program, flag, "", &mut owners);
-    // What is not for a command is for the screen, but for the version.
+    // A flag of the program itself is for the screen, except `--version`.
     if has(program, flag) && flag != "version" {
         owners.push("the screen".to_owned());
     }
@@ -101,7 +102,7 @@ fn misplaced(error: &Error, program: &Command) -> Option<(Vec<String>, String)> 
     let flags = PARAMETERS.iter().map(|row| row.parameter.flag());
     let (own_flags, others): (Vec<String>, Vec<String>) = flags.partition(|flag| has(own, flag));
     let mut message = format!("'--{flag}' does not belong to '{}'", names.join(" "));
-    // Only of commands that place a shape do the parameters tell what was meant.
+    // The command's own parameters are a useful hint only if the command places a shape.
     let places = own_flags.iter().any(|own| own == "x0");
     if places && others.iter().any(|other| other == flag) {
         let own_flags = own_flags.iter().map(|own| format!("--{own}"));
@@ -118,14 +119,15 @@ fn misplaced(error: &Error, program: &Command) -> Option<(Vec<String>, String)> 
     Some((names, message))
 }
 
-/// The names that lead to the command whose arguments are refused: `model`, `train`. Only its usage tells them.
+/// Returns the path of the command whose arguments are refused, such as `model`, `train`. Only the error's usage line
+/// has it.
 fn refusing(error: &Error, program: &Command) -> Vec<String> {
     let mut names = Vec::new();
     let Some(ContextValue::StyledStr(usage)) = error.get(ContextKind::Usage) else {
         return names;
     };
     let mut command = program;
-    // Behind `Usage:` and the name of the program.
+    // Skips `Usage:` and the name of the program.
     for word in usage.to_string().split_whitespace().skip(2) {
         let Some(inner) = command.find_subcommand(word) else {
             break;
@@ -136,13 +138,13 @@ fn refusing(error: &Error, program: &Command) -> Vec<String> {
     names
 }
 
-/// Whether a command shows a flag in its help.
+/// Returns true if the help of a command shows a flag.
 fn has(command: &Command, flag: &str) -> bool {
     let mut shown = command.get_arguments().filter(|arg| !arg.is_hide_set());
     shown.any(|arg| arg.get_long() == Some(flag))
 }
 
-/// Adds the commands below this one that have a flag, quoted, with the names that lead to them.
+/// Adds all subcommands that have a flag, each as a quoted path.
 fn add_owners(command: &Command, flag: &str, path: &str, owners: &mut Vec<String>) {
     for inner in command.get_subcommands() {
         let path = format!("{path}{}", inner.get_name());
@@ -153,7 +155,7 @@ fn add_owners(command: &Command, flag: &str, path: &str, owners: &mut Vec<String
     }
 }
 
-/// Names the commands that read a recording, where one is given in place of a command.
+/// Returns tips if a recording is given in place of a command: the commands that read it.
 fn for_recording(error: &Error) -> Vec<String> {
     let Some(given) = quoted(error, ContextKind::InvalidSubcommand) else {
         return Vec::new();
@@ -171,7 +173,7 @@ fn for_recording(error: &Error) -> Vec<String> {
     ]
 }
 
-/// What may have been meant by a word that is no kind of figure. For a misspelt one clap has a tip.
+/// Returns tips for a word that is not a kind of figure. For a misspelt kind, clap has a tip.
 fn for_no_figure(error: &Error) -> Vec<String> {
     let argument = quoted(error, ContextKind::InvalidArg);
     let given = quoted(error, ContextKind::InvalidValue).filter(|given| !given.is_empty());
@@ -187,14 +189,14 @@ fn for_no_figure(error: &Error) -> Vec<String> {
     }
     let shape = as_argument(given);
     match argument {
-        // 'sweep' takes either; its kind may be left out.
+        // 'sweep' also takes a stored shape, so its kind is optional.
         "[KIND]" => vec![format!("for a stored shape, use --picture {shape}")],
         "<KIND>" => vec![format!("for a stored shape, use taxel picture {shape}")],
         _ => Vec::new(),
     }
 }
 
-/// What may stand where an argument is missing, if its name does not say it.
+/// Returns tips for missing arguments whose names do not explain them.
 fn for_missing(error: &Error) -> Vec<String> {
     let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else {
         return Vec::new();

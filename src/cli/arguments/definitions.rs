@@ -1,12 +1,12 @@
 //! The commands and their flags, for clap, with the short texts of their help.
 //!
-//! A function per command, in the order of the help, then the flags that several of them share. Flags of parameters are
-//! made from the table of parameters ([`parameters`]), so their ranges and defaults are written nowhere else. Values
-//! are parsed here into their types: a file name that is not an atlas, or a range that goes backwards, is a usage
-//! error.
+//! There is a function for each command, in the order of the help, then for the flags that several commands share.
+//! Flags of parameters are made from the table of parameters ([`parameters`]), so their ranges and defaults are
+//! written nowhere else. Values are parsed here into their types: a file name that is not an atlas, or a range that
+//! goes backwards, is a usage error.
 //!
-//! A command is defined here if its flags are few. Larger ones are in files of their own, see the list of this folder.
-//! The order of the calls is the order in the help; headings (`Figure`, `Sensor`, `Grid`, …) part longer lists of
+//! A command with few flags is defined here, larger ones in files of their own; see the list of this folder. The
+//! order of the calls is the order in the help. Headings (`Figure`, `Sensor`, `Grid`, …) divide longer lists of
 //! flags.
 
 use std::path::PathBuf;
@@ -36,8 +36,8 @@ use crate::pose::Axis;
 use crate::sensor::SENSOR_PARAMETERS;
 use crate::storage::{AtlasEndingError, AtlasFile};
 
-/// The program with all its commands.
-/// Also the source of completions and manual pages, so a new command appears there by itself.
+/// Defines the program with all its commands. Completions and manual pages are made from this too, so a new command
+/// appears in them by itself.
 pub(crate) fn all() -> Command {
     let program = Command::new("taxel")
         .version(env!("TAXEL_VERSION"))
@@ -63,27 +63,27 @@ pub(crate) fn all() -> Command {
         .subcommand(config().args(sensor()))
         .subcommand(completions())
         .subcommand(man());
-    // Their own argument, which is not shown, stands in place of the one that every command has.
+    // These commands get a hidden flag of their own in place of the one that every command has.
     let program = WITHOUT_LIBRARY.into_iter().fold(program, |program, name| {
         program.mut_subcommand(name, |command| command.arg(folder().hide(true)))
     });
     in_order(with_negative_numbers(program))
 }
 
-/// Flags that several commands have, in the order in which the help of each lists them, behind those of its own.
+/// Flags that several commands have. The help of a command lists them in this order, after the command's own flags.
 const SHARED: [&str; 18] = [
     "out", "name", "atlas", "poses", "write", "export", "svg", "format", "force", "shard",
     "resume", "jobs", "memory", "json", "csv", "quiet", "config", "ascii",
 ];
 
-/// Lists the flags of [`SHARED`] in one order in the help of a command and of its subcommands. Those below a heading of
-/// their own keep their place there.
+/// Lists the flags of [`SHARED`] in one order in the help of a command and of its subcommands. Flags under a heading
+/// of their own keep their place there.
 fn in_order(command: Command) -> Command {
     command
         .mut_args(|arg| {
             let flag = arg.get_long().filter(|_| arg.get_help_heading().is_none());
             match flag.and_then(|flag| SHARED.iter().position(|shared| *shared == flag)) {
-                // Behind those that have only their place in the command, before --help and --version.
+                // After flags that are ordered only by their place in the command, before --help and --version.
                 Some(position) => arg.display_order(500 + position),
                 None => arg,
             }
@@ -91,8 +91,8 @@ fn in_order(command: Command) -> Command {
         .mut_subcommands(in_order)
 }
 
-/// Lets every argument of a command and of its subcommands take `-1`, so that its own parser says what it expects.
-/// clap would take it for a flag, and advise `-- -1`, which no flag takes.
+/// Lets every argument of a command and its subcommands take `-1`, so that the argument's own parser tells what it
+/// expects. Otherwise clap would take `-1` for a flag and advise `-- -1`, which no flag accepts.
 fn with_negative_numbers(command: Command) -> Command {
     command
         .mut_args(|arg| {
@@ -102,9 +102,9 @@ fn with_negative_numbers(command: Command) -> Command {
         .mut_subcommands(with_negative_numbers)
 }
 
-/// `taxel figure KIND`: a flag for each parameter that some kind has; [`Given::foreign`](parameters::Given::foreign)
-/// refuses those of another kind.
-/// `taxel figure ellipse --x0 1.99 --radius-x 4`. Angles are degrees clockwise as seen, lengths sides of a cell.
+/// Defines `taxel figure KIND`, such as `taxel figure ellipse --x0 1.99 --radius-x 4`. There is a flag for each
+/// parameter of any kind; [`Given::foreign`](parameters::Given::foreign) refuses those that the given kind does not
+/// have. Angles are degrees clockwise as seen, lengths are in cell sides.
 fn figure() -> Command {
     let kinds = FigureKind::ALL
         .into_iter()
@@ -130,8 +130,8 @@ fn figure() -> Command {
         .arg(json())
 }
 
-/// `taxel picture NAME|FILE`.
-/// `taxel picture washer --x0 6 --angle 30`. A flag that is not given leaves the picture as it was stored.
+/// Defines `taxel picture NAME|FILE`, such as `taxel picture washer --x0 6 --angle 30`. Without a flag, the picture
+/// keeps the value it was stored with.
 fn picture() -> Command {
     let own = |parameter: Parameter| parameters::arg_with_own(parameter);
     Command::new("picture")
@@ -147,8 +147,7 @@ fn picture() -> Command {
         .arg(json())
 }
 
-/// `taxel describe NAME|FILE`.
-/// `taxel describe imprint.txt --pitch 2.5`.
+/// Defines `taxel describe NAME|FILE`, such as `taxel describe imprint.txt --pitch 2.5`.
 fn describe() -> Command {
     Command::new("describe")
         .about("Describe an imprint or a stored shape")
@@ -160,8 +159,8 @@ fn describe() -> Command {
         .arg(json())
 }
 
-/// `taxel export NAME|FILE TO`.
-/// `taxel export washer washer.svg`; `-` and `--format` for standard output.
+/// Defines `taxel export NAME|FILE TO`, such as `taxel export washer washer.svg`. Standard output is `-` with
+/// `--format`.
 fn export() -> Command {
     let to = Arg::new("to")
         .value_name("TO")
@@ -180,7 +179,7 @@ fn export() -> Command {
         .arg(replace())
 }
 
-/// `--format`, for names whose ending does not show the format.
+/// Defines `--format`, for file names whose extension does not tell the format.
 fn format() -> Arg {
     let names = export::names();
     let help = format!(
@@ -195,9 +194,8 @@ fn format() -> Arg {
         .help(parameters::wrapped(&help, 52))
 }
 
-/// `taxel batch`.
-/// It takes no file: `taxel batch < poses.jsonl > answers.jsonl`. Lines may set a sensor; the flags are for those that
-/// do not.
+/// Defines `taxel batch`, such as `taxel batch < poses.jsonl > answers.jsonl`. Lines may set a sensor; the flags are
+/// for lines that do not.
 fn batch() -> Command {
     Command::new("batch")
         .about("Describe poses, one JSON object per line")
@@ -212,9 +210,9 @@ fn batch() -> Command {
         .arg(jobs())
 }
 
-/// `taxel sweep KIND`, or `taxel sweep --picture NAME|FILE`.
-/// Axes are ranges here, not numbers: `--x0 5:5.99:0.01`. Their flags have the names of the parameters, which are
-/// therefore left out of the flags of sizes.
+/// Defines `taxel sweep KIND` and `taxel sweep --picture NAME|FILE`. Axes are ranges here, not numbers:
+/// `--x0 5:5.99:0.01`. Their flags have the names of parameters, so these parameters are left out of the flags of
+/// sizes.
 fn sweep() -> Command {
     let kind = Arg::new("kind")
         .value_name("KIND")
@@ -266,9 +264,8 @@ fn sweep() -> Command {
         )
 }
 
-/// `taxel merge FILE.npz…`.
-/// Shards of a training are merged by the same command, `taxel merge part-*.npz --out whole.npz`: the content of the
-/// files decides.
+/// Defines `taxel merge FILE.npz…`. Shards of a training are merged by the same command, such as
+/// `taxel merge part-*.npz --out whole.npz`; the content of the files decides.
 fn merge() -> Command {
     let files = Arg::new("files")
         .value_name("FILE.npz")
@@ -293,20 +290,19 @@ fn merge() -> Command {
         ])
 }
 
-/// `--atlas`, the file that a sweep or a merge writes.
-/// Its ending decides the format, and there is no flag for it: only `.npz` can be read again.
+/// Defines `--atlas`, the file that a sweep or a merge writes. Its extension decides the format, so there is no flag
+/// for this; only `.npz` can be read again.
 fn atlas() -> Arg {
     option("atlas", "FILE", "Write the atlas, as .csv, .jsonl or .npz").value_parser(parse_atlas)
 }
 
-/// The file of an atlas; its ending must be that of one of the formats.
+/// Parses the file name of an atlas, whose extension must be that of one of the formats.
 fn parse_atlas(text: &str) -> Result<AtlasFile, AtlasEndingError> {
     AtlasFile::new(text)
 }
 
-/// `taxel frames FILE`.
-/// With `--export` each frame has a file of its own; a single shape can be saved, so not with `--all`, nor by a label
-/// that several frames have.
+/// Defines `taxel frames FILE`. With `--export`, each frame gets a file of its own. `--save` stores a single shape,
+/// so it excludes `--all`, and fails for a label that several frames have.
 fn frames() -> Command {
     let keeping = keeping().map(|arg| match arg.get_id().as_str() {
         "save" => arg
@@ -329,8 +325,8 @@ fn frames() -> Command {
         .args([json().conflicts_with("heat"), frames::heat()])
 }
 
-/// `taxel library` with its own subcommands.
-/// `taxel library list --json`, `taxel library save NAME FILE` and so on; a subcommand is required.
+/// Defines `taxel library` and its subcommands, one of which is required: `taxel library list --json`,
+/// `taxel library save NAME FILE` and so on.
 fn library() -> Command {
     let command = |name: &'static str, about: &'static str, examples: &'static str| {
         Command::new(name).about(about).after_help(examples)
@@ -368,15 +364,15 @@ fn library() -> Command {
         .subcommand(command("check", "Check every file", CHECK_EXAMPLES).arg(json()))
 }
 
-/// `--save` and `--export`: at least one of them must be given for `--force` to make sense.
+/// Groups `--save` and `--export`: `--force` requires at least one of them.
 fn kept() -> ArgGroup {
     ArgGroup::new("kept")
         .args(["save", "export"])
         .multiple(true)
 }
 
-/// What to keep of a touch: `--save`, `--export` with `--format`, and `--force`.
-/// For commands that answer with one imprint: `figure`, `picture` and `frames`.
+/// Defines the flags that keep the result of a touch: `--save`, `--export` with `--format`, and `--force`. They are
+/// for commands that answer with one imprint: `figure`, `picture` and `frames`.
 fn keeping() -> [Arg; 4] {
     let save = option("save", "NAME", "Store the shape in the library too")
         .value_parser(parse_name)
@@ -402,7 +398,7 @@ fn keeping() -> [Arg; 4] {
 /// The commands that use no library.
 pub(crate) const WITHOUT_LIBRARY: [&str; 3] = ["merge", "completions", "man"];
 
-/// `--library`, which every command takes but those of [`WITHOUT_LIBRARY`].
+/// Defines `--library`, which every command takes except those of [`WITHOUT_LIBRARY`].
 fn folder() -> Arg {
     option("library", "DIR", "The library's folder")
         .value_parser(value_parser!(PathBuf))
@@ -425,7 +421,7 @@ mod tests {
     use clap::error::{ContextKind, ContextValue, ErrorKind};
     use clap::{Arg, Command, Error};
 
-    /// The commands without subcommands of their own, each of whose arguments takes any text.
+    /// Returns the commands that have no subcommands. All their arguments accept any text.
     fn innermost(command: &Command) -> Vec<Command> {
         let own: Vec<_> = command.get_subcommands().collect();
         if own.is_empty() {
@@ -439,7 +435,7 @@ mod tests {
         own.into_iter().flat_map(innermost).collect()
     }
 
-    /// How an argument is given, with some value.
+    /// Returns the words that give an argument, with a value if it takes one.
     fn given(arg: &Arg) -> Vec<String> {
         let flag = arg.get_long().map(|long| format!("--{long}"));
         let short = arg.get_short().map(|short| format!("-{short}"));
@@ -447,7 +443,7 @@ mod tests {
         flag.or(short).into_iter().chain(value).collect()
     }
 
-    /// The command with these arguments, and what it requires in any case.
+    /// Parses a command with these arguments and with everything that it always requires.
     fn parsed(command: &Command, args: &[&Arg]) -> Result<(), Error> {
         let is_given = |id: &clap::Id| args.iter().any(|arg| arg.get_id() == id);
         let mut all = args.to_vec();
@@ -466,7 +462,8 @@ mod tests {
         command.clone().try_get_matches_from(line).map(|_| ())
     }
 
-    /// clap waives that a flag requires another where a third excludes that other: the flag would be ignored.
+    /// If a flag requires a second one and a third flag excludes the second, clap lets the second be missing. The
+    /// first flag would be ignored.
     #[test]
     fn a_flag_that_needs_another_is_refused_without_it_whatever_else_is_given() {
         let mut needy = 0;

@@ -1,6 +1,6 @@
-//! The arguments of `taxel frames`, and those about processing that `taxel watch` has too.
+//! The arguments of `taxel frames`, and the flags about processing that `taxel watch` has too.
 //!
-//! The flags come in three groups, which are applied to frames in this order:
+//! There are three groups of flags, which are applied to frames in this order:
 //! ```text
 //! --frame N | --label L | --peak | --all             which frames; none of them: a listing
 //! --crop --flip --turn --mask --tare --gain          from the recording's values to those that count
@@ -22,25 +22,25 @@ use crate::cli::settings::sensors::SensorSettings;
 use crate::frame::{Crop, FrameError, Rule, RuleOrigin, SetRule};
 use crate::recognition::Noise;
 
-/// Which frames are answered.
+/// The frames that are answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FrameChoice {
-    /// That of this number, from 0.
+    /// The frame of this number, from 0.
     Number(u64),
-    /// Those that the recording calls so.
+    /// The frames that the recording labels with this number.
     Label(i64),
-    /// The one with the greatest sum.
+    /// The frame with the greatest sum.
     Peak,
-    /// All.
+    /// All frames.
     All,
-    /// None by itself: how often taxels flip over all of them, and which are dead or stuck.
+    /// No single frame: a report on all of them, how often taxels flip and which are dead or stuck.
     NoiseReport,
 }
 
-/// How frames become imprints.
+/// The processing that turns frames into imprints.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ProcessingArguments {
-    /// Rows and columns, of what does not say them.
+    /// Rows and columns, for recordings and streams that do not state them.
     pub(crate) shape: Option<(u16, u16)>,
     /// The channel of a recording that has several.
     pub(crate) channel: Option<String>,
@@ -50,39 +50,39 @@ pub(crate) struct ProcessingArguments {
     pub(crate) flip_x: bool,
     /// Whether rows are reversed.
     pub(crate) flip_y: bool,
-    /// 0 to 3, clockwise as seen.
+    /// Quarter turns clockwise as seen, 0 to 3.
     pub(crate) quarter_turns: u8,
-    /// A file with an imprint whose active taxels are the cells without a value, as the frame is seen after the turn.
+    /// The file with an imprint of the cells without a value, placed as the frame is seen after the turn.
     pub(crate) mask: Option<PathBuf>,
-    /// Frames that the tare is made of; 0 for none, not given for that of the recording.
+    /// The number of frames for the tare; 0 for no tare, None for that of the recording.
     pub(crate) tare: Option<u64>,
-    /// Where that is from: `flag` or `settings`.
+    /// Whether the tare comes from a flag or from the settings.
     pub(crate) tare_from: RuleOrigin,
-    /// A recording of one frame: what each cell is multiplied by after the tare.
+    /// A recording of one frame: the factors that cells are multiplied by after the tare.
     pub(crate) gain: Option<PathBuf>,
     /// The threshold; None for that of the recording.
     pub(crate) rule: Option<Rule>,
-    /// Where that is from: `flag` or `settings`.
+    /// Whether the rule comes from a flag or from the settings.
     pub(crate) rule_from: RuleOrigin,
-    /// The smallest 8-connected piece that is kept, in taxels; 0 for what the recording's own rule says, else all.
+    /// The smallest 8-connected piece that is kept, in taxels; 0 for the limit of the recording's own rule, or none.
     pub(crate) least: u32,
 }
 
-/// What `taxel frames` is to do.
+/// The arguments of `taxel frames`.
 #[derive(Clone, Debug)]
 pub(crate) struct FramesArguments {
-    /// `-` for standard input.
+    /// The recording; `-` for standard input.
     pub(crate) file: PathBuf,
-    /// All channels are listed where there is none.
+    /// The frames to answer; None lists all channels.
     pub(crate) choice: Option<FrameChoice>,
-    /// From values to the imprint.
+    /// The processing from values to the imprint.
     pub(crate) processing: ProcessingArguments,
     /// Whether values are shown in shades.
     pub(crate) heat: bool,
     pub(crate) naming: NamingArguments,
 }
 
-/// `taxel frames FILE`, without the flags about answers that [`definitions`](super::definitions) adds.
+/// Defines `taxel frames FILE`, without the flags about answers, which [`definitions`](super::definitions) adds.
 pub(crate) fn command() -> Command {
     let file = Arg::new("file")
         .value_name("FILE")
@@ -111,7 +111,7 @@ pub(crate) fn command() -> Command {
         .args([frame, label, peak, every, flips].map(|arg| arg.help_heading("Frames")))
         .group(ArgGroup::new("choice").args(choices))
         .args(processing().map(|arg| match arg.get_id().as_str() {
-            // A listing is of values as they are, wherever they lie.
+            // A listing shows values as they are, wherever they lie.
             "tare" | "gain" | "flip" | "turn" => arg.requires("choice"),
             _ => arg,
         }))
@@ -119,16 +119,16 @@ pub(crate) fn command() -> Command {
         .args(naming().map(|arg| arg.requires("choice").conflicts_with("noise-report")))
 }
 
-/// The flag that shows values.
-/// Not with `--json`, which has no place for values, nor with a report on many frames.
+/// Defines `--heat`, which shows values. It excludes `--json`, which has no place for values, and a report on many
+/// frames.
 pub(crate) fn heat() -> Arg {
     switch("heat", "Show the values in shades, in drawings too")
         .requires("choice")
         .conflicts_with("noise-report")
 }
 
-/// The flags that say how frames are looked at.
-/// `--rows` and `--columns` have ids of their own: they are not those of a sensor, and go up to 512.
+/// Defines the flags that prepare frames. `--rows` and `--columns` have ids of their own: they are not those of a
+/// sensor, and go up to 512.
 pub(crate) fn processing() -> [Arg; 9] {
     let side = |id: &'static str, flag: &'static str, help: &'static str| {
         Arg::new(id)
@@ -159,7 +159,7 @@ pub(crate) fn processing() -> [Arg; 9] {
             "Keep the part that begins in column C and row R",
         )
         .value_parser(parse_crop)
-        // So that a negative column is refused as a part, not as a flag.
+        // A negative column is then refused by the parser, not taken for a flag.
         .allow_hyphen_values(true),
         text("flip", "AXIS", "Reverse columns (x), rows (y) or both (xy)")
             .value_parser(["x", "y", "xy"])
@@ -189,7 +189,7 @@ pub(crate) fn processing() -> [Arg; 9] {
     .map(|arg| arg.help_heading("Processing"))
 }
 
-/// The flags that name the shape of each imprint.
+/// Defines the flags that name the shape of each imprint.
 pub(crate) fn naming() -> [Arg; 2] {
     let model = Arg::new("model")
         .long("model")
@@ -205,9 +205,8 @@ pub(crate) fn naming() -> [Arg; 2] {
     [model, noise].map(|arg| arg.help_heading("Recognition"))
 }
 
-/// The flags that say which values are active.
-/// `--high` is not a rule by itself: it goes with `--low`. `--deviations` needs a tare, whose frames show the noise of each
-/// cell.
+/// Defines the flags that decide which values are active. `--high` is not a rule by itself: it goes with `--low`.
+/// `--deviations` needs a tare, whose frames show the noise of each cell.
 pub(crate) fn rules() -> [Arg; 6] {
     let value = |flag: &'static str, value: &'static str, help: &'static str| {
         Arg::new(flag)
@@ -248,7 +247,7 @@ pub(crate) fn rules() -> [Arg; 6] {
         )
         .requires("high")
         .conflicts_with_all(others("low")),
-        // clap waives that --low is required where another rule excludes it.
+        // clap would let --low be missing if another rule excludes it.
         value("high", "B", "Active at B or more")
             .requires("low")
             .conflicts_with_all(others("low")),
@@ -264,8 +263,8 @@ pub(crate) fn rules() -> [Arg; 6] {
     .map(|arg| arg.help_heading("Threshold"))
 }
 
-/// Reads `12,12,16x16`.
-/// First the left column and the top row, from 0, then columns × rows. Whether it fits the frames is seen later.
+/// Parses `12,12,16x16`: the left column and the top row, from 0, then columns × rows. Whether it fits the frames is
+/// checked later.
 fn parse_crop(text: &str) -> Result<Crop, &'static str> {
     let parts = || {
         let (left, rest) = text.split_once(',')?;
@@ -283,10 +282,10 @@ fn parse_crop(text: &str) -> Result<Crop, &'static str> {
 }
 
 impl FramesArguments {
-    /// What the arguments of [`command`] ask for.
+    /// Reads the arguments of [`command`].
     ///
     /// # Errors
-    /// If a threshold is out of range.
+    /// Returns an error if a threshold is out of range.
     pub(crate) fn of(
         matches: &ArgMatches,
         file: PathBuf,
@@ -311,7 +310,7 @@ impl FramesArguments {
 }
 
 impl NamingArguments {
-    /// What the arguments of [`naming`] ask for.
+    /// Reads the arguments of [`naming`].
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         Self {
             model: matches.get_one::<OsString>("model").cloned(),
@@ -321,10 +320,10 @@ impl NamingArguments {
 }
 
 impl ProcessingArguments {
-    /// What the arguments of [`processing`] and [`rules`] ask for, or else the settings.
+    /// Reads the arguments of [`processing`] and [`rules`]; the settings apply to those that are not given.
     ///
     /// # Errors
-    /// If a threshold is out of range.
+    /// Returns an error if a threshold is out of range.
     pub(crate) fn of(matches: &ArgMatches, settings: &SensorSettings) -> Result<Self, CliError> {
         let asked = rule(matches)?;
         let rule_from = if asked.is_some() {
@@ -364,13 +363,14 @@ impl ProcessingArguments {
 }
 
 impl ProcessingArguments {
-    /// The rule of the flags, else of the settings.
+    /// Returns the rule of the flags, or else of the settings.
     pub(crate) fn set_rule(&self) -> Option<SetRule> {
         let (least, from) = (self.least, self.rule_from);
         self.rule.map(|rule| SetRule { rule, least, from })
     }
 
-    /// The message about a tare that cannot be made. One that lacks frames names the settings if it is theirs.
+    /// Returns the message about a tare that cannot be made. If frames are lacking for a tare of the settings, it
+    /// names the settings.
     pub(crate) fn tare_refused(&self, error: &FrameError) -> String {
         match (error, self.tare_from) {
             (FrameError::Tare { .. }, RuleOrigin::Settings) => {
@@ -381,10 +381,11 @@ impl ProcessingArguments {
     }
 }
 
-/// The rule of the flags; None if there is none.
+/// Returns the rule of the flags, if one is given.
 ///
 /// # Errors
-/// [`CliError::Range`] for a value that the rule does not allow: `is out of range (allowed: above 0, up to 100)`.
+/// Returns [`CliError::Range`] for a value that the rule does not allow:
+/// `is out of range (allowed: above 0, up to 100)`.
 fn rule(matches: &ArgMatches) -> Result<Option<Rule>, CliError> {
     let value = |id: &str| matches.get_one::<f64>(id).copied();
     let out_of_range = |flag: &str, value: f64| {

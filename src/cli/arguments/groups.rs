@@ -1,10 +1,10 @@
-//! The commands grouped by purpose, as the help of the program lists them.
+//! The commands grouped by purpose, as the program's help lists them.
 
 use clap::Command;
 
 use crate::cli::arguments::parameters;
 
-/// Headings and their commands, in the order of the help.
+/// The headings and their commands, in the order of the help.
 pub(crate) const GROUPS: [(&str, &[&str]); 5] = [
     (
         "Touch",
@@ -19,14 +19,14 @@ pub(crate) const GROUPS: [(&str, &[&str]); 5] = [
     ),
 ];
 
-/// The longest name of a command, and two spaces.
+/// The width of the longest command name, and two spaces.
 const COLUMN: usize = 13;
 
-/// What is left of 80 columns.
+/// The width that is left of 80 columns.
 const WIDTH: usize = 65;
 
-/// The commands with a help that lists them by groups; for reading arguments only, since completions and the manual
-/// list what is not hidden.
+/// Makes the help list the commands by groups. It is used only for reading arguments: it hides the commands, and
+/// completions and the manual would leave out hidden ones.
 pub(crate) fn grouped(mut all: Command) -> Command {
     let mut template = String::from("{about-with-newline}\n{usage-heading} {usage}\n");
     all.build();

@@ -1,12 +1,12 @@
-//! The longer texts of the help, which follow the flags of a command: what to know about it, and examples.
+//! The longer texts of the help, which follow the flags of a command: explanations and examples.
 //!
 //! A text may begin with some lines of explanation; then comes `Examples:` with one command per line, indented. Man
 //! pages are made from the same texts. No line is wider than 80 columns. A test runs every example
 //! (`tests/cli/shell.rs`).
 //!
-//! What belongs here: the meaning of a value and what happens if it is missing, the formats of input, and a line on
-//! each thing that may surprise; not what a flag's own help says. Commands are indented by two spaces, and long ones
-//! continue after a `\`.
+//! The texts explain the meaning of values and of missing ones, formats of input, and in a line each, what may
+//! surprise; they do not repeat the help of a flag. Commands are indented by two spaces, and long ones continue after
+//! a `\`.
 
 /// What the program is for: the first lines of `taxel --help`.
 pub(crate) const ABOUT: &str = "\
@@ -32,7 +32,7 @@ Examples:
   taxel export washer washer.svg
   taxel batch < poses.jsonl > answers.jsonl";
 
-/// `taxel figure`: on which sensor the ranges of the flags hold.
+/// `taxel figure`: the sensor to which the ranges of the flags apply.
 pub(crate) const FIGURE_EXAMPLES: &str = "\
 The ranges are for a sensor of 16 x 16; for another sensor, replace 16 by its
 larger side. Flags that are not given take their defaults.

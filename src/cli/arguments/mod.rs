@@ -3,18 +3,18 @@
 //! | file | holds |
 //! |---|---|
 //! | `definitions` | the commands and their flags, for clap |
-//! | `program` | the same for `script`, `config`, `completions`, `man` and the screen's own flags |
+//! | `program` | `script`, `config`, `completions`, `man` and the screen's own flags |
 //! | `flags` | flags that several commands have |
 //! | `parameters` | flags made from the table of parameters, and their values |
-//! | `frames`, `watch` | the same for `frames` and `watch`, which share the flags of processing |
-//! | `model/` | the same for `model`, a file for each subcommand |
-//! | `recognise` | the same for `recognise` |
-//! | `groups` | the commands by what they are for, as the help lists them |
+//! | `frames`, `watch` | the commands `frames` and `watch`, which share the flags of processing |
+//! | `model/` | the command `model`, with a file for each subcommand |
+//! | `recognise` | the command `recognise` |
+//! | `groups` | the commands grouped by purpose, as the help lists them |
 //! | `help` | the longer texts of the help |
-//! | `advice` | what helps where arguments are refused |
-//! | `request` | from what clap has read to a `Request` |
+//! | `advice` | tips for arguments that are refused |
+//! | `request` | turns what clap has read into a `Request` |
 //!
-//! Everything that can be wrong with the arguments alone is found here, before a file is read or a thread started.
+//! All errors in the arguments themselves are found here, before a file is read or a thread is started.
 
 pub(super) mod help;
 

@@ -1,8 +1,8 @@
-//! Flags made from the table of parameters, and the values given by them.
+//! Flags made from the table of parameters, and their values.
 //!
-//! A row of the table gives a flag its name, value name and help with range and default. clap only checks that a value
-//! is a number; whether it is in range depends on the sensor, which may be changed by other flags, so [`Given`]
-//! collects the numbers and they are checked when a sensor, figure or picture is made from them.
+//! A row of the table gives a flag its name, value name and help with range and default. clap only checks that a
+//! value is a number. Its range depends on the sensor, which other flags may change, so [`Given`] collects the
+//! numbers, and they are checked when a sensor, figure or picture is made from them.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgMatches};
@@ -15,19 +15,19 @@ use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::storage::Existing;
 use crate::tui::widget::columns::broken;
 
-/// The width of help texts, in characters: with the flags on their left they fit into 80 columns.
+/// The width of help texts, in characters; with the flags on their left they fit into 80 columns.
 const HELP_WIDTH: usize = 52;
 
-/// A number, with its text for messages.
+/// A number with its text, for messages.
 #[derive(Clone, Debug)]
 struct Number {
-    /// As it was typed, without blanks around it.
+    /// The text as typed, without blanks around it.
     text: String,
-    /// What it means; finite.
+    /// The finite number.
     value: f64,
 }
 
-/// The parameters that at least one kind of figure has, in the order of the table.
+/// Returns the parameters that at least one kind of figure has, in the order of the table.
 pub(crate) fn figure_parameters() -> impl Iterator<Item = Parameter> {
     PARAMETERS
         .iter()
@@ -35,14 +35,14 @@ pub(crate) fn figure_parameters() -> impl Iterator<Item = Parameter> {
         .filter(|&parameter| kinds_with(parameter).next().is_some())
 }
 
-/// The kinds of figures that have a parameter.
+/// Returns the kinds of figure that have a parameter.
 fn kinds_with(parameter: Parameter) -> impl Iterator<Item = FigureKind> {
     FigureKind::ALL
         .into_iter()
         .filter(move |kind| kind.parameters().contains(&parameter))
 }
 
-/// The flag of a parameter. Its help shows range and default for the default sensor.
+/// Defines the flag of a parameter. Its help shows range and default for the default sensor.
 pub(crate) fn arg(parameter: Parameter) -> Arg {
     let default = match parameter {
         Parameter::Thickness | Parameter::Pitch => String::new(),
@@ -51,7 +51,7 @@ pub(crate) fn arg(parameter: Parameter) -> Arg {
     arg_with(parameter, &default)
 }
 
-/// The flag of a parameter that a stored shape has a value for: without the flag it keeps that value.
+/// Defines the flag of a parameter that a stored shape has a value for; without the flag, it keeps that value.
 pub(crate) fn arg_with_own(parameter: Parameter) -> Arg {
     match parameter {
         Parameter::Angle | Parameter::ZoomX | Parameter::ZoomY | Parameter::Pitch => arg(parameter),
@@ -59,12 +59,12 @@ pub(crate) fn arg_with_own(parameter: Parameter) -> Arg {
     }
 }
 
-/// The flag of a side of the sensor that, without it, is large enough for all shapes of a model.
+/// Defines the flag of a side of the sensor; without it, the side is large enough for all shapes of a model.
 pub(crate) fn arg_fitting(side: Parameter) -> Arg {
     arg_with(side, "; default large enough for all shapes, at least 16")
 }
 
-/// The flag of a parameter; `default` is the end of its help.
+/// Defines the flag of a parameter; `default` is the end of its help.
 fn arg_with(parameter: Parameter, default: &str) -> Arg {
     let row = parameter.row();
     let unit = match row.unit {
@@ -85,19 +85,19 @@ fn arg_with(parameter: Parameter, default: &str) -> Arg {
             unit => unit.name().to_ascii_uppercase(),
         })
         .help(wrapped(&help, HELP_WIDTH))
-        // A minus sign begins a number here, not a flag.
+        // A minus sign starts a number here, not a flag.
         .allow_hyphen_values(true)
         .value_parser(parse)
 }
 
-/// Parses a number; text that is not one is a usage error.
+/// Parses a number; any other text is a usage error.
 fn parse(text: &str) -> Result<Number, String> {
     let value = number::read(text).ok_or_else(|| number::complaint(text))?;
     let text = text.trim().to_owned();
     Ok(Number { text, value })
 }
 
-/// A parser that accepts one of some names, and returns what it stands for.
+/// Makes a parser that accepts one of some names and returns what `named` gives for it.
 pub(super) fn one_of<T: Clone + Send + Sync + 'static, const N: usize>(
     names: [&'static str; N],
     named: fn(&str) -> Option<T>,
@@ -105,7 +105,7 @@ pub(super) fn one_of<T: Clone + Send + Sync + 'static, const N: usize>(
     PossibleValuesParser::new(names).try_map(move |name| named(&name).ok_or("not one of the names"))
 }
 
-/// A text with its first letter in upper case, as in clap's own help.
+/// Returns a text with its first letter in upper case, as in clap's own help.
 pub(crate) fn capitalised(text: &str) -> String {
     let mut characters = text.chars();
     let first = characters.next().map(|first| first.to_ascii_uppercase());
@@ -122,7 +122,7 @@ pub(crate) fn wrapped(text: &str, width: usize) -> String {
 pub(crate) struct Given(Vec<(Parameter, Number)>);
 
 impl Given {
-    /// The values given to a command. Flags that the command does not have count as not given.
+    /// Reads the values of a command's flags. Flags that the command does not have count as not given.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let given = |parameter: Parameter| {
             let number = matches.try_get_one::<Number>(parameter.row().key);
@@ -132,20 +132,20 @@ impl Given {
         Self(parameters.filter_map(given).collect())
     }
 
-    /// The name of the first flag given.
+    /// Returns the name of the first flag given.
     pub(crate) fn first(&self) -> Option<String> {
         self.0.first().map(|(parameter, _)| parameter.flag())
     }
 
-    /// Whether a value was given.
+    /// Returns true if a value was given.
     pub(crate) fn has(&self, parameter: Parameter) -> bool {
         self.0.iter().any(|(given, _)| *given == parameter)
     }
 
-    /// Sets the given values of the parameters `own`, one after the other, by `with`.
+    /// Applies the given values of the parameters `own` to `thing`, one after the other, using `with`.
     ///
     /// # Errors
-    /// [`CliError::Range`] for the first one out of range.
+    /// Returns [`CliError::Range`] for the first value out of range.
     fn fold<T>(
         &self,
         own: &[Parameter],
@@ -164,26 +164,26 @@ impl Given {
         Ok(thing)
     }
 
-    /// A sensor, changed as given.
+    /// Returns a sensor with the given values.
     pub(crate) fn sensor(&self, sensor: Sensor) -> Result<Sensor, CliError> {
         self.fold(&SENSOR_PARAMETERS, sensor, Sensor::with)
     }
 
-    /// The pitch in mm, if it was given.
+    /// Returns the pitch in mm, if it was given.
     pub(crate) fn pitch(&self) -> Result<Option<f64>, CliError> {
         self.fold(&[Parameter::Pitch], None, |_, parameter, value| {
             Sensor::LARGEST.check(parameter, value).map(Some)
         })
     }
 
-    /// The first parameter given that this kind of figure does not have.
+    /// Returns the first given parameter that this kind of figure does not have.
     pub(crate) fn foreign(&self, kind: FigureKind) -> Option<Parameter> {
         figure_parameters()
             .filter(|&parameter| !kind.parameters().contains(&parameter))
             .find(|&parameter| self.0.iter().any(|(given, _)| *given == parameter))
     }
 
-    /// The default figure of a kind, changed as given.
+    /// Returns the default figure of a kind with the given values.
     pub(crate) fn figure(&self, kind: FigureKind, sensor: &Sensor) -> Result<Figure, CliError> {
         let figure = Figure::default_of(kind, sensor);
         self.fold(kind.parameters(), figure, |figure, parameter, value| {
@@ -191,7 +191,7 @@ impl Given {
         })
     }
 
-    /// A picture, changed as given.
+    /// Returns a picture with the given values.
     pub(crate) fn picture(&self, picture: Picture, sensor: &Sensor) -> Result<Picture, CliError> {
         self.fold(&PICTURE_PARAMETERS, picture, |picture, parameter, value| {
             picture.with(parameter, value, sensor)
@@ -199,19 +199,19 @@ impl Given {
     }
 }
 
-/// What happens if the file of a shard exists already.
+/// What to do if the file of a shard exists already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ShardFile {
-    /// It is in the way: an error.
+    /// Report an error: the default.
     Refused,
-    /// It is replaced: `--force`.
+    /// Replace it: `--force`.
     Replaced,
-    /// If it is this shard, whole, nothing is computed; otherwise it is an error: `--resume`.
+    /// Compute nothing if the file is this shard and complete; otherwise report an error: `--resume`.
     Resumed,
 }
 
 impl ShardFile {
-    /// What the flags ask for. A merge has no `--resume`.
+    /// Returns what the flags ask for. A merge has no `--resume`.
     pub(super) fn of(matches: &ArgMatches) -> Self {
         match (existing(matches), matches.try_get_one("resume")) {
             (Existing::Replaced, _) => Self::Replaced,
@@ -220,7 +220,7 @@ impl ShardFile {
         }
     }
 
-    /// Whether a file that appears meanwhile is replaced.
+    /// Returns whether to replace a file that appears meanwhile.
     pub(crate) fn existing(self) -> Existing {
         match self {
             Self::Replaced => Existing::Replaced,
@@ -229,7 +229,7 @@ impl ShardFile {
     }
 }
 
-/// What to do about files that exist: with `--force` they are replaced.
+/// Returns what to do about files that exist: `--force` replaces them.
 pub(crate) fn existing(matches: &ArgMatches) -> Existing {
     if matches.get_flag("force") {
         Existing::Replaced

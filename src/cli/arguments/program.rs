@@ -21,9 +21,9 @@ use crate::tui::widget::theme::{ColorDepth, Palette};
 /// The arguments of `taxel script`: what to run and how.
 #[derive(Clone, Debug)]
 pub(crate) struct Script {
-    /// Where its lines are read from; none if only `keys` are given.
+    /// The source of its lines; None if only `keys` are given.
     pub(crate) source: Option<InputSource>,
-    /// Keys to press before the script.
+    /// The keys to press before the script.
     pub(crate) keys: Option<String>,
     /// Columns and rows of the screen.
     pub(crate) size: (u16, u16),
@@ -31,16 +31,16 @@ pub(crate) struct Script {
     pub(crate) styles: bool,
     /// Whether screens are printed as lines of JSON.
     pub(crate) json: bool,
-    /// The folder for drawings of its screens, if they are wanted.
+    /// The folder for drawings of screens, if given.
     pub(crate) drawings: Option<PathBuf>,
     /// What to do about drawings that exist.
     pub(crate) existing: Existing,
-    /// Whether it may use any library and write anywhere.
+    /// Whether the script may use any library and write anywhere.
     pub(crate) allow_outside: bool,
 }
 
 impl Script {
-    /// Reads the arguments of [`script`]. Without a file and without `--keys` the script comes from standard input.
+    /// Reads the arguments of [`script`]. Without a file and `--keys`, the script comes from standard input.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let file = matches.get_one::<PathBuf>("file");
         let source = file.map(|file| InputSource::of(file));
@@ -63,7 +63,7 @@ impl Script {
     }
 }
 
-/// `taxel script [FILE]`.
+/// Defines `taxel script [FILE]`.
 pub(crate) fn script() -> Command {
     let file = Arg::new("file")
         .value_name("FILE")
@@ -92,7 +92,7 @@ pub(crate) fn script() -> Command {
         .args([file, keys, size(), styles, json, svg, force, allow_outside])
 }
 
-/// `taxel completions SHELL`.
+/// Defines `taxel completions SHELL`.
 pub(crate) fn completions() -> Command {
     let shell = Arg::new("shell")
         .value_name("SHELL")
@@ -109,7 +109,7 @@ pub(crate) fn completions() -> Command {
         .arg(shell)
 }
 
-/// `taxel man [DIR]`.
+/// Defines `taxel man [DIR]`.
 pub(crate) fn man() -> Command {
     let folder = Arg::new("folder")
         .value_name("DIR")
@@ -121,7 +121,8 @@ pub(crate) fn man() -> Command {
         .arg(folder)
 }
 
-/// `--color`, `--theme` and `--no-mouse`: the look of the screen, for terminals that do not describe themselves well.
+/// Defines `--color`, `--theme` and `--no-mouse`: the look of the screen, for terminals that do not describe
+/// themselves well.
 pub(crate) fn look() -> [Arg; 3] {
     let choice = |name: &'static str, values: Vec<&'static str>, help: &'static str| {
         let values = std::iter::once(AUTO).chain(values);
@@ -150,7 +151,7 @@ pub(crate) fn look() -> [Arg; 3] {
     .map(|arg| arg.help_heading("Terminal"))
 }
 
-/// `--record`.
+/// Defines `--record`.
 pub(crate) fn record() -> Arg {
     option(
         "record",
@@ -160,7 +161,7 @@ pub(crate) fn record() -> Arg {
     .value_parser(value_parser!(PathBuf))
 }
 
-/// `taxel config`. It takes the flags of settings too, to show what they would change.
+/// Defines `taxel config`. It also takes the flags that change settings, to show their effect.
 pub(crate) fn config() -> Command {
     Command::new("config")
         .about("Print the settings and where each comes from")
@@ -168,7 +169,7 @@ pub(crate) fn config() -> Command {
         .args(look())
 }
 
-/// `--config`, which every command takes.
+/// Defines `--config`, which every command takes.
 pub(crate) fn config_file() -> Arg {
     option(
         "config",
@@ -178,18 +179,18 @@ pub(crate) fn config_file() -> Arg {
     .value_parser(value_parser!(PathBuf))
 }
 
-/// `--size`, for the screen and for scripts.
+/// Defines `--size`, for the screen and for scripts.
 pub(crate) fn size() -> Arg {
     option("size", "CxR", "Columns and rows of the screen").value_parser(parse_size)
 }
 
-/// Columns and rows, such as `80x24`.
+/// Parses columns and rows, such as `80x24`.
 fn parse_size(text: &str) -> Result<(u16, u16), String> {
     command::size(text)
 }
 
-/// `--ascii`. [`Charset`](crate::cli::output::charset::Charset) has looked for it before clap does, because messages
-/// about wrong arguments need it; this declares it for the help and for the screen.
+/// Defines `--ascii`, for the help and for the screen. [`Charset`](crate::cli::output::charset::Charset) looks for
+/// the flag before clap does, because messages about wrong arguments need it.
 pub(crate) fn ascii() -> Arg {
     switch("ascii", "Use ASCII only, as if the locale were not UTF-8")
 }

@@ -1,6 +1,6 @@
-//! `taxel recognise NAME|FILE`: its flags, and what they ask for.
+//! The flags of `taxel recognise NAME|FILE`, and how they are read.
 //!
-//! What is recognised is one imprint, or lines of JSON with a touch or several each, which are answered line by line:
+//! The input is one imprint, or lines of JSON with one or more touches each, which are answered line by line:
 //! ```text
 //! taxel recognise imprint.txt --model mine --top 3
 //! taxel frames grip.csv --all --at-least 20 --json | taxel recognise - --reject 0.9 --json
@@ -19,34 +19,34 @@ use crate::index::wide;
 use crate::parameter::Parameter;
 use crate::recognition::{Noise, NoiseError};
 
-/// What is to be recognised, and how.
+/// The touches to recognise, and how.
 #[derive(Clone, Debug)]
 pub(crate) struct RecogniseArguments {
-    /// An imprint, or lines of touches: a shape of the library, a file, or `-`.
+    /// An imprint, or lines of touches: a stored shape, a file, or `-`.
     pub(crate) what: OsString,
     /// Name or file of the model.
     pub(crate) model: OsString,
-    /// How many shapes of the ranking are shown; if not given, eight in a text, all in JSON.
+    /// The number of shapes of the ranking to show; None for eight in text and all in JSON.
     pub(crate) top: Option<usize>,
-    /// The least probability of an answer (0 to 1); below it the touch is rejected.
+    /// The least probability of an answer (0 to 1); less probable answers are rejected.
     pub(crate) reject: Option<f64>,
-    /// The answer that is expected; another one ends with status 3.
+    /// The expected answer; any other ends with status 3.
     pub(crate) expect: Option<String>,
     /// The probability that a taxel flips.
     pub(crate) noise: Option<Noise>,
-    /// An imprint of the dead taxels. They say nothing about the shape.
+    /// An imprint of the dead taxels, which tell nothing about the shape.
     pub(crate) mask: Option<OsString>,
-    /// Whether to say where the shape lies.
+    /// Whether to tell where the shape lies.
     pub(crate) pose: bool,
-    /// In mm; the place of the shape is then given in mm too.
+    /// The pitch in mm; if given, the place of the shape is in mm too.
     pub(crate) pitch_mm: Option<f64>,
-    /// Threads that answer lines; 0 for one per core.
+    /// The number of threads that answer lines; 0 means one per core.
     pub(crate) jobs: usize,
-    /// Whether the answer is a line of JSON; lines of touches are answered so anyway.
+    /// Whether the answer is a line of JSON. Lines of touches are always answered in JSON.
     pub(crate) json: bool,
 }
 
-/// `taxel recognise NAME|FILE`.
+/// Defines `taxel recognise NAME|FILE`.
 pub(super) fn command() -> Command {
     let model = option(
         "model",
@@ -99,14 +99,14 @@ pub(super) fn command() -> Command {
         .args([jobs(), json()])
 }
 
-/// The probability that a taxel flips: 0 or more, below 0.5.
+/// Parses the probability that a taxel flips: 0 or more, below 0.5.
 pub(crate) fn parse_noise(text: &str) -> Result<Noise, String> {
     let number = flags::parse_number(text)?;
     Noise::new(number).map_err(|error: NoiseError| error.to_string())
 }
 
 impl RecogniseArguments {
-    /// What the arguments of [`command`] ask for; `pitch_mm` is that of the flag, else of the settings.
+    /// Reads the arguments of [`command`]; `pitch_mm` is that of the flag, or else of the settings.
     pub(super) fn of(matches: &ArgMatches, pitch_mm: Option<f64>) -> Self {
         Self {
             what: flags::word(matches, "what"),

@@ -1,7 +1,7 @@
-//! Turns the arguments that clap has parsed into a [`Request`]: plain values, typed and checked. Nothing below this
-//! module knows clap.
+//! Turns the arguments that clap has parsed into a [`Request`]: plain values, typed and checked. Only this module and
+//! those beside it know clap.
 //!
-//! Settings are resolved on the way, since they decide about defaults: the sensor of a figure, the pitch of a table.
+//! Settings are resolved here, since they provide defaults: the sensor of a figure, the pitch of a table.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ use crate::source::Source;
 use crate::storage::AtlasFile;
 use crate::sweep::Shard;
 
-/// What the arguments ask for.
+/// The request of a command line, and the settings for it.
 #[derive(Clone, Debug)]
 pub(crate) struct Invocation {
     /// The command.
@@ -52,20 +52,20 @@ pub(crate) struct Invocation {
 pub(crate) enum Request {
     /// Print this text: the help, or the version.
     Help(String),
-    /// Open the screen: with this size, if the terminal's own is not wanted, and with a record in this file.
+    /// Open the screen: with this size instead of the terminal's, and recording into this file, if given.
     Screen(Option<(u16, u16)>, Option<PathBuf>),
     /// Run a script.
     Script(Script),
     /// Touch a figure.
     Figure(Box<Source>, Sensor, Form, Kept),
-    /// Touch a stored shape, moved as given.
+    /// Touch a stored shape after changing the given values.
     Picture(OsString, Given, Form, Kept),
     /// Describe a stored shape or a file.
     Describe(OsString, Form),
-    /// Write a stored shape or a file in another form.
+    /// Write a stored shape or a file in another format.
     Export(OsString, Export, Pitch),
-    /// Answer lines of JSON, of a file or of standard input; the sensor for lines without one, and the number of threads (0:
-    /// one per core).
+    /// Answer lines of JSON from a file or standard input; with the sensor for lines without one, and the number of
+    /// threads (0 means one per core).
     Batch(Option<PathBuf>, Sensor, usize),
     /// Sweep a grid of poses.
     Sweep(Box<SweepArguments>),
@@ -77,7 +77,7 @@ pub(crate) enum Request {
     Recognise(Box<RecogniseArguments>),
     /// List a recording, or describe its frames.
     Frames(Box<FramesArguments>, Form, Kept),
-    /// Answer the frames of a source as they come.
+    /// Answer the frames of a source as they arrive.
     Watch(Box<WatchArguments>),
     /// A subcommand of `taxel library`.
     Library(LibraryCommand),
@@ -96,13 +96,13 @@ pub(crate) struct SweepArguments {
     pub(crate) what: Swept,
     /// The point of the shape that x0 and y0 place.
     pub(crate) anchor: Anchor,
-    /// The axes that are given. Others take the range of the paper, or for x0 and y0 a cell that suits the shape.
+    /// The axes that are given. The others use the range of the paper, or for x0 and y0 a cell that suits the shape.
     pub(crate) ranges: GivenRanges,
     /// The part of the grid to sweep.
     pub(crate) shard: Shard,
     /// The number of threads; 0 means one per core.
     pub(crate) jobs: usize,
-    /// Files to write, and how the summary is printed.
+    /// The files to write, and the form of the summary.
     pub(crate) wanted: Wanted,
 }
 
@@ -112,53 +112,53 @@ pub(crate) struct SweepArguments {
 pub(crate) enum Swept {
     /// A figure on a sensor.
     Figure(Source, Sensor),
-    /// A stored shape, read later, and the values that change its sensor.
+    /// A stored shape, which is read later, and the given values of its sensor.
     Picture(OsString, Given),
 }
 
-/// Which names are listed.
+/// The shapes whose names are listed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NameSet {
-    /// Those of all shapes, the user's own and those that come with the program.
+    /// All shapes: the user's own and those that come with the program.
     All,
-    /// Those of the user's own shapes.
+    /// The user's own shapes.
     Own,
-    /// Those of deleted shapes, the one deleted last first.
+    /// The deleted shapes, the last deleted first.
     Deleted,
 }
 
 /// A subcommand of `taxel library`.
 #[derive(Clone, Debug)]
 pub(crate) enum LibraryCommand {
-    /// List all shapes; whether as JSON.
+    /// List all shapes; true for JSON.
     List(bool),
-    /// Print the names of some.
+    /// Print the names of some shapes.
     Names(NameSet),
     /// Describe a shape.
     Show(Name, Form),
-    /// Store a shape of the library or of a file under this name.
+    /// Store a shape of the library or of a file under a name.
     Save(Saving, OsString),
-    /// Move a shape into the trash.
+    /// Move a shape to the trash.
     Delete(Name),
-    /// Bring a deleted shape back.
+    /// Restore a deleted shape.
     Restore(Name),
     /// Print the library's folder.
     Path,
-    /// Read every shape, and report what is damaged or left over, in JSON or not.
+    /// Read every shape and report what is damaged or left over; true for JSON.
     Check(bool),
 }
 
-/// What to keep of a touch, besides printing it.
+/// What to keep of a touch, in addition to printing it.
 #[derive(Clone, Debug)]
 pub(crate) struct Kept {
-    /// `--save`.
+    /// The name to store the shape under: `--save`.
     pub(crate) saving: Option<Saving>,
-    /// `--export`.
+    /// The file to write: `--export`.
     pub(crate) export: Option<Export>,
 }
 
 impl Kept {
-    /// Whether anything is to be kept.
+    /// Returns true if anything is to be kept.
     pub(crate) fn is_asked(&self) -> bool {
         self.saving.is_some() || self.export.is_some()
     }
@@ -167,26 +167,26 @@ impl Kept {
 /// How to store a shape.
 #[derive(Clone, Debug)]
 pub(crate) struct Saving {
-    /// Its name from now on.
+    /// The name of the stored shape.
     pub(crate) name: Name,
-    /// Whether to replace an own shape of that name.
+    /// Whether to replace an own shape of this name.
     pub(crate) force: bool,
 }
 
-/// How an imprint and its descriptors are shown.
+/// The form in which an imprint and its descriptors are shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Form {
-    /// One line of JSON, in cells. The pitch is for a drawing that is exported beside it.
+    /// One line of JSON, in cells. The pitch is for a drawing that is exported too.
     Json(Pitch),
-    /// The matrix and a table; in mm too if the pitch is known.
+    /// The matrix and a table, which is in mm too if the pitch is known.
     Table(Pitch),
 }
 
-/// Reads the arguments, of which the first is the program's own name, and the settings that they name.
+/// Reads the arguments, the first of which is the program's own name, and the settings.
 ///
 /// # Errors
-/// [`CliError::Usage`] with clap's message; [`CliError::Settings`] for the settings file; [`CliError::Range`] for
-/// values out of range.
+/// Returns [`CliError::Usage`] with clap's message; [`CliError::Settings`] for the settings file; [`CliError::Range`]
+/// for values out of range.
 pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
     let mut command = groups::grouped(definitions::all());
     let matches = match command.try_get_matches_from_mut(arguments) {
@@ -241,14 +241,15 @@ pub(crate) fn read(arguments: Vec<OsString>) -> Result<Invocation, CliError> {
     })
 }
 
-/// The arguments of the innermost command, such as those of `model train`.
+/// Returns the arguments of the innermost command, such as those of `model train`.
 fn deepest(matches: &ArgMatches) -> &ArgMatches {
     matches
         .subcommand()
         .map_or(matches, |(_, own)| deepest(own))
 }
 
-/// The complaint that two arguments both read standard input, which can be read only once; None if at most one does.
+/// Returns the message that two arguments both stand for standard input, which can be read only once; None if at most
+/// one does.
 fn shared_input(matches: &ArgMatches) -> Option<String> {
     let inputs = ["file", "what", "set", "source", "mask", "gain"];
     let mut standard = inputs.into_iter().flat_map(|id| {
@@ -268,14 +269,14 @@ fn shared_input(matches: &ArgMatches) -> Option<String> {
     ))
 }
 
-/// The first flag of the screen that is given. Before a command such a flag would have no effect, so it is refused.
+/// Returns the first given flag of the screen. Before a command such a flag would have no effect, so it is refused.
 fn of_screen(matches: &ArgMatches) -> Option<String> {
     let flags = ["color", "theme", "no-mouse", "size", "record"];
     let given = |flag: &&str| matches.value_source(flag) == Some(ValueSource::CommandLine);
     flags.into_iter().find(given).map(str::to_owned)
 }
 
-/// The message about a flag of the screen that stands before the command `name`.
+/// Returns the message about a flag of the screen before the command `name`.
 fn too_early(flag: &str, name: &str, command: &clap::Command) -> String {
     let has_flag =
         |own: &clap::Command| own.get_arguments().any(|own| own.get_long() == Some(flag));
@@ -288,12 +289,12 @@ fn too_early(flag: &str, name: &str, command: &clap::Command) -> String {
     }
 }
 
-/// The settings in effect, from the file, the flags of a command and the environment.
+/// Returns the settings in effect, from the file, the flags of a command and the environment.
 fn effective(loaded: Loaded, matches: &ArgMatches) -> Result<Effective, CliError> {
     Effective::new(loaded, Chosen::of(matches), std::env::var_os)
 }
 
-/// Reads the arguments of the command `name`; `command` makes usage errors.
+/// Reads the arguments of the command `name`. `command` is for usage errors.
 fn request(
     name: &str,
     own: &ArgMatches,
@@ -355,10 +356,10 @@ fn request(
     })
 }
 
-/// The arguments of `taxel sweep`.
+/// Reads the arguments of `taxel sweep`.
 ///
 /// # Errors
-/// A usage error for sizes of a figure given with a picture; otherwise as [`source`].
+/// Returns a usage error for sizes of a figure given with a picture, and the errors of [`source`].
 fn sweep(
     matches: &ArgMatches,
     command: &mut clap::Command,
@@ -387,7 +388,7 @@ fn sweep(
     })
 }
 
-/// What a sweep or a merge is to write and print.
+/// Reads what a sweep or a merge is to write and print.
 fn wanted(matches: &ArgMatches) -> Wanted {
     let poses = matches.try_get_one::<PathBuf>("poses");
     Wanted {
@@ -400,7 +401,7 @@ fn wanted(matches: &ArgMatches) -> Wanted {
     }
 }
 
-/// A usage error with the usage of the command `name`.
+/// Returns a usage error with the usage of the command `name`.
 fn misused(command: &mut clap::Command, name: &str, message: &str) -> CliError {
     let error = command.find_subcommand_mut(name).map_or_else(
         || clap::Error::raw(ErrorKind::ArgumentConflict, format!("{message}\n")),
@@ -409,10 +410,11 @@ fn misused(command: &mut clap::Command, name: &str, message: &str) -> CliError {
     error.into()
 }
 
-/// The figure given to a command, and its sensor.
+/// Returns the figure given to a command, and its sensor.
 ///
 /// # Errors
-/// A usage error for a parameter that this kind of figure does not have; [`CliError::Range`] for values out of range.
+/// Returns a usage error for a parameter that this kind of figure does not have; [`CliError::Range`] for values out
+/// of range.
 fn source(
     matches: &ArgMatches,
     command: &mut clap::Command,
@@ -439,10 +441,10 @@ fn source(
     Ok((figure, sensor))
 }
 
-/// The folder for manual pages.
+/// Returns the folder for manual pages, if one is given.
 ///
 /// # Errors
-/// A usage error for the name of a command: its page was meant.
+/// Returns a usage error if the folder is the name of a command: its page was meant.
 fn man_folder(
     matches: &ArgMatches,
     command: &mut clap::Command,
@@ -460,10 +462,10 @@ fn man_folder(
     }
 }
 
-/// The subcommand of `taxel library`.
+/// Reads the subcommand of `taxel library`.
 fn library_command(matches: &ArgMatches, settings: &Effective) -> Result<LibraryCommand, CliError> {
     let Some((command, own)) = matches.subcommand() else {
-        // Required: there is always one.
+        // clap requires a subcommand, so there is always one.
         return Err(unhandled_subcommand("library"));
     };
     let name = own.try_get_one::<Name>("name").ok().flatten().cloned();
@@ -485,15 +487,15 @@ fn library_command(matches: &ArgMatches, settings: &Effective) -> Result<Library
     })
 }
 
-/// The argument that is a name or a file.
+/// Returns the argument that is a name or a file.
 fn what(matches: &ArgMatches) -> Result<OsString, CliError> {
     required(matches, "what")
 }
 
-/// What to keep of a touch.
+/// Reads what to keep of a touch.
 ///
 /// # Errors
-/// If standard output would have to hold more than one export: an answer beside it, or those of several frames.
+/// Returns an error if standard output would get more than one export: an answer too, or several frames.
 fn kept(matches: &ArgMatches, command: &mut clap::Command, name: &str) -> Result<Kept, CliError> {
     let path = matches.get_one::<PathBuf>("export");
     if path.is_some_and(|path| path.as_os_str() == "-") {
@@ -504,7 +506,7 @@ fn kept(matches: &ArgMatches, command: &mut clap::Command, name: &str) -> Result
                     .to_owned(),
             });
         }
-        // Only `taxel frames` has it.
+        // Only `taxel frames` has this flag.
         if let Ok(Some(true)) = matches.try_get_one::<bool>("all") {
             let message = "the argument '--all' cannot be used with '--export -', which takes one frame; \
                            with a name each frame has a file of its own";
@@ -518,7 +520,7 @@ fn kept(matches: &ArgMatches, command: &mut clap::Command, name: &str) -> Result
     })
 }
 
-/// The file to write, in the format given by `--format` or by its ending.
+/// Returns the file to write, in the format given by `--format` or by its extension.
 fn export(
     matches: &ArgMatches,
     path: &Path,
@@ -530,14 +532,14 @@ fn export(
     export.map_err(|message| misused(command, name, &message))
 }
 
-/// `--save` with its `--force`.
+/// Reads `--save` with its `--force`.
 fn saving(matches: &ArgMatches) -> Option<Saving> {
     let name = matches.get_one::<Name>("save")?.clone();
     let force = matches.get_flag("force");
     Some(Saving { name, force })
 }
 
-/// The pitch, as far as the flags and the settings know it.
+/// Returns the pitch of the flags and of the settings.
 fn pitch(matches: &ArgMatches, settings: &Effective) -> Result<Pitch, CliError> {
     Ok(Pitch {
         given: Given::of(matches).pitch()?,
@@ -545,7 +547,7 @@ fn pitch(matches: &ArgMatches, settings: &Effective) -> Result<Pitch, CliError> 
     })
 }
 
-/// JSON with `--json`, a table otherwise.
+/// Returns JSON for `--json`, otherwise a table.
 fn form(matches: &ArgMatches, settings: &Effective) -> Result<Form, CliError> {
     let pitch = pitch(matches, settings)?;
     Ok(if matches.get_flag("json") {

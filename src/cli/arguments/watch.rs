@@ -1,6 +1,6 @@
 //! The arguments of `taxel watch`.
 //!
-//! The flags of `taxel frames` about processing and thresholds, and those of the source:
+//! They are the flags of `taxel frames` about processing and thresholds, and those of the source:
 //! ```text
 //! taxel watch /dev/ttyACM0 --baud 921600 --at-least 20     a serial line
 //! taxel watch tcp://10.0.0.7:5000 --format lines           a connection
@@ -24,16 +24,17 @@ use crate::cli::settings::sensors::SensorSettings;
 use crate::formats::stream::StreamFormat;
 use crate::storage::Existing;
 
-/// What `taxel watch` is to do.
+/// The arguments of `taxel watch`.
 #[derive(Clone, Debug)]
 pub(crate) struct WatchArguments {
-    /// A serial line, a FIFO, `tcp://HOST:PORT`, a recording, or `-` for standard input; told apart when it is opened.
+    /// A serial line, a FIFO, `tcp://HOST:PORT`, a recording, or `-` for standard input; which one is decided when it
+    /// is opened.
     pub(crate) source: OsString,
-    /// How it is read: format, rows and columns, baud rate, speed and repetition.
+    /// How the source is read: format, rows and columns, baud rate, speed and repetition.
     pub(crate) options: AcquireOptions,
-    /// Whether `--baud` is given, which only a serial line has.
+    /// Whether `--baud` is given, which is only for serial lines.
     pub(crate) baud_named: bool,
-    /// From values to the imprint.
+    /// The processing from values to the imprint.
     pub(crate) processing: ProcessingArguments,
     pub(crate) naming: NamingArguments,
     /// The file that frames are recorded in.
@@ -42,11 +43,11 @@ pub(crate) struct WatchArguments {
     pub(crate) existing: Existing,
     /// The memory for the history of the page, in bytes.
     pub(crate) history_bytes: usize,
-    /// A line of JSON for each frame, also on a terminal.
+    /// Whether to print a line of JSON for each frame, even on a terminal.
     pub(crate) json: bool,
 }
 
-/// `taxel watch SOURCE`. Without `--format` the first bytes tell the format of a stream.
+/// Defines `taxel watch SOURCE`. Without `--format`, the first bytes tell the format of a stream.
 pub(crate) fn command() -> Command {
     let source = Arg::new("source")
         .value_name("SOURCE")
@@ -94,7 +95,7 @@ pub(crate) fn command() -> Command {
         .args(program::look().map(|arg| arg.conflicts_with("json")))
 }
 
-/// A factor above 0: 2 plays twice as fast, 0.5 at half the speed.
+/// Parses a factor above 0: 2 plays twice as fast, 0.5 at half the speed.
 fn parse_speed(text: &str) -> Result<f64, String> {
     let speed = flags::parse_number(text)?;
     (speed > 0.0 && speed <= 1e6)
@@ -103,10 +104,10 @@ fn parse_speed(text: &str) -> Result<f64, String> {
 }
 
 impl WatchArguments {
-    /// What the arguments of [`command`] ask for.
+    /// Reads the arguments of [`command`].
     ///
     /// # Errors
-    /// If a threshold is out of range.
+    /// Returns an error if a threshold is out of range.
     pub(crate) fn of(
         matches: &ArgMatches,
         source: OsString,

@@ -1,6 +1,7 @@
-//! Reads an imprint in any format, or a stored shape, from a file or from standard input.
+//! Reads an imprint in any format, or a stored shape, from a file or standard input.
 //!
-//! The format is recognised from the content, never from the file's name ([`read_content`]). At most [`MAX_BYTES`] are read.
+//! The format is recognised by the content, never by the file's name ([`read_content`]). At most [`MAX_BYTES`] are
+//! read.
 
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -14,7 +15,7 @@ use crate::formats::shape::MAX_BYTES;
 use crate::formats::{Content, ContentError, read_content};
 use crate::quote::shortened_message;
 
-/// Where to read from.
+/// A file or standard input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum InputSource {
     /// A file.
@@ -24,7 +25,7 @@ pub(crate) enum InputSource {
 }
 
 impl InputSource {
-    /// What an argument names: `-` is standard input.
+    /// Returns the source that an argument names; `-` is standard input.
     pub(crate) fn of(path: &Path) -> Self {
         if path.as_os_str() == "-" {
             Self::Standard
@@ -33,7 +34,7 @@ impl InputSource {
         }
     }
 
-    /// Its name for messages: the path, or `standard input`.
+    /// Returns its name for messages: the path, or `standard input`.
     pub(crate) fn name(&self) -> String {
         match self {
             Self::File(path) => path.to_string_lossy().into_owned(),
@@ -42,10 +43,10 @@ impl InputSource {
     }
 }
 
-/// Standard input, for the first who asks: a second reader would take the end that the first one found for an empty input.
+/// Returns standard input, but only once: a second reader would find only its end, and take it for an empty input.
 ///
 /// # Errors
-/// If it was asked for before.
+/// Returns an error if it was taken before.
 pub(crate) fn standard() -> io::Result<io::Stdin> {
     static IS_TAKEN: AtomicBool = AtomicBool::new(false);
     if IS_TAKEN.swap(true, Ordering::Relaxed) {
@@ -54,7 +55,7 @@ pub(crate) fn standard() -> io::Result<io::Stdin> {
     Ok(io::stdin())
 }
 
-/// Why input cannot be used.
+/// The reason why input cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum InputError {
     /// It cannot be opened or read.
@@ -66,10 +67,10 @@ pub(crate) enum InputError {
     /// It is neither an imprint nor a stored shape.
     #[error("{}", shortened_message(&.0.to_string()))]
     Content(#[from] ContentError),
-    /// It looks like something that another command reads.
+    /// The input looks like something that another command reads.
     #[error("{error}; if this is {what}, use taxel {command}")]
     Elsewhere {
-        /// Why it is no imprint.
+        /// The reason why it is not an imprint.
         error: Box<InputError>,
         /// What it looks like.
         what: &'static str,
@@ -78,10 +79,10 @@ pub(crate) enum InputError {
     },
 }
 
-/// Reads an open source. If the first character is `{` it is a stored shape, otherwise an imprint.
+/// Reads an open source. Input that starts with `{` is a stored shape, any other an imprint.
 ///
 /// # Errors
-/// [`InputError`], without the name of the source.
+/// Returns [`InputError`], which does not name the source.
 pub(crate) fn read_from(source: impl Read) -> Result<Content, InputError> {
     let bytes = bytes(source)?;
     read(&bytes).map_err(|error| {
@@ -104,7 +105,8 @@ fn read(bytes: &[u8]) -> Result<Content, InputError> {
     Ok(read_content(bytes)?)
 }
 
-/// What JSON lines hold if not imprints: poses or a set of shapes; and the command that reads them. The first line decides.
+/// Returns what JSON lines are if not imprints, a list of poses or a set of shapes, and the command that reads them.
+/// The first line decides.
 fn lines_of(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut lines = bytes.split(|&byte| byte == b'\n');
@@ -112,9 +114,10 @@ fn lines_of(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     line_of_sources(first)
 }
 
-/// The same of one line; None if it is neither. A stored shape has neither of these keys.
+/// Returns what a JSON line is, a pose or a shape of a set, and the command that reads it; None if it is neither. A
+/// stored shape has neither of the keys `figure` and `picture`.
 pub(crate) fn line_of_sources(line: &[u8]) -> Option<(&'static str, &'static str)> {
-    /// The keys that tell one kind from another.
+    /// The keys that tell the kinds of lines apart.
     #[derive(Deserialize)]
     struct SourceKeys {
         figure: Option<IgnoredAny>,
@@ -129,7 +132,7 @@ pub(crate) fn line_of_sources(line: &[u8]) -> Option<(&'static str, &'static str
     })
 }
 
-/// All bytes of a source, up to one more than the limit.
+/// Reads all bytes of a source, but at most one more than the limit.
 fn bytes(source: impl Read) -> Result<Vec<u8>, InputError> {
     let mut bytes = Vec::new();
     let limit = MAX_BYTES as u64;

@@ -1,8 +1,8 @@
-//! What commands read: imprints and stored shapes, from files, standard input and the library.
+//! The input of commands: imprints, stored shapes and recordings, from files, standard input and the library.
 //!
-//! `shapes` decides what a `NAME|FILE` argument means; `content` reads a file and recognises its format;
-//! `lines` answers lines one by one; `recording` reads the frames of a sensor, of a pipe by `spool`, which `processing` makes
-//! imprints of.
+//! `shapes` decides what a `NAME|FILE` argument means; `content` reads a file and recognises its format; `lines`
+//! answers lines one by one; `recording` reads the frames of a sensor, from a pipe through `spool`; `processing`
+//! turns frames into imprints.
 
 pub(super) mod content;
 

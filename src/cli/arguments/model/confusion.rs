@@ -1,7 +1,6 @@
-//! `taxel model confusion`: its flags, and what they ask for.
+//! The flags of `taxel model confusion`, and how they are read.
 //!
-//! The command has one subject, a model, and several questions about it ([`Evaluated`]), of which one can be asked at a
-//! time:
+//! The command answers one of several questions ([`Evaluated`]) about a model:
 //! ```text
 //! taxel model confusion figures                        from the whole imprint: the limit of any method
 //! taxel model confusion figures --given na,p           as if only these descriptors were known
@@ -32,16 +31,16 @@ use crate::recognition::{
 };
 use crate::storage::Existing;
 
-/// What is evaluated of a model, and how it is shown.
+/// The model to evaluate, the question about it, and how the answer is shown.
 #[derive(Clone, Debug)]
 pub(crate) struct ConfusionArguments {
     /// Name or file of the model.
     pub(crate) model: OsString,
     /// The question.
     pub(crate) of: Evaluated,
-    /// The steps in which descriptors are measured, for `--given` and `--greedy`.
+    /// The steps to which descriptors are rounded, for `--given` and `--greedy`.
     pub(crate) roundings: Vec<Rounding>,
-    /// Neighbours, samples, templates and seed of the other methods.
+    /// The settings of the other classifiers: neighbours, samples, templates and seed.
     pub(crate) classifiers: ClassifierSettings,
     /// How the answer is printed.
     pub(crate) form: EvaluationForm,
@@ -53,45 +52,45 @@ pub(crate) struct ConfusionArguments {
     pub(crate) quiet: bool,
 }
 
-/// Who names the shapes, and from what.
+/// The classifier that names the shapes, and what it knows of a touch.
 #[derive(Clone, Debug)]
 pub(crate) enum Evaluated {
     /// The best classifier, from the whole imprint.
     Imprints,
-    /// The best one from some descriptors.
+    /// The best classifier, from some descriptors.
     Given(GivenDescriptors),
-    /// The same, with descriptors chosen one by one.
+    /// The best classifier, from descriptors that are chosen one by one.
     Greedy,
-    /// The best one, for each pair of shapes.
+    /// The best classifier, for each pair of shapes alone.
     Pairs,
-    /// One of the methods in use, from its own features.
+    /// One of the usual classifiers, from its own features.
     Classifier(Classifier),
-    /// All of these methods, in a table.
+    /// All usual classifiers, in a table.
     AllClassifiers,
-    /// The best one, from noisy touches.
+    /// The best classifier, from noisy touches.
     Noise(NoiseArguments),
-    /// The best one, from touches between the poses of the model.
+    /// The best classifier, from touches between the poses of the model.
     HalfStep,
 }
 
 /// Noisy touches to simulate.
 #[derive(Clone, Debug)]
 pub(crate) struct NoiseArguments {
-    /// The probabilities that a taxel flips, each 0 or more and below 0.5; one row of the answer each.
+    /// The probabilities that a taxel flips, each 0 or more and below 0.5. Each has a row of the answer.
     pub(crate) noise: DecimalRange,
-    /// Numbers of dead taxels; for each the whole range of noise is simulated.
+    /// The numbers of dead taxels. The whole range of noise is simulated for each.
     pub(crate) dead: Vec<u32>,
     /// The descriptors that are known in place of the imprint.
     pub(crate) given: Option<GivenDescriptors>,
-    /// Touches of each shape.
+    /// The number of touches of each shape.
     pub(crate) touches: u64,
-    /// Seed of the poses, flips and dead taxels that are drawn.
+    /// The seed for drawing poses, flips and dead taxels.
     pub(crate) seed: u64,
-    /// Columns and rows of the matrix; those of the model's sensor if not given.
+    /// Columns and rows of the matrix; None for those of the model's sensor.
     pub(crate) size: Option<(u8, u8)>,
 }
 
-/// `taxel model confusion`.
+/// Defines `taxel model confusion`.
 pub(super) fn command() -> Command {
     Command::new("confusion")
         .about("Show which shapes one touch confuses, and the limit of any method")
@@ -127,7 +126,7 @@ pub(super) fn command() -> Command {
         .args(noisy())
 }
 
-/// `--given`, `--greedy`, `--pairs` and `--classifier`: what is asked, other than about noise.
+/// Defines `--given`, `--greedy`, `--pairs` and `--classifier`: all questions except those about noise.
 fn questions() -> [Arg; 4] {
     let classifiers = Classifier::ALL
         .map(Classifier::name)
@@ -152,7 +151,7 @@ fn questions() -> [Arg; 4] {
     ]
 }
 
-/// `--neighbours`, `--sample` and `--templates`, which some classifiers need.
+/// Defines `--neighbours`, `--sample` and `--templates`, which some classifiers need.
 fn of_classifiers() -> [Arg; 3] {
     [
         ("neighbours", "Neighbours that vote in knn; default 1"),
@@ -169,7 +168,7 @@ fn of_classifiers() -> [Arg; 3] {
     })
 }
 
-/// `--export`, `--force`, `--json`, `--quiet` and `--csv`. Only a matrix of confusions can be exported.
+/// Defines `--export`, `--force`, `--json`, `--quiet` and `--csv`. Only a confusion matrix can be exported.
 fn output() -> [Arg; 5] {
     let export = option("export", "FILE", "Write the matrix as .csv, .svg or .png")
         .value_parser(report())
@@ -180,7 +179,7 @@ fn output() -> [Arg; 5] {
     [export, force, json(), quiet(), csv]
 }
 
-/// The flags of noisy touches.
+/// Defines the flags of noisy touches.
 fn noisy() -> [Arg; 5] {
     let noise = option(
         "noise",
@@ -210,7 +209,7 @@ fn noisy() -> [Arg; 5] {
     [noise, dead, touches, matrix, test].map(|arg| arg.help_heading("Noise"))
 }
 
-/// Probabilities that a taxel flips, such as `0:0.1:0.02`. Both ends must be a noise that [`Noise::new`] accepts.
+/// Parses probabilities that a taxel flips, such as `0:0.1:0.02`. Both ends must be valid for [`Noise::new`].
 fn parse_noise_range(text: &str) -> Result<DecimalRange, String> {
     let range: DecimalRange = text
         .parse()
@@ -221,7 +220,7 @@ fn parse_noise_range(text: &str) -> Result<DecimalRange, String> {
     Ok(range)
 }
 
-/// Columns and rows, such as `16x16`.
+/// Parses columns and rows, such as `16x16`.
 fn parse_matrix(text: &str) -> Result<(u8, u8), &'static str> {
     let expected = "expected columns and rows from 1 to 64, such as 16x16";
     let (columns, rows) = text.split_once('x').ok_or(expected)?;
@@ -232,21 +231,21 @@ fn parse_matrix(text: &str) -> Result<(u8, u8), &'static str> {
     Ok((side(columns)?, side(rows)?))
 }
 
-/// A list of descriptors, such as `na,p`.
+/// Parses a list of descriptors, such as `na,p`.
 fn parse_given(text: &str) -> Result<GivenDescriptors, GivenError> {
     text.parse()
 }
 
-/// A descriptor and a step, such as `cg_cd=0.01`.
+/// Parses a descriptor and a step, such as `cg_cd=0.01`.
 fn parse_rounding(text: &str) -> Result<Rounding, GivenError> {
     text.parse()
 }
 
 impl ConfusionArguments {
-    /// What the arguments of [`command`] ask for.
+    /// Reads the arguments of [`command`].
     ///
     /// # Errors
-    /// [`CliError::Unused`] for a flag that the others leave nothing to do.
+    /// Returns [`CliError::Unused`] for a flag that has no effect with the others.
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         check_classifier(matches)?;
         check_roundings(matches)?;
@@ -264,7 +263,7 @@ impl ConfusionArguments {
     }
 }
 
-/// Refuses settings that the classifier does not have.
+/// Refuses flags that have no effect with the given classifier.
 fn check_classifier(matches: &ArgMatches) -> Result<(), CliError> {
     let name = matches.get_one::<String>("classifier").map(String::as_str);
     let is = |one: &str| name.is_some_and(|name| name == one || name == "all");
@@ -288,7 +287,7 @@ fn check_classifier(matches: &ArgMatches) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Refuses two steps for one descriptor, and those of descriptors that are not given.
+/// Refuses a second step for a descriptor, and a step for a descriptor that `--given` does not name.
 fn check_roundings(matches: &ArgMatches) -> Result<(), CliError> {
     let roundings = matches.get_many::<Rounding>("round").into_iter().flatten();
     let keys: Vec<_> = roundings.map(Rounding::descriptor).collect();
@@ -309,8 +308,8 @@ fn check_roundings(matches: &ArgMatches) -> Result<(), CliError> {
 }
 
 impl Evaluated {
-    /// The question that is asked. clap has made sure that there is at most one; without one it is about whole
-    /// imprints.
+    /// Returns the question of the flags; without one, it is about whole imprints. clap makes sure that there is at
+    /// most one.
     fn of(matches: &ArgMatches) -> Self {
         if matches.contains_id("test") {
             return Self::HalfStep;
@@ -333,7 +332,7 @@ impl Evaluated {
 }
 
 impl NoiseArguments {
-    /// The touches that the flags of [`noisy`] ask for.
+    /// Reads the flags of [`noisy`].
     fn of(matches: &ArgMatches, noise: DecimalRange) -> Self {
         let dead = matches.get_many::<u32>("dead");
         Self {
@@ -347,7 +346,7 @@ impl NoiseArguments {
     }
 }
 
-/// The settings of the other classifiers; those that are not given keep their defaults.
+/// Returns the settings of the other classifiers, with defaults for those that are not given.
 fn classifiers(matches: &ArgMatches) -> ClassifierSettings {
     let mut classifiers = ClassifierSettings::default();
     let limit = |id: &str, usual: usize| {

@@ -1,15 +1,16 @@
-//! `taxel model`: its subcommands, a file each with the flags and what they ask for.
+//! `taxel model`: its subcommands, with a file for the flags of each.
 //!
 //! | file | holds |
 //! |---|---|
-//! | `shape_set` | the shapes to train on, for the next two |
+//! | `shape_set` | the shapes of a set, for `train` and `separate` |
 //! | `train` | `taxel model train` |
 //! | `separate` | `taxel model separate` |
 //! | `confusion` | `taxel model confusion` |
 //! | `touches` | `taxel model touches` |
 //!
-//! `show`, `list` and `delete` are small enough to stand here. A model is named as in `taxel recognise --model`: a model
-//! beside the library takes precedence over a built-in set such as `figures` ([`DEFAULT_MODEL`]), and that over a file.
+//! `show`, `list` and `delete` are small and defined here. A model is named as in `taxel recognise --model`: a model
+//! beside the library takes precedence over a built-in set such as `figures` ([`DEFAULT_MODEL`]), and a built-in set
+//! over a file.
 
 use std::ffi::OsString;
 
@@ -42,30 +43,30 @@ pub(crate) const DEFAULT_MODEL: &str = "figures";
 pub(crate) enum ModelRequest {
     /// Train a model and write it.
     Train(Box<train::TrainArguments>),
-    /// Show what a model was trained on and how well it tells its shapes apart; whether as JSON.
+    /// Show what a model was trained on and how well it tells its shapes apart; true for JSON.
     Show(OsString, bool),
-    /// List the models beside the library; whether as JSON.
+    /// List the models beside the library; true for JSON.
     List(bool),
     /// Print the names of the models.
     Names,
     /// Delete a model beside the library.
     Delete(Name),
-    /// Evaluate a model: which shapes one touch confuses.
+    /// Evaluate which shapes one touch confuses.
     Confusion(Box<confusion::ConfusionArguments>),
     /// Simulate how many touches it takes to name a shape.
     Touches(touches::TouchesArguments),
-    /// Compute the error of a set against the size of its shapes and the threshold of the sensor.
+    /// Compute how the error of a set depends on the size of its shapes and on the threshold of the sensor.
     Separate(Box<separate::SeparateArguments>),
 }
 
 impl ModelRequest {
-    /// What the arguments of [`command`] ask for.
+    /// Reads the arguments of [`command`].
     ///
     /// # Errors
-    /// [`CliError::Range`] for a value out of range; [`CliError::Unused`] for a flag that would be ignored.
+    /// Returns [`CliError::Range`] for a value out of range; [`CliError::Unused`] for a flag that has no effect.
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let Some((command, own)) = matches.subcommand() else {
-            // Required: there is always one.
+            // clap requires a subcommand, so there is always one.
             return Err(unhandled_subcommand("model"));
         };
         Ok(match command {
@@ -82,7 +83,7 @@ impl ModelRequest {
     }
 }
 
-/// `taxel model` with its subcommands.
+/// Defines `taxel model` with its subcommands.
 pub(super) fn command() -> Command {
     let show = Command::new("show")
         .about("Show what a model was trained on, and its error")
@@ -110,7 +111,7 @@ pub(super) fn command() -> Command {
         .subcommand(separate::command())
 }
 
-/// `MODEL`, a required argument: the name of a model beside the library, or its file.
+/// Defines the required argument `MODEL`: the name of a model beside the library, or its file.
 fn which_model() -> Arg {
     Arg::new("model")
         .value_name("MODEL")
@@ -119,7 +120,7 @@ fn which_model() -> Arg {
         .help("Name of a model, or its file")
 }
 
-/// `--seed`: the same seed draws the same touches, whatever the number of threads.
+/// Defines `--seed`. The same seed draws the same touches with any number of threads.
 fn seed() -> Arg {
     option("seed", "N", "Seed of the random numbers; default 0")
         .value_parser(whole::<u64>(0..))
@@ -127,7 +128,7 @@ fn seed() -> Arg {
         .hide_default_value(true)
 }
 
-/// The value of a flag that has a default.
+/// Returns the value of a flag, or its default.
 fn number<T: Copy + Send + Sync + 'static>(matches: &ArgMatches, id: &str, default: T) -> T {
     matches.get_one(id).copied().unwrap_or(default)
 }

@@ -1,8 +1,8 @@
-//! `taxel model separate`: its flags, and what they ask for.
+//! The flags of `taxel model separate`, and how they are read.
 //!
-//! The error of a set against two things: how large the shapes are on the matrix, and the threshold of a taxel. The
-//! first is one of `--scale` (all lengths times a factor, in cells) and `--pitch` (lengths in mm over cells of this
-//! many mm), the second is `--threshold`. Each is a range, `START:END:STEP`, or a single number:
+//! The command computes the error of a set for sizes of the shapes on the matrix and for thresholds of a taxel. Sizes
+//! are given by `--scale` (all lengths times a factor, in cells) or by `--pitch` (lengths are in mm, cells have this
+//! side in mm), thresholds by `--threshold`. Each is a range, `START:END:STEP`, or a single number:
 //! ```text
 //! taxel model separate figures --scale 0.5:1.5:0.1 --want 0.01
 //! taxel model separate shapes.jsonl --pitch 1:4:0.5 --threshold 0.3:0.7:0.2
@@ -25,24 +25,25 @@ use crate::pose::{Axis, DecimalRange};
 use crate::recognition::{CellPositions, SizeAxis};
 use crate::storage::Existing;
 
-/// A set of shapes, and the sizes and thresholds to look at.
+/// A set of shapes, and the sizes and thresholds to evaluate.
 #[derive(Clone, Debug)]
 pub(crate) struct SeparateArguments {
     /// A model, or shapes as for training.
     pub(crate) set: SetArguments,
-    /// What `sizes` are.
+    /// Whether `sizes` are scales or pitches.
     pub(crate) axis: SizeAxis,
     /// Scales, or pitches in mm; a scale of 1 if neither is given.
     pub(crate) sizes: DecimalRange,
-    /// Coverages from which on a taxel is active; None for the threshold of the model, else of the default sensor.
+    /// The coverages from which a taxel is active; None for the threshold of the model, or else of the default
+    /// sensor.
     pub(crate) thresholds: Option<DecimalRange>,
-    /// Angles in degrees; None for those of the model, else a whole turn in steps of 1.
+    /// The angles in degrees; None for those of the model, or else a whole turn in steps of 1.
     pub(crate) angles: Option<DecimalRange>,
-    /// Positions of a cell in each direction; None for those of the model, else 100.
+    /// Positions per cell along x and y; None for those of the model, or else 100.
     pub(crate) positions: Option<CellPositions>,
-    /// The error (0 to 1) to reach; the smallest size that does is searched for.
+    /// The error (0 to 1) for which the smallest sufficient size is searched.
     pub(crate) wanted: Option<f64>,
-    /// Threads; 0 for as many as there are cores.
+    /// The number of threads; 0 means one per core.
     pub(crate) jobs: usize,
     /// How the answer is printed.
     pub(crate) form: EvaluationForm,
@@ -54,7 +55,7 @@ pub(crate) struct SeparateArguments {
     pub(crate) quiet: bool,
 }
 
-/// `taxel model separate`.
+/// Defines `taxel model separate`.
 pub(super) fn command() -> Command {
     let want = option("want", "ERROR", "Find the smallest size with this error")
         .value_parser(parse_probability);
@@ -98,7 +99,8 @@ pub(super) fn command() -> Command {
         ])
 }
 
-/// `--scale`, `--pitch` and `--threshold`. Their ids are not those of the sensor's own flags, which take a number.
+/// Defines `--scale`, `--pitch` and `--threshold`. Their ids differ from those of the sensor's own flags, which take
+/// a number.
 fn sizes() -> [Arg; 3] {
     let flag = |id: &'static str, long: &'static str, help: &'static str| {
         Arg::new(id)
@@ -128,10 +130,10 @@ fn sizes() -> [Arg; 3] {
 }
 
 impl SeparateArguments {
-    /// What the arguments of [`command`] ask for.
+    /// Reads the arguments of [`command`].
     ///
     /// # Errors
-    /// [`CliError::Range`] for sizes that are not above 0, and thresholds that are not above 0 or above 1.
+    /// Returns [`CliError::Range`] for a size that is not above 0, or a threshold that is not above 0, up to 1.
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let range = |id: &str| matches.get_one::<DecimalRange>(id).copied();
         for (id, flag, most, allowed) in [

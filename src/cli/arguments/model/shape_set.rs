@@ -1,6 +1,6 @@
 //! The shapes of a set and their positions, for `model train` and `model separate`.
 //!
-//! A set is put together from three places; at least one of them must be given:
+//! A set combines shapes from three sources, at least one of which must be given:
 //! ```text
 //! taxel model train shapes.jsonl washer      lines of JSON, '-' for standard input; names of the library
 //!                   --shape 'disc=ellipse radius_x=3 radius_y=3'
@@ -15,19 +15,19 @@ use clap::{Arg, ArgAction, ArgGroup, ArgMatches};
 use crate::cli::arguments::flags::{name_or_path, option, switch};
 use crate::recognition::CellPositions;
 
-/// A set of shapes, not read yet.
+/// A set of shapes that is not read yet.
 #[derive(Clone, Debug)]
 pub(crate) struct SetArguments {
-    /// Files of JSON lines, or names of the library.
+    /// Files of JSON lines, or names of stored shapes.
     pub(crate) what: Vec<OsString>,
-    /// Shapes in words: `disc=ellipse radius_x=3`.
+    /// Shapes as text: `disc=ellipse radius_x=3`.
     pub(crate) shapes: Vec<String>,
     /// Whether all shapes of the library belong to the set.
     pub(crate) library_all: bool,
 }
 
 impl SetArguments {
-    /// The values of the flags of [`args`].
+    /// Reads the arguments of [`args`].
     pub(super) fn of(matches: &ArgMatches) -> Self {
         let what = matches.get_many::<OsString>("set").into_iter().flatten();
         let shapes = matches.get_many::<String>("shape").into_iter().flatten();
@@ -39,7 +39,8 @@ impl SetArguments {
     }
 }
 
-/// The arguments that name shapes: those without a flag, shown in the usage as `value`; `--shape` and `--library-all`.
+/// Defines the arguments that give shapes: the positional ones, shown as `value` in the usage; `--shape` and
+/// `--library-all`.
 pub(super) fn args(value: &'static str, help: &'static str) -> [Arg; 3] {
     let what = Arg::new("set")
         .value_name(value)
@@ -55,7 +56,7 @@ pub(super) fn args(value: &'static str, help: &'static str) -> [Arg; 3] {
     [what, shape.action(ArgAction::Append), all]
 }
 
-/// Makes sure that at least one of [`args`] is given: an empty set is a usage error.
+/// Requires at least one of [`args`]: an empty set is a usage error.
 pub(super) fn group() -> ArgGroup {
     ArgGroup::new("shapes")
         .args(["set", "shape", "library-all"])
@@ -63,7 +64,7 @@ pub(super) fn group() -> ArgGroup {
         .required(true)
 }
 
-/// `--positions`, for a coarser grid without naming a cell.
+/// Defines `--positions`, for a coarser grid without giving ranges of x0 and y0.
 pub(super) fn positions() -> Arg {
     option(
         "positions",
@@ -74,8 +75,8 @@ pub(super) fn positions() -> Arg {
     .help_heading("Grid")
 }
 
-/// A number of positions whose step is a whole number of hundredths of a cell, as ranges are exact in hundredths. Angles
-/// have ranges of their own.
+/// Parses a number of positions per cell. Their distance must be a whole number of hundredths of a cell, since ranges
+/// are exact in hundredths. Angles have ranges of their own.
 fn parse_positions(text: &str) -> Result<CellPositions, &'static str> {
     let number = text.trim().parse::<u8>().ok();
     number

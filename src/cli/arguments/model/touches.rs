@@ -1,4 +1,4 @@
-//! `taxel model touches`: its flags, and what they ask for.
+//! The flags of `taxel model touches`, and how they are read.
 
 use std::ffi::OsString;
 
@@ -8,16 +8,16 @@ use crate::cli::arguments::flags::{self, json, option, parse_probability, quiet,
 use crate::cli::arguments::help::MODEL_TOUCHES_EXAMPLES;
 use crate::cli::arguments::model::{number, seed, which_model};
 
-/// How many touches it takes until a shape is probable enough.
+/// A simulation of how many touches it takes until a shape is probable enough.
 #[derive(Clone, Debug)]
 pub(crate) struct TouchesArguments {
     /// Name or file of the model.
     pub(crate) model: OsString,
     /// The probability (0 to 1) at which a run ends.
     pub(crate) until: f64,
-    /// Runs of each shape.
+    /// The number of runs of each shape.
     pub(crate) runs: u64,
-    /// Seed of the poses that are drawn.
+    /// The seed for drawing poses.
     pub(crate) seed: u64,
     /// Whether the answer is a line of JSON.
     pub(crate) json: bool,
@@ -25,7 +25,7 @@ pub(crate) struct TouchesArguments {
     pub(crate) quiet: bool,
 }
 
-/// `taxel model touches`.
+/// Defines `taxel model touches`.
 pub(super) fn command() -> Command {
     let until = option(
         "until",
@@ -35,7 +35,7 @@ pub(super) fn command() -> Command {
     .value_parser(parse_probability)
     .default_value("0.99")
     .hide_default_value(true);
-    // The length of each run is kept until the mean is known: 120 MB of the most.
+    // The length of each run is kept until the mean is known: up to 120 MB.
     let runs = option("runs", "N", "Runs of each shape; default 10000")
         .value_parser(whole::<u64>(1..=10_000_000))
         .default_value("10000")
@@ -47,7 +47,7 @@ pub(super) fn command() -> Command {
 }
 
 impl TouchesArguments {
-    /// What the arguments of [`command`] ask for.
+    /// Reads the arguments of [`command`].
     pub(super) fn of(matches: &ArgMatches) -> Self {
         Self {
             model: flags::word(matches, "model"),

@@ -1,4 +1,4 @@
-//! `taxel model train`: its flags, and what they ask for.
+//! The flags of `taxel model train`, and how they are read.
 
 use std::path::{Path, PathBuf};
 
@@ -20,49 +20,49 @@ use crate::recognition::{CellPositions, LEAST_SIDE};
 use crate::sensor::Sensor;
 use crate::sweep::Shard;
 
-/// A set of shapes, how to train it, and where the model goes.
+/// A set of shapes, the settings of its training, and where the model is written.
 #[derive(Clone, Debug)]
 pub(crate) struct TrainArguments {
     /// The shapes to learn.
     pub(crate) set: SetArguments,
-    /// The point of a shape that x0 and y0 place; if not given, the corner where x0 or y0 is given, else the centre.
+    /// The point of a shape that x0 and y0 place; None for the corner if x0 or y0 is given, else the centre.
     pub(crate) anchor: Option<Anchor>,
-    /// The given axes of the grid. Those not given are chosen so that the sensor cuts no shape off.
+    /// The axes of the grid that are given. The others are chosen so that the sensor does not cut off any shape.
     pub(crate) ranges: GivenRanges,
-    /// Positions of a cell in each direction, where its range is not given.
+    /// Positions per cell along those of x and y whose range is not given.
     pub(crate) positions: Option<CellPositions>,
-    /// The given sides of the sensor. Those not given are chosen so that it cuts no shape off.
+    /// The sides of the sensor that are given. The others are chosen so that it does not cut off any shape.
     pub(crate) sides: SensorSides,
     /// The values of the sensor's flags.
     pub(crate) given: Given,
-    /// The part of the grid to train on; `taxel merge` puts the parts together.
+    /// The part of the grid to train on; `taxel merge` merges the parts.
     pub(crate) shard: Shard,
-    /// Threads; 0 for as many as there are cores.
+    /// The number of threads; 0 means one per core.
     pub(crate) jobs: usize,
-    /// The most memory that it may use, if it is given.
+    /// The most memory that the training may use, if given.
     pub(crate) memory: Option<MemorySize>,
     /// Whether poses at which the sensor cuts a shape off are learned too; otherwise they are an error.
     pub(crate) allow_cut: bool,
     /// Where the model is written.
     pub(crate) to: ModelTarget,
-    /// What becomes of a model of that name.
+    /// What to do if a model of that name exists.
     pub(crate) there: ShardFile,
     /// Whether the answer is a line of JSON.
     pub(crate) json: bool,
-    /// Whether the chosen grid and the progress are left out.
+    /// Whether to leave out the chosen grid and the progress.
     pub(crate) quiet: bool,
 }
 
-/// Where a model goes.
+/// The place where a model is written.
 #[derive(Clone, Debug)]
 pub(crate) enum ModelTarget {
-    /// Into a file: `--out FILE.npz`.
+    /// A file: `--out FILE.npz`.
     File(PathBuf),
-    /// Beside the library, under a name: `--name NAME`.
+    /// A name beside the library: `--name NAME`.
     Named(Name),
 }
 
-/// `taxel model train`.
+/// Defines `taxel model train`.
 pub(super) fn command() -> Command {
     let out = option("out", "FILE.npz", "Write the model to this file")
         .value_parser(value_parser!(PathBuf));
@@ -108,17 +108,17 @@ pub(super) fn command() -> Command {
         ])
 }
 
-/// The flag of a side of the sensor.
+/// Defines the flag of a side of the sensor.
 fn fitting(side: Parameter) -> Arg {
     parameters::arg_fitting(side).help_heading("Sensor")
 }
 
 impl TrainArguments {
-    /// What the arguments of [`command`] ask for.
+    /// Reads the arguments of [`command`].
     ///
     /// # Errors
-    /// [`CliError::Range`] for a value of the sensor out of range; [`CliError::Ending`] for a file that is not named as a
-    /// model; [`CliError::Unused`] for positions of a cell where all are given.
+    /// Returns [`CliError::Range`] for a value of the sensor out of range; [`CliError::Ending`] for a file name
+    /// without the extension of a model; [`CliError::Unused`] for `--positions` if both x0 and y0 are given.
     pub(super) fn of(matches: &ArgMatches) -> Result<Self, CliError> {
         let given = Given::of(matches);
         let sensor = given.sensor(Sensor::default())?;
@@ -160,10 +160,11 @@ impl TrainArguments {
     }
 }
 
-/// Refuses a file that is not named as a model, which would be taken for something else when it is read.
+/// Refuses a file name without the extension of a model: such a file would be taken for something else when it is
+/// read.
 ///
 /// # Errors
-/// [`CliError::Ending`].
+/// Returns [`CliError::Ending`].
 pub(crate) fn model_file(path: &Path) -> Result<(), CliError> {
     if path
         .extension()

@@ -5,32 +5,33 @@ use std::sync::Arc;
 
 use crate::cli::input::lines::buffers::Buffers;
 
-/// The longest line, in bytes. Longer ones are refused, so that a line cannot use up all memory.
+/// The longest line, in bytes. Longer lines are refused, so that none can use up all memory.
 pub(crate) const MAX_LINE: usize = 1 << 20;
 
-/// The number of bytes to read at a time, at first: about a hundred lines, so that several threads have work of a short
-/// input too.
+/// The number of bytes to read at a time at the start of the input: about a hundred lines, so that several threads
+/// share even a short input.
 const CHUNK: usize = 1 << 13;
 
-/// The same later. Threads wake each other for every block, so of a long input they are larger.
+/// The number of bytes to read at a time from a long input. Threads wake each other for every block, so larger blocks
+/// save time.
 const LARGE_CHUNK: usize = 1 << 15;
 
-/// No block is a larger part of what has been read than this: so the threads end at about the same time.
+/// Blocks grow to at most this fraction of what has been read, 1/32, so that the threads end at about the same time.
 const PART: u64 = 32;
 
-/// Whole lines that follow each other.
+/// Consecutive whole lines.
 #[derive(Debug)]
 pub(crate) struct Block {
-    /// The lines. Only the last line of the input may be without its line end.
+    /// The lines. Only the last line of the input may lack its line end.
     text: Vec<u8>,
     /// The number of its first line, counted from 1.
     first: u64,
-    /// Whether it stands for one line longer than [`MAX_LINE`], which was read over.
+    /// Whether the block stands for one line longer than [`MAX_LINE`], whose bytes were dropped.
     is_long: bool,
 }
 
 impl Block {
-    /// Returns each line with its number, without its line end; None for one that is longer than [`MAX_LINE`].
+    /// Returns each line with its number, without its line end; None in place of a line longer than [`MAX_LINE`].
     pub(crate) fn lines(&self) -> impl Iterator<Item = (u64, Option<&[u8]>)> {
         let text = self.text.strip_suffix(b"\n").unwrap_or(&self.text);
         let lines = text.split(|&byte| byte == b'\n');
@@ -38,21 +39,21 @@ impl Block {
         (self.first..).zip(lines)
     }
 
-    /// Its memory, for a later block.
+    /// Returns the memory of the block, for a later one.
     pub(crate) fn into_buffer(self) -> Vec<u8> {
         self.text
     }
 }
 
-/// Reads blocks. Each is what one read has given, up to the last line end in it, so that nothing that has come waits for
-/// what has not.
+/// Reads blocks. A block holds what one read returned, up to its last line end, so that lines that have arrived do
+/// not wait for those that have not.
 #[derive(Debug)]
 pub(crate) struct BlockReader<R> {
-    /// Where bytes come from.
+    /// The input.
     input: R,
-    /// What has been read of the next block.
+    /// The bytes of the next block that have been read.
     rest: Vec<u8>,
-    /// How much has been read in all, in bytes.
+    /// The number of bytes read in all.
     total: u64,
     /// The number of the next line.
     number: u64,
@@ -63,7 +64,7 @@ pub(crate) struct BlockReader<R> {
 }
 
 impl<R: Read> BlockReader<R> {
-    /// Reads nothing yet.
+    /// Creates a reader, without reading yet.
     pub(crate) fn new(input: R, buffers: Arc<Buffers>) -> Self {
         Self {
             input,
@@ -78,7 +79,7 @@ impl<R: Read> BlockReader<R> {
     /// Returns the next block; None at the end.
     ///
     /// # Errors
-    /// Those of the input.
+    /// Returns the errors of the input.
     pub(crate) fn next_block(&mut self) -> Option<io::Result<Block>> {
         let mut searched = 0;
         loop {
@@ -107,7 +108,7 @@ impl<R: Read> BlockReader<R> {
         }
     }
 
-    /// Takes a block of the first bytes.
+    /// Returns the first `length` bytes as a block.
     fn cut(&mut self, length: usize) -> Block {
         let mut rest = self.buffers.take();
         rest.extend_from_slice(&self.rest[length..]);
@@ -128,7 +129,7 @@ impl<R: Read> BlockReader<R> {
         }
     }
 
-    /// Reads what has come, or waits for more. Returns the number of bytes, 0 at the end.
+    /// Reads the bytes that have arrived, or waits for some. Returns their number, 0 at the end.
     fn fill(&mut self) -> io::Result<usize> {
         let old = self.rest.len();
         let part = usize::try_from(self.total / PART).unwrap_or(LARGE_CHUNK);
@@ -152,7 +153,7 @@ mod tests {
 
     use super::*;
 
-    /// All lines, of input that comes in pieces.
+    /// Returns all lines of input that arrives in pieces.
     fn lines(pieces: &[&[u8]]) -> Vec<(u64, Option<Vec<u8>>)> {
         struct Pieces(VecDeque<Vec<u8>>);
         impl Read for Pieces {
@@ -181,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_numbered_however_they_come() {
+    fn lines_are_numbered_however_they_arrive() {
         let expected = vec![
             (1, Some(b"a".to_vec())),
             (2, Some(Vec::new())),
@@ -199,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_line_is_read_over() {
+    fn a_line_that_is_too_long_is_skipped() {
         let longest = vec![b'y'; MAX_LINE];
         let longer = vec![b'z'; MAX_LINE + 1];
         let found = lines(&[&longest, b"\n", &longer, b"\na\n", &longer, &longer]);

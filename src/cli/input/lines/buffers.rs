@@ -1,17 +1,17 @@
-//! Reused memory. Without it, each block's answers would get fresh memory from the system, which clears it page by
-//! page: a sixth of the time of two threads.
+//! Reuses memory. Otherwise each block's answers would get fresh memory from the system, which clears it page by
+//! page: with two threads, this takes a sixth of the time.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The largest buffer that is kept, in bytes, so that a single long answer does not hold memory until the end.
+/// The largest buffer that is kept, in bytes, so that a single long answer does not keep its memory to the end.
 const LARGEST: usize = 1 << 20;
 
-/// Buffers that nobody uses at the moment. There are never more than were in use at one time.
+/// The unused buffers. There are never more than were in use at one time.
 #[derive(Debug, Default)]
 pub(crate) struct Buffers(Mutex<Vec<Vec<u8>>>);
 
 impl Buffers {
-    /// An empty buffer: the one that was given back last, which a processor is most likely to remember.
+    /// Returns an empty buffer: the one given back last, which is most likely still in the processor's cache.
     pub(crate) fn take(&self) -> Vec<u8> {
         let Some(buffer) = self.unused().pop() else {
             return Vec::new();
@@ -19,7 +19,7 @@ impl Buffers {
         buffer
     }
 
-    /// Keeps a buffer for later, up to [`LARGEST`].
+    /// Keeps a buffer for later, unless it is larger than [`LARGEST`].
     pub(crate) fn give_back(&self, mut buffer: Vec<u8>) {
         if buffer.capacity() > 0 && buffer.capacity() <= LARGEST {
             buffer.clear();
@@ -27,7 +27,7 @@ impl Buffers {
         }
     }
 
-    /// Nothing can go wrong while it is locked, so a panic elsewhere leaves it whole.
+    /// Locks the buffers. No panic is possible while they are locked, so they are never damaged.
     fn unused(&self) -> MutexGuard<'_, Vec<Vec<u8>>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -3,8 +3,8 @@
 //! ```text
 //! source, on a thread of its own -> this thread -> workers -> this thread: sorts -> sink
 //! ```
-//! A fixed number of items is under way at a time, so that memory is bounded whatever the source gives. The thread of the
-//! source is not waited for when the sink fails: it may be reading from a terminal.
+//! A fixed number of items is under way at a time, so memory is bounded. If the sink fails, the thread of the source
+//! is not waited for: it may be reading from a terminal.
 
 use std::collections::BTreeMap;
 use std::panic::resume_unwind;
@@ -12,14 +12,14 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-/// The items under way for each worker: one in work, and others so that it need not wait when another is slow.
+/// The items under way per worker: one in work, the others so that it need not wait when another worker is slow.
 const UNDER_WAY: usize = 4;
 
-/// What happens on the other threads.
+/// An event on another thread.
 enum Event<T, R> {
-    /// The source has given an item.
+    /// The source returned an item.
     Item(T),
-    /// The source has no more.
+    /// The source has ended.
     End,
     /// The item of this number is done.
     Done(usize, R),
@@ -27,24 +27,24 @@ enum Event<T, R> {
     Panicked,
 }
 
-/// Sends a last word if its thread panics: others would wait for it for ever.
+/// Sends [`Event::Panicked`] if its thread panics; the others would wait for it for ever.
 struct PanicReport<T, R>(Sender<Event<T, R>>);
 
 impl<T, R> Drop for PanicReport<T, R> {
     fn drop(&mut self) {
         if thread::panicking() {
-            // Without a receiver nobody waits.
+            // Without a receiver, nobody waits.
             let _ = self.0.send(Event::Panicked);
         }
     }
 }
 
-/// Gives each item of `source` to one of up to `jobs` workers, and the results to `sink`, in the order of the items.
-/// Each thread makes itself a worker by `worker`. With one job, and where the system gives no threads, all is done on
-/// this thread.
+/// Passes each item of `source` to one of up to `jobs` workers, and the results to `sink`, in the order of the items.
+/// Each thread makes its worker with `worker`. With one job, or if the system provides no threads, all work is done
+/// on this thread.
 ///
 /// # Errors
-/// The first of `sink`; then nothing more is begun.
+/// Returns the first error of `sink`; no more items are started then.
 pub(crate) fn in_order<T, R, E, S, W>(
     jobs: usize,
     source: S,
@@ -57,13 +57,14 @@ where
     S: FnMut() -> Option<T> + Send + 'static,
     W: FnMut(T) -> R,
 {
-    // Shared, because a thread that cannot be started does not give back what it was to run.
+    // Shared, because a thread that cannot be started does not return its closure.
     let source = Arc::new(Mutex::new(source));
     let (events, heard) = channel();
     let (work, jobs_given) = channel();
     let jobs_given = Mutex::new(jobs_given);
     let begun = thread::scope(|scope| {
-        // Dropped here, which ends the workers: after a failure, nothing that is queued for them is begun.
+        // They are dropped at the end of this block, which ends the workers: after a failure, no queued item is
+        // started.
         let (work, heard) = (work, heard);
         let started = (0..if jobs > 1 { jobs } else { 0 }).take_while(|_| {
             let (jobs_given, worker) = (&jobs_given, &worker);
@@ -87,12 +88,12 @@ where
     Ok(())
 }
 
-/// A panic while it was locked is reported by [`PanicReport`].
+/// Locks a mutex. If a thread panicked while it was locked, [`PanicReport`] reports this.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Works on items until there are no more, on a thread of its own.
+/// Processes items until there are no more, on a thread of its own.
 fn work_off<T, R>(
     given: &Mutex<Receiver<(usize, T)>>,
     mut worker: impl FnMut(T) -> R,
@@ -109,8 +110,8 @@ fn work_off<T, R>(
     }
 }
 
-/// Starts the thread of the source. It gives an item for each message that is sent to it; some are sent already.
-/// Returns None if there is no such thread.
+/// Starts the thread of the source. It reads an item for each message that it receives; the first messages are
+/// already sent. Returns None if the thread cannot be started.
 fn read_ahead<T, R, S>(
     source: &Arc<Mutex<S>>,
     workers: usize,
@@ -123,7 +124,7 @@ where
 {
     let (next, asked) = channel();
     for () in std::iter::repeat_n((), workers * UNDER_WAY) {
-        // Its receiver is here.
+        // Its receiver is in this function.
         let _ = next.send(());
     }
     let source = Arc::clone(source);
@@ -142,10 +143,10 @@ where
     thread::Builder::new().spawn(body).ok().map(|_| next)
 }
 
-/// Hands items to the workers as they come, and results on in order, until both have ended.
+/// Passes items to the workers as they come, and results to `sink` in order, until both have ended.
 ///
 /// # Errors
-/// The first of `sink`.
+/// Returns the first error of `sink`.
 fn hand_over<T, R, E>(
     events: &Receiver<Event<T, R>>,
     work: &Sender<(usize, T)>,
@@ -167,7 +168,7 @@ fn hand_over<T, R, E>(
                 while let Some(result) = early.remove(&delivered) {
                     sink(result)?;
                     delivered += 1;
-                    // After its last item the source listens no more.
+                    // After its last item, the source no longer listens.
                     let _ = next.send(());
                 }
             }
@@ -189,7 +190,7 @@ mod tests {
             let mut items = 0..1000_u64;
             let mut results = Vec::new();
             let slow = |item: u64| {
-                // Those in between are done first.
+                // The items in between are done first.
                 if item.is_multiple_of(7) {
                     thread::yield_now();
                 }
@@ -231,9 +232,9 @@ mod tests {
         assert_eq!((done, taken), (Ok(()), 10_000));
     }
 
-    /// Each worker ends what it has begun, but not what is queued for it.
+    /// Each worker finishes its current item, but does not start a queued one.
     #[test]
-    fn an_error_of_the_sink_ends_all() {
+    fn an_error_of_the_sink_stops_the_work() {
         const JOBS: usize = 2;
         let (begun, is_full) = (AtomicUsize::new(0), AtomicBool::new(false));
         // The source never ends.
@@ -247,7 +248,7 @@ mod tests {
                     while item > 0 && !is_full.load(Ordering::SeqCst) {
                         thread::yield_now();
                     }
-                    // Until the failure has come through.
+                    // Wait until the failure has been handled.
                     thread::sleep(Duration::from_millis(if item > 0 { 50 } else { 0 }));
                 }
             },
@@ -262,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_panic_of_a_worker_is_not_waited_for() {
+    fn a_panic_of_a_worker_does_not_hang() {
         let run = std::panic::catch_unwind(|| {
             in_order(
                 2,

@@ -1,9 +1,9 @@
-//! Lines answered by lines, in the same order, as `taxel batch` and `taxel recognise` do.
+//! Answers lines by lines, in the same order, for `taxel batch` and `taxel recognise`.
 //!
-//! Lines are read, answered and written in blocks of whole lines (`block`), by one thread or by several (`in_order`).
-//! Memory does not grow with the number of lines. The answers of a block are written out at once, and a block ends where
-//! the input pauses: so a program that sends a line and waits for its answer gets it. Blank lines are skipped, but count
-//! in line numbers.
+//! Lines are read, answered and written in blocks of whole lines (`block`), by one thread or several (`in_order`).
+//! Memory does not grow with the number of lines. The answers of a block are written out at once, and a block ends
+//! when the input pauses, so a program can send a line and wait for its answer. Blank lines are skipped, but count in
+//! line numbers.
 //! ```text
 //! input -> BlockReader -> blocks -> workers: a line each to `answer` -> answers of a block -> output
 //! ```
@@ -27,16 +27,16 @@ pub(crate) mod in_order;
 
 pub(crate) use block::MAX_LINE;
 
-/// Lines to be answered, and what they come from.
+/// The lines to answer, and the name of their source.
 pub(crate) struct LineInput {
-    /// What errors call it.
+    /// The name for messages.
     pub(crate) name: String,
     /// The lines.
     pub(crate) read: Box<dyn Read + Send>,
 }
 
 impl LineInput {
-    /// Those of standard input.
+    /// Returns the lines of standard input.
     pub(crate) fn standard() -> Self {
         Self {
             name: InputSource::Standard.name(),
@@ -44,10 +44,10 @@ impl LineInput {
         }
     }
 
-    /// Those of a file.
+    /// Returns the lines of a file.
     ///
     /// # Errors
-    /// [`CliError::Read`] if it cannot be opened.
+    /// Returns [`CliError::Read`] if the file cannot be opened.
     pub(crate) fn of_file(path: &Path) -> Result<Self, CliError> {
         let name = InputSource::File(path.to_owned()).name();
         match File::open(path) {
@@ -60,12 +60,14 @@ impl LineInput {
     }
 }
 
-/// Answers each line of `input` by up to `jobs` threads (0: one per core): the answers do not depend on their number. Each
-/// thread answers by a closure of its own, which `answerer` makes: it appends an answer, without a line end, or says what
-/// is wrong with the line. `noun` is what a line holds, for the message about one that is too long.
+/// Answers each line of `input`, with up to `jobs` threads (0 means one per core). The answers do not depend on their
+/// number. Each thread uses a closure of its own, made by `answerer`, which appends the answer without a line end, or
+/// returns what is wrong with the line. `noun` is what a line contains, for the message about a line that is too
+/// long.
 ///
 /// # Errors
-/// [`CliError::Lines`] at the end if some lines were wrong; [`CliError::Read`] or [`CliError::Write`] at once.
+/// Returns [`CliError::Lines`] at the end if some lines were wrong; [`CliError::Read`] or [`CliError::Write`] at
+/// once.
 pub(crate) fn answer_all<A>(
     jobs: usize,
     input: LineInput,
@@ -80,7 +82,7 @@ where
         0 => thread::available_parallelism().map_or(1, NonZero::get),
         jobs => jobs,
     };
-    // Of the lines, and of their answers, which are longer.
+    // There are separate buffers for lines and for answers, which are longer.
     let (read, written) = (Arc::<Buffers>::default(), Buffers::default());
     let mut blocks = BlockReader::new(input.read, Arc::clone(&read));
     let mut output = AnswerWriter::new(output, input.name);
@@ -108,15 +110,15 @@ where
 /// The answers to the lines of a block.
 #[derive(Debug, Default)]
 struct BlockAnswers {
-    /// A line each.
+    /// The answers, one line each.
     text: Vec<u8>,
-    /// How many lines are answered.
+    /// The number of lines answered.
     answered: u64,
-    /// How many of these were wrong.
+    /// The number of these that were wrong.
     bad: u64,
 }
 
-/// Answers the lines of a block. `text` is empty memory for the answers.
+/// Answers the lines of a block. `text` is an empty buffer for the answers.
 fn answer_block(
     block: &Block,
     noun: &str,
@@ -129,7 +131,7 @@ fn answer_block(
     };
     for (number, line) in block.lines() {
         let begin = answers.text.len();
-        // Some programs begin a text with a mark of its encoding.
+        // Some programs start a text with a byte order mark.
         let line = line.map(|content| match number {
             1 => content.strip_prefix(b"\xef\xbb\xbf").unwrap_or(content),
             _ => content,
@@ -157,18 +159,18 @@ fn refuse(answer: &mut Vec<u8>, message: &str) {
 
 /// Writes answers, block by block, and counts them.
 struct AnswerWriter<W> {
-    /// What the lines come from.
+    /// The name of the input.
     input: String,
-    /// Where they go.
+    /// The output.
     output: W,
-    /// How many lines have been answered.
+    /// The number of lines answered so far.
     answered: u64,
-    /// How many of these were wrong.
+    /// The number of these that were wrong.
     bad: u64,
 }
 
 impl<W: Write> AnswerWriter<W> {
-    /// Nothing is written yet.
+    /// Creates a writer, without writing yet.
     fn new(output: W, input: String) -> Self {
         Self {
             input,
@@ -178,10 +180,10 @@ impl<W: Write> AnswerWriter<W> {
         }
     }
 
-    /// Writes the answers of a block out, and returns their memory.
+    /// Writes the answers of a block and returns their buffer.
     ///
     /// # Errors
-    /// [`CliError::Read`] if there is no block because the input failed, and [`CliError::Write`].
+    /// Returns [`CliError::Read`] if the input failed in place of the block, or [`CliError::Write`].
     fn write(&mut self, answers: io::Result<BlockAnswers>) -> Result<Vec<u8>, CliError> {
         let answers = answers.map_err(|error| CliError::Read {
             name: self.input.clone(),
@@ -199,7 +201,7 @@ impl<W: Write> AnswerWriter<W> {
     /// Ends the output.
     ///
     /// # Errors
-    /// [`CliError::Lines`] if some lines were wrong.
+    /// Returns [`CliError::Lines`] if some lines were wrong.
     fn finish(self) -> Result<(), CliError> {
         if self.bad > 0 {
             return Err(CliError::Lines {
@@ -215,7 +217,7 @@ impl<W: Write> AnswerWriter<W> {
 mod tests {
     use super::*;
 
-    /// Answers a line by its number of bytes; one with an `x` is wrong.
+    /// Answers each line with its number of bytes; a line with an `x` is wrong.
     fn answers(jobs: usize, input: &'static [u8]) -> (String, Option<(u64, u64)>) {
         let mut output = Vec::new();
         let input = LineInput {
