@@ -47,7 +47,7 @@ pub(crate) enum CliError {
         /// The bound that it misses and the allowed range: "is above 16 (allowed: above 0, up to 16)".
         complaint: String,
     },
-    /// An input file that is invalid.
+    /// An invalid input file.
     #[error("{name}: {error}")]
     Input {
         /// The name of the file.
@@ -55,7 +55,7 @@ pub(crate) enum CliError {
         /// What is wrong with it.
         error: InputError,
     },
-    /// A source of frames that is empty.
+    /// A source of frames without a byte.
     #[error("{name} is empty")]
     Empty {
         /// The name of the source.
@@ -134,7 +134,7 @@ pub(crate) enum CliError {
         /// The name.
         name: Name,
     },
-    /// A built-in model cannot be deleted: it has no file.
+    /// A built-in model has no file to delete.
     #[error("{name} is built in and cannot be deleted")]
     BuiltInModel {
         /// The name.
@@ -161,10 +161,10 @@ pub(crate) enum CliError {
         /// The end of the message: a model with a similar name.
         near: String,
     },
-    /// A noise that is invalid.
+    /// An invalid noise.
     #[error(transparent)]
     Noise(#[from] NoiseError),
-    /// A mask that differs in size from the imprint.
+    /// A mask of another size than the imprint.
     #[error("--mask has {} × {} taxels, the imprint {} × {}", mask.0, mask.1, imprint.0, imprint.1)]
     Mask {
         /// Columns and rows of the mask.
@@ -332,7 +332,7 @@ pub(crate) enum CliError {
     /// The system does not provide threads or signal handlers.
     #[error("{0}")]
     System(io::Error),
-    /// The screen cannot be opened, or it failed.
+    /// The screen cannot be opened, as without a terminal, or it failed.
     #[error("{0}")]
     Screen(io::Error),
 }

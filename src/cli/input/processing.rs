@@ -1,4 +1,4 @@
-//! How the frames of a recording are processed: by the flags, and by steps that need all frames first.
+//! The processing of a recording's frames: the part given by flags, and the steps that need all frames first.
 
 use std::ops::ControlFlow;
 
@@ -10,11 +10,11 @@ use crate::formats::recording::{ChannelInfo, ReadOptions, RecordingError, Record
 use crate::frame::{Peak, Processing, SetRule, TareFrames, View};
 use crate::matrix::Matrix;
 
-/// The processing that the flags ask for, without tare and rule, which need the recording. Crop, flips, turn and mask
+/// Returns the processing of the flags, without tare and rule, which need the recording. Crop, flips, turn and mask
 /// are applied in this order, then the tare, then the gain.
 ///
 /// # Errors
-/// If the mask or the gain cannot be read.
+/// Returns an error if the mask or the gain cannot be read.
 pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliError> {
     let mut processing = Processing::default();
     processing.view = View {
@@ -30,12 +30,11 @@ pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliE
     Ok(processing)
 }
 
-/// A table of factors, in any format that a recording of one frame may have.
-/// The first frame counts; further ones are not read. Its size must be that of the cropped frames, which is checked
-/// when the first of them is processed.
+/// Reads a table of factors, in any format of recordings with one frame. Reading stops at a second frame, which is an
+/// error. The table must have the size of the cropped frames, which is checked when the first of them is processed.
 ///
 /// # Errors
-/// If the file is damaged or has no frame.
+/// Returns an error if the file is damaged, or does not have exactly one frame.
 fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
     let mut file = RecordingFile::open(path, ReadOptions::default())?;
     file.prefix_name("--gain ");
@@ -43,7 +42,7 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
     let (mut found, mut is_recording) = (None, false);
     let mut take = |event: RecordingEvent<'_>| {
         if let RecordingEvent::Frame(frame) = event {
-            // Of a second frame only the existence matters.
+            // Of a second frame, only its existence matters.
             is_recording = found.is_some();
             found.get_or_insert_with(|| View::default().of(frame, &mut gain));
         }
@@ -54,8 +53,8 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
         }
     };
     let read = match file.read(&mut take) {
-        // Each line was read as a frame; or the file did not look like a table, because a single column has no
-        // separators. It is one table of factors.
+        // Either each line was read as a frame; or the file did not look like a table, because a single column has no
+        // separators. In both cases it is one table of factors.
         Err(error) if error.is_of_size() || matches!(error, RecordingError::Unknown) => {
             match file.read_table(&mut take) {
                 Err(RecordingError::Unknown) => Err(error),
@@ -76,11 +75,11 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
     Ok(gain)
 }
 
-/// The rule of the flags, else that of the recording.
-/// The threshold of a recording is the one with which its maker's program draws pictures; values from it on are active.
+/// Returns the rule of the flags, or else that of the recording. A recording's threshold is the one with which its
+/// maker's program draws pictures; values that reach it are active.
 ///
 /// # Errors
-/// If neither gives one. There is no default: what a value means differs from sensor to sensor.
+/// Returns an error if neither has a rule. There is no default: the meaning of values differs from sensor to sensor.
 pub(crate) fn rule(
     recording: &RecordingFile,
     asked: &ProcessingArguments,
@@ -95,8 +94,8 @@ pub(crate) fn rule(
     })
 }
 
-/// The message that the recording's tare is not used, since its size differs from that of the visible part of the
-/// frames. None if it is used, if the flags say how to tare, or if the recording has none.
+/// Returns the message that the recording's tare is not used, because its size differs from that of the visible part
+/// of the frames. None if it is used, if the flags set a tare, or if the recording has none.
 pub(crate) fn unused_tare(
     asked: &ProcessingArguments,
     info: &ChannelInfo,
@@ -114,11 +113,11 @@ pub(crate) fn unused_tare(
     ))
 }
 
-/// Gathers the tare of the channel's first frames.
-/// The median of each cell over these frames is its value at rest, and is subtracted from then on.
+/// Computes the tare from the channel's first frames. The median of each cell over these frames is its value at rest,
+/// which is subtracted from then on.
 ///
 /// # Errors
-/// If the channel has fewer frames than wanted: `frames for the tare: found 3, expected 5`.
+/// Returns an error if the channel has fewer frames than wanted: `frames for the tare: found 3, expected 5`.
 pub(crate) fn tare(
     recording: &mut RecordingFile,
     (channel, wanted): (usize, u64),
@@ -151,9 +150,8 @@ pub(crate) fn tare(
     Ok(())
 }
 
-/// The frame with the greatest sum of tared values.
-/// Without tare and gain the listing knows it already; with them the recording is read once more. If several
-/// frames have it, the first one counts. None if no frame has a value.
+/// Returns the frame with the greatest sum of tared values, the first one of several; None if no frame has a value.
+/// Without tare and gain the listing has it already; otherwise the recording is read once more.
 pub(crate) fn peak(
     recording: &mut RecordingFile,
     channel: usize,

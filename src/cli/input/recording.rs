@@ -1,4 +1,5 @@
-//! Opens recordings: a file, or standard input kept in a temporary file, since a recording is read several times.
+//! Opens recordings: files, or standard input, which is kept in a temporary file because a recording is read several
+//! times.
 
 use std::fmt::Debug;
 use std::fs::File;
@@ -16,31 +17,31 @@ use crate::formats::recording::{
 };
 use crate::imprint::Imprint;
 
-/// The most that is read of a table. One of 64 × 64 factors is much smaller.
+/// The most bytes that are read of a table. A table of 64 × 64 factors is much smaller.
 const LARGEST_TABLE: u64 = 1 << 20;
 
-/// A recording that can be read again and again.
+/// A recording that can be read repeatedly.
 #[derive(Debug)]
 pub(crate) struct RecordingFile {
     /// The path, or `standard input`; for messages.
     name: String,
-    /// What can be read from its beginning again.
+    /// The content, which can be read again from its beginning.
     file: Box<dyn ReadAgain>,
-    /// Rows and columns, for formats that do not say them.
+    /// Rows and columns, for formats that do not state them.
     options: ReadOptions,
-    /// What lies beside it, of a recording of taxel's own.
+    /// The description in the file beside it, if taxel made the recording.
     description: Option<RecordingMetadata>,
-    /// What is wrong with that.
+    /// The problem with the description or the recording's end, if there is one.
     complaint: Option<String>,
-    /// Whether it is known to be damaged, so that reading it again finds nothing new.
+    /// Whether the recording is known to be damaged, so that the damage is not reported again.
     is_damaged: bool,
 }
 
 impl RecordingFile {
-    /// Opens a file, `-` for standard input.
+    /// Opens a file, or standard input for `-`.
     ///
     /// # Errors
-    /// If it cannot be opened or read.
+    /// Returns an error if it cannot be opened or read.
     pub(crate) fn open(path: &Path, options: ReadOptions) -> Result<Self, CliError> {
         let source = InputSource::of(path);
         let name = source.name();
@@ -80,25 +81,25 @@ impl RecordingFile {
         }
     }
 
-    /// Its name in messages.
+    /// Returns its name in messages.
     pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
-    /// Puts the flag that named it before its name in messages.
+    /// Puts the flag that gave the file before its name in messages.
     pub(crate) fn prefix_name(&mut self, flag: &str) {
         self.name.insert_str(0, flag);
     }
 
-    /// What is wrong with the description beside it.
+    /// Returns the problem with the description beside it, if there is one.
     pub(crate) fn complaint(&self) -> Option<&str> {
         self.complaint.as_deref()
     }
 
-    /// Reads it from its beginning.
+    /// Reads the recording from its beginning.
     ///
     /// # Errors
-    /// If it cannot be read, is not a recording, or is damaged.
+    /// Returns an error if it cannot be read, is not a recording, or is damaged.
     pub(crate) fn read(
         &mut self,
         sink: &mut dyn FnMut(RecordingEvent<'_>) -> std::ops::ControlFlow<()>,
@@ -112,10 +113,10 @@ impl RecordingFile {
         })
     }
 
-    /// Reads the lines of a small text as the rows of one frame, even if it is a single row or a single column.
+    /// Reads a small text as one frame, with a row for each line, even if it has a single row or column.
     ///
     /// # Errors
-    /// If it cannot be read, or is no such text.
+    /// Returns an error if it cannot be read, or is not such a text.
     pub(crate) fn read_table(
         &mut self,
         sink: &mut dyn FnMut(RecordingEvent<'_>) -> std::ops::ControlFlow<()>,
@@ -128,15 +129,16 @@ impl RecordingFile {
         read_rows(&bytes, sink)
     }
 
-    /// Remembers that reading all of it has found a damage, which the caller reports.
+    /// Remembers that the recording is damaged; the caller reports the damage.
     pub(crate) fn remember_damage(&mut self) {
         self.is_damaged = true;
     }
 
-    /// Reads it again from its beginning.
+    /// Reads the recording from its beginning again.
     ///
     /// # Errors
-    /// If it cannot be read as before: the disk is gone, or the file was changed. A known damage is no error.
+    /// Returns an error if it cannot be read as before: the disk is gone, or the file was changed. A known damage is
+    /// not an error.
     pub(crate) fn read_again(
         &mut self,
         sink: &mut dyn FnMut(RecordingEvent<'_>) -> std::ops::ControlFlow<()>,
@@ -147,13 +149,13 @@ impl RecordingFile {
         }
     }
 
-    /// Its format, as far as its beginning tells; also that of a damaged one.
+    /// Returns the format that its beginning shows, even if it is damaged.
     pub(crate) fn format(&mut self) -> Option<RecordingFormat> {
         self.file.seek(SeekFrom::Start(0)).ok()?;
         format_of(&mut self.file, self.options).ok()
     }
 
-    /// The message about a damage.
+    /// Returns the message about a damage.
     pub(crate) fn damaged(&self, error: RecordingError) -> CliError {
         CliError::Recording {
             name: self.name.clone(),
@@ -161,7 +163,7 @@ impl RecordingFile {
         }
     }
 
-    /// The message about a frame, a channel or a threshold.
+    /// Returns the message about a frame, a channel or a threshold.
     pub(crate) fn refused(&self, message: &(impl ToString + ?Sized)) -> CliError {
         CliError::Frames {
             name: self.name.clone(),
@@ -170,10 +172,10 @@ impl RecordingFile {
     }
 }
 
-/// Reads the imprint of a file or, for `-`, of standard input, alone or in a stored shape.
+/// Reads an imprint, alone or in a stored shape, from a file or, for `-`, from standard input.
 ///
 /// # Errors
-/// As for [`content::read_from`], with the flag and the name of the file.
+/// Returns the errors of [`content::read_from`], with the flag and the name of the file.
 pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, CliError> {
     let source = InputSource::of(path);
     let content = match &source {
@@ -193,7 +195,7 @@ pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, CliError> {
     }
 }
 
-/// That a recording has not been ended, or that something other than its user ended it.
+/// Returns the message that a recording has no end, or that it was ended by something other than its user.
 fn unended(path: &Path, description: &RecordingMetadata) -> Option<String> {
     let beside = path.with_extension("json");
     let beside = beside.display();
@@ -206,15 +208,15 @@ fn unended(path: &Path, description: &RecordingMetadata) -> Option<String> {
     Some(format!("{beside}: the recording ended early: {reason}"))
 }
 
-/// What is read from its beginning as often as needed.
+/// Content that can be read from its beginning as often as needed.
 trait ReadAgain: Read + Seek + Debug {}
 
 impl<T: Read + Seek + Debug> ReadAgain for T {}
 
-/// Standard input or a pipe, which is copied as it is read.
+/// Opens standard input or a pipe, which is copied as it is read.
 ///
 /// # Errors
-/// If there is no temporary file.
+/// Returns an error if no temporary file can be made.
 fn spooled(input: impl Read + 'static) -> io::Result<Box<dyn ReadAgain>> {
     Ok(Box::new(SpooledInput::new(input)?))
 }

@@ -1,13 +1,13 @@
-//! The shapes of a set: from files of lines, from the library, and in words.
+//! The shapes of a set: from files of lines, from the library, and as text.
 //!
-//! A line is an object of JSON with a name and either a figure with its sizes, a stored shape, or an imprint; the same
-//! in words is an argument of `--shape`:
+//! A line is a JSON object with a name and either a figure with its sizes, a stored shape, or an imprint. `--shape`
+//! takes the same as text:
 //! ```text
 //! {"name":"disc","figure":"ellipse","radius_x":3,"radius_y":3}
 //! --shape 'disc=ellipse radius_x=3 radius_y=3'
 //! ```
-//! An argument is a file if it ends in `.jsonl` or `.json`, has a `/`, or is a file while no shape has that name;
-//! otherwise it is the name of a shape, which is taken as it was stored.
+//! An argument is a file if it ends in `.jsonl` or `.json`, if it has a `/`, or if there is such a file but no shape
+//! of that name. Otherwise it is the name of a stored shape, which is taken as it was stored.
 
 use std::ffi::OsStr;
 use std::fs::File;
@@ -27,14 +27,14 @@ use crate::recognition::NamedShape;
 use crate::sensor::Sensor;
 use crate::storage::LibraryError;
 
-/// The largest file of shapes.
+/// The largest file of shapes, in bytes.
 const MAX_SET: u64 = 64 << 20;
 
-/// The shapes of a set, in the order of the arguments.
+/// Reads the shapes of a set, in the order of the arguments.
 ///
 /// # Errors
-/// [`CliError::Set`] with the place of a shape that cannot be read: `parts.jsonl, line 3`; those of files and the
-/// library.
+/// Returns [`CliError::Set`] with the place of a shape that cannot be read, such as `parts.jsonl, line 3`, and the
+/// errors of files and the library.
 pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
     let lookup = |name: &str| {
         shelf
@@ -81,7 +81,8 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
     Ok(shapes)
 }
 
-/// The message about an argument that names no shape. For the name of a figure, it shows how `--shape` gives one.
+/// Returns the message about an argument that is not the name of a shape. For the name of a figure, it shows how
+/// `--shape` gives one.
 fn no_shape(error: LibraryError, shelf: &Shelf) -> CliError {
     let kind = match &error {
         LibraryError::Unknown { name } => FigureKind::from_name(name),
@@ -100,10 +101,10 @@ fn no_shape(error: LibraryError, shelf: &Shelf) -> CliError {
     CliError::NoShape { error, near }
 }
 
-/// All shapes of the library, in its order.
+/// Returns all shapes of the library, in its order.
 ///
 /// # Errors
-/// If one of them is damaged.
+/// Returns an error if one of them is damaged.
 fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
     let library = shelf.library()?;
     let mut shapes = Vec::new();
@@ -115,7 +116,7 @@ fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
     Ok(shapes)
 }
 
-/// The file that an argument names; None if it is the name of a shape.
+/// Returns the file that an argument names; None if it is the name of a shape.
 fn file_of_lines(what: &OsStr, shelf: &Shelf) -> Option<PathBuf> {
     let path = Path::new(what);
     let ending = path
@@ -128,11 +129,11 @@ fn file_of_lines(what: &OsStr, shelf: &Shelf) -> Option<PathBuf> {
     (ending || path.components().count() > 1 || path.is_file() && !known()).then(|| path.to_owned())
 }
 
-/// Reads a set of shapes, a line of JSON each. Blank lines are skipped.
+/// Reads a set of shapes, one line of JSON each. Blank lines are skipped.
 ///
 /// # Errors
-/// If the text is larger than [`MAX_SET`], has no shape, or a line is not one. A wrong line ends it: a set with a shape missing
-/// would give another limit.
+/// Returns an error if the text is larger than [`MAX_SET`], has no shape, or has a line that is not one. A wrong line
+/// is not skipped: a set without one of its shapes would have another limit.
 fn lines(
     input: &mut dyn Read,
     name: &str,

@@ -1,4 +1,4 @@
-//! The library as the commands see it: looks up shapes by name or file, and stores them.
+//! The library as commands use it: looks up shapes by name or file, and stores them.
 //!
 //! A `NAME|FILE` argument is looked up in this order: `-` is standard input; then a shape of the library; then a file.
 //! A path such as `./washer.json` cannot be a name, so it always means the file.
@@ -20,7 +20,7 @@ use crate::formats::name::folded;
 use crate::imprint::Imprint;
 use crate::storage::{Expected, Library, LibraryError};
 
-/// The library, opened when it is first used: most commands never need it.
+/// The library, which is opened when it is first used: most commands never need it.
 #[derive(Clone, Debug)]
 pub(crate) struct Shelf {
     /// The folder of the library; None if the user has no home.
@@ -29,24 +29,26 @@ pub(crate) struct Shelf {
     asked: bool,
     /// The library once it has been opened.
     library: OnceLock<Option<Library>>,
-    /// What [`Shelf::imprint`] has found. A batch keeps using a shape as it was when it was first looked up.
+    /// The imprints that [`Shelf::imprint`] has found. A batch keeps using a shape as it was when it was first looked
+    /// up.
     found: Arc<Mutex<HashMap<String, Imprint>>>,
 }
 
-/// What a `NAME|FILE` argument means.
+/// The meaning of a `NAME|FILE` argument.
 #[derive(Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
 pub(crate) enum Located {
     /// A shape of the library.
     Shape(StoredShape),
-    /// A file, opened.
+    /// A file that is open.
     File(PathBuf, File),
     /// Standard input.
     Standard,
 }
 
 impl Shelf {
-    /// A shelf for the library in `folder`, None if the user has no home; `asked` if `--library` names the folder.
+    /// Creates a shelf for the library in `folder`, None if the user has no home. `asked` tells whether `--library`
+    /// names it.
     pub(crate) fn new(folder: Option<PathBuf>, asked: bool) -> Self {
         Self {
             folder,
@@ -56,18 +58,18 @@ impl Shelf {
         }
     }
 
-    /// The library.
+    /// Returns the library.
     ///
     /// # Errors
-    /// [`LibraryError::NoPlace`] if there is no folder for one.
+    /// Returns [`LibraryError::NoPlace`] if there is no folder for one.
     pub(crate) fn library(&self) -> Result<Library, LibraryError> {
         let library = || self.folder.clone().map(Library::open);
         let library = self.library.get_or_init(library);
         library.clone().ok_or(LibraryError::NoPlace)
     }
 
-    /// A warning that only the shapes that come with the program can be read, if the library was used and a file is where a
-    /// folder above its own would be.
+    /// Returns a warning that only the shapes that come with the program can be read, if the library was used and a
+    /// file is in the place of a folder above it.
     pub(crate) fn complaint(&self) -> Option<String> {
         let library = self.library.get()?.as_ref()?;
         let file = library.file_above()?;
@@ -77,7 +79,8 @@ impl Shelf {
         ))
     }
 
-    /// The library that `--library` names, or None if it is not given: scripts use an empty library of their own then.
+    /// Returns the library that `--library` names; None if it is not given: scripts then use an empty library of
+    /// their own.
     pub(crate) fn named(&self) -> Result<Option<Library>, LibraryError> {
         self.asked.then(|| self.library()).transpose()
     }
@@ -85,7 +88,7 @@ impl Shelf {
     /// Looks up a `NAME|FILE` argument and reads it.
     ///
     /// # Errors
-    /// Those of [`Self::locate`]; otherwise what is wrong with the file.
+    /// Returns the errors of [`Self::locate`], and of reading the file.
     pub(crate) fn find(&self, what: &OsStr) -> Result<Content, CliError> {
         let (name, content) = match self.locate(what)? {
             Located::Shape(shape) => return Ok(Content::Shape(shape)),
@@ -103,8 +106,8 @@ impl Shelf {
     /// Looks up a `NAME|FILE` argument: `-`, then a name, then a file.
     ///
     /// # Errors
-    /// [`CliError::Nowhere`] if it is neither; otherwise what is wrong with the shape, or why the file cannot be
-    /// opened.
+    /// Returns [`CliError::Nowhere`] if the argument is none of these; otherwise the error of the shape, or of
+    /// opening the file.
     pub(crate) fn locate(&self, what: &OsStr) -> Result<Located, CliError> {
         if what == "-" {
             return Ok(Located::Standard);
@@ -114,12 +117,12 @@ impl Shelf {
             .map(|name| self.library().and_then(|library| library.load(name)));
         let nowhere = match named {
             Some(Ok(loaded)) => return Ok(Located::Shape(loaded.shape)),
-            // What is like it is looked for only if there is no such file.
+            // A similar name is searched only if there is no such file.
             Some(Err(LibraryError::Unknown { name })) => {
                 let near = String::new();
                 Some(CliError::Nowhere { name, near })
             }
-            // What cannot be a name may be a path, and paths do not need a library.
+            // A text that cannot be a name may be a path, and paths do not need a library.
             Some(Err(LibraryError::Name(_) | LibraryError::NoPlace)) | None => None,
             // An error of the library is reported only if there is no such file.
             Some(Err(error)) => Some(error.into()),
@@ -140,8 +143,8 @@ impl Shelf {
         }
     }
 
-    /// The end of a message about a name that no stored shape and no file has: that it is a figure, or a shape that is much
-    /// like it.
+    /// Returns the end of a message about a name that no stored shape and no file has: that it is the name of a
+    /// figure, or a shape with a similar name.
     fn near_or_figure(&self, name: &str) -> String {
         match FigureKind::from_name(name) {
             Some(_) => format!("; {name:?} is a figure, which taxel figure and taxel sweep take"),
@@ -149,7 +152,7 @@ impl Shelf {
         }
     }
 
-    /// The message about an error of the library; a name that it does not have is compared with those that it has.
+    /// Returns the message about an error of the library. For an unknown name, it suggests a similar one.
     pub(crate) fn refused(&self, error: LibraryError) -> CliError {
         if !matches!(
             error,
@@ -161,21 +164,21 @@ impl Shelf {
         CliError::NoShape { error, near }
     }
 
-    /// The end of a message about a name that is not there: the name of a shape that is much like it, if there is one.
+    /// Returns the end of a message about an unknown name: a shape with a similar name, if there is one.
     fn suggestion(&self, error: &LibraryError) -> String {
         let library = self.library();
         library.map_or_else(|_| String::new(), |library| library.suggestion(error))
     }
 
-    /// The imprint of a stored shape, for the lines of a batch. Each shape is read once.
+    /// Returns the imprint of a stored shape, for the lines of a batch. Each shape is read once.
     ///
     /// # Errors
-    /// If there is no such shape, or it cannot be read.
+    /// Returns an error if there is no such shape, or it cannot be read.
     pub(crate) fn imprint(&self, name: &str) -> Result<Imprint, LibraryError> {
-        // It is whole at any time, whether or not a thread has panicked.
+        // The map is never left half changed, so a panic of another thread does not matter.
         let found = || self.found.lock().unwrap_or_else(PoisonError::into_inner);
-        // Upper and lower case are the same in names, and only shapes that exist are kept: so the map never outgrows the
-        // library, whatever the input asks for.
+        // Upper and lower case are the same in names, and only shapes that exist are kept. So the map never outgrows
+        // the library, whatever names the input contains.
         let own = folded(name);
         if let Some(imprint) = found().get(&own) {
             return Ok(*imprint);
@@ -184,11 +187,12 @@ impl Shelf {
         Ok(*found().entry(own).or_insert(shape.imprint))
     }
 
-    /// Stores a shape and returns the name that it has in the library, which may differ in upper and lower case. With
-    /// `force` it replaces an own shape of that name.
+    /// Stores a shape and returns its name in the library, which may differ in case. With `force`, it replaces an own
+    /// shape of that name.
     ///
     /// # Errors
-    /// [`CliError::Taken`] if there is one and `force` is false; otherwise those of the library.
+    /// Returns [`CliError::Taken`] if there is such a shape and `force` is false; otherwise the errors of the
+    /// library.
     pub(crate) fn save(&self, shape: &StoredShape, force: bool) -> Result<String, CliError> {
         let library = self.library()?;
         let saved = match library.save(shape, Expected::Nothing) {

@@ -1,35 +1,34 @@
-//! Standard input or a pipe as a file that can be read again: everything that is read is also copied to a temporary
-//! file.
+//! Makes standard input or a pipe readable again: everything that is read is also copied to a temporary file.
 //!
-//! Nothing is read ahead, so that an input without an end is refused as soon as something in it is wrong.
+//! Nothing is read ahead, so an endless input is refused as soon as something in it is wrong.
 
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::os::unix::fs::FileExt;
 
-/// The most that is copied, in bytes, so that an input without an end does not fill the disk.
+/// The most that is copied, in bytes, so that an endless input does not fill the disk.
 const MOST: u64 = 4 << 30;
 
-/// Such an input.
+/// Standard input or a pipe with a copy of what was read.
 pub(crate) struct SpooledInput {
-    /// What has not been read yet; None at its end.
+    /// The input that has not been read yet; None at its end.
     rest: Option<Box<dyn Read>>,
-    /// A copy of what has been, which has no name.
+    /// The copy of what has been read, in a file without a name.
     copy: File,
-    /// Its bytes.
+    /// The length of the copy, in bytes.
     length: u64,
-    /// Where reading goes on.
+    /// The position at which reading continues, in bytes.
     place: u64,
-    /// The most that is copied.
+    /// The most that is copied, in bytes.
     most: u64,
 }
 
 impl SpooledInput {
-    /// Before the first byte.
+    /// Wraps an input that has not been read yet.
     ///
     /// # Errors
-    /// If there is no temporary file.
+    /// Returns an error if no temporary file can be made.
     pub(crate) fn new(input: impl Read + 'static) -> io::Result<Self> {
         Ok(Self {
             rest: Some(Box::new(input)),
@@ -40,7 +39,7 @@ impl SpooledInput {
         })
     }
 
-    /// Reads on, and keeps a copy. Returns how many bytes came.
+    /// Reads on from the input and copies what was read. Returns the number of bytes.
     fn advance(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         let Some(rest) = &mut self.rest else {
             return Ok(0);
@@ -106,9 +105,9 @@ impl Seek for SpooledInput {
 mod tests {
     use super::*;
 
-    /// What comes in pieces is read again from any place, and no more is read than asked for.
+    /// Input that comes in pieces can be read again from any place, and no more is read than requested.
     #[test]
-    fn what_was_read_is_there_again() {
+    fn input_can_be_read_again() {
         let input = (&b"abc"[..]).chain(&b"defg"[..]).chain(&b"hij"[..]);
         let mut input = SpooledInput::new(input).expect("a file");
         let mut read = |to: SeekFrom, count: usize| {
@@ -126,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn an_input_without_an_end_is_refused() {
+    fn an_endless_input_is_refused() {
         let mut input = SpooledInput::new(io::repeat(b'1')).expect("a file");
         input.most = 1 << 20;
         let read = io::copy(&mut input, &mut io::sink());

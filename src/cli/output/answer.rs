@@ -1,4 +1,4 @@
-//! Answers to touches: for people, and as JSON.
+//! Answers to touches, for people and as JSON.
 
 use std::fmt::Write;
 
@@ -15,41 +15,40 @@ use crate::imprint::Imprint;
 use crate::parameter::number::short;
 use crate::recognition::{Answer, AnswerState, Evidence, Method, Model, Nearest, Noise};
 
-/// How many shapes a text shows, unless another number is asked for.
+/// The number of shapes that a text shows by default.
 const SHOWN: usize = 8;
 
-/// Characters of the longest bar.
+/// The length of the longest bar, in characters.
 const BAR: usize = 30;
 
-/// The nearest imprint as an object of JSON.
-/// If several imprints are equally near, it is the one that occurs most often.
+/// The nearest imprint as a JSON object. If several imprints are equally near, it is the most frequent one.
 #[derive(Serialize)]
 struct NearestJson<'a> {
     /// The shape that leaves it most often.
     name: &'a str,
-    /// How many taxels differ in the best position.
+    /// The number of taxels that differ in the best position.
     distance: u32,
-    /// Its rows, in the matrix of the touch.
+    /// The rows of the imprint, in the matrix of the touch.
     imprint: Rows<'a>,
 }
 
-/// An answer as an object of JSON, its keys in the order of the documentation.
+/// An answer as a JSON object, with its keys in the order of the documentation.
 pub(crate) struct AnswerJson<'a> {
-    /// The model that was asked; for the names of shapes.
+    /// The model, for the names of shapes.
     pub(crate) model: &'a Model,
-    /// The posterior, and what follows from it.
+    /// The answer, with the posterior.
     pub(crate) answer: &'a Answer,
     /// The noise that was assumed.
     pub(crate) noise: Option<Noise>,
     /// The nearest imprint of the model; None if all are larger than the matrix.
     pub(crate) nearest: Option<Nearest>,
-    /// How many shapes of the ranking are written; all if not given.
+    /// The number of shapes of the ranking to write; None for all.
     pub(crate) top: Option<usize>,
-    /// Whether it was asked where the shape lies.
+    /// Whether the place of the shape is written.
     pub(crate) asks_pose: bool,
-    /// Where the shape lies; None if it cannot be said.
+    /// The place of the shape; None if it is unknown.
     pub(crate) pose: Option<PoseReport>,
-    /// Keys of the question that come first.
+    /// The keys of the question that are copied to the beginning.
     pub(crate) copied: Vec<(&'static str, &'a RawValue)>,
 }
 
@@ -92,9 +91,9 @@ impl Serialize for AnswerJson<'_> {
 /// A shape of the ranking.
 #[derive(Serialize)]
 struct Ranked<'a> {
-    /// Its name.
+    /// The shape's name.
     name: &'a str,
-    /// Its posterior, 0 to 1.
+    /// The shape's posterior, 0 to 1.
     probability: f64,
 }
 
@@ -109,26 +108,26 @@ struct Ranked<'a> {
 ///   # both   + only in the touch   - only in the nearest imprint
 /// ```
 pub(crate) struct AnswerText<'a> {
-    /// The model that was asked.
+    /// The model.
     pub(crate) model: &'a Model,
     /// The touch, which is compared with the nearest imprint.
     pub(crate) touch: &'a Imprint,
-    /// The posterior, and what follows from it.
+    /// The answer, with the posterior.
     pub(crate) answer: &'a Answer,
-    /// How many shapes of the ranking are shown; eight if not given.
+    /// The number of shapes of the ranking to show; None for eight.
     pub(crate) top: Option<usize>,
     /// The noise that was assumed.
     pub(crate) noise: Option<Noise>,
 }
 
 impl AnswerText<'_> {
-    /// The whole text.
+    /// Returns the whole text.
     pub(crate) fn text(&self, charset: Charset) -> String {
         let touches = [*self.touch];
         let evidence = Evidence::of(&touches).under(self.noise.as_ref());
         let nearest = self.model.nearest_of(evidence);
         let mut text = self.verdict(nearest.is_some());
-        // Where nothing fits, nothing was compared.
+        // If no imprint of the model fits on the matrix, nothing was compared.
         if let (Some(noise), Some(nearest)) = (self.noise, &nearest) {
             // Cannot fail: the text is kept in memory.
             let _ = writeln!(
@@ -150,13 +149,13 @@ impl AnswerText<'_> {
         charset.lines(&text)
     }
 
-    /// The name of a shape of the model.
+    /// Returns the name of a shape of the model.
     fn name(&self, shape: usize) -> &str {
         &self.model.shapes()[shape].name
     }
 
-    /// The first line: which shape it is and how certain that is, or why there is none; `any_fits`: whether an imprint of the
-    /// model fits on the matrix.
+    /// Returns the first line: the shape and how certain it is, or why there is none. `any_fits` tells whether any
+    /// imprint of the model fits on the matrix.
     fn verdict(&self, any_fits: bool) -> String {
         match (self.answer.state, self.answer.shape) {
             (AnswerState::Tied, _) => {
@@ -179,7 +178,7 @@ impl AnswerText<'_> {
         }
     }
 
-    /// The likeliest shapes, each with a bar and its probability, and how many more there are.
+    /// Returns the likeliest shapes, each with a bar and its probability, and the number of the others.
     fn ranking(&self, charset: Charset) -> String {
         let top = self.top.unwrap_or(SHOWN);
         let shown = self.answer.ranking.iter().take(top);
@@ -202,7 +201,7 @@ impl AnswerText<'_> {
         text
     }
 
-    /// The nearest imprint of the model and where it differs from the touch; nothing if it is the touch.
+    /// Returns the nearest imprint of the model, with its differences from the touch; nothing if there are none.
     fn nearest(&self, nearest: Option<Nearest>) -> String {
         let Some(nearest) = nearest.filter(|nearest| nearest.distance > 0) else {
             return String::new();
@@ -223,7 +222,7 @@ impl AnswerText<'_> {
     }
 }
 
-/// What the imprint was compared with, in words.
+/// Returns in words what the imprint was compared with.
 fn compared(method: Method) -> &'static str {
     match method {
         Method::Exact => "only the key of the imprint is looked up",
@@ -232,7 +231,8 @@ fn compared(method: Method) -> &'static str {
     }
 }
 
-/// Two imprints of one size in one matrix: `#` both, `+` only the touch, `-` only the nearest, `.` neither, `x` dead.
+/// Draws two imprints in the matrix of the touch: `#` both, `+` only the touch, `-` only the nearest, `.` neither,
+/// `x` dead.
 fn differences(touch: &Imprint, nearest: &Imprint, dead: Option<&Imprint>) -> String {
     let mut text = String::new();
     for row in 0..touch.rows() {

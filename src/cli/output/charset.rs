@@ -1,4 +1,4 @@
-//! The characters that may be written, and how text is converted to them.
+//! The characters that may be written, and the conversion of text to them.
 //!
 //! In a locale that is not UTF-8, or with `--ascii`, all output is ASCII: known signs get a spelling (`°` becomes `
 //! deg`), everything else a Rust escape (`\u{e9}`). In either character set control characters are escaped, because
@@ -13,14 +13,14 @@ use crate::tui::widget::theme::spelling;
 /// The characters that may be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Charset {
-    /// Space to `~`.
+    /// ASCII from space to `~`.
     Ascii,
     /// Every visible character.
     Unicode,
 }
 
 impl Charset {
-    /// ASCII if an argument is `--ascii` or the locale is not UTF-8.
+    /// Returns ASCII if an argument is `--ascii` or the locale is not UTF-8.
     ///
     /// This looks for `--ascii` before the arguments are parsed, so that a message about wrong arguments is in ASCII
     /// too. As POSIX defines, the first of `LC_ALL`, `LC_CTYPE` and `LANG` that is set and not empty decides; if none
@@ -49,7 +49,7 @@ impl Charset {
         }
     }
 
-    /// An active and an inactive taxel. Each takes two columns of the terminal, so that cells look square.
+    /// Returns an active and an inactive taxel. Each takes two columns of the terminal, so that cells look square.
     pub(crate) fn taxels(self) -> (&'static str, &'static str) {
         match self {
             Self::Ascii => ("# ", ". "),
@@ -81,7 +81,7 @@ impl Charset {
         lines.join("\n")
     }
 
-    /// Whether a character can be written as it is.
+    /// Returns true if a character can be written as it is.
     fn has(self, character: char) -> bool {
         match self {
             Self::Ascii => matches!(character, ' '..='~'),

@@ -1,10 +1,10 @@
-//! Evaluations of models: as a table for people, as commas, as one line of JSON.
+//! Evaluations of models: as a table for people, as comma-separated values, and as a line of JSON.
 //!
-//! What a text of `taxel model confusion` consists of, above the matrix and below it:
+//! The text of `taxel model confusion` consists of a summary, the matrix and the worst pair:
 //! ```text
-//! 5400 touches of 3 shapes, 845 distinct
-//! right                    5312   98.4 %
-//! wrong                      88    1.6 %  the limit: no method errs less
+//! 5,400 touches of 3 shapes, 845 distinct
+//! right                   5,312   98.4 %
+//! wrong                      88    1.6 %  the limit: no method does better
 //! …
 //!             1      2      3    recall
 //! 1 bar   [1800]     ·      ·   100.0 %
@@ -13,7 +13,7 @@
 //!   precision 100%    99%    96%
 //! most confused: disc and block (1.6 %)
 //! ```
-//! Rows are true shapes, columns the names that they are given. All numbers are counted touches, not estimates.
+//! Rows are the true shapes, columns the names they are given. All numbers are counted touches, not estimates.
 
 use std::fmt::Write;
 use std::iter;
@@ -28,11 +28,12 @@ use crate::recognition::{
     Classifier, ClassifierEvaluation, ConfusionMatrix, Evaluation, ShapeDescriptor,
 };
 
-/// An evaluation as an object of JSON, its keys in the order of the documentation.
+/// An evaluation as a JSON object, with its keys in the order of the documentation.
 pub(crate) struct EvaluationJson<'a> {
-    /// What is shown.
+    /// The evaluation to show.
     pub(crate) evaluation: &'a Evaluation,
-    /// Of a classifier: `certain` is null, since it does not know when it is, and so is `keys_of_one_shape`.
+    /// The classifier, if it is not the best one. It does not know when it is certain: `certain` and
+    /// `keys_of_one_shape` are null then.
     pub(crate) classifier: Option<&'a ClassifierEvaluation>,
 }
 
@@ -80,7 +81,8 @@ impl Serialize for MatrixRows<'_> {
     }
 }
 
-/// A count as JSON; counts beyond 64 bits do not fit in memory anyway, but a weight may make one.
+/// Returns a count as JSON. A count beyond 64 bits does not fit in memory anyway, but a weight may cause one; it
+/// becomes a text.
 pub(crate) fn number(count: u128) -> serde_json::Value {
     match u64::try_from(count) {
         Ok(count) => json!(count),
@@ -88,13 +90,12 @@ pub(crate) fn number(count: u128) -> serde_json::Value {
     }
 }
 
-/// A share as percent, to three decimals.
+/// Formats a share in percent, to three decimals.
 pub(crate) fn percent_fine(share: f64) -> String {
     format!("{} %", decimal(100.0 * share, 3))
 }
 
-/// A bar for a share, of at most `width` characters.
-/// Rounded to whole characters, so a small share may have none.
+/// Draws a bar for a share, of at most `width` characters. The length is rounded, so a small share may have no bar.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -109,19 +110,19 @@ pub(crate) fn bar(share: f64, width: usize, charset: Charset) -> String {
     full.repeat((share * width as f64).round() as usize)
 }
 
-/// Who names the shapes of an evaluation; it says what the error is the limit of.
+/// The method that an evaluation is about, which decides how its error is explained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NamedBy {
     /// The best method that sees the whole imprint.
     Imprint,
-    /// The best one that sees some descriptors.
+    /// The best method that sees some descriptors.
     Descriptors,
     /// Another method, which is not the best one.
     Classifier,
 }
 
 impl NamedBy {
-    /// The remark behind the error.
+    /// Returns the remark after the error.
     fn remark(self) -> &'static str {
         match self {
             Self::Imprint => "  the limit: no method does better",
@@ -131,7 +132,7 @@ impl NamedBy {
     }
 }
 
-/// What an evaluation says, in lines: touches, error, certain, top two, information.
+/// Returns the summary of an evaluation in lines: touches, error, certain, top two, information.
 pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
     let number = |count: u128| grouped(count);
     let of_touches = |part: u128| percent(share(part, evaluation.touches));
@@ -174,10 +175,10 @@ pub(crate) fn summary(evaluation: &Evaluation, named: NamedBy) -> String {
     text
 }
 
-/// The matrix: a row per true shape, a column per name; the diagonal in brackets, zero as a dot. Columns are numbered
-/// if their names do not fit; recall on the right, precision below. The first column begins behind the longest name. A
-/// column is as wide as its largest number, whose brackets are counted, so that the diagonal does not shift its row.
-/// Precision is `-` for a name that is never given.
+/// Returns the matrix: a row for each true shape, a column for each name, the diagonal in brackets, zero as a dot;
+/// recall on the right, precision below. Columns are numbered. The first one begins after the longest name. A column
+/// is as wide as its largest number with brackets, so that the diagonal does not shift its row. Precision is `-` for
+/// a name that is never given.
 pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
     let labels = &evaluation.labels;
     let dot = match charset {
@@ -234,9 +235,8 @@ pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
     charset.lines(&text)
 }
 
-/// The worst pairs, in a sentence; empty if no shape is taken for another.
-/// At most three: `most confused: disc and block (1.6 %)`. Both directions of a pair are added; the share is that of
-/// all touches.
+/// Returns the worst pairs, at most three: `most confused: disc and block (1.6 %)`. It is empty if no shape is taken
+/// for another. Both directions of a pair are added; the share is that of all touches.
 pub(crate) fn worst_pairs(evaluation: &Evaluation, charset: Charset) -> String {
     let pairs = evaluation.worst_pairs();
     let said = pairs.iter().take(3).map(|&(one, other, touches)| {
@@ -253,8 +253,8 @@ pub(crate) fn worst_pairs(evaluation: &Evaluation, charset: Charset) -> String {
     }
 }
 
-/// The matrix as commas: a heading row of names, then a row per true shape.
-/// Names with a comma, a quotation mark or a line end are quoted, quotation marks doubled (RFC 4180):
+/// Returns the matrix as comma-separated values: a heading row of names, then a row for each true shape. Names with a
+/// comma, a quotation mark or a line end are quoted, quotation marks doubled (RFC 4180):
 /// ```text
 /// true,bar,disc
 /// bar,1800,0
@@ -264,7 +264,7 @@ pub(crate) fn csv(evaluation: &Evaluation) -> String {
     let mut table = csv::Writer::from_writer(Vec::new());
     let mut write = |name: &str, cells: &[String]| {
         let cells = cells.iter().map(String::as_str);
-        // Cannot fail: the table is kept in memory, and all rows are equally long.
+        // Cannot fail: the table is kept in memory, and all rows have the same length.
         let _ = table.write_record(iter::once(name).chain(cells));
     };
     write("true", &evaluation.labels);
@@ -275,8 +275,8 @@ pub(crate) fn csv(evaluation: &Evaluation) -> String {
     String::from_utf8_lossy(table.get_ref()).into_owned()
 }
 
-/// Descriptors chosen one after the other, and the limit in the last row.
-/// The error falls from row to row, to that of the whole imprint at best; `values` are the distinct combinations:
+/// Returns the descriptors in the order in which they were chosen, and the limit in the last row. The error falls
+/// from row to row, at best to that of the whole imprint; `values` are the distinct combinations:
 /// ```text
 /// descriptors chosen one by one    error   values
 /// + f                              5.6 %       61
@@ -308,7 +308,7 @@ pub(crate) fn greedy(
     charset.lines(&text)
 }
 
-/// Peers in a table, and the limit in the last row.
+/// Returns the table of all classifiers, with the limit in the last row:
 /// ```text
 /// classifier             error  top two  information
 /// lda                    8.4 %   99.9 %   1.179 bits
@@ -337,7 +337,7 @@ pub(crate) fn classifiers(
     charset.lines(&(text + &features(reached.first()) + &drawn))
 }
 
-/// The table of all classifiers with commas, and with a row of names; the limit is the last row.
+/// Returns the table of all classifiers as comma-separated values, with a row of names; the limit is the last row.
 pub(crate) fn classifiers_csv(reached: &[ClassifierEvaluation], limit: &Evaluation) -> String {
     let mut text = String::from("classifier,error,right_in_top_two,information_bits\n");
     let classifiers = reached
@@ -356,7 +356,7 @@ pub(crate) fn classifiers_csv(reached: &[ClassifierEvaluation], limit: &Evaluati
     text
 }
 
-/// What a classifier drew at random: another seed gives other numbers. Empty for one that counts all touches.
+/// Returns what a classifier drew at random: another seed gives other numbers. Empty if it counts all touches.
 pub(crate) fn sampled(reached: &ClassifierEvaluation) -> String {
     let Some(sample) = reached.sample else {
         return String::new();
@@ -369,9 +369,8 @@ pub(crate) fn sampled(reached: &ClassifierEvaluation) -> String {
     )
 }
 
-/// The features that a classifier used, and those that it left out.
-/// Empty without a classifier, and for templates, which compare imprints. A feature is left out if it has one value only or
-/// copies another one.
+/// Returns the features that a classifier used, and those that it left out because they have only one value or copy
+/// another one. It is empty without a classifier, and for templates, which compare imprints.
 pub(crate) fn features(reached: Option<&ClassifierEvaluation>) -> String {
     let Some(reached) = reached.filter(|own| own.classifier != Classifier::Template) else {
         return String::new();
@@ -383,8 +382,8 @@ pub(crate) fn features(reached: Option<&ClassifierEvaluation>) -> String {
     text
 }
 
-/// The errors of pairs, in percent, with the worst one below.
-/// The matrix is symmetric: each entry is the error of the best classifier if there were only these two shapes.
+/// Returns the errors of pairs, in percent. The matrix is symmetric: each entry is the error of the best classifier
+/// if there were only these two shapes.
 pub(crate) fn pairs(labels: &[String], errors: &[Vec<f64>], charset: Charset) -> String {
     let name = labels
         .iter()

@@ -1,4 +1,4 @@
-//! Values in shades, two characters a cell, without colours.
+//! Draws values in shades, two characters per cell, without colours.
 //! ```text
 //!     0   2   4
 //!  0  · · ░░░░·
@@ -11,7 +11,7 @@ use crate::cli::output::charset::Charset;
 use crate::formats::value::fitting;
 use crate::matrix::Matrix;
 
-/// The shades from above 0 to the largest value.
+/// Returns the shades from above 0 to the largest value.
 fn shades(charset: Charset) -> &'static [char] {
     match charset {
         Charset::Ascii => &[':', '-', '=', '+', '*', '#', '%', '@'],
@@ -19,8 +19,8 @@ fn shades(charset: Charset) -> &'static [char] {
     }
 }
 
-/// The values of all cells, a line a row, with numbers of columns and rows as beside imprints, and what the shades
-/// mean. A cell of 0 or less is a dot; where there is no cell there is nothing.
+/// Draws the values of all cells, a line for each row, with numbers of columns and rows as beside imprints, and a
+/// legend of the shades. A cell of 0 or less is a dot; a cell without a value is blank.
 pub(crate) fn heat_map(values: &Matrix<f64>, unit: &str, charset: Charset) -> String {
     let largest = values.values().iter().copied().fold(0.0, f64::max);
     let shades = shades(charset);
@@ -52,8 +52,8 @@ pub(crate) fn heat_map(values: &Matrix<f64>, unit: &str, charset: Charset) -> St
     text + &format!("0 {scale} {}{unit}\n", fitting(largest, 9))
 }
 
-/// Which shade a share of the largest value has.
-/// The range from 0 to the largest value is parted evenly, upper bounds included: the largest value has the last shade.
+/// Returns the shade for a share of the largest value. The range from 0 to the largest value is divided evenly, upper
+/// bounds included: the largest value has the last shade.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shades_part_the_range_evenly() {
+    fn shades_divide_the_range_evenly() {
         let mut values = Matrix::filled(6, 1, 0.0);
         values
             .values_mut()

@@ -7,31 +7,32 @@ use std::thread::{Builder, JoinHandle};
 use crate::cli::error::CliError;
 use crate::imprint::Imprint;
 
-/// Lines that may wait; those of 64 × 64 frames take about 5 MB.
+/// The most lines that may wait; for frames of 64 × 64 they take about 5 MB.
 const WAITING: usize = 1000;
 
-/// A line, with its end unless something is still to be added, and the imprint that this is about.
+/// A line and, if something is to be added to it, the imprint that this depends on. The line has its end only if
+/// nothing is to be added.
 pub(crate) type PendingLine = (Vec<u8>, Option<Imprint>);
 
-/// Adds to a line what takes longer, on the thread that writes.
+/// Completes a line with what takes longer, on the thread that writes.
 pub(crate) type Finish<'a> = dyn FnMut(&mut Vec<u8>, Option<&Imprint>) + 'a;
 
-/// The sending end.
+/// The sending end, with the thread that writes.
 #[derive(Debug)]
 pub(crate) struct LineWriter {
-    /// To the thread. Sending fails once the thread has ended because of an error.
+    /// The channel to the thread. Sending fails once the thread has ended because of an error.
     lines: SyncSender<PendingLine>,
-    /// Returns the error of writing, or of what else it does, if there was one.
+    /// The thread, which returns its error, if there was one.
     thread: JoinHandle<Result<(), CliError>>,
-    /// Lines that were given up because too many were waiting.
+    /// The number of lines dropped because too many were waiting.
     pub(crate) given_up: u64,
 }
 
 impl LineWriter {
-    /// Starts the thread, which calls `run` once with what waits to be written.
+    /// Starts the thread, which calls `run` once with the lines to write.
     ///
     /// # Errors
-    /// Where the system gives no thread.
+    /// Returns an error if the system provides no thread.
     pub(crate) fn start(
         run: impl FnOnce(&WaitingLines) -> Result<(), CliError> + Send + 'static,
     ) -> Result<Self, CliError> {
@@ -45,12 +46,13 @@ impl LineWriter {
         })
     }
 
-    /// Whether nothing can be written any more.
+    /// Returns true if nothing can be written any more.
     pub(crate) fn is_over(&self) -> bool {
         self.thread.is_finished()
     }
 
-    /// Sends a line; waits if too many are waiting, or gives it up if that is allowed. False once nothing can be written.
+    /// Sends a line. If too many are waiting, it waits, or drops the line if `may_give_up`. Returns false once
+    /// nothing can be written.
     pub(crate) fn send(&mut self, line: PendingLine, may_give_up: bool) -> bool {
         if !may_give_up {
             return self.lines.send(line).is_ok();
@@ -68,7 +70,7 @@ impl LineWriter {
     /// Waits until all lines are written.
     ///
     /// # Errors
-    /// Those of standard output, and of what the thread does besides.
+    /// Returns the errors of standard output, and of the thread's other work.
     pub(crate) fn finish(self) -> Result<(), CliError> {
         drop(self.lines);
         self.thread.join().unwrap_or_else(|_| {
@@ -84,10 +86,10 @@ impl LineWriter {
 pub(crate) struct WaitingLines(Receiver<PendingLine>);
 
 impl WaitingLines {
-    /// Writes all lines that come, finished, and holds none back while there are no more.
+    /// Writes all lines that come, completed, and flushes them when no more are waiting.
     ///
     /// # Errors
-    /// Those of standard output.
+    /// Returns the errors of standard output.
     pub(crate) fn write(&self, finish: &mut Finish<'_>) -> Result<(), CliError> {
         self.write_to(io::stdout().lock(), finish)
             .map_err(CliError::Write)

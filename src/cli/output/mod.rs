@@ -1,4 +1,4 @@
-//! Formats answers: the character set, the table of an imprint, the summary of a sweep, progress.
+//! Formats answers: character sets, imprints, evaluations, recordings, progress and more.
 //!
 //! Nothing here writes to standard output: commands return text, and [`crate::cli::run`] writes it.
 

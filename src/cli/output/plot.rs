@@ -1,4 +1,4 @@
-//! A curve in a terminal: in Braille, or in strokes of ASCII.
+//! Draws a curve in a terminal, in Braille or in ASCII strokes.
 //!
 //! ```text
 //! 0.62 ⠉⠢⢄
@@ -12,11 +12,11 @@ use crate::formats::value::decimal;
 use crate::tui::widget::dots::{DOTS, DotCanvas, glyph};
 use crate::tui::widget::theme::Theme;
 
-/// Characters of the plane, across and down.
+/// The size of the drawing in characters, across and down.
 const SIZE: (u16, u16) = (60, 12);
 
-/// The curve through points, both axes named. The vertical one begins at 0, the other one at the first value.
-/// Empty for a single point, and where all are 0.
+/// Draws the curve through points, with both axes named. The vertical axis begins at 0, the horizontal one at the
+/// first value. It is empty for a single point, and if all values are 0.
 pub(crate) fn lines(y: &str, x: &str, points: &[(f64, f64)], charset: Charset) -> String {
     let over = |of: fn(&(f64, f64)) -> f64| points.iter().map(of);
     let highest = over(|point| point.1).fold(0.0, f64::max);
@@ -54,7 +54,7 @@ pub(crate) fn lines(y: &str, x: &str, points: &[(f64, f64)], charset: Charset) -
     text + &format!("{:>margin$}  {}\n", "", axis)
 }
 
-/// The rows of a canvas, blank where it has no dots.
+/// Returns the rows of a canvas, blank where it has no dots.
 fn drawn(canvas: &DotCanvas, charset: Charset) -> Vec<String> {
     let mut rows = vec![vec![' '; usize::from(SIZE.0)]; usize::from(SIZE.1)];
     for (column, row, dots) in canvas.characters() {
@@ -65,12 +65,12 @@ fn drawn(canvas: &DotCanvas, charset: Charset) -> Vec<String> {
         .collect()
 }
 
-/// The character for some dots.
+/// Returns the character for some dots.
 pub(crate) fn character(dots: u8, charset: Charset) -> char {
     glyph(&Theme::plain(charset == Charset::Ascii), dots)
 }
 
-/// A canvas whose taxels are squares of four by four dots.
+/// Creates a canvas on which a taxel is a square of four by four dots.
 pub(crate) fn canvas_of_taxels(columns: u8, rows: u8) -> DotCanvas {
     let across = u16::from(columns) * (4 / DOTS.0);
     let down = u16::from(rows) * (4 / DOTS.1);

@@ -1,11 +1,11 @@
-//! Where a recognised shape lies: in words, as JSON, and its outline over the touch.
+//! The place of a recognised shape: in words, as JSON, and as its outline over the touch.
 //!
 //! ```text
 //! centre at 3, 3 ± 0.13, 0.13 cells
 //! angle 30.2° ± 1.4° (repeats every 180°); 95 % in 27°..32°
 //! ```
-//! Positions are those of the centre about which the shape turns, in cells of the touch, x to the right, y down. All
-//! poses of the model that leave the imprint count alike; `±` is their standard deviation. Angles are degrees as of
+//! A position is that of the centre about which the shape turns, in cells of the touch, x to the right, y down. All
+//! poses of the model that leave the imprint count equally; `±` is their standard deviation. Angles are degrees as in
 //! flags, modulo the angle after which the shape looks the same.
 
 use serde::{Serialize, Serializer};
@@ -23,19 +23,19 @@ use crate::tui::widget::dots::DotCanvas;
 /// Dots of a taxel in each direction.
 const DOTS: f64 = 4.0;
 
-/// Straight pieces of an ellipse.
+/// The number of straight pieces of an ellipse.
 const PIECES: u16 = 128;
 
-/// A pose as an object of JSON, its keys in the order of the documentation.
+/// A pose as a JSON object, with its keys in the order of the documentation.
 #[derive(Serialize)]
 pub(crate) struct PoseJson<'a> {
-    /// The shape.
+    /// The shape's name.
     name: &'a str,
-    /// How many poses of the model leave the imprint.
+    /// The number of poses of the model that leave the imprint.
     poses: u64,
-    /// Mean x and y of its centre, in cells of the touch.
+    /// The mean x and y of the shape's centre, in cells of the touch.
     centre: [f64; 2],
-    /// The same from the top left corner of the imprint's box.
+    /// `centre` relative to the top left corner of the imprint's box.
     centre_in_box: [f64; 2],
     /// Standard deviations of x and y, in cells.
     centre_sd: [f64; 2],
@@ -45,28 +45,28 @@ pub(crate) struct PoseJson<'a> {
     /// `centre_sd` times the pitch.
     #[serde(skip_serializing_if = "Option::is_none")]
     centre_sd_mm: Option<[f64; 2]>,
-    /// Null for a shape that looks the same at every angle.
+    /// The angle; null for a shape that looks the same at every angle.
     angle: Option<AngleJson>,
 }
 
-/// The angle of a pose: mean and standard deviation in degrees from 0 to the period, and the fewest neighbouring whole
-/// degrees that hold 95 %.
+/// The angle of a pose, in degrees from 0 to the period: mean, standard deviation, and the fewest consecutive whole
+/// degrees that contain 95 % of the poses.
 #[derive(Serialize)]
 struct AngleJson {
-    /// The circular mean; null if the angles point in all directions alike.
+    /// The circular mean; null if the angles point equally in all directions.
     mean: Option<f64>,
-    /// The circular standard deviation; null where the mean is.
+    /// The circular standard deviation; null if the mean is null.
     sd: Option<f64>,
-    /// Degrees after which the shape looks the same; whole ones are written without a point.
+    /// The degrees after which the shape looks the same; written without a point if whole.
     #[serde(serialize_with = "integer_if_whole")]
     period: f64,
-    /// The first of the neighbouring degrees.
+    /// The first of the consecutive degrees.
     from: u32,
-    /// How many these are; they may pass the period and begin again at 0.
+    /// The number of consecutive degrees; they may pass the period and continue at 0.
     degrees: u32,
 }
 
-/// Writes a period that is whole as an integer.
+/// Writes a whole period as an integer.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes it so")]
 #[expect(clippy::cast_possible_truncation, reason = "at most 360")]
 fn integer_if_whole<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
@@ -78,7 +78,7 @@ fn integer_if_whole<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok,
 
 /// A shape's pose, as far as one touch determines it.
 pub(crate) struct PoseReport {
-    /// The shape.
+    /// The shape's name.
     name: String,
     /// The poses that leave the imprint.
     estimate: PoseEstimate,
@@ -91,8 +91,8 @@ pub(crate) struct PoseReport {
 }
 
 impl PoseReport {
-    /// The pose of a shape of a model on an imprint; None of an empty one.
-    /// Without a mean angle the outline is drawn in the middle of the likeliest degrees.
+    /// Returns the pose of a shape of a model that left an imprint; None for an empty imprint. If there is no mean
+    /// angle, the outline is drawn in the middle of the likeliest degrees.
     pub(crate) fn new(
         model: &Model,
         shape: usize,
@@ -131,7 +131,7 @@ impl PoseReport {
         })
     }
 
-    /// The pose as an object of JSON: lengths in cells, and in mm with a pitch; degrees as of flags.
+    /// Returns the pose as a JSON object: lengths in cells, with a pitch also in mm; degrees as in flags.
     pub(crate) fn json(&self) -> PoseJson<'_> {
         let estimate = &self.estimate;
         let [x, y] = estimate.position;
@@ -154,7 +154,7 @@ impl PoseReport {
         }
     }
 
-    /// The pose in words, and the outline of the shape over the touch.
+    /// Returns the pose in words, and the outline of the shape over the touch.
     pub(crate) fn text(&self, touch: &Imprint, charset: Charset) -> String {
         let estimate = &self.estimate;
         let place = |factor: f64| {
@@ -178,7 +178,7 @@ impl PoseReport {
         charset.lines(&(text + &self.drawn(touch, charset)))
     }
 
-    /// The touch with the outline over it, two characters a taxel.
+    /// Draws the touch with the outline over it, two characters per taxel.
     fn drawn(&self, touch: &Imprint, charset: Charset) -> String {
         let mut outline = Outline(canvas_of_taxels(touch.columns(), touch.rows()));
         self.placed.draw(&mut outline);
@@ -206,7 +206,7 @@ impl PoseReport {
     }
 }
 
-/// The angle with its spread, or that any is as likely.
+/// Returns the angle with its spread in words, or "any" if no angle is more likely than another.
 fn angle_in_words(angle: &AngleEstimate) -> String {
     let repeats = match decimal(angle.period, 2) {
         turn if turn == "360" => String::new(),
@@ -224,7 +224,7 @@ fn angle_in_words(angle: &AngleEstimate) -> String {
 struct Outline(DotCanvas);
 
 impl Outline {
-    /// A line between two points given in cells.
+    /// Draws a line between two points given in cells.
     fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
         let place = |(x, y): (f64, f64)| (x * DOTS, y * DOTS);
         self.0.line(place(from), place(to));
@@ -236,7 +236,7 @@ impl Pen<f64> for Outline {
         self.line((from.x, from.y), (to.x, to.y));
     }
 
-    /// Drawn as [`PIECES`] chords: they differ from it by less than a dot.
+    /// Draws [`PIECES`] chords, which differ from the ellipse by less than a dot.
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
         let at = |piece: u16| {
             let turn = std::f64::consts::TAU * f64::from(piece) / f64::from(PIECES);

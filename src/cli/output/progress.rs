@@ -22,23 +22,23 @@ const PAUSE: Duration = Duration::from_secs(10);
 
 /// Shows how many poses of a sweep are done. It is shared by all threads of the sweep.
 pub(crate) struct Progress {
-    /// What is counted, in the plural.
+    /// The name of what is counted, in the plural.
     noun: &'static str,
-    /// Poses of the whole work.
+    /// The number of poses in all.
     all: u64,
-    /// Poses that are done.
+    /// The number of poses that are done.
     done: AtomicU64,
-    /// Where it is shown.
+    /// The way progress is shown.
     shown: Shown,
 }
 
-/// How progress is shown.
+/// The way progress is shown.
 enum Shown {
     /// Not at all.
     Nothing,
     /// As a bar on the terminal.
     Bar(ProgressBar),
-    /// In lines: when the sweep began, and when the last line was written.
+    /// In lines, with the times of the start and of the last line.
     Lines(Instant, Mutex<Instant>),
 }
 
@@ -48,7 +48,7 @@ impl Progress {
         Self::counting("poses", all, quiet, charset)
     }
 
-    /// The same of something else, named in the plural.
+    /// Starts to show the progress of something else, named in the plural.
     pub(crate) fn counting(noun: &'static str, all: u64, quiet: bool, charset: Charset) -> Self {
         let shown = if quiet {
             Shown::Nothing
@@ -60,7 +60,7 @@ impl Progress {
                 Charset::Unicode => "█▌░",
             };
             let style = ProgressStyle::with_template(template);
-            // Millions of poses a second: the library's own format would show decimals.
+            // There are millions of poses per second, for which the library's own format would show decimals.
             let rate = move |state: &ProgressState, text: &mut dyn std::fmt::Write| {
                 // Cannot fail: the text is kept in memory.
                 let _ = write!(text, "{:.0} {noun}/s", state.per_sec());
@@ -106,7 +106,7 @@ impl Progress {
         }
     }
 
-    /// A line of the log. The time left assumes that the rest takes as long per pose.
+    /// Returns a line of the log. The time left assumes that the remaining poses take as long as those that are done.
     #[expect(clippy::cast_precision_loss, reason = "for reading")]
     fn line(&self, done: u64, elapsed: Duration) -> String {
         let share = done as f64 / self.all as f64;

@@ -9,18 +9,18 @@ use std::thread::Builder;
 
 use crate::tui::runtime::work::threads::PATIENCE;
 
-/// Writes the file. Dropped, as by a panic, it waits for the last lines too: they tell most.
+/// Writes the file of `--record`. When dropped, as in a panic, it also waits for the last lines, which tell the most.
 pub(crate) struct RecordWriter(Option<RecordSink>);
 
-/// Where lines go.
+/// The way lines are written.
 enum RecordSink {
-    /// To the thread, which returns the first error.
+    /// On a thread, which returns the first error.
     Thread(Sender<String>, Receiver<io::Result<()>>),
-    /// Where the system gives no thread.
+    /// On the thread of the caller, if the system provides no other.
     Here(RecordFile),
 }
 
-/// The file.
+/// The file of a record.
 struct RecordFile {
     /// Its path.
     path: PathBuf,
@@ -28,11 +28,11 @@ struct RecordFile {
     file: Arc<File>,
     /// Whether anything has been written.
     begun: bool,
-    /// The bytes of the whole lines.
+    /// The length of the whole lines written, in bytes.
     length: u64,
-    /// Called with the first error, at once.
+    /// The function that is called with the first error, at once.
     on_failure: OnFailure,
-    /// The error that ended it.
+    /// The error that ended the record.
     failed: io::Result<()>,
 }
 
@@ -51,7 +51,8 @@ impl RecordFile {
         }
     }
 
-    /// Appends lines. After the first error nothing more is written: the record ends after a whole line, without a gap.
+    /// Appends lines. After the first error nothing more is written: the record ends after a whole line, without a
+    /// gap.
     fn write(&mut self, lines: &str) {
         for line in lines.split_inclusive('\n') {
             self.begun = true;
@@ -62,7 +63,7 @@ impl RecordFile {
             match &self.failed {
                 Ok(()) => self.length += line.len() as u64,
                 Err(error) => {
-                    // A line that is cut would be an error of the script. At worst it stays.
+                    // A truncated line would be an error in the script, so it is removed. If that fails, it stays.
                     let _ = self.file.set_len(self.length);
                     (self.on_failure)(error);
                 }
@@ -70,10 +71,10 @@ impl RecordFile {
         }
     }
 
-    /// Ends it; an empty one is removed.
+    /// Ends the record and removes the file if it is empty.
     fn finish(self) -> io::Result<()> {
         if !self.begun {
-            // At worst an empty file stays.
+            // If this fails, an empty file stays.
             let _ = fs::remove_file(&self.path);
         }
         self.failed
@@ -81,7 +82,7 @@ impl RecordFile {
 }
 
 impl RecordWriter {
-    /// Writes to a file that is open and empty.
+    /// Starts to write to a file that is open and empty.
     pub(crate) fn start(path: PathBuf, file: File, on_failure: OnFailure) -> Self {
         let file = Arc::new(file);
         let (lines, given) = channel::<String>();
@@ -91,7 +92,7 @@ impl RecordWriter {
             for lines in given {
                 own.write(&lines);
             }
-            // Nobody may be waiting any more.
+            // The receiver may have stopped waiting.
             let _ = done.send(own.finish());
         });
         match thread {
@@ -102,20 +103,20 @@ impl RecordWriter {
         }
     }
 
-    /// Appends lines, soon.
+    /// Appends lines, without waiting for the disk.
     pub(crate) fn write(&mut self, text: String) {
         match &mut self.0 {
-            // The thread ends only after this end of the channel.
+            // The thread ends only after this end of the channel is dropped.
             Some(RecordSink::Thread(lines, _)) => drop(lines.send(text)),
             Some(RecordSink::Here(file)) => file.write(&text),
             None => {}
         }
     }
 
-    /// Waits for what is not written yet, but not for long.
+    /// Waits, but not long, until everything is written.
     ///
     /// # Errors
-    /// The one that ended the record early; that the disk does not answer.
+    /// Returns the error that ended the record early, or one that says that the disk does not answer.
     pub(crate) fn finish(mut self) -> io::Result<()> {
         self.end()
     }
@@ -141,7 +142,7 @@ impl RecordWriter {
 
 impl Drop for RecordWriter {
     fn drop(&mut self) {
-        // Whoever wants to know has called `finish`.
+        // A caller that needs the error has called `finish`.
         let _ = self.end();
     }
 }

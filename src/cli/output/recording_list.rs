@@ -1,4 +1,4 @@
-//! What is in a recording: its channels, each with what the recording says of it.
+//! The list of a recording: its channels, each with what the recording states about it.
 //!
 //! ```text
 //! csv, 1 channel
@@ -8,7 +8,7 @@
 //! time      0 to 2 s, goes back at frame 2
 //! peak      frame 2
 //! ```
-//! A line is there only if the recording says something of it. As JSON, one object for the recording:
+//! A line is left out if the recording does not state it. As JSON, there is one object for the recording:
 //! ```text
 //! {"format":"csv","channels":[{"name":null,"frames":4,"rows":2,"columns":2,"cells":4,"unit":null,…,"peak":2}]}
 //! ```
@@ -27,37 +27,37 @@ use crate::parameter::number::short;
 /// A channel of a recording.
 #[derive(Debug, Default)]
 pub(crate) struct ListedChannel {
-    /// What the recording says of it.
+    /// What the recording states about the channel.
     pub(crate) info: ChannelInfo,
-    /// Rows and columns of what is seen of its frames, after the crop.
+    /// Rows and columns of the visible part of its frames, after the crop.
     seen: Option<(u16, u16)>,
-    /// How many frames it has.
+    /// The number of frames.
     pub(crate) frames: u64,
     /// The frame with the greatest sum of values.
     pub(crate) peak: Peak,
-    /// How many values a frame has, with those of cells that do not exist.
+    /// The number of values in a frame, including those of cells that do not exist.
     pub(crate) values: u64,
-    /// The most cells with a value that a frame has.
+    /// The largest number of cells with a value in a frame.
     cells: usize,
-    /// The row and column of the whole sensor that frames begin at.
+    /// The row and column of the whole sensor at which frames begin.
     first: Option<(u32, u32)>,
-    /// The times of its frames; None where frames have none.
+    /// The times of its frames; None if they have no times.
     times: Option<FrameTimes>,
 }
 
-/// When frames were taken, in seconds.
+/// The times at which frames were taken, in seconds.
 #[derive(Clone, Copy, Debug)]
 struct FrameTimes {
-    /// That of the first frame.
+    /// The time of the first frame.
     first: f64,
-    /// That of the last one so far.
+    /// The time of the last frame so far.
     last: f64,
-    /// The first frame that is earlier than the one before it: a clock that was set back, or a column that is no time.
+    /// The first frame that is earlier than the one before it: a clock was set back, or the column is not a time.
     backwards: Option<u64>,
 }
 
 impl FrameTimes {
-    /// With those of one more frame.
+    /// Adds the time of another frame.
     fn with(self, number: u64, time: f64) -> Self {
         Self {
             last: time,
@@ -79,7 +79,7 @@ impl fmt::Display for FrameTimes {
 }
 
 impl ListedChannel {
-    /// Without frames, whose size is that of what the view shows.
+    /// Creates a channel without frames; their size is that of the part that the view shows.
     pub(crate) fn new(info: &ChannelInfo, view: &View) -> Self {
         let seen = info.shape.map(|(rows, columns)| {
             let (columns, rows) = view.size(columns, rows);
@@ -92,7 +92,7 @@ impl ListedChannel {
         }
     }
 
-    /// Counts another frame, and compares the sum of its values.
+    /// Adds a frame: counts it, and compares the sum of its values.
     pub(crate) fn add(&mut self, frame: &Frame, values: &[f64]) {
         let present = values.iter().filter(|value| !value.is_nan());
         let cells = present.clone().count();
@@ -141,7 +141,7 @@ impl Serialize for ListedChannel {
     }
 }
 
-/// The recording as an object of JSON; `format` is null if damage came before it was certain.
+/// The recording as a JSON object; `format` is null if a damage comes before the format is certain.
 struct ListedRecording<'a>(Option<RecordingFormat>, &'a [ListedChannel]);
 
 impl Serialize for ListedRecording<'_> {
@@ -153,12 +153,12 @@ impl Serialize for ListedRecording<'_> {
     }
 }
 
-/// One line of JSON.
+/// Returns the recording as a line of JSON.
 pub(crate) fn json(format: Option<RecordingFormat>, channels: &[ListedChannel]) -> String {
     json::ascii(&ListedRecording(format, channels)) + "\n"
 }
 
-/// A heading, then a few lines a channel.
+/// Returns the recording as text: a heading, then a few lines for each channel.
 pub(crate) fn text(
     format: Option<RecordingFormat>,
     channels: &[ListedChannel],
@@ -177,7 +177,7 @@ pub(crate) fn text(
         .collect()
 }
 
-/// Rows, columns and cells, and of how many where only some are seen.
+/// Returns rows, columns and cells; if only a part is visible, also the size of the whole.
 fn size(channel: &ListedChannel) -> String {
     let Some((rows, columns)) = channel.seen else {
         let values = counted(channel.values, "value");
@@ -192,7 +192,7 @@ fn size(channel: &ListedChannel) -> String {
     format!("{rows} × {columns}{whole}, {cells}")
 }
 
-/// A name in ten columns, then the value; lines without a value are left out.
+/// Returns the lines of a channel: a name in ten columns, then the value. Lines without a value are left out.
 fn channel_lines(channel: &ListedChannel) -> Vec<String> {
     let info = &channel.info;
     let row = |name: &str, value: Option<String>| value.map(|value| format!("{name:<10}{value}"));

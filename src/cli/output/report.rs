@@ -1,4 +1,4 @@
-//! An imprint and its descriptors as text: the matrix with rulers, what made it, and a table of its regions.
+//! An imprint and its descriptors as text: the matrix with rulers, the source, and a table of its regions.
 //! ```text
 //!     0   2
 //!  0  ██████
@@ -11,9 +11,9 @@
 //! NA     active taxels                         8            1
 //! NAE    filled taxels                         9            1
 //! ```
-//! The rulers count columns and rows from 0. The number of a column stands at its left edge, where x is that number. In
-//! the table a line is a descriptor and a column is a region; regions that do not fit into 80 columns follow in
-//! another block below. Lengths are in cells; if the pitch is known, another line gives them in mm.
+//! The rulers count columns and rows from 0. The number of a column is at its left edge, where x has this value. In
+//! the table a row is a descriptor and a column is a region; regions that do not fit into 80 columns follow in
+//! another block below. Lengths are in cells; if the pitch is known, another row gives them in mm.
 
 use std::fmt::Write;
 
@@ -29,14 +29,14 @@ use crate::touch::reaches_beyond;
 /// The width of a table, in characters. A single region is never split, even if it is wider.
 const WIDTH: usize = 80;
 
-/// The answer of `--json`: one line with the imprint, its regions and their descriptors, and a line end.
+/// Returns the answer of `--json`: one line with the imprint, its regions and their descriptors, and a line end.
 pub(crate) fn json(imprint: &Imprint) -> String {
     let mut line = json::text(&DescribedImprint(imprint));
     line.push('\n');
     line
 }
 
-/// The lines that say what made an imprint, and that it reaches beyond the sensor if it does.
+/// Returns the lines about the source of an imprint, one of them if it reaches beyond the sensor.
 pub(crate) fn made(source: &Source, sensor: &Sensor) -> Vec<String> {
     let mut lines = vec![source.to_string()];
     if reaches_beyond(source, sensor) {
@@ -45,8 +45,8 @@ pub(crate) fn made(source: &Source, sensor: &Sensor) -> Vec<String> {
     lines
 }
 
-/// The line with the size of the matrix, the pitch and the threshold if they are known, and the active taxels:
-/// `16 × 16 taxels of 2.5 mm, threshold 0.5, NA 36 in all`.
+/// Returns the line with the size of the matrix, the pitch and the threshold if they are known, and the active
+/// taxels: `16 × 16 taxels of 2.5 mm, threshold 0.5, NA 36 in all`.
 pub(crate) fn size(imprint: &Imprint, sensor: Option<&Sensor>, pitch: Option<f64>) -> String {
     let cells = pitch.map_or(String::new(), |pitch| format!(" of {} mm", short(pitch)));
     let threshold = sensor.map_or(String::new(), |sensor| {
@@ -56,7 +56,7 @@ pub(crate) fn size(imprint: &Imprint, sensor: Option<&Sensor>, pitch: Option<f64
     format!("{columns} × {rows} taxels{cells}{threshold}, NA {na} in all")
 }
 
-/// The whole report: the matrix, the lines `made` that say where it comes from, and the table of its regions. With
+/// Returns the whole report: the matrix, the lines `made` about its source, and the table of its regions. With
 /// `pitch`, the side of a cell in mm, lengths and areas are given in mm and mm² too.
 pub(crate) fn table(
     imprint: &Imprint,
@@ -82,7 +82,7 @@ pub(crate) fn table(
     )
 }
 
-/// The matrix, two characters a taxel, with a ruler above and row numbers on the left.
+/// Draws the matrix, two characters per taxel, with a ruler above and row numbers on the left.
 fn matrix(imprint: &Imprint, charset: Charset) -> String {
     let (active, inactive) = charset.taxels();
     let ruler: Vec<String> = (0..imprint.columns())
@@ -111,19 +111,19 @@ fn line(text: &mut String, line: &str) {
     text.push('\n');
 }
 
-/// A line of the table: a descriptor, the factor from its values to those shown (the pitch, or 100 for percent), and
+/// A row of the table: a descriptor, the factor that is applied to its values (the pitch, or 100 for percent), and
 /// the label on the left.
 struct TableRow {
-    /// What is measured.
+    /// The descriptor.
     descriptor: &'static Descriptor,
-    /// From its values to those shown.
+    /// The factor from the descriptor's values to those shown.
     factor: f64,
-    /// Symbol, a few words, unit.
+    /// The symbol, a few words, and the unit.
     label: String,
 }
 
-/// The lines of the table; `holes`: whether a region is one, whose taxels are not the active ones. With a pitch, each
-/// length is followed by the same in mm and each area by the same in mm².
+/// Returns the rows of the table. `holes` tells whether a region is a hole, whose taxels are not active. With a
+/// pitch, each length is followed by the same length in mm, and each area by the same area in mm².
 fn table_rows(pitch: Option<f64>, holes: bool) -> Vec<TableRow> {
     let mut all = Vec::new();
     for descriptor in DESCRIPTORS {
@@ -158,7 +158,7 @@ fn table_rows(pitch: Option<f64>, holes: bool) -> Vec<TableRow> {
     all
 }
 
-/// The left column of the table, padded to one width; the first cell, above the labels, is empty.
+/// Returns the left column of the table, padded to one width; the first cell, above the labels, is empty.
 fn labels(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -> Vec<String> {
     let holes = descriptions.iter().any(|it| it.kind == RegionKind::Hole);
     let mut labels = vec![String::new()];
@@ -174,13 +174,14 @@ fn labels(descriptions: &[Description], pitch: Option<f64>, charset: Charset) ->
         .collect()
 }
 
-/// The width of the widest cell, in characters.
+/// Returns the width of the widest cell, in characters.
 fn widest(cells: &[String]) -> usize {
     let widths = cells.iter().map(|cell| cell.chars().count());
     widths.fold(0, usize::max)
 }
 
-/// A column for each region, with its heading, such as `hole 2`, in the first cell; each padded to its own width.
+/// Returns a column for each region, with a heading such as `hole 2` in the first cell. Each is padded to its own
+/// width.
 fn columns(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -> Vec<Vec<String>> {
     let rows = table_rows(pitch, false);
     let (mut exteriors, mut holes) = (0, 0);
@@ -205,7 +206,7 @@ fn columns(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -
     descriptions.iter().map(column).collect()
 }
 
-/// Puts columns side by side, as many as fit into [`WIDTH`], and the rest into further blocks below, each with the
+/// Puts columns side by side, as many as fit into [`WIDTH`], and the others into further blocks below, each with the
 /// labels.
 fn blocks(labels: &[String], mut columns: &[Vec<String>]) -> String {
     let width = |column: &[String]| column.first().map_or(0, |cell| cell.chars().count());
@@ -224,7 +225,7 @@ fn blocks(labels: &[String], mut columns: &[Vec<String>]) -> String {
         for (index, label) in labels.iter().enumerate() {
             let mut row = label.clone();
             for cell in block.iter().filter_map(|column| column.get(index)) {
-                // Cannot fail: a String takes everything.
+                // Cannot fail: the text is kept in memory.
                 let _ = write!(row, "  {cell}");
             }
             line(&mut text, &row);
@@ -238,7 +239,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_table_of_many_regions_goes_on_below() {
+    fn a_table_of_many_regions_continues_below() {
         let imprint: Imprint = "#.#.#.#\n.......\n#.#.#.#".parse().expect("rows");
         let text = table(&imprint, &[], Some(2.5), Charset::Unicode);
         assert!(text.lines().all(|line| line.chars().count() <= WIDTH));

@@ -1,4 +1,4 @@
-//! The settings file: TOML text in, checked values out.
+//! Reads the settings file, TOML, and checks its values.
 //!
 //! Every entry is optional. An unknown entry or a wrong value is an error with its line and column, so a misspelled key
 //! is never silently ignored:
@@ -28,7 +28,7 @@ use crate::tui::keys::key::{Key, parse};
 use crate::tui::keys::keymap::{Change, Keymap, KeymapError, actions};
 use crate::tui::widget::theme::{ColorDepth, Palette};
 
-/// The word that leaves a choice to the program.
+/// The word that lets the program choose.
 pub(crate) const AUTO: &str = "auto";
 
 /// The keys at the top level of the file, in the order in which messages list them.
@@ -36,7 +36,7 @@ const TOP: [&str; 9] = [
     "theme", "color", "charset", "mouse", "library", "sensor", "source", "frames", "keys",
 ];
 
-/// The parameters of a sensor, each under the name of its flag.
+/// The parameters of a sensor with the names of their flags.
 pub(crate) const SENSOR: [(&str, Parameter); 4] = [
     ("columns", Parameter::Columns),
     ("rows", Parameter::Rows),
@@ -50,53 +50,53 @@ pub(crate) const CHARSETS: [(&str, bool); 2] = [("ascii", true), ("unicode", fal
 /// The largest settings file, in bytes. The parser may need seventy times the size of a hostile file.
 pub const MAX_BYTES: usize = 64 << 10;
 
-/// The content of the file. None means that the file does not set it; an inner None means `auto`.
+/// The content of the settings file. None means that the file does not set a value; an inner None means `auto`.
 #[derive(Clone, Debug, Default)]
 pub struct Config {
     /// The palette of the screen.
     pub(crate) theme: Option<Written<Option<Palette>>>,
-    /// How many colours the screen uses.
+    /// The number of colours that the screen uses.
     pub(crate) color: Option<Written<Option<ColorDepth>>>,
     /// Whether characters are ASCII only.
     pub(crate) charset: Option<Written<Option<bool>>>,
     /// Whether the screen reacts to the mouse.
     pub(crate) mouse: Option<Written<bool>>,
-    /// An absolute path, or one below the user's home that starts with `~/`.
+    /// The folder of the library: an absolute path, or one that starts with `~/`, below the user's home.
     pub(crate) library: Option<Written<String>>,
-    /// The default sensor, changed as the file says.
+    /// The default sensor with the values of the file.
     sensor: Sensor,
-    /// The parameters of the sensor that the file sets, and in which line.
+    /// The parameters of the sensor that the file sets, with their lines.
     sensor_entries: Vec<Written<Parameter>>,
     sensors: SensorSettings,
-    /// The keys that the file binds or unbinds, in its order.
+    /// The keys that the file binds or frees, in its order.
     changes: Vec<Written<Change>>,
     /// The default keys with these changes.
     keymap: Keymap,
 }
 
-/// An error in the file, with its line and column. Both count from 1, the column in characters.
+/// An error in the settings file, with its line and column.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{line}:{column}: {wrong}")]
 pub struct ConfigError {
-    /// The line.
+    /// The line, from 1.
     pub line: usize,
-    /// The column.
+    /// The column in characters, from 1.
     pub column: usize,
-    /// What is wrong there.
+    /// The error.
     pub wrong: Wrong,
 }
 
-/// What can be wrong with the file.
+/// An error in the settings file, without its place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Wrong {
-    /// It is longer than [`MAX_BYTES`].
+    /// The file is longer than [`MAX_BYTES`].
     #[error("larger than 64 KiB, the limit for a file of settings")]
     Large,
-    /// It is not valid TOML.
+    /// The file is not valid TOML.
     #[error("{0}")]
     Syntax(String),
-    /// There is no such entry, or no such place for keys.
+    /// An entry or a place for keys that does not exist.
     #[error(
         "unknown key {found:?}, expected one of {}{}",
         expected.join(", "),
@@ -105,24 +105,24 @@ pub enum Wrong {
     Unknown {
         /// The key found.
         found: String,
-        /// The keys that are possible there.
+        /// The keys that are possible here.
         expected: Vec<&'static str>,
     },
-    /// A value of the wrong type, or not one of the possible ones.
+    /// A value of the wrong type, or not one of those that are possible.
     #[error("expected {expected}, found {found}")]
     Value {
-        /// What is possible there.
+        /// The values that are possible here.
         expected: String,
-        /// What was found.
+        /// The value found.
         found: String,
     },
-    /// A number out of range for a sensor.
+    /// A number that is out of range for a sensor.
     #[error(transparent)]
     Sensor(#[from] ParameterError),
-    /// Not the notation of one key.
+    /// A text that does not denote one key.
     #[error("{0:?} is not one key, expected one as in x, <Tab>, <C-x>")]
     Key(String),
-    /// A key that cannot be bound that way.
+    /// A key that cannot be bound like this.
     #[error(transparent)]
     Keymap(#[from] KeymapError),
 }
@@ -130,14 +130,14 @@ pub enum Wrong {
 /// An entry of a table: its key, the byte at which it starts, and its value.
 type TomlEntry<'t, 'i> = (&'t str, usize, &'t Spanned<DeValue<'i>>);
 
-/// An error, and the byte at which it is.
+/// An error with the byte at which it occurs.
 type Refusal = (usize, Wrong);
 
 impl Config {
     /// Reads the text of a settings file.
     ///
     /// # Errors
-    /// The first error in it.
+    /// Returns the first error in the text.
     pub fn read(text: &str) -> Result<Self, ConfigError> {
         Self::of(text).map_err(|(byte, wrong)| {
             let (line, column) = line_and_column(text, byte);
@@ -149,27 +149,27 @@ impl Config {
         })
     }
 
-    /// The default sensor, changed as the file says.
+    /// Returns the default sensor with the values of the file.
     pub fn sensor(&self) -> &Sensor {
         &self.sensor
     }
 
-    /// The parameters of the sensor that the file sets.
+    /// Returns the parameters of the sensor that the file sets.
     pub fn sensor_entries(&self) -> &[Written<Parameter>] {
         &self.sensor_entries
     }
 
-    /// What the file sets for real sensors.
+    /// Returns the settings of real sensors.
     pub(crate) fn sensors(&self) -> &SensorSettings {
         &self.sensors
     }
 
-    /// The key bindings that the file changes.
+    /// Returns the key bindings that the file changes.
     pub fn changes(&self) -> &[Written<Change>] {
         &self.changes
     }
 
-    /// All key bindings, with the changes of the file.
+    /// Returns all key bindings, with the changes of the file.
     pub fn keymap(&self) -> &Keymap {
         &self.keymap
     }
@@ -186,7 +186,7 @@ impl Config {
         Ok(config)
     }
 
-    /// Takes one entry of the top level.
+    /// Reads one entry of the top level.
     fn take(&mut self, text: &str, entry: TomlEntry<'_, '_>) -> Result<(), Refusal> {
         let (key, byte, value) = entry;
         let line = line_and_column(text, byte).0;
@@ -231,7 +231,7 @@ impl Config {
         Ok(())
     }
 
-    /// Takes a table of real sensors, `[source]` or `[frames]`.
+    /// Reads a table of settings of real sensors, `[source]` or `[frames]`.
     fn take_sensors(
         &mut self,
         text: &str,
@@ -260,7 +260,7 @@ impl Config {
         found.map_or(Ok(()), Err)
     }
 
-    /// Takes the table `[keys]`: a table per place, in which each key is given an action or `"none"`.
+    /// Reads the table `[keys]`: for each place a table, in which each key has an action or `"none"`.
     fn bind_keys(&mut self, text: &str, value: &Spanned<DeValue<'_>>) -> Result<(), Refusal> {
         let mut spans = Vec::new();
         for (name, byte, value) in entries(table(value)?) {
@@ -301,7 +301,7 @@ impl Config {
     }
 }
 
-/// The entries of a table, in the order in which they are written: so errors are reported from the top.
+/// Returns the entries of a table in the order in which they are written, so that the first error is reported.
 fn entries<'t, 'i>(table: &'t DeTable<'i>) -> Vec<TomlEntry<'t, 'i>> {
     let mut entries: Vec<TomlEntry<'_, '_>> = table
         .iter()
@@ -311,7 +311,7 @@ fn entries<'t, 'i>(table: &'t DeTable<'i>) -> Vec<TomlEntry<'t, 'i>> {
     entries
 }
 
-/// The line and column of a byte, both from 1.
+/// Returns the line and column of a byte, both from 1.
 fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     let before = text.get(..byte).unwrap_or(text);
     let line = before.split('\n').count();
@@ -319,7 +319,7 @@ fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     (line, column.chars().count() + 1)
 }
 
-/// The key that a text denotes; None for several keys, or for text that denotes none.
+/// Returns the key that a text denotes; None for several keys, or for text that denotes none.
 fn one_key(text: &str) -> Option<Key> {
     match parse(text).ok()?[..] {
         [key] => Some(key),
@@ -327,7 +327,7 @@ fn one_key(text: &str) -> Option<Key> {
     }
 }
 
-/// A value that is one of some names, or `auto`, which gives None.
+/// Reads a value that is one of some names, or `auto`, which gives None.
 fn choice<T: Copy, const N: usize>(
     names: &[(&'static str, T); N],
     value: &Spanned<DeValue<'_>>,
@@ -344,19 +344,19 @@ fn choice<T: Copy, const N: usize>(
     Ok(Written { value, line })
 }
 
-/// A value that must be text.
+/// Reads a value that must be text.
 fn string<'t>(value: &'t Spanned<DeValue<'_>>) -> Result<&'t str, Refusal> {
     let text = value.get_ref().as_str();
     text.ok_or_else(|| other_kind("text in quotes", value))
 }
 
-/// A value that must be a table.
+/// Reads a value that must be a table.
 fn table<'t, 'i>(value: &'t Spanned<DeValue<'i>>) -> Result<&'t DeTable<'i>, Refusal> {
     let table = value.get_ref().as_table();
     table.ok_or_else(|| other_kind("a table", value))
 }
 
-/// The value of a setting of real sensors.
+/// Reads the value of a setting of real sensors.
 fn sensor_value(
     row: &SensorSetting,
     value: &Spanned<DeValue<'_>>,
@@ -374,7 +374,7 @@ fn sensor_value(
     row.kind.value(found).ok_or_else(wrong)
 }
 
-/// A number in decimal notation. NaN and infinities pass here; the parameter's range refuses them.
+/// Reads a number in decimal notation. NaN and infinities are accepted here; the parameter's range refuses them.
 fn number(value: &Spanned<DeValue<'_>>) -> Result<f64, Refusal> {
     let (text, decimal) = match value.get_ref() {
         DeValue::Integer(number) => (number.as_str(), number.radix() == 10),
@@ -385,19 +385,19 @@ fn number(value: &Spanned<DeValue<'_>>) -> Result<f64, Refusal> {
     number.ok_or_else(|| unfit("a decimal number".to_owned(), text, value))
 }
 
-/// The error for a key that there is not.
+/// Returns the error for an unknown key.
 fn unknown(found: &str, byte: usize, expected: &[&'static str]) -> Refusal {
     let (found, expected) = (shortened_message(found), expected.to_vec());
     (byte, Wrong::Unknown { found, expected })
 }
 
-/// The error for a value of the right type that is not a possible one.
+/// Returns the error for a value of the right type that is not possible.
 fn unfit(expected: String, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
     let found = format!("{:?}", shortened_message(found));
     (value.span().start, Wrong::Value { expected, found })
 }
 
-/// The error for a word that is no action; one of the place may have been meant.
+/// Returns the error for a word that is not an action, with a similar action of the same place if there is one.
 fn no_action(context: Context, found: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
     let names = actions(context).into_iter().chain(["none"]);
     let near = did_you_mean(found, names);
@@ -406,7 +406,7 @@ fn no_action(context: Context, found: &str, value: &Spanned<DeValue<'_>>) -> Ref
     (value.span().start, Wrong::Value { expected, found })
 }
 
-/// What is wrong with a text that is not TOML, in a line. The parser does not say which key is there twice.
+/// Returns the error for a text that is not TOML, in one line. The parser does not name a key that is given twice.
 fn syntax(text: &str, error: &toml::de::Error) -> Refusal {
     let span = error.span().unwrap_or(0..0);
     let message = match (error.message(), text.get(span.clone())) {
@@ -418,7 +418,7 @@ fn syntax(text: &str, error: &toml::de::Error) -> Refusal {
     (span.start, Wrong::Syntax(shortened_message(&message)))
 }
 
-/// The error for a value of the wrong type.
+/// Returns the error for a value of the wrong type.
 fn other_kind(expected: &str, value: &Spanned<DeValue<'_>>) -> Refusal {
     let found = value.get_ref().type_str();
     let (expected, found) = (expected.to_owned(), found.to_owned());

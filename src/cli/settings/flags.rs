@@ -13,12 +13,12 @@ use crate::tui::widget::theme::{ColorDepth, Palette};
 pub(crate) enum Choice<T> {
     /// `auto`: the program chooses, even if the file says otherwise.
     Auto,
-    /// Another word, which stands for this value.
+    /// Another word, which means this value.
     Made(T),
 }
 
 impl<T> Choice<T> {
-    /// The value chosen, or None for `auto`.
+    /// Returns the value chosen, or None for `auto`.
     pub(crate) fn made(self) -> Option<T> {
         match self {
             Self::Auto => None,
@@ -27,7 +27,7 @@ impl<T> Choice<T> {
     }
 }
 
-/// The settings given as flags. None, false or empty means that the flag was not given.
+/// The settings given by flags. None, false or empty means that the flag was not given.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Chosen {
     /// `--theme`.
@@ -45,7 +45,7 @@ pub(crate) struct Chosen {
 }
 
 impl Chosen {
-    /// The flags of a command. A flag that the command does not have counts as not given.
+    /// Reads the flags of a command. A flag that the command does not have counts as not given.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let chosen = |name: &str| {
             let chosen = matches.try_get_one::<String>(name).ok().flatten();
@@ -66,7 +66,7 @@ impl Chosen {
     }
 }
 
-/// The value that a word stands for; anything unknown is `auto`, but clap has refused such words already.
+/// Returns the value of a word. Unknown words give `auto`, but clap has refused them already.
 fn value_of<T: Copy>(names: &[(&'static str, T)], name: &str) -> Choice<T> {
     let found = names.iter().find(|(own, _)| *own == name);
     found.map_or(Choice::Auto, |(_, value)| Choice::Made(*value))

@@ -7,7 +7,7 @@
 //! | the settings file | `file` | the default |
 //! | the program's default | `resolved` | |
 //!
-//! `resolved` puts them together, and remembers where each value comes from, for `taxel config`.
+//! `resolved` combines them, and remembers where each value comes from, for `taxel config`.
 
 pub(crate) mod sensors;
 

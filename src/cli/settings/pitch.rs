@@ -1,21 +1,21 @@
-//! The pitch for lengths in mm: lengths are always given in cells, and in mm too if a pitch is known.
+//! The pitch for lengths in mm. Lengths are always given in cells, and also in mm if a pitch is known.
 
 use crate::sensor::Sensor;
 
-/// The pitch in mm, as far as it is known before a stored shape is read.
+/// The sources of the pitch in mm that are known before a stored shape is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Pitch {
-    /// From `--pitch`.
+    /// The pitch of `--pitch`.
     pub(crate) given: Option<f64>,
-    /// From the settings file.
+    /// The pitch of the settings file.
     pub(crate) usual: Option<f64>,
 }
 
 impl Pitch {
-    /// The pitch in effect, in mm: that of the flag, else of a stored shape's sensor, else of the settings; None if
-    /// none of them sets one.
+    /// Returns the pitch in effect, in mm: that of the flag, or else of a stored shape's sensor, or else of the
+    /// settings; None if none of them sets one.
     ///
-    /// A sensor with the default pitch counts as unset: a shape stored without a pitch has it too.
+    /// A sensor with the default pitch counts as not setting one: shapes stored without a pitch have it too.
     pub(crate) fn of(self, sensor: Option<&Sensor>) -> Option<f64> {
         let own = sensor.map(Sensor::pitch_mm);
         let own = own.filter(|&pitch| pitch != Sensor::default().pitch_mm());
@@ -29,7 +29,7 @@ mod tests {
     use crate::parameter::Parameter;
 
     #[test]
-    fn a_flag_goes_before_the_sensor_and_that_before_the_settings() {
+    fn a_flag_overrides_the_sensor_which_overrides_the_settings() {
         let fine = Sensor::default().with(Parameter::Pitch, 2.5);
         let (plain, fine) = (Sensor::default(), fine.expect("in range"));
         let none = Pitch::default();

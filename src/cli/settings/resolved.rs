@@ -1,4 +1,4 @@
-//! The settings in effect, each with where it comes from.
+//! The settings in effect, each with its origin.
 //!
 //! A flag beats the environment, the environment beats the file, the file beats the default. `taxel config` prints the
 //! result as a settings file in which a comment names the origin of each line:
@@ -9,9 +9,9 @@
 //! mouse = true                           # default
 //! ```
 //!
-//! Empty environment variables count as unset, as programs that follow `NO_COLOR` do it. What stands in the user's own
-//! file is read for every command whose output depends on it; an error in the file is an error of the command, with its
-//! place: `~/.config/taxel/config.toml:3:9: …`.
+//! Empty environment variables count as unset, as is usual for `NO_COLOR`. The user's own file is read for every
+//! command whose output depends on settings. An error in the file is an error of the command, with its place:
+//! `~/.config/taxel/config.toml:3:9: …`.
 
 use std::ffi::OsString;
 use std::fmt;
@@ -34,23 +34,23 @@ use crate::tui::widget::theme::{ColorDepth, Palette};
 /// The environment variable that names the settings file.
 pub(crate) const VARIABLE: &str = "TAXEL_CONFIG";
 
-/// The settings file, or what stands in for it if there is none.
+/// The settings file, or an empty one if there is none.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Loaded {
-    /// Where it is or would be; None if the user has no home.
+    /// The path of the file, even if it does not exist; None if the user has no home.
     path: Option<PathBuf>,
     /// Whether the file exists.
     there: bool,
-    /// What it says; nothing if there is no file.
+    /// The content; empty if there is no file.
     config: Config,
 }
 
 impl Loaded {
-    /// Reads the settings file: the one of `--config`, else of `TAXEL_CONFIG`, else the user's own. Only the user's own
-    /// may be missing.
+    /// Reads the settings file: that of `--config`, or else of `TAXEL_CONFIG`, or else the user's own. Only the
+    /// user's own file may be missing.
     ///
     /// # Errors
-    /// [`CliError::Settings`] if it cannot be read or has an error.
+    /// Returns [`CliError::Settings`] if the file cannot be read or has an error.
     pub(crate) fn find(asked: Option<PathBuf>) -> Result<Self, CliError> {
         let variable = std::env::var_os(VARIABLE).filter(|value| !value.is_empty());
         if let Some(path) = asked.or_else(|| variable.map(PathBuf::from)) {
@@ -63,7 +63,7 @@ impl Loaded {
         )
     }
 
-    /// Reads a settings file, at most one byte more than [`MAX_BYTES`] of it.
+    /// Reads a settings file, but at most one byte more than [`MAX_BYTES`].
     fn read(path: PathBuf, may_be_missing: bool) -> Result<Self, CliError> {
         let name = path.display();
         let failure = |message: String| CliError::Settings {
@@ -99,7 +99,7 @@ impl Loaded {
     }
 }
 
-/// Opens the settings file. A pipe is refused: opening one waits for a writer, and there may never be one.
+/// Opens the settings file. A pipe is refused: opening one waits for a writer, which may never come.
 fn open(path: &Path) -> io::Result<File> {
     let kind = path.metadata()?.file_type();
     #[cfg(unix)]
@@ -111,16 +111,16 @@ fn open(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// Where a value comes from, as `taxel config` shows it.
+/// The origin of a value, as `taxel config` shows it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum SettingOrigin {
-    /// The program.
+    /// The program's default.
     Default,
-    /// This line of the settings file.
+    /// A line of the settings file.
     File(usize),
-    /// This environment variable.
+    /// An environment variable.
     Environment(&'static str),
-    /// This flag, without its dashes.
+    /// A flag, without its dashes.
     Flag(String),
 }
 
@@ -135,17 +135,17 @@ impl fmt::Display for SettingOrigin {
     }
 }
 
-/// A value and where it comes from.
+/// A value with its origin.
 #[derive(Clone, Debug)]
 struct Settled<T> {
     /// The value in effect.
     value: T,
-    /// Where it was found.
+    /// The origin of the value.
     origin: SettingOrigin,
 }
 
-/// Picks the value of a setting: that of the flag, else of the environment variable, else of the file, else the
-/// default.
+/// Picks the value of a setting: that of the flag, or else of the environment variable, or else of the file, or else
+/// the default.
 fn settled<T: Clone>(
     flag: Option<(T, &str)>,
     variable: Option<(T, &'static str)>,
@@ -162,16 +162,16 @@ fn settled<T: Clone>(
     Settled { value, origin }
 }
 
-/// All settings in effect. For a choice None means `auto`.
+/// All settings in effect. For a choice, None means `auto`.
 #[derive(Clone, Debug)]
 pub(crate) struct Effective {
     /// The settings file.
     loaded: Loaded,
     /// The palette of the screen.
     theme: Settled<Option<Palette>>,
-    /// How many colours the screen uses; `NO_COLOR` means none.
+    /// The number of colours that the screen uses; `NO_COLOR` means none.
     color: Settled<Option<ColorDepth>>,
-    /// Whether text is ASCII only; for `auto` the locale tells.
+    /// Whether text is ASCII only; for `auto`, the locale decides.
     charset: Settled<Option<bool>>,
     /// Whether the screen reacts to the mouse.
     mouse: Settled<bool>,
@@ -179,15 +179,15 @@ pub(crate) struct Effective {
     library: Settled<Option<PathBuf>>,
     /// The sensor of figures that are given without one.
     sensor: Sensor,
-    /// The parameters of the sensor, each with the name of its flag.
+    /// The parameters of the sensor, each with the name of its flag and its origin.
     of_sensor: [(&'static str, Parameter, SettingOrigin); SENSOR.len()],
 }
 
 impl Effective {
-    /// Puts settings together: `loaded` is the file, `chosen` the flags, `variable` reads the environment.
+    /// Combines the settings: `loaded` is the file, `chosen` the flags, and `variable` reads the environment.
     ///
     /// # Errors
-    /// [`CliError::Range`] if a flag of the sensor is out of range.
+    /// Returns [`CliError::Range`] if a flag of the sensor is out of range.
     pub(crate) fn new(
         loaded: Loaded,
         chosen: Chosen,
@@ -246,37 +246,37 @@ impl Effective {
         })
     }
 
-    /// The palette; None if it depends on the terminal.
+    /// Returns the palette; None if it depends on the terminal.
     pub(crate) fn theme(&self) -> Option<Palette> {
         self.theme.value
     }
 
-    /// The number of colours; None if it depends on the terminal.
+    /// Returns the number of colours; None if it depends on the terminal.
     pub(crate) fn color(&self) -> Option<ColorDepth> {
         self.color.value
     }
 
-    /// Whether the screen reacts to the mouse.
+    /// Returns true if the screen reacts to the mouse.
     pub(crate) fn mouse(&self) -> bool {
         self.mouse.value
     }
 
-    /// The library's folder; None if the user has no home and nothing names another.
+    /// Returns the library's folder; None if the user has no home and nothing names another folder.
     pub(crate) fn library(&self) -> Option<&PathBuf> {
         self.library.value.as_ref()
     }
 
-    /// The sensor: the default one, changed by the file and the flags.
+    /// Returns the default sensor with the values of the file and the flags.
     pub(crate) fn sensor(&self) -> Sensor {
         self.sensor
     }
 
-    /// What the file sets for real sensors.
+    /// Returns the settings of real sensors in the file.
     pub(crate) fn sensors(&self) -> &SensorSettings {
         self.loaded.config.sensors()
     }
 
-    /// The pitch in mm, if the file or a flag sets it. The default pitch is not shown in mm.
+    /// Returns the pitch in mm, if the file or a flag sets it. With the default pitch, nothing is shown in mm.
     pub(crate) fn pitch(&self) -> Option<f64> {
         let set = |(_, parameter, origin): &&(_, Parameter, SettingOrigin)| {
             *parameter == Parameter::Pitch && *origin != SettingOrigin::Default
@@ -285,12 +285,12 @@ impl Effective {
         pitch.map(|_| self.sensor.pitch_mm())
     }
 
-    /// All key bindings, with the changes of the file.
+    /// Returns all key bindings, with the changes of the file.
     pub(crate) fn keymap(&self) -> &Keymap {
         self.loaded.config.keymap()
     }
 
-    /// The character set of the command line's output: the one set, else that of the locale.
+    /// Returns the character set of the command line's output: that of the settings, or else of the locale.
     pub(crate) fn charset(&self, locale: Charset) -> Charset {
         match self.charset.value {
             Some(true) => Charset::Ascii,
@@ -299,12 +299,13 @@ impl Effective {
         }
     }
 
-    /// Whether the screen is ASCII only; None if that depends on the locale and the terminal.
+    /// Returns whether the screen is ASCII only; None if this depends on the locale and the terminal.
     pub(crate) fn ascii(&self) -> Option<bool> {
         self.charset.value
     }
 
-    /// All settings as the text of a settings file; a comment at the end of each line names its origin.
+    /// Returns all settings as the text of a settings file, in which a comment at the end of each line names the
+    /// origin.
     pub(crate) fn text(&self, charset: Charset) -> String {
         let mut text = match &self.loaded.path {
             Some(path) => {
@@ -328,7 +329,7 @@ impl Effective {
         line(&format!("charset = \"{characters}\""), &self.charset.origin);
         line(&format!("mouse = {}", self.mouse.value), &self.mouse.origin);
         let library = match &self.library.value {
-            // A file of settings means the same in every folder.
+            // The path is made absolute: a settings file means the same in every folder.
             Some(folder) => {
                 let whole = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
                 format!("library = {}", quoted(&whole.to_string_lossy()))
@@ -342,7 +343,7 @@ impl Effective {
             + &self.keys_text(&quoted)
     }
 
-    /// The table `[sensor]`.
+    /// Returns the table `[sensor]`.
     fn sensor_text(&self) -> String {
         let value = |parameter| match parameter {
             Parameter::Columns => f64::from(self.sensor.columns()),
@@ -352,7 +353,7 @@ impl Effective {
         };
         let line = |(name, parameter, origin): &(&str, Parameter, SettingOrigin)| {
             let entry = match (parameter, origin) {
-                // An entry, even with the default value, would show lengths in mm.
+                // Even an entry with the default value would make lengths appear in mm.
                 (Parameter::Pitch, SettingOrigin::Default) => "# pitch is not set".to_owned(),
                 (parameter, _) => format!("{name} = {}", value(*parameter)),
             };
@@ -361,7 +362,7 @@ impl Effective {
         self.of_sensor.iter().map(line).collect()
     }
 
-    /// The tables of real sensors.
+    /// Returns the tables `[source]` and `[frames]`.
     fn sensors_text(&self) -> String {
         let sensors = self.sensors();
         let mut text = String::new();
@@ -381,7 +382,7 @@ impl Effective {
         text
     }
 
-    /// The tables `[keys.…]`: every key with its action, and those that the file has freed.
+    /// Returns the tables `[keys.…]`: every key with its action, and the keys that the file has freed.
     fn keys_text(&self, quoted: &impl Fn(&str) -> String) -> String {
         let changes = self.loaded.config.changes();
         let mut text = String::new();
@@ -404,18 +405,18 @@ impl Effective {
     }
 }
 
-/// A line of the text: the entry, and its origin as a comment, aligned.
+/// Returns a line of the text: the entry, then its origin as an aligned comment.
 fn commented(entry: &str, origin: &SettingOrigin) -> String {
     format!("{entry:<37}  # {origin}\n")
 }
 
-/// The name of a choice; `auto` for None.
+/// Returns the name of a choice; `auto` for None.
 fn named<T: PartialEq>(names: &[(&'static str, T)], value: Option<&T>) -> &'static str {
     let found = names.iter().find(|(_, own)| Some(own) == value);
     found.map_or(AUTO, |(name, _)| name)
 }
 
-/// A text as a TOML string. Characters that are not in the character set, or not visible, are escaped.
+/// Quotes a text as a TOML string. Characters that are not in the character set, or are invisible, are escaped.
 fn quoted(text: &str, charset: Charset) -> String {
     let mut quoted = String::from("\"");
     for character in text.chars() {

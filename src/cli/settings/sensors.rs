@@ -1,6 +1,6 @@
 //! The settings of real sensors: the tables `[source]` and `[frames]` of the settings file.
 //!
-//! Flags of `taxel watch` and `taxel frames` override them. On the screen they are what `:watch SOURCE` begins with.
+//! Flags of `taxel watch` and `taxel frames` override them. On the screen, `:watch SOURCE` starts with them.
 
 use crate::acquire::AcquireOptions;
 use crate::formats::stream::StreamFormat;
@@ -8,7 +8,7 @@ use crate::frame::{Rule, RuleOrigin, SetRule};
 use crate::tui::live::history::HISTORY_BYTES;
 use crate::tui::live::request::WatchRequest;
 
-/// A value in the file, and its line.
+/// A value of the settings file, with its line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written<T> {
     /// The value.
@@ -17,7 +17,7 @@ pub struct Written<T> {
     pub line: usize,
 }
 
-/// A setting of a sensor.
+/// A setting of real sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SensorKey {
     Format,
@@ -33,7 +33,7 @@ pub(crate) enum SensorKey {
     HistoryBytes,
 }
 
-/// What a setting may be.
+/// The values that a setting may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SettingKind {
     /// The name of a format of streams, or `auto`.
@@ -50,7 +50,7 @@ pub(crate) enum SettingKind {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SensorSetting {
     pub(crate) key: SensorKey,
-    /// `source` or `frames`.
+    /// The table that contains the setting: `source` or `frames`.
     pub(crate) table: &'static str,
     pub(crate) name: &'static str,
     pub(crate) kind: SettingKind,
@@ -59,7 +59,7 @@ pub(crate) struct SensorSetting {
 /// The tables, in the order in which they are shown.
 pub(crate) const TABLES: [&str; 2] = ["source", "frames"];
 
-/// All of them.
+/// All settings of real sensors.
 pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
     use SensorKey as Key;
     use SettingKind::{Format, Number, Percent, Whole};
@@ -97,10 +97,10 @@ pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
     ]
 };
 
-/// A value of the file.
+/// A value of a setting of real sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SettingValue {
-    /// The format of a stream; None is `auto`.
+    /// The format of a stream; None for `auto`.
     Format(Option<StreamFormat>),
     /// A whole number.
     Whole(u64),
@@ -109,7 +109,7 @@ pub(crate) enum SettingValue {
 }
 
 impl SettingKind {
-    /// What is possible, for messages.
+    /// Returns the possible values, for messages.
     pub(crate) fn expected(self) -> String {
         match self {
             Self::Format => {
@@ -122,7 +122,7 @@ impl SettingKind {
         }
     }
 
-    /// A number as such a value; None if it is out of range.
+    /// Returns the value of a number; None if it is out of range.
     pub(crate) fn value(self, number: f64) -> Option<SettingValue> {
         #[expect(
             clippy::cast_precision_loss,
@@ -145,7 +145,7 @@ impl SettingKind {
     }
 }
 
-/// What the file sets.
+/// The settings of real sensors that the file sets.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SensorSettings {
     entries: Vec<(SensorKey, Written<SettingValue>)>,
@@ -157,7 +157,7 @@ impl SensorSettings {
         self.entries.push((key, written));
     }
 
-    /// The entry of the file, if there is one.
+    /// Returns the entry of the file, if there is one.
     pub(crate) fn get(&self, key: SensorKey) -> Option<&Written<SettingValue>> {
         let found = self.entries.iter().find(|(own, _)| *own == key);
         found.map(|(_, written)| written)
@@ -177,7 +177,7 @@ impl SensorSettings {
         }
     }
 
-    /// The first key that does not go with the others, and why.
+    /// Returns the first key that conflicts with the others or lacks one, and what was expected.
     pub(crate) fn conflict(&self) -> Option<(SensorKey, &'static str)> {
         let has = |key: SensorKey| self.get(key).is_some();
         let pair = |one: SensorKey, other: SensorKey, why| {
@@ -202,7 +202,7 @@ impl SensorSettings {
         .or_else(|| order().then_some((SensorKey::Low, "a number at most that of high")))
     }
 
-    /// The rule of imprints.
+    /// Returns the rule for imprints.
     pub(crate) fn rule(&self) -> Option<Rule> {
         let made = |key, make: fn(f64) -> Result<Rule, _>| make(self.number(key)?).ok();
         let both = self
@@ -213,23 +213,23 @@ impl SensorSettings {
             .or_else(|| both.and_then(|(low, high)| Rule::hysteresis(low, high).ok()))
     }
 
-    /// Pieces of fewer taxels are dropped.
+    /// Returns the smallest piece that is kept, in taxels.
     pub(crate) fn least(&self) -> Option<u32> {
         self.whole(SensorKey::Least)
     }
 
-    /// How many frames a tare is made of.
+    /// Returns the number of frames for a tare.
     pub(crate) fn tare(&self) -> Option<u64> {
         self.whole(SensorKey::Tare)
     }
 
-    /// The memory for the frames that can be scrubbed through, in bytes.
+    /// Returns the memory for the history of frames, in bytes.
     pub(crate) fn history_bytes(&self) -> usize {
         let bytes = self.whole(SensorKey::HistoryBytes);
         bytes.unwrap_or(HISTORY_BYTES)
     }
 
-    /// Sets how a source is read, as far as the file says it.
+    /// Sets how a source is read, for the settings that the file has.
     pub(crate) fn apply(&self, options: &mut AcquireOptions) {
         if let Some(Written {
             value: SettingValue::Format(format),
@@ -243,7 +243,7 @@ impl SensorSettings {
         options.stream_shape = rows.zip(self.whole(SensorKey::Columns));
     }
 
-    /// What `:watch` begins with; its source is still to be named.
+    /// Returns the request that `:watch` starts with; its source is still missing.
     pub(crate) fn request(&self) -> WatchRequest {
         let mut request = WatchRequest::new("");
         self.apply(&mut request.options);
@@ -257,7 +257,7 @@ impl SensorSettings {
         request
     }
 
-    /// The value of a setting as the file would have it; None where it is not set and has no default.
+    /// Returns the value of a setting as it is written in the file; None if it is not set and has no default.
     pub(crate) fn text(&self, setting: &SensorSetting) -> Option<String> {
         match self.get(setting.key).map(|own| own.value) {
             Some(SettingValue::Whole(whole)) => Some(whole.to_string()),
