@@ -304,7 +304,7 @@ pub(crate) enum CliError {
     NotResumed {
         /// The file's name.
         name: String,
-        /// What the file is: damaged, or of another study.
+        /// What the file is: not whole, or of another study.
         what: &'static str,
         /// The reason.
         reason: String,

@@ -14,11 +14,11 @@ use crate::quote::shortened_message;
 use crate::sensor::Sensor;
 use crate::touch::Plane;
 
-/// Answers each line of `input` by up to `jobs` threads (0: one per core). `sensor` is for lines without one; `lookup`
-/// finds pictures given by name.
+/// Answers each line of `input`, with up to `jobs` threads (0 means one per core). `sensor` is for lines without one;
+/// `lookup` finds pictures by name.
 ///
 /// # Errors
-/// Those of [`lines::answer_all`].
+/// Returns the errors of [`lines::answer_all`].
 pub(crate) fn answer_lines(
     sensor: Sensor,
     jobs: usize,
@@ -32,7 +32,7 @@ pub(crate) fn answer_lines(
             let job = Job::read(line, sensor, lookup);
             let job = job.map_err(|error| shortened_message(&error.to_string()))?;
             let plane = match &job {
-                // Lines with a sensor of their own do not take the plane of the others.
+                // A line with a sensor of its own does not replace the plane of the others.
                 Job::Touch(own, _) if *own != sensor => &mut other,
                 _ => &mut plane,
             };

@@ -1,6 +1,6 @@
-//! `taxel completions`: writes a shell's completions for `taxel`, made from the definitions of the commands. Names of
-//! shapes and models come from `taxel library list --names` and `taxel model list --names` at the moment when they are
-//! asked for; where no name fits, shells offer files.
+//! `taxel completions`: writes the completions of `taxel` for a shell, made from the definitions of the commands.
+//! Shells get the names of shapes and models from `taxel library list --names` and `taxel model list --names` when
+//! they complete; if no name fits, they offer files.
 
 use std::collections::BTreeSet;
 
@@ -12,19 +12,19 @@ use clap_complete::shells::{Bash, Fish, Zsh};
 /// A shell with completions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shell {
-    /// Its script is the one of clap, wrapped: names are added where a command takes one.
+    /// The script is clap's, wrapped in a function that adds names if a command takes one.
     Bash,
-    /// Its script is changed line by line, see [`ARGUMENTS_OF_ZSH`].
+    /// The script is clap's, changed line by line; see [`ARGUMENTS_OF_ZSH`].
     Zsh,
-    /// Lines are added behind clap's script.
+    /// The script is clap's, with lines added at its end.
     Fish,
 }
 
 impl Shell {
-    /// All of them.
+    /// All shells.
     pub(crate) const ALL: [Self; 3] = [Self::Bash, Self::Zsh, Self::Fish];
 
-    /// Its name, as in the argument.
+    /// Returns its name, as in the argument.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Bash => "bash",
@@ -33,16 +33,16 @@ impl Shell {
         }
     }
 
-    /// The shell of that name; None for any other word.
+    /// Returns the shell of this name; None for any other word.
     pub(crate) fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|shell| shell.name() == name)
     }
 }
 
-/// For bash: what clap wrote, and names where a command or a flag takes one. `VALUES` stands for all flags with a value:
-/// that is no argument of a command. The names are those of the folder that `--library` on the line names, else of the
-/// user's library. A blank in a name is escaped, unless the word was begun with a quotation mark: that is not part of what
-/// bash replaces.
+/// The end of the script for bash, which adds names to clap's completions. `VALUES` is replaced by all flags with a
+/// value, which are not arguments of a command. The names are those of the folder that `--library` names on the line,
+/// or else of the user's library. A blank in a name is escaped, unless the word starts with a quotation mark, which
+/// is not part of the text that bash replaces.
 const NAMES_OF_BASH: &str = r#"
 _taxel_names() {
     _taxel "$@"
@@ -119,7 +119,7 @@ _taxel_names() {
 complete -F _taxel_names -o bashdefault -o default taxel
 "#;
 
-/// For zsh: the functions that offer names of one kind, or files.
+/// The functions for zsh that offer names of one kind, or files.
 const NAMES_OF_ZSH: &str = r#"(( $+functions[_taxel_names] )) ||
 _taxel_names() {
     local kind=$1
@@ -146,7 +146,8 @@ _taxel_sets() { _taxel_names set model list }
 
 "#;
 
-/// For zsh: how an argument that is a name begins, and what it is a name of. Its help may have several lines.
+/// The beginnings of arguments in clap's script for zsh that are names, and the kind of these names. The help of an
+/// argument may have several lines.
 const ARGUMENTS_OF_ZSH: [(&str, &str); 8] = [
     ("':what -- ", "shapes"),
     ("'*::set -- ", "shapes"),
@@ -158,7 +159,7 @@ const ARGUMENTS_OF_ZSH: [(&str, &str); 8] = [
     ("'--model=[", "sets"),
 ];
 
-/// For fish, which escapes what it inserts.
+/// The end of the script for fish, which escapes what it inserts.
 const NAMES_OF_FISH: &str = r#"
 function __fish_taxel_names
     set -l words (commandline -opc)
@@ -190,7 +191,7 @@ complete -c taxel -n "__fish_taxel_using_subcommand recognise" -l mask -r -a "(_
 complete -c taxel -n "__fish_taxel_using_subcommand recognise frames watch" -l model -r -a "(__fish_taxel_sets)" -d model
 "#;
 
-/// The script for zsh, with names where clap has any file.
+/// Changes clap's script for zsh, so that it offers names in place of files.
 fn names_of_zsh(script: &str) -> String {
     let mut changed = String::new();
     let (mut command, mut kind) = ("", None);
@@ -223,7 +224,7 @@ fn names_of_zsh(script: &str) -> String {
     changed
 }
 
-/// The flags of a command and of its subcommands that take a value.
+/// Returns the flags with a value of a command and of its subcommands.
 fn flags_with_value(command: &Command) -> BTreeSet<String> {
     let own = command
         .get_arguments()
@@ -234,7 +235,7 @@ fn flags_with_value(command: &Command) -> BTreeSet<String> {
     flags.chain(inner).collect()
 }
 
-/// The completions of all commands, as a script for the shell.
+/// Returns the completions of all commands, as a script for a shell.
 pub(crate) fn script(shell: Shell, mut all: Command) -> Vec<u8> {
     let (mut script, name) = (Vec::new(), "taxel");
     match shell {
@@ -260,7 +261,7 @@ pub(crate) fn script(shell: Shell, mut all: Command) -> Vec<u8> {
     script
 }
 
-/// The words that commands take as arguments, for fish: clap's generator writes only commands and flags for it.
+/// Returns the words that commands take as arguments, for fish: clap's script has only commands and flags.
 fn words_of_fish(all: &Command) -> String {
     let mut lines = String::new();
     for command in all.get_subcommands() {

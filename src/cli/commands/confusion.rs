@@ -1,7 +1,7 @@
 //! `taxel model confusion`: how well one touch tells the shapes of a model apart.
 //!
 //! The best classifier is counted from all touches of the model, so its error is the limit of every method that sees
-//! one touch. Each question of `Evaluated` has a function here; what is printed is made in `output/evaluation`.
+//! one touch. Each question of `Evaluated` has a function here; `output/evaluation` makes the output.
 
 use std::path::Path;
 
@@ -23,10 +23,11 @@ use crate::parameter::number::share;
 use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model, greedy};
 use crate::storage::UnfinishedFile;
 
-/// Evaluates a model. Returns what is printed.
+/// Evaluates a model. Returns the text to print.
 ///
 /// # Errors
-/// If there is no such model, if the file of the matrix cannot be written, or if a signal ends a simulation.
+/// Returns an error if there is no such model, if the file of the matrix cannot be written, or if a signal stops a
+/// simulation.
 pub(crate) fn confusion(
     asked: &ConfusionArguments,
     shelf: &Shelf,
@@ -34,7 +35,7 @@ pub(crate) fn confusion(
 ) -> Result<String, CliError> {
     let model = model::find(&asked.model, shelf)?;
     if let Some(path) = &asked.export {
-        // What cannot be written is refused before the work.
+        // A file that cannot be written is an error before the work, not after it.
         drop(UnfinishedFile::new(path, asked.existing)?);
     }
     let model = model.ready(&|poses| Progress::new(poses, asked.quiet, charset))?;
@@ -61,7 +62,7 @@ pub(crate) fn confusion(
     Ok(text)
 }
 
-/// The descriptors that [`greedy`] chooses one by one, and what each step reaches.
+/// Returns the descriptors that [`greedy`] chooses one by one, with the result of each step.
 fn chosen(model: &Model, asked: &ConfusionArguments, charset: Charset) -> String {
     let (chosen, limit) = (greedy(model, &asked.roundings), Evaluation::of(model));
     if asked.form != EvaluationForm::Json {
@@ -79,10 +80,10 @@ fn chosen(model: &Model, asked: &ConfusionArguments, charset: Charset) -> String
     json!({"chosen": steps, "limit": limit.error()}).to_string() + "\n"
 }
 
-/// The error of the best classifier for each pair of shapes, as if there were no others.
+/// Returns the error of the best classifier for each pair of shapes, as if there were no others.
 ///
 /// # Errors
-/// [`CliError::TooManyPairs`] of a model whose table would take gigabytes.
+/// Returns [`CliError::TooManyPairs`] for a model whose table would take gigabytes.
 fn pairs(model: &Model, as_json: bool, charset: Charset) -> Result<String, CliError> {
     let shapes = model.shapes().len();
     if shapes > MOST_PAIRED {
@@ -97,10 +98,11 @@ fn pairs(model: &Model, as_json: bool, charset: Charset) -> Result<String, CliEr
     Ok(json::ascii(&json!({"labels": labels, "errors": errors})) + "\n")
 }
 
-/// The errors of all other classifiers beside the limit. Writes them to a file of commas too, if one is asked for.
+/// Returns the errors of all other classifiers and the limit. Also writes them as comma-separated values if a file is
+/// given.
 ///
 /// # Errors
-/// [`CliError::Ending`] for a file that is not a table.
+/// Returns [`CliError::Ending`] for a file that is not a table.
 fn all_classifiers(
     model: &Model,
     asked: &ConfusionArguments,
@@ -133,8 +135,8 @@ fn all_classifiers(
     Ok(json::text(&table) + "\n")
 }
 
-/// One evaluation, in the form that is asked for; `classifier` is what another classifier than the best one reached. Writes the file
-/// of its matrix too, if one is asked for.
+/// Returns an evaluation in the form of the flags. `classifier` is the result of a classifier that is not the best
+/// one. Also writes the matrix if a file is given.
 fn shown(
     asked: &ConfusionArguments,
     own: &Evaluation,
@@ -173,7 +175,7 @@ fn shown(
     })
 }
 
-/// A line of advice where the distance of CG and CD, or its direction, is given at full precision; else empty.
+/// Returns a line of advice if the distance of CG and CD, or its direction, is given at full precision; else nothing.
 fn advice(asked: &ConfusionArguments) -> String {
     let Evaluated::Given(given) = &asked.of else {
         return String::new();
@@ -194,11 +196,11 @@ fn advice(asked: &ConfusionArguments) -> String {
     })
 }
 
-/// The matrix as the file that an ending asks for; `knows_certain` says whether the method knows when it is
-/// certain.
+/// Returns the matrix as the content of a file, in the format of its extension. `knows_certain` tells whether the
+/// method knows when it is certain.
 ///
 /// # Errors
-/// [`CliError::TooManyShapes`] for a drawing whose matrix would not be legible.
+/// Returns [`CliError::TooManyShapes`] for a drawing whose matrix would not be legible.
 fn file(path: &Path, own: &Evaluation, knows_certain: bool) -> Result<Vec<u8>, CliError> {
     let Some(format) = drawn_format(path) else {
         return Ok(evaluation::csv(own).into_bytes());

@@ -5,8 +5,8 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
 use crate::formats::Content;
 
-/// Returns the answer: one line of JSON, or the matrix and a table of its regions. For a stored shape the table is
-/// preceded by its name, what made it, and its sensor.
+/// Returns the answer: one line of JSON, or the matrix and a table of its regions. For a stored shape, its name,
+/// source and sensor come before the table.
 pub(crate) fn content(content: &Content, form: Form, charset: Charset) -> String {
     let imprint = content.imprint();
     let Form::Table(pitch) = form else {

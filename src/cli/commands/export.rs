@@ -1,7 +1,7 @@
 //! `taxel export`, and `--export` of a touch: writes an imprint in a format for other programs, or draws it.
 //!
-//! A file is complete or not there at all: it is written under another name in the same folder and renamed. Standard
-//! output, given as `-`, gets the same bytes.
+//! A file is complete or does not exist: it is written under another name in the same folder and then renamed.
+//! Standard output, `-`, gets the same bytes.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -26,20 +26,20 @@ enum Format {
 }
 
 impl Format {
-    /// The format of that name, as in `--format`.
+    /// Returns the format of this name, as in `--format`.
     fn of(name: &str) -> Option<Self> {
         let format = name.parse().map(Self::Imprint);
         format.or_else(|_| name.parse().map(Self::Drawing)).ok()
     }
 
-    /// The format that a file's ending stands for.
+    /// Returns the format of a file's extension.
     fn of_ending(path: &Path) -> Option<Self> {
         let format = ImprintFormat::of_ending(&ending(path)).map(Self::Imprint);
         format.or_else(|| drawn_format(path).map(Self::Drawing))
     }
 }
 
-/// The names of all formats, for `--format`.
+/// Returns the names of all formats, for `--format`.
 pub(crate) fn names() -> Vec<&'static str> {
     let imprints = ImprintFormat::ALL.iter().map(|format| format.name());
     let drawings = DrawingFormat::ALL.iter().map(|format| format.name());
@@ -51,17 +51,18 @@ pub(crate) fn names() -> Vec<&'static str> {
 pub(crate) struct Export {
     /// Its path; None for standard output.
     path: Option<PathBuf>,
-    /// What is written.
+    /// The format that is written.
     format: Format,
-    /// Whether a file of that name is replaced.
+    /// Whether an existing file is replaced.
     existing: Existing,
 }
 
 impl Export {
-    /// A file at `path`, or standard output for `-`, in the format named by `format`, or else by the ending of the path.
+    /// Creates an export to `path`, or to standard output for `-`, in the format named by `format`, or else by the
+    /// path's extension.
     ///
     /// # Errors
-    /// A message, if neither names a format.
+    /// Returns a message if neither names a format.
     pub(crate) fn new(
         path: &Path,
         format: Option<&str>,
@@ -88,7 +89,7 @@ impl Export {
         })
     }
 
-    /// The same file with the number of a frame at the end of its name, before the ending.
+    /// Returns the same export with the number of a frame at the end of the file name, before the extension.
     pub(crate) fn numbered(&self, number: u64) -> Self {
         let path = self.path.as_ref().map(|path| {
             let stem = path.file_stem().unwrap_or(path.as_os_str());
@@ -103,7 +104,7 @@ impl Export {
         Self { path, ..*self }
     }
 
-    /// As [`Self::begin`], of a frame: a drawing shows its values in shades, if they are given.
+    /// Like [`Self::begin`], for a frame. A drawing shows its values in shades, if they are given.
     pub(crate) fn begin_frame(
         &self,
         imprint: &Imprint,
@@ -125,7 +126,8 @@ impl Export {
 
     /// Writes the file completely, but does not give it its name yet.
     ///
-    /// A drawing shows the outline of `source` if there is one, has `title` above it, and axes in mm with a `pitch`.
+    /// A drawing shows the outline of `source` if there is one, `title` above it, and axes in mm if there is a
+    /// `pitch`.
     pub(crate) fn begin(
         &self,
         imprint: &Imprint,
@@ -149,8 +151,8 @@ impl Export {
         })
     }
 
-    /// Makes the content and begins the file, which has its name only after [`Begun::end`]. `draw` is called for
-    /// drawings only.
+    /// Makes the content and writes the file, which gets its name only in [`Begun::end`]. `draw` is called only for
+    /// drawings.
     fn begin_with(&self, imprint: &Imprint, draw: impl Fn() -> Drawing) -> Result<Begun, CliError> {
         let content = match self.format {
             Format::Imprint(format) => format.write(imprint),
@@ -167,12 +169,12 @@ impl Export {
     }
 }
 
-/// A file that only lacks its name. If it is dropped, nothing is left of it.
+/// A file that has no name yet. If it is dropped, it is removed.
 #[derive(Debug)]
 pub(crate) enum Begun {
     /// The bytes for standard output.
     Content(Vec<u8>),
-    /// A file.
+    /// The file.
     File(FinishedFile),
 }
 
@@ -180,7 +182,7 @@ impl Begun {
     /// Gives the file its name.
     ///
     /// # Errors
-    /// If that fails, for example because a file of that name exists by now.
+    /// Returns an error if this fails, for example because a file of this name exists by now.
     pub(crate) fn end(self) -> Result<Exported, CliError> {
         match self {
             Self::Content(content) => Ok(Exported::Content(content)),
@@ -193,37 +195,37 @@ impl Begun {
     }
 }
 
-/// What to print after an export.
+/// The output after an export.
 #[derive(Clone, Debug)]
 pub(crate) enum Exported {
     /// The exported bytes.
     Content(Vec<u8>),
-    /// A note that says where the file is.
+    /// A note that names the file.
     Said(String),
 }
 
-/// The note that a file was written.
+/// Returns the note that a file was written.
 pub(crate) fn written(path: &Path) -> String {
     format!("written: {}", path.display())
 }
 
-/// The ending of a file's name in small letters; empty without one.
+/// Returns the extension of a file's name in lower case; empty if there is none.
 pub(crate) fn ending(path: &Path) -> String {
     let ending = path.extension().and_then(|ending| ending.to_str());
     ending.map_or_else(String::new, str::to_ascii_lowercase)
 }
 
-/// The format of a drawing that a file's name asks for; None where no drawing has its ending.
+/// Returns the format of drawings with a file's extension; None if there is none.
 pub(crate) fn drawn_format(path: &Path) -> Option<DrawingFormat> {
     DrawingFormat::of_ending(&ending(path))
 }
 
-/// Writes a file: completely or not at all.
+/// Writes a file, completely or not at all.
 pub(crate) fn put(path: &Path, content: &[u8], existing: Existing) -> Result<(), CliError> {
     Ok(FinishedFile::new(path, content, existing)?.persist()?)
 }
 
-/// Looks up a shape and exports it. The drawing of a stored shape shows the outline of what made it.
+/// Looks up a shape and exports it. The drawing of a stored shape shows the outline of its source.
 pub(crate) fn export(
     shelf: &Shelf,
     what: &OsStr,

@@ -1,9 +1,9 @@
-//! `taxel frames`: what is in a recording, and its frames as imprints.
+//! `taxel frames`: lists a recording, or answers its frames as imprints.
 //!
-//! A recording is read once to list it, and again for each thing that needs all frames first: the tare, and the peak
+//! A recording is read once to list it, and again for each step that needs all frames first: the tare, and the peak
 //! after a tare. So memory does not grow with its length.
 //!
-//! A listing names what the recording says of each channel; an answer is an imprint with what was measured:
+//! A listing shows what the recording states about each channel; an answer is an imprint with what was measured:
 //! ```text
 //! $ taxel frames plain.csv --rows 4 --columns 5          $ taxel frames plain.csv … --peak --at-least 3
 //! csv, 1 channel                                             0   2   4
@@ -16,7 +16,7 @@
 //!                                                        sum 42, max 9
 //!                                                        active: 3 or more (by flag)
 //! ```
-//! Damage does not stop it at once: what is whole before the damage is listed or answered, then the damage is the
+//! A damage does not stop the command at once: everything before it is listed or answered, then it is reported as the
 //! error.
 
 use std::io::Write;
@@ -50,15 +50,15 @@ use crate::parameter::Parameter;
 use crate::parameter::number::short;
 use crate::sensor::Sensor;
 
-/// Where answers and notes go.
+/// The destination of answers and notes, and their form.
 pub(crate) struct FramesOutput<'a> {
-    /// One line of JSON a frame, or a matrix and a table.
+    /// One line of JSON per frame, or a matrix and a table.
     pub(crate) form: Form,
-    /// `--save` and `--export`, besides the answer.
+    /// What to keep besides the answer: `--save` and `--export`.
     pub(crate) kept: Kept,
-    /// Where imprints are saved.
+    /// The library in which imprints are saved.
     pub(crate) shelf: &'a Shelf,
-    /// For texts; JSON is always ASCII.
+    /// The character set of texts; JSON is always ASCII.
     pub(crate) charset: Charset,
     /// Names the shapes that left the imprints.
     pub(crate) namer: Option<FrameNamer<'a>>,
@@ -69,7 +69,7 @@ pub(crate) struct FramesOutput<'a> {
 }
 
 impl FramesOutput<'_> {
-    /// Writes an answer, or a part of it.
+    /// Writes an answer or a part of one.
     fn write(&mut self, text: impl AsRef<[u8]>) -> Result<(), CliError> {
         self.answers
             .write_all(text.as_ref())
@@ -77,10 +77,10 @@ impl FramesOutput<'_> {
     }
 }
 
-/// Opens the recording that is asked for.
+/// Opens the recording.
 ///
 /// # Errors
-/// If it cannot be opened.
+/// Returns an error if it cannot be opened.
 pub(crate) fn open(asked: &FramesArguments) -> Result<RecordingFile, CliError> {
     let mut options = ReadOptions::default();
     if let Some((rows, columns)) = asked.processing.shape {
@@ -89,11 +89,11 @@ pub(crate) fn open(asked: &FramesArguments) -> Result<RecordingFile, CliError> {
     RecordingFile::open(&asked.file, options)
 }
 
-/// Lists a recording, or answers the frames that are asked for; `processing` is what the flags ask for.
+/// Lists a recording, or answers frames. `processing` is the processing of the flags.
 ///
 /// # Errors
-/// If the recording is damaged, after all whole frames before the damage were answered; or if channel, frame, threshold
-/// or size do not fit.
+/// Returns an error if the recording is damaged, after all frames before the damage are answered; or if channel,
+/// frame, threshold or size do not fit.
 pub(crate) fn frames(
     asked: &FramesArguments,
     mut recording: RecordingFile,
@@ -142,10 +142,10 @@ pub(crate) fn frames(
     }
 }
 
-/// Lists the channels, or the one that is asked for.
+/// Lists all channels, or the one that the flags name.
 ///
 /// # Errors
-/// If there is none of that name, or the crop does not fit.
+/// Returns an error if no channel has this name, or the crop does not fit.
 fn list(
     scan: &Scan,
     recording: &RecordingFile,
@@ -166,8 +166,8 @@ fn list(
     })
 }
 
-/// Answers which taxels flip or are stuck in a channel, if it has frames, and writes the mask of these if a file is named.
-/// True if it has.
+/// Reports which taxels of a channel flip or are stuck, and writes the mask of the stuck ones if a file is given.
+/// Returns false, and reports nothing, if the channel has no frames.
 fn report_noise(
     recording: &mut RecordingFile,
     channel: usize,
@@ -179,7 +179,7 @@ fn report_noise(
     Ok(found.transpose()?.is_some())
 }
 
-/// Writes such a report.
+/// Writes a report on flips and its mask.
 fn write_noise(
     found: &FlipReport,
     name: &str,
@@ -203,7 +203,7 @@ fn write_noise(
     output.write(output.charset.lines(&text))
 }
 
-/// Why there is no frame as asked for in an undamaged recording.
+/// Returns the reason why an undamaged recording has no such frame.
 fn missing(choice: FrameChoice, listed: &ListedChannel) -> String {
     match choice {
         FrameChoice::Label(label) => format!("no frame is labelled {label}"),
@@ -217,28 +217,29 @@ fn missing(choice: FrameChoice, listed: &ListedChannel) -> String {
     }
 }
 
-/// Which frames are answered, and how.
+/// The frames that are answered, and how.
 struct Selection {
-    /// What was asked for.
+    /// The choice of the flags.
     choice: FrameChoice,
-    /// The only one, where its number is known.
+    /// The number of the only frame, if it is known.
     number: Option<u64>,
-    /// The index of the channel; frames of others are passed over.
+    /// The index of the channel; frames of other channels are skipped.
     channel: usize,
-    /// The threshold, and whether it is the flag's or the recording's.
+    /// The threshold, and whether it is from the flags, the settings or the recording.
     rule: SetRule,
-    /// How many frames the tare is made of, 0 without one; for the answers only.
+    /// The number of frames of the tare, 0 without one; only for the answers.
     tare: u64,
     /// Whether values are shown in shades, above the imprint and in drawings.
     heat: bool,
 }
 
 impl Selection {
-    /// The frames that are asked for, and how they become imprints: with the rule, and with the tare and the peak, for
-    /// which the recording is read again.
+    /// Selects the frames of the flags, and completes their processing: with the rule, and with the tare and the
+    /// peak, for which the recording is read again.
     ///
     /// # Errors
-    /// If the recording does not say rows and columns, if there is no rule, or too few frames for the tare.
+    /// Returns an error if rows and columns are unknown, if there is no rule, or if there are too few frames for the
+    /// tare.
     fn new(
         asked: &FramesArguments,
         choice: FrameChoice,
@@ -277,7 +278,7 @@ impl Selection {
         Ok((selection, processing))
     }
 
-    /// Whether this frame is to be answered.
+    /// Returns true if this frame is to be answered.
     fn has(&self, frame: &Frame) -> bool {
         frame.channel == self.channel
             && match self.choice {
@@ -287,10 +288,10 @@ impl Selection {
             }
     }
 
-    /// Refuses a label that several frames have: it does not say which of them is meant.
+    /// Refuses a label that several frames have: it is not clear which of them is meant.
     ///
     /// # Errors
-    /// [`CliError::Frames`] with the numbers of the first two.
+    /// Returns [`CliError::Frames`] with the numbers of the first two.
     fn check_label(&self, recording: &mut RecordingFile, label: i64) -> Result<(), CliError> {
         let mut numbers = Vec::new();
         recording.read_again(&mut |event| {
@@ -313,11 +314,11 @@ impl Selection {
         }
     }
 
-    /// Answers the frames; true if there was one.
-    /// The recording is read from its beginning again, and no further than to the frame whose number is known.
+    /// Answers the selected frames; returns true if there were any. The recording is read from its beginning again,
+    /// but not beyond a frame whose number is known.
     ///
     /// # Errors
-    /// If one of several frames with a label were to be kept; otherwise as [`Self::give`].
+    /// Returns an error if one of several frames with the same label would be kept, and the errors of [`Self::give`].
     fn answer(
         &self,
         recording: &mut RecordingFile,
@@ -358,14 +359,13 @@ impl Selection {
         Ok(answered)
     }
 
-    /// Answers a frame.
-    /// Notes about it are lines below the matrix, or with JSON on standard error. An export to standard output takes
-    /// the place of the answer. `again`: whether it is not the first, so that an empty line parts it from the one
-    /// before.
+    /// Answers a frame. Notes about it are lines below the matrix; with JSON they go to standard error. An export to
+    /// standard output takes the place of the answer. `again` tells whether other frames came before, so that an
+    /// empty line separates them.
     ///
     /// # Errors
-    /// [`CliError::Frames`] for a `--pitch` given for cells that are not square, and those of saving, exporting and
-    /// writing.
+    /// Returns [`CliError::Frames`] for a `--pitch` given for cells that are not square, and the errors of saving,
+    /// exporting and writing.
     fn give(
         &self,
         name: &str,
@@ -416,7 +416,7 @@ impl Selection {
         output.write(&text)
     }
 
-    /// A frame as a line of JSON, with the name of its shape if a model is given.
+    /// Returns a frame as a line of JSON, with the name of its shape if a model is given.
     fn line(
         &self,
         (frame, processed): (&Frame, &Processed<'_>),
@@ -439,7 +439,8 @@ impl Selection {
         line
     }
 
-    /// What the frame is, in lines: `iscan.csv, frame 65 (label 66), 6.5 s`, and sum, maximum and threshold.
+    /// Returns lines about the frame: `iscan.csv, frame 65 (label 66), 6.5 s`, then sum and maximum, then the
+    /// threshold.
     fn titles(
         &self,
         name: &str,
@@ -467,7 +468,8 @@ impl Selection {
         vec![title, values, self.rule_text(&unit)]
     }
 
-    /// The threshold in words, with its source: `active: 20 kPa or more, in pieces of 3 taxels or more (by flag)`.
+    /// Returns the threshold in words, with its origin:
+    /// `active: 20 kPa or more, in pieces of 3 taxels or more (by flag)`.
     fn rule_text(&self, unit: &str) -> String {
         let mut text = match self.rule.rule {
             Rule::AtLeast(threshold) => format!("active: {}{unit} or more", short(threshold)),
@@ -490,17 +492,17 @@ impl Selection {
     }
 }
 
-/// The unit of a channel behind a number: ` kPa`; empty if it is unknown.
+/// Returns the unit of a channel as the end of a number, such as ` kPa`; empty if it is unknown.
 fn unit(info: &ChannelInfo) -> String {
     let unit = info.unit.as_ref();
     unit.map_or(String::new(), |unit| format!(" {unit}"))
 }
 
-/// The side of a cell in mm, and a line if the recording's cells are not square.
-/// `--pitch` overrides the recording. The pitch of the settings is that of the simulated sensor, and says nothing here.
+/// Returns the side of a cell in mm, and a line if the recording's cells are not square. `--pitch` overrides the
+/// recording. The pitch of the settings is not used: it is that of the simulated sensor.
 ///
 /// # Errors
-/// [`CliError::Frames`] if `--pitch` is given although the recording says that its cells are not square.
+/// Returns [`CliError::Frames`] if `--pitch` is given although the recording states that its cells are not square.
 fn cell_size(
     name: &str,
     pitch: Pitch,
@@ -518,12 +520,12 @@ fn cell_size(
     Ok((None, Some(reason)))
 }
 
-/// Stores and exports an imprint as wanted; what is for standard output in place of the answer. Notes go to `lines`.
-/// The file is begun before the shape is saved, so that nothing is saved if the file cannot be written, and gets its
-/// name after it.
+/// Stores and exports an imprint as asked. Returns the content for standard output that takes the place of the
+/// answer, if any; notes are added to `lines`. The file is written before the shape is saved, so that nothing is
+/// saved if the file cannot be written; it gets its name after that.
 ///
 /// # Errors
-/// Those of the library and of the file.
+/// Returns the errors of the library and of the file.
 fn save_and_export(
     imprint: &Imprint,
     heat: Option<&Matrix<f64>>,

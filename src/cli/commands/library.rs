@@ -1,7 +1,7 @@
 //! `taxel library`: lists, shows, stores, deletes, restores and checks shapes.
 //!
-//! `list` prints a line per shape, with `--names` its name alone. A damaged one is listed with the reason instead of
-//! its numbers:
+//! `list` prints a line for each shape, with `--names` only the name. For a damaged shape, the reason takes the place
+//! of the numbers:
 //! ```text
 //! name           origin      size   NA  pieces  holes
 //! oval ring      shipped  16 × 16   52       1      1
@@ -31,29 +31,29 @@ use crate::quote::{as_argument, shortened_message};
 use crate::sensor::Sensor;
 use crate::storage::{Library, LibraryEntry, LibraryError, LoadedShape, ShapeOrigin};
 
-/// A line of the list: a shape of the library.
+/// A shape of the library, as a line of the list.
 struct ListLine {
-    /// Its name.
+    /// The shape's name.
     name: String,
-    /// Whether the user stored it, or it comes with the program.
+    /// Whether the user stored the shape, or it comes with the program.
     origin: ShapeOrigin,
-    /// What the list shows of it, or why it cannot be read.
+    /// The numbers that the list shows, or the reason why the shape cannot be read.
     found: Result<ShapeSummary, String>,
 }
 
-/// What the list and the check report about a shape that can be read.
+/// The facts about a readable shape that the list and the check report.
 struct ShapeSummary {
-    /// The name that its file says.
+    /// The name inside its file.
     written_name: Name,
     /// Columns of its matrix.
     columns: u8,
     /// Rows of its matrix.
     rows: u8,
-    /// Active taxels, in all pieces.
+    /// The number of active taxels, in all pieces.
     na: u32,
-    /// Connected regions of active taxels.
+    /// The number of connected regions of active taxels.
     pieces: usize,
-    /// Regions of inactive taxels that these enclose.
+    /// The number of enclosed regions of inactive taxels.
     holes: usize,
 }
 
@@ -72,7 +72,7 @@ impl ListLine {
         })
     }
 
-    /// The word in the column `origin`.
+    /// Returns the word in the column `origin`.
     fn origin(&self) -> &'static str {
         match (&self.found, self.origin) {
             (Err(_), _) => "broken",
@@ -124,7 +124,7 @@ impl Serialize for ListLine {
 /// Reads every shape of the library, own and shipped, on all cores: a library may be large.
 ///
 /// # Errors
-/// If the folder cannot be listed. A shape that cannot be read is not an error here, but a line of its own.
+/// Returns an error if the folder cannot be listed. A shape that cannot be read is not an error here, but a line.
 fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
     let entries = library.list()?;
     let line = |entry| ListLine::of(library, entry);
@@ -132,11 +132,11 @@ fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
     threads::on_all_cores(lines)
 }
 
-/// The answer of `taxel library list --names`: for scripts and for what a shell completes. No file is read, and a file
-/// whose name no shape can have is left out.
+/// Returns the answer of `taxel library list --names`, for scripts and for shell completions. No file is read. A file
+/// whose name is not valid for a shape is left out.
 ///
 /// # Errors
-/// If the folder cannot be listed.
+/// Returns an error if the folder cannot be listed.
 pub(crate) fn names(shelf: &Shelf, which: NameSet) -> Result<String, CliError> {
     let library = shelf.library()?;
     let is_asked = |entry: &LibraryEntry| which == NameSet::All || entry.origin == ShapeOrigin::Own;
@@ -165,7 +165,7 @@ pub(crate) fn list(shelf: &Shelf, as_json: bool, charset: Charset) -> Result<Str
         "name", "size"
     );
     for (line, name) in lines.iter().zip(names) {
-        // Cannot fail: a String takes everything.
+        // Cannot fail: the text is kept in memory.
         let _ = write!(text, "{name:width$}  {:<7}  ", line.origin());
         let _ = match &line.found {
             Ok(summary) => {
@@ -180,10 +180,10 @@ pub(crate) fn list(shelf: &Shelf, as_json: bool, charset: Charset) -> Result<Str
     Ok(text)
 }
 
-/// Describes a stored shape, as `taxel describe` does.
+/// Describes a stored shape, like `taxel describe`.
 ///
 /// # Errors
-/// If there is no such shape, or it cannot be read.
+/// Returns an error if there is no such shape, or it cannot be read.
 pub(crate) fn show(
     shelf: &Shelf,
     name: &str,
@@ -195,10 +195,11 @@ pub(crate) fn show(
     Ok(describe::content(&Content::Shape(shape), form, charset))
 }
 
-/// Stores a shape of the library or of a file under another name. An imprint alone gets a sensor of its own size.
+/// Stores a shape of the library or of a file under another name. An imprint without a sensor gets one of its own
+/// size.
 ///
 /// # Errors
-/// [`CliError::Taken`] if there is an own shape of that name and `--force` is not given.
+/// Returns [`CliError::Taken`] if there is an own shape of this name and `--force` is not given.
 pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String, CliError> {
     let found = shelf.find(what);
     let shape = match found.map_err(|error| in_order(error, saving.name.as_str()))? {
@@ -214,7 +215,8 @@ pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String
     Ok(format!("saved as {name}\n"))
 }
 
-/// Says which argument comes first, where a file was given in place of the name and the shape cannot be found.
+/// Adds the right order of the arguments to the error, if a file was given in place of the name and the shape cannot
+/// be found.
 fn in_order(error: CliError, file: &str) -> CliError {
     match error {
         CliError::Nowhere { name, .. } if Path::new(file).is_file() => {
@@ -226,10 +228,10 @@ fn in_order(error: CliError, file: &str) -> CliError {
     }
 }
 
-/// Moves an own shape into the trash.
+/// Moves an own shape to the trash.
 ///
 /// # Errors
-/// If there is no such shape, or it is one that comes with the program.
+/// Returns an error if there is no such shape, or it comes with the program.
 pub(crate) fn delete(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     let deleted = shelf.library()?.delete(name);
     let name = deleted.map_err(|error| shelf.refused(error))?;
@@ -238,24 +240,24 @@ pub(crate) fn delete(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     ))
 }
 
-/// Brings the shape of that name back that was deleted last.
+/// Restores the shape of this name that was deleted last.
 ///
 /// # Errors
-/// If no such shape is in the trash, or a shape has that name again.
+/// Returns an error if no such shape is in the trash, or a shape has this name again.
 pub(crate) fn restore(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     let restored = shelf.library()?.restore(name);
     let name = restored.map_err(|error| shelf.refused(error))?;
     Ok(format!("restored {name}\n"))
 }
 
-/// What `taxel library check` finds.
+/// A finding of `taxel library check`.
 #[derive(Serialize)]
 #[serde(tag = "finding")]
 enum Finding {
     /// A shape that cannot be read.
     #[serde(rename = "broken")]
     Broken { name: String, reason: String },
-    /// A shape whose name is not clear.
+    /// A shape whose name is ambiguous.
     #[serde(rename = "name")]
     Name { name: String, reason: String },
     /// A file that is not a shape.
@@ -273,7 +275,7 @@ impl fmt::Display for Finding {
     }
 }
 
-/// The user's shapes that have another name inside their file, and those whose names are one where case does not matter.
+/// Returns the user's shapes with another name inside their file, and those whose names differ only in case.
 fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let own = lines.iter().filter(|line| line.origin == ShapeOrigin::Own);
@@ -292,7 +294,7 @@ fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
                 written.as_str()
             ));
         }
-        // They are sorted without regard to case.
+        // The shapes are sorted without regard to case.
         if let Some(before) = before
             && folded(&before.name) == folded(&line.name)
         {
@@ -306,11 +308,11 @@ fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
     findings
 }
 
-/// Reads every shape, and looks for other files in the folder. Returns the report, a line for each finding or an array
-/// of objects in JSON; and [`CliError::Shapes`] if a shape is damaged, for after the report.
+/// Reads every shape, and looks for other files in the folder. Returns the report, a line for each finding or a JSON
+/// array of objects, and [`CliError::Shapes`] if a shape is damaged, to be reported after it.
 ///
 /// # Errors
-/// If the folder cannot be listed.
+/// Returns an error if the folder cannot be listed.
 pub(crate) fn check(
     shelf: &Shelf,
     as_json: bool,

@@ -1,8 +1,8 @@
 //! `taxel man`: the help of every command as a manual page.
 //!
 //! A page has the same texts as the help, in the sections NAME, SYNOPSIS, DESCRIPTION, OPTIONS, SUBCOMMANDS and
-//! EXAMPLES; the program's own page also has ENVIRONMENT and FILES. In the text below the flags, indented lines stand
-//! as they are and others are filled; `Examples:` begins the section of that name.
+//! EXAMPLES; the program's own page also has ENVIRONMENT and FILES. In the text below the flags, indented lines are
+//! kept as they are and others are filled; `Examples:` starts the section of that name.
 
 use std::fs;
 use std::io;
@@ -19,18 +19,18 @@ use crate::cli::error::CliError;
 use crate::formats::value::counted;
 use crate::storage::Existing;
 
-/// The page of the program itself.
+/// Returns the page of the program itself.
 ///
 /// # Errors
-/// None in practice: it is written to memory.
+/// None in practice: the page is written to memory.
 pub(crate) fn main_page() -> Result<Vec<u8>, CliError> {
     page(&built()).map_err(CliError::Write)
 }
 
-/// Writes the pages of all commands into a folder, which is created if necessary. Returns what is printed.
+/// Writes the pages of all commands into a folder, which is created if necessary. Returns the text to print.
 ///
 /// # Errors
-/// If the folder cannot be created or a file cannot be written.
+/// Returns an error if the folder cannot be created or a file cannot be written.
 pub(crate) fn write(folder: &Path) -> Result<String, CliError> {
     fs::create_dir_all(folder).map_err(|error| CliError::File {
         name: folder.display().to_string(),
@@ -48,27 +48,27 @@ pub(crate) fn write(folder: &Path) -> Result<String, CliError> {
     Ok(format!("written: {pages} in {}", folder.display()))
 }
 
-/// The commands with everything that clap adds to them, except its `help`, which needs no page.
+/// Returns the commands with everything that clap adds to them, except its `help`, which needs no page.
 fn built() -> Command {
     let mut all = definitions::all().disable_help_subcommand(true);
     all.build();
     all
 }
 
-/// A command and all its subcommands, at any depth.
+/// Returns a command and all its subcommands, at any depth.
 fn all(command: &Command) -> Vec<&Command> {
     let below = command.get_subcommands().flat_map(all);
     std::iter::once(command).chain(below).collect()
 }
 
-/// The name of a command's page, such as `taxel-library-list`.
+/// Returns the name of a command's page, such as `taxel-library-list`.
 fn name(command: &Command) -> &str {
     command
         .get_display_name()
         .unwrap_or_else(|| command.get_name())
 }
 
-/// The page of a command, in roff.
+/// Returns the page of a command, in roff.
 fn page(command: &Command) -> io::Result<Vec<u8>> {
     let mut page = Vec::new();
     let about = command
@@ -114,7 +114,8 @@ fn page(command: &Command) -> io::Result<Vec<u8>> {
     Ok(page)
 }
 
-/// Writes a text: paragraphs, which are filled and end at an empty line, and indented lines, which stand as they are.
+/// Writes a text: paragraphs, which are filled and end at an empty line, and indented lines, which are kept as they
+/// are.
 fn filled(roff: &mut Roff, text: &str) {
     let mut as_it_is = false;
     for line in text.trim_matches('\n').lines() {

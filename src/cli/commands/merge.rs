@@ -1,8 +1,8 @@
 //! `taxel merge`: merges the shards of a sweep or of a training.
 //!
-//! Their headers tell what they are and bring them into order; then they are read one after another. Memory holds what is
-//! merged and one shard. The most that this can be follows from the sizes of the files and is printed before; what it was is
-//! printed after:
+//! Shards are recognised and sorted by their headers, then read one after another. Memory holds the merged result and
+//! one shard. The most memory this can take follows from the sizes of the files and is printed before; the memory it
+//! took is printed after:
 //! ```text
 //! 8 files of 155.2M: at most 682.8M of memory
 //! merged: 212,907 imprints, 402.3M of memory
@@ -28,13 +28,13 @@ use crate::storage::{
 };
 use crate::sweep::{MergeError, Shard, SweepMerge, SweepResult};
 
-/// What the program needs without any shard.
+/// Bytes that the program needs without any shard.
 const BYTES_OF_PROGRAM: u64 = 24 << 20;
 
-/// What a byte of a file is at most in memory once it is merged, with what writing it needs.
+/// Bytes of memory per byte of a file, at most, once it is merged; including what writing the result needs.
 const TIMES_MERGED: u64 = 3;
 
-/// What a byte of a file is at most in memory while it is read.
+/// Bytes of memory per byte of a file, at most, while it is read.
 const TIMES_READ: u64 = 4;
 
 /// A file of a shard.
@@ -46,7 +46,7 @@ struct Part {
 }
 
 impl Part {
-    /// Reads what the file says of itself.
+    /// Reads the header of a file.
     fn of(path: &Path) -> Result<Self, ArchiveFileError> {
         let refused = |error| ArchiveFileError::new(path, error);
         let file = open_archive(path)?;
@@ -63,7 +63,7 @@ impl Part {
         })
     }
 
-    /// That it does not fit the others.
+    /// Returns the error that the file does not fit the others.
     fn refused(&self, error: &dyn fmt::Display) -> CliError {
         CliError::Shard {
             path: self.path.clone(),
@@ -72,7 +72,7 @@ impl Part {
     }
 }
 
-/// Refuses to replace one of the shards by the result: the others could not be merged again.
+/// Refuses to replace one of the shards by the result: the shards could not be merged again.
 fn check_no_shard(files: &[PathBuf], wanted: &Wanted) -> Result<(), CliError> {
     let written = wanted.atlas.as_ref().map(AtlasFile::path);
     let written = written.into_iter().chain(wanted.poses.as_deref());
@@ -88,7 +88,7 @@ fn check_no_shard(files: &[PathBuf], wanted: &Wanted) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Refuses an atlas beside a model.
+/// Refuses a mixture of atlases and models.
 fn check_one_kind(parts: &[Part]) -> Result<(), CliError> {
     let noun = |part: &Part| match part.format.as_str() {
         MODEL_FORMAT => "a model",
@@ -111,7 +111,8 @@ fn check_one_kind(parts: &[Part]) -> Result<(), CliError> {
 /// Merges the shards in `files`, writes the atlas or the model, and returns the summary to print.
 ///
 /// # Errors
-/// If a file cannot be read, if the shards are not all those of one study, each once, or if it needs too much memory.
+/// Returns an error if a file cannot be read, if the shards are not all those of one study, each once, or if they
+/// need too much memory.
 pub(crate) fn merge(
     files: &[PathBuf],
     wanted: &Wanted,
@@ -142,7 +143,7 @@ pub(crate) fn merge(
         }
     };
     let bound = bound(&parts, &memory)?;
-    // Where shards are missing or there twice, the merge says only that.
+    // If shards are missing or given twice, only this error is printed.
     if parts
         .iter()
         .zip(1..)
@@ -158,7 +159,7 @@ pub(crate) fn merge(
         (model.keys().len(), leave_model(&model, wanted)?)
     } else {
         let result = sweeps(&parts, &memory)?;
-        // Until here nothing is written, so a signal may simply end the program.
+        // Until here nothing is written, so a signal may just end the program.
         let signals = Signals::catch().map_err(CliError::System)?;
         let summary = leave(&result, start, wanted, None, charset, &signals)?;
         (result.atlas.len(), summary)
@@ -171,11 +172,11 @@ pub(crate) fn merge(
     Ok(summary)
 }
 
-/// What merging needs at most, in words.
+/// Returns the most memory that merging may need, in words.
 ///
 /// # Errors
-/// If even the largest of the files is too much for what may be used. Whether all are cannot be known before: how many
-/// imprints they share is not written anywhere.
+/// Returns an error if even the largest file needs too much memory. Whether all together do is unknown before the
+/// merge: it depends on how many imprints they share.
 fn bound(parts: &[Part], memory: &MemoryGuard) -> Result<String, CliError> {
     let sum: u64 = parts.iter().map(|part| part.bytes).sum();
     let largest = parts.iter().map(|part| part.bytes).max().unwrap_or(0);
@@ -188,7 +189,7 @@ fn bound(parts: &[Part], memory: &MemoryGuard) -> Result<String, CliError> {
     Ok(format!("{files} of {sum}: at most {most} of memory"))
 }
 
-/// Stops a merge that comes near to what it may use.
+/// Stops a merge that comes near to the limit of memory.
 fn within(memory: &MemoryGuard) -> Result<(), CliError> {
     if memory.allows_now() {
         return Ok(());
@@ -196,7 +197,7 @@ fn within(memory: &MemoryGuard) -> Result<(), CliError> {
     Err(CliError::Memory(memory.message_of_merge()))
 }
 
-/// A model has one form.
+/// Refuses a file name without the extension of a model, which has one format.
 fn check_model_file(wanted: &Wanted) -> Result<(), CliError> {
     match &wanted.atlas {
         Some(file) => model_file(file.path()),
@@ -204,7 +205,7 @@ fn check_model_file(wanted: &Wanted) -> Result<(), CliError> {
     }
 }
 
-/// The result of all shards of a sweep.
+/// Merges the shards of a sweep.
 fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError> {
     let mut merge = SweepMerge::default();
     for part in parts {
@@ -218,7 +219,7 @@ fn sweeps(parts: &[Part], memory: &MemoryGuard) -> Result<SweepResult, CliError>
     Ok(merge.finish()?)
 }
 
-/// The model of all shards of a training.
+/// Merges the shards of a training.
 fn models(parts: &[Part], memory: &MemoryGuard) -> Result<Model, CliError> {
     let mut merge = ModelMerge::default();
     for part in parts {
@@ -232,7 +233,7 @@ fn models(parts: &[Part], memory: &MemoryGuard) -> Result<Model, CliError> {
     Ok(merge.finish().map_err(TrainingError::from)?)
 }
 
-/// Writes a merged model, and returns what is printed.
+/// Writes a merged model, and returns the text to print.
 fn leave_model(model: &Model, wanted: &Wanted) -> Result<String, CliError> {
     let signals = Signals::catch().map_err(CliError::System)?;
     if let Some(file) = &wanted.atlas {

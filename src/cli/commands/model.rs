@@ -1,16 +1,16 @@
 //! `taxel model`: trains, shows, lists and deletes models of shapes.
 //!
-//! A model is the file of a training: every imprint that some shapes leave on a grid of poses, and how often each shape
-//! leaves it. `show` prints its card:
+//! A model is the file of a training: every imprint that some shapes leave on a grid of poses, and how often each
+//! shape leaves it. `show` prints a description, the model's card:
 //! ```text
 //! 16 × 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5
 //!   disc: ellipse radius_x 2.40, radius_y 2.40, recognised in 96.0 %
 //!   block: rectangle length 4.50, width 4.30, recognised in 99.1 %
-//! 1800 poses each
+//! 1,800 poses each
 //! …
 //! hash 2888dcc5d50ce3389fbcb40d256ae2ab, taxel 0.1.0
 //! ```
-//! The hash is that of the content, so two trainings of one set on one grid have the same one, on any machine.
+//! The hash is that of the content: two trainings of one set on one grid have the same hash on any machine.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -45,12 +45,12 @@ use crate::storage::{
 };
 use crate::storage::{ModelChoice, unknown_set};
 
-/// Trains a model and writes it. Returns what is printed.
-/// The path is tried before the work begins. A signal stops the training and leaves no file.
+/// Trains a model and writes it. Returns the text to print. The path is tried before the work begins. A signal stops
+/// the training and leaves no file.
 ///
 /// # Errors
-/// Those of the shapes; [`CliError`] of a grid on which the sensor cuts shapes off, unless `--allow-cut` is given; of a
-/// file that exists, unless `--force` is; [`CliError::Stopped`] after a signal.
+/// Returns the errors of the shapes; an error if the sensor cuts shapes off and `--allow-cut` is not given, or if the
+/// file exists and `--force` is not given; [`CliError::Stopped`] after a signal.
 pub(crate) fn train(
     asked: &TrainArguments,
     shelf: &Shelf,
@@ -70,7 +70,7 @@ pub(crate) fn train(
     {
         return trained(&model, &path, KEPT, asked, charset);
     }
-    // Whether a file can be begun there is found out before the work rather than after it.
+    // A path that cannot be written is an error before the work, not after it.
     drop(UnfinishedFile::new(&path, asked.there.existing())?);
     if !asked.quiet {
         crate::cli::note(&grid_text(&sensor, anchor, &ranges), charset);
@@ -94,7 +94,7 @@ pub(crate) fn train(
 /// Runs a training until it is done, memory runs short or `stopped` becomes true.
 ///
 /// # Errors
-/// That of the training; [`TrainingError::Stopped`] in both cases of a stop.
+/// Returns the error of the training, which is [`TrainingError::Stopped`] for both kinds of stop.
 fn run(
     training: Training<'_>,
     memory: &MemoryGuard,
@@ -110,10 +110,10 @@ fn run(
     model
 }
 
-/// What is printed of a model whose file is `done`: written, or there already.
+/// Returns the text to print about a model. `done` tells whether its file was written or existed already.
 ///
 /// # Errors
-/// As [`card_json`].
+/// Returns the errors of [`card_json`].
 fn trained(
     model: &Model,
     path: &Path,
@@ -137,7 +137,7 @@ fn trained(
     })
 }
 
-/// The file of a new model. The folder beside the library is made if it is not there.
+/// Returns the file of a new model, and makes the folder beside the library if necessary.
 fn path_of(target: &ModelTarget, shelf: &Shelf) -> Result<PathBuf, CliError> {
     match target {
         ModelTarget::File(path) => Ok(path.clone()),
@@ -155,9 +155,9 @@ fn path_of(target: &ModelTarget, shelf: &Shelf) -> Result<PathBuf, CliError> {
     }
 }
 
-/// What was chosen for a training, in a line.
-/// `16 × 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5`. Zooms are left out: a training
-/// has one of each.
+/// Describes the grid of a training in a line, such as
+/// `16 × 16 sensor, threshold 0.5, centre at x0 7:7.8:0.2, y0 7:7.8:0.2, angle 0:355:5`. Zooms are left out: a
+/// training has one of each.
 fn grid_text(sensor: &Sensor, anchor: Anchor, ranges: &Ranges) -> String {
     let axes = Axis::ALL.into_iter().filter(|axis| !axis.is_zoom());
     let axes = axes.map(|axis| format!("{} {}", axis.name(), ranges[axis]));
@@ -171,31 +171,31 @@ fn grid_text(sensor: &Sensor, anchor: Anchor, ranges: &Ranges) -> String {
     )
 }
 
-/// The folder of the models beside the library.
+/// Returns the folder of the models beside the library.
 ///
 /// # Errors
-/// If there is no folder for a library, and so none beside it.
+/// Returns an error if there is no folder for a library.
 fn folder(shelf: &Shelf) -> Result<ModelFolder, CliError> {
     Ok(ModelFolder::beside(shelf.library()?.folder()))
 }
 
-/// Whether there is a model of that name beside the library.
-/// A file of the folder is not opened: a damaged model counts too.
+/// Returns true if there is a model of this name beside the library. The file is not opened: a damaged model counts
+/// too.
 pub(crate) fn is_kept(name: &Name, shelf: &Shelf) -> bool {
     folder(shelf).is_ok_and(|models| models.file(name).exists())
 }
 
-/// A model that was found, so that what else may be refused is looked at before a training.
+/// A model that was found but may have to be trained first, so that other errors can be reported before a training.
 #[derive(Debug)]
 pub(crate) enum FoundModel {
-    /// That of a file, which is read.
+    /// A model that was read from a file.
     Read(Box<Model>),
-    /// A built-in set.
+    /// The training of a built-in set.
     BuiltIn(Training<'static>),
 }
 
 impl FoundModel {
-    /// Its shapes.
+    /// Returns its shapes.
     pub(crate) fn shapes(&self) -> &[NamedShape] {
         match self {
             Self::Read(model) => model.shapes(),
@@ -203,12 +203,12 @@ impl FoundModel {
         }
     }
 
-    /// The model. That of a built-in set comes from the user's cache; if it is not there it is trained, which takes some
-    /// seconds, and `progress` begins to show how many poses are done. Signals keep their meaning meanwhile: nothing is left
-    /// behind that would have to be removed.
+    /// Returns the model. A built-in set comes from the user's cache, or if it is not there, it is trained, which
+    /// takes some seconds; `progress` makes the display of its progress. Signals are not caught meanwhile: nothing
+    /// would have to be removed.
     ///
     /// # Errors
-    /// [`CliError::Memory`].
+    /// Returns [`CliError::Memory`].
     pub(crate) fn ready(self, progress: &dyn Fn(u64) -> Progress) -> Result<Model, CliError> {
         let training = match self {
             Self::Read(model) => return Ok(*model),
@@ -230,15 +230,16 @@ impl FoundModel {
     }
 }
 
-/// Finds a model that can be asked: one beside the library, then a built-in set, then a file.
+/// Finds a model to use: a built-in set, or else one beside the library, or else a file.
 ///
 /// # Errors
-/// [`CliError::NoSet`] if nothing has that name; otherwise why the file cannot be read, or that it is one shard only.
+/// Returns [`CliError::NoSet`] if nothing has this name; otherwise the reason why the file cannot be read, or that it
+/// is only a shard.
 pub(crate) fn find(which: &OsStr, shelf: &Shelf) -> Result<FoundModel, CliError> {
     found(which, shelf, &load_whole_model)
 }
 
-/// Like [`find`], with another function to read files.
+/// Like [`find`], with a given function to read files.
 fn found(
     which: &OsStr,
     shelf: &Shelf,
@@ -255,13 +256,13 @@ fn found(
     Ok(FoundModel::Read(Box::new(load(&path)?)))
 }
 
-/// The set of shapes that a name or a file means, not read yet.
+/// Returns the set of shapes that a name or a file means, without reading it.
 ///
 /// # Errors
-/// If there is none.
+/// Returns an error if there is no such set.
 pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliError> {
     let name = which.to_str().and_then(|name| Name::new(name).ok());
-    // Built-in sets come before models and files of their names, so that nothing changes what the default means;
+    // Built-in sets come before models and files of their names, so that nothing changes the meaning of the default;
     // `./figures` is the file.
     let is_there = |choice: &ModelChoice| match choice {
         ModelChoice::Stored(name) => folder(shelf).is_ok_and(|models| models.file(name).exists()),
@@ -276,14 +277,14 @@ pub(crate) fn choice(which: &OsStr, shelf: &Shelf) -> Result<ModelChoice, CliErr
     Err(unknown(which, shelf))
 }
 
-/// That nothing has a name, and which sets there are.
+/// Returns the error that nothing has this name; it lists the sets.
 fn unknown(which: &OsStr, shelf: &Shelf) -> CliError {
     let stored = folder(shelf).ok().and_then(|models| models.names().ok());
     let stored: Vec<Name> = stored.into_iter().flatten().collect();
     CliError::NoSet(unknown_set(&which.to_string_lossy(), &stored))
 }
 
-/// Shows the card of a model, in words or as an object of JSON. Both end with the evaluation of one touch
+/// Shows the card of a model, in words or as a JSON object. Both include the evaluation of one touch
 /// ([`evaluation::summary`]).
 pub(crate) fn show(
     which: &OsStr,
@@ -329,7 +330,7 @@ pub(crate) fn show(
         text += &format!(", {cut} of all cut off by the sensor");
     }
     text.push('\n');
-    // An empty shard has nothing to say of touches.
+    // In an empty shard there is nothing to say about touches.
     if model.poses() > 0 {
         text += &evaluation::summary(&limit, NamedBy::Imprint);
         text += &never_certain(&model);
@@ -342,7 +343,7 @@ pub(crate) fn show(
     Ok(charset.lines(&text))
 }
 
-/// The shapes of which no touch is certain, in a line.
+/// Returns a line about the shapes that are never certain.
 fn never_certain(model: &Model) -> String {
     let never = model.never_certain();
     let names = never.iter().map(|&shape| &*model.shapes()[shape].name);
@@ -354,8 +355,8 @@ fn never_certain(model: &Model) -> String {
     }
 }
 
-/// What a shape of a set is, in a few words.
-/// `rectangle length 4.50, width 4.30` for a figure, without its pose, which the grid sets; `picture of 36 taxels`.
+/// Describes a shape in a few words: `rectangle length 4.50, width 4.30` for a figure, without its pose, which the
+/// grid sets; `picture of 36 taxels`.
 fn described(shape: &NamedShape) -> String {
     match (&shape.source.kind(), &shape.source) {
         (Some(kind), source) => {
@@ -381,8 +382,8 @@ fn described(shape: &NamedShape) -> String {
     }
 }
 
-/// The card of a model as JSON: what was trained, and its evaluation.
-/// Keys are sorted by name. Ranges are `START:END:STEP` texts, as in flags; counts beyond 64 bits are texts.
+/// Returns the card of a model as JSON: what was trained, and its evaluation. Keys are sorted by name. Ranges are
+/// `START:END:STEP` texts, as in flags; counts beyond 64 bits are texts.
 fn card_json(
     model: &Model,
     limit: &Evaluation,
@@ -429,7 +430,7 @@ fn card_json(
     Ok(card)
 }
 
-/// The answer of `taxel model list --names`: for scripts and for what a shell completes. No file is read.
+/// Returns the answer of `taxel model list --names`, for scripts and for shell completions. No file is read.
 pub(crate) fn names(shelf: &Shelf) -> Result<String, CliError> {
     let names = folder(shelf)?.names()?.into_iter();
     Ok(names.map(|name| format!("{name}\n")).collect())
@@ -480,11 +481,10 @@ pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String
     Ok(text)
 }
 
-/// Deletes a model.
-/// The file is removed at once: unlike a shape of the library, a model can be trained again.
+/// Deletes a model. Unlike a shape of the library, it does not go to the trash: it can be trained again.
 ///
 /// # Errors
-/// [`CliError::NoModel`] if there is none of that name, [`CliError::BuiltInModel`] if it is one that taxel makes itself.
+/// Returns [`CliError::NoModel`] if no model has this name, and [`CliError::BuiltInModel`] for a built-in one.
 pub(crate) fn delete(name: &Name, shelf: &Shelf) -> Result<String, CliError> {
     match folder(shelf)?.delete(name) {
         Err(error) if error.is_missing() => {

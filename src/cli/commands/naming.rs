@@ -1,4 +1,4 @@
-//! What a model says about the imprint of a frame, for `taxel frames` and `taxel watch` with `--model`.
+//! Names the shape that left the imprint of a frame, for `taxel frames` and `taxel watch` with `--model`.
 
 use std::ffi::OsString;
 
@@ -11,33 +11,33 @@ use crate::formats::json;
 use crate::imprint::Imprint;
 use crate::recognition::{Evidence, Model, Noise};
 
-/// Which model names imprints, and how often a taxel of the sensor flips.
+/// The model that names imprints, and the probability that a taxel of the sensor flips.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NamingArguments {
-    /// Its name or file; without one nothing is named.
+    /// The model's name or file; None to name nothing.
     pub(crate) model: Option<OsString>,
     /// The probability that a taxel flips.
     pub(crate) noise: Option<Noise>,
 }
 
 impl NamingArguments {
-    /// Finds the model; None if none is asked for.
+    /// Finds the model; None if none is given.
     ///
     /// # Errors
-    /// If there is no such model, or it cannot be read.
+    /// Returns an error if there is no such model, or it cannot be read.
     pub(crate) fn find(&self, shelf: &Shelf) -> Result<Option<FoundModel>, CliError> {
         let model = self.model.as_ref();
         model.map(|model| model::find(model, shelf)).transpose()
     }
 
-    /// The noise, with the dead cells of a mask left out.
+    /// Returns the noise, with the dead cells of a mask left out.
     pub(crate) fn noise_with(&self, mask: Option<&Imprint>) -> Option<Noise> {
         let noise = self.noise?;
         Some(mask.map_or(noise, |mask| noise.without(*mask)))
     }
 }
 
-/// Names imprints, one after the other.
+/// Names imprints one by one.
 #[derive(Debug)]
 pub(crate) struct FrameNamer<'a> {
     model: &'a Model,
@@ -45,7 +45,7 @@ pub(crate) struct FrameNamer<'a> {
 }
 
 impl<'a> FrameNamer<'a> {
-    /// Names them by this model, under a noise if one is given.
+    /// Creates a namer with this model, and with noise if it is given.
     pub(crate) fn new(model: &'a Model, noise: Option<&Noise>) -> Self {
         Self {
             model,
@@ -57,8 +57,8 @@ impl<'a> FrameNamer<'a> {
         Evidence::of(touches).under(self.noise.as_ref())
     }
 
-    /// The line of JSON of a frame, with a key `recognition` at its end: what `taxel recognise` answers to the imprint,
-    /// null where nothing is active.
+    /// Adds the key `recognition` to the end of a frame's line of JSON: the answer of `taxel recognise` to the
+    /// imprint, or null if no taxel is active.
     pub(crate) fn extend(&self, line: &mut Vec<u8>, imprint: Option<&Imprint>) {
         let Some(end) = line.iter().rposition(|&byte| byte == b'}') else {
             return;
@@ -86,7 +86,7 @@ impl<'a> FrameNamer<'a> {
         line.extend(b"}\n");
     }
 
-    /// The answer in words, as by `taxel recognise`; empty where nothing is active.
+    /// Returns the answer in words, like `taxel recognise`; empty if no taxel is active.
     pub(crate) fn text(&self, imprint: &Imprint, charset: Charset) -> String {
         if imprint.is_empty() {
             return String::new();

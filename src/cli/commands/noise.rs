@@ -1,7 +1,7 @@
-//! What noise costs: `taxel model confusion --noise`, `--test half-step` and `taxel model touches`.
+//! The cost of noise: `taxel model confusion --noise`, `--test half-step` and `taxel model touches`.
 //!
-//! Noise flips each taxel on its own with the same probability. Dead taxels are inactive; they are drawn anew for each touch.
-//! The tables:
+//! Noise flips each taxel independently with the same probability. Dead taxels are inactive; they are drawn anew for
+//! each touch. The tables look like this:
 //! ```text
 //!   noise  dead     right            held   claimed
 //!    0.05     0    89.3 % ± 2.5     0.0 %    90.9 %  ███████████████████████████
@@ -12,7 +12,7 @@
 //! ```
 //! `held` are noisy imprints that some shape leaves without noise; `claimed` is the mean probability of the names
 //! given, which is close to `right` if the probabilities can be trusted. Both are simulated, with the standard error
-//! behind `±`. The same seed gives the same numbers, whatever the number of threads.
+//! after `±`. The same seed gives the same numbers with any number of threads.
 
 use std::fmt::Write;
 use std::sync::atomic::Ordering;
@@ -40,22 +40,22 @@ use crate::recognition::{
 };
 use crate::sensor::Sensor;
 
-/// A line of the table: the noise, the number of dead taxels, and what was reached.
+/// A row of the table: the noise, the number of dead taxels, and the result.
 struct NoiseRow {
     /// The probability that a taxel flips, 0 to below ½.
     noise: f64,
-    /// How many taxels are dead.
+    /// The number of dead taxels.
     dead: u32,
     /// The touches that were drawn, and those named right.
     rate: RecognitionRate,
 }
 
-/// How often noisy touches are named right, for each noise and each number of dead taxels.
-/// The dead taxels are drawn anew for each touch, but are the same at every noise, so that rows can be compared. The
-/// classifier knows the noise and which taxels are dead.
+/// Returns how often noisy touches are named right, for each noise and each number of dead taxels. The dead taxels
+/// are drawn anew for each touch, but are the same at every noise, so that rows can be compared. The classifier knows
+/// the noise and which taxels are dead.
 ///
 /// # Errors
-/// [`CliError::Stopped`] after a signal; of a noise out of range.
+/// Returns [`CliError::Stopped`] after a signal, and an error for a noise out of range.
 pub(crate) fn degradation(
     model: &Model,
     asked: &NoiseArguments,
@@ -122,10 +122,10 @@ fn check_dead(dead: &[u32], sensor: &Sensor) -> Result<(), CliError> {
     }
 }
 
-/// Writes the table as numbers or as curves, if a file is asked for.
+/// Writes the table as numbers or as curves, if a file is given.
 ///
 /// # Errors
-/// If it cannot be written.
+/// Returns an error if the file cannot be written.
 fn write_noise(table: &[NoiseRow], asked: &ConfusionArguments) -> Result<(), CliError> {
     let Some(path) = asked.export.as_deref() else {
         return Ok(());
@@ -137,10 +137,10 @@ fn write_noise(table: &[NoiseRow], asked: &ConfusionArguments) -> Result<(), Cli
     put(path, &content, asked.existing)
 }
 
-/// The matrix that is touched: of the size that is asked for, else that of the model.
+/// Returns the matrix that is touched: of the given size, or else that of the model.
 ///
 /// # Errors
-/// [`CliError::NoTouch`] if a shape can leave nothing on it.
+/// Returns [`CliError::NoTouch`] if no imprint of a shape fits on it.
 fn matrix(model: &Model, size: Option<(u8, u8)>) -> Result<Sensor, CliError> {
     let sensor = size.map(|(columns, rows)| Sensor::clamped(columns, rows));
     let sensor = sensor.unwrap_or(*model.sensor());
@@ -155,9 +155,10 @@ fn matrix(model: &Model, size: Option<(u8, u8)>) -> Result<Sensor, CliError> {
     }
 }
 
-/// Says of which shapes not all imprints fit on the matrix, and of how many of their poses; None if all fit.
+/// Returns a note about the shapes whose imprints do not all fit on the matrix, with the share of their poses; None
+/// if all fit.
 fn left_out(model: &Model, sensor: &Sensor) -> Option<String> {
-    /// Shapes that are named.
+    /// The most shapes that are named.
     const NAMED: usize = 3;
     let (columns, rows) = (sensor.columns(), sensor.rows());
     let too_large = model.poses_too_large((columns, rows));
@@ -179,13 +180,13 @@ fn left_out(model: &Model, sensor: &Sensor) -> Option<String> {
         .then(|| format!("left out, because they do not fit on {columns} × {rows}: {named}{more}"))
 }
 
-/// The descriptors that are known, measured in the steps that are asked for; None for the whole imprint.
+/// Returns the known descriptors, rounded to the given steps; None for the whole imprint.
 fn given_of(asked: &NoiseArguments, all_asked: &ConfusionArguments) -> Option<GivenDescriptors> {
     let given = asked.given.clone()?;
     Some(given.rounded(all_asked.roundings.clone()))
 }
 
-/// The rows of each number of dead taxels: noise and accuracy.
+/// Returns noise and accuracy of the rows, for each number of dead taxels.
 fn noise_points(table: &[NoiseRow]) -> Vec<(u32, Vec<(f64, f64)>)> {
     let groups = table.chunk_by(|one, other| one.dead == other.dead);
     let points = |rows: &[NoiseRow]| {
@@ -195,7 +196,7 @@ fn noise_points(table: &[NoiseRow]) -> Vec<(u32, Vec<(f64, f64)>)> {
     groups.map(points).collect()
 }
 
-/// A curve for each number of dead taxels, to draw.
+/// Returns a plot with a curve for each number of dead taxels.
 fn noise_plot(table: &[NoiseRow]) -> LinePlot {
     let plot = LinePlot::new("noise", "right");
     let curves = noise_points(table).into_iter();
@@ -204,7 +205,7 @@ fn noise_plot(table: &[NoiseRow]) -> LinePlot {
     })
 }
 
-/// The same curves in the terminal, each below the other; none of a single noise.
+/// Draws the same curves in the terminal, one below the other; nothing for a single noise.
 fn noise_curves(table: &[NoiseRow], charset: Charset) -> String {
     let curves = noise_points(table).into_iter();
     let curves = curves.map(|(dead, points)| {
@@ -218,7 +219,7 @@ fn noise_curves(table: &[NoiseRow], charset: Charset) -> String {
     curves.collect()
 }
 
-/// One line of JSON: size of the matrix, seed, and a list of the rows, with all digits.
+/// Returns one line of JSON: the size of the matrix, the seed, and a list of the rows, with all digits.
 fn noise_json(table: &[NoiseRow], sensor: &Sensor, seed: u64) -> String {
     let rows_json: Vec<_> = table
         .iter()
@@ -244,7 +245,7 @@ fn noise_json(table: &[NoiseRow], sensor: &Sensor, seed: u64) -> String {
     json::text(&answer) + "\n"
 }
 
-/// The same rows as comma-separated values, with a row of names.
+/// Returns the rows as comma-separated values, with a row of names.
 fn noise_csv(table: &[NoiseRow]) -> String {
     let mut text = String::from("noise,dead,touches,right,accuracy,standard_error,claimed,held\n");
     for row in table {
@@ -266,9 +267,9 @@ fn noise_csv(table: &[NoiseRow]) -> String {
     text
 }
 
-/// The table with a bar per row.
+/// Returns the table, with a bar in each row.
 fn noise_text(table: &[NoiseRow], seed: u64, given: bool, charset: Charset) -> String {
-    /// Characters of a bar for 100 %.
+    /// The length of a bar for 100 %, in characters.
     const BAR: usize = 30;
     let mut text = String::from("  noise  dead     right            held   claimed\n");
     for row in table {
@@ -295,19 +296,18 @@ fn noise_text(table: &[NoiseRow], seed: u64, given: bool, charset: Charset) -> S
     text
 }
 
-/// What touches half a step off the grid cost.
-/// Touches halfway between the learned poses leave other imprints; how many, and what they cost, says whether the grid
-/// of the model is fine enough. Nothing is drawn: all such touches are counted.
+/// Evaluates touches halfway between the learned poses. They leave other imprints; how many, and what they cost,
+/// tells whether the grid of the model is fine enough. Nothing is drawn at random: all such touches are counted.
 /// ```text
 /// touches half a step off the grid, in x0, y0 and angle
 /// not held by the model    36.741 %
 /// wrong, with these        48.000 %
 /// wrong, with the nearest  12.148 %
 /// ```
-/// The second counts a touch that the model does not hold as wrong; the third names it by the nearest imprint.
+/// The second line counts a touch that the model does not hold as wrong; the third names it by the nearest imprint.
 ///
 /// # Errors
-/// [`CliError::Stopped`] after a signal; [`CliError::Memory`]; of a grid whose half steps have too many decimals.
+/// Returns [`CliError::Stopped`] after a signal; [`CliError::Memory`]; an error if half a step has too many decimals.
 pub(crate) fn half_step(
     model: &Model,
     asked: &ConfusionArguments,
@@ -345,10 +345,10 @@ pub(crate) fn half_step(
     Ok(charset.lines(&text))
 }
 
-/// How many touches of one shape it takes until it is as probable as wanted. Returns what is printed.
+/// Simulates how many touches of one shape it takes until it is as probable as wanted. Returns the text to print.
 ///
 /// # Errors
-/// If there is no such model, or a signal ends the simulation.
+/// Returns an error if there is no such model, or a signal stops the simulation.
 pub(crate) fn touches(
     asked: &TouchesArguments,
     shelf: &Shelf,
@@ -377,8 +377,8 @@ pub(crate) fn touches(
     })
 }
 
-/// The mean of the shapes' means by their weights, and its standard error. Their runs are independent, so the variances
-/// add up. None if a shape has none.
+/// Returns the mean of the shapes' means by their weights, and its standard error. Their runs are independent, so the
+/// variances add up. None if a shape has no mean.
 fn mean(weights: &[f64], results: &[TouchesUntil]) -> (Option<f64>, Option<f64>) {
     let sum: f64 = weights.iter().sum();
     let shapes = || weights.iter().zip(results);
@@ -390,7 +390,7 @@ fn mean(weights: &[f64], results: &[TouchesUntil]) -> (Option<f64>, Option<f64>)
     )
 }
 
-/// One line of JSON: what was asked, the mean of all shapes, and each shape.
+/// Returns one line of JSON: the arguments, the mean of all shapes, and each shape.
 fn touches_json(
     asked: &TouchesArguments,
     shapes: &[(&str, &TouchesUntil)],
@@ -419,7 +419,8 @@ fn touches_json(
     json::ascii(&answer)
 }
 
-/// A line for each shape, the mean and its standard error, or the number of runs that were given up; and one for all of them.
+/// Returns a line for each shape, with the mean, its standard error and the number of runs given up; and a line for
+/// all shapes.
 fn touches_text(
     asked: &TouchesArguments,
     shapes: &[(&str, &TouchesUntil)],
@@ -451,7 +452,7 @@ fn touches_text(
     text
 }
 
-/// A mean and its standard error, as far as there are such.
+/// Formats a mean and its standard error, which may be missing.
 fn with_error(mean: Option<f64>, error: Option<f64>) -> String {
     let mean = mean.map_or("–".to_owned(), |mean| format!("{mean:.2}"));
     let error = error.map_or(String::new(), |error| format!(" ± {error:.2}"));

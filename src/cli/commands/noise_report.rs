@@ -1,4 +1,4 @@
-//! `taxel frames FILE --noise-report`: how often taxels flip, and which are dead or stuck, by a recording's own frames.
+//! `taxel frames FILE --noise-report`: how often taxels flip, and which are dead or stuck, according to a recording.
 
 use std::ops::ControlFlow;
 
@@ -12,26 +12,26 @@ use crate::formats::value::{counted, grouped};
 use crate::frame::{FlipCounter, FlipReport, Processing};
 use crate::imprint::Imprint;
 
-/// The report as an object of JSON, its keys in the order of the documentation.
+/// The report as a JSON object, with its keys in the order of the documentation.
 #[derive(Serialize)]
 struct NoiseJson {
     frames: u64,
     cells: u32,
-    /// Null where it cannot be told, or would be ½ or more.
+    /// Null if it is unknown, or ½ or more.
     noise: Option<f64>,
     standard_error: Option<f64>,
     flips: u64,
     repeated: u64,
-    /// Column and row of each.
+    /// The column and row of each taxel.
     stuck_on: Vec<[u8; 2]>,
     stuck_off: Vec<[u8; 2]>,
     mask: Vec<String>,
 }
 
-/// Reads a channel whose frames become imprints by `processing`. None if there is no frame.
+/// Counts the flips of a channel, whose frames become imprints by `processing`. Returns None if there is no frame.
 ///
 /// # Errors
-/// If a frame cannot be processed.
+/// Returns an error if a frame cannot be processed.
 pub(crate) fn gather(
     recording: &mut RecordingFile,
     channel: usize,
@@ -77,7 +77,7 @@ pub(crate) fn gather(
     Ok(counter.map(|counter| counter.finish()))
 }
 
-/// Column and row of each active taxel, row by row.
+/// Returns the column and row of each active taxel, row by row.
 fn taxels(imprint: &Imprint) -> Vec<[u8; 2]> {
     let rows = 0..imprint.rows();
     let all = rows.flat_map(|row| (0..imprint.columns()).map(move |column| [column, row]));
@@ -85,7 +85,7 @@ fn taxels(imprint: &Imprint) -> Vec<[u8; 2]> {
         .collect()
 }
 
-/// The report as a line of JSON.
+/// Returns the report as a line of JSON.
 pub(crate) fn json(found: &FlipReport) -> String {
     let line = json::text(&NoiseJson {
         frames: found.frames,
@@ -101,7 +101,7 @@ pub(crate) fn json(found: &FlipReport) -> String {
     line + "\n"
 }
 
-/// The report in words.
+/// Returns the report in words.
 pub(crate) fn text(found: &FlipReport) -> String {
     let frames = counted(found.frames, "frame");
     let mut text = format!("{frames} of {}\n", counted(found.cells, "taxel"));

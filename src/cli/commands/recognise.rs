@@ -1,7 +1,7 @@
-//! `taxel recognise`: names the shape that left an imprint, or each of many.
+//! `taxel recognise`: names the shape that left an imprint, or the shapes that left many.
 //!
-//! An imprint is answered in words or by an object of JSON; lines of JSON are answered by a line each, whether or not
-//! `--json` is given. Keys that tell where a touch comes from are copied in front of the answer:
+//! An imprint is answered in words or by a JSON object. Lines of JSON are answered by a line each, with or without
+//! `--json`. Keys that tell where a touch comes from are copied to the beginning of the answer:
 //! ```text
 //! {"imprint":["....",".##.",".##.","...."],"frame":3}
 //! {"frame":3,"answer":null,"state":"unknown","method":"exact","noise":null,"at_rim":false,"ranking":[],…}
@@ -37,12 +37,12 @@ use crate::memory::MemoryGuard;
 use crate::quote::{did_you_mean, shortened_message};
 use crate::recognition::{Answer, AnswerState, Evidence, Model, NamedShape, Noise};
 
-/// Answers what is asked, on `output`.
+/// Answers the given imprint or lines on `output`.
 ///
 /// # Errors
-/// [`CliError::Unexpected`] at the end if `--expect` names another shape than one of the answers; [`CliError::NoSet`] and
-/// [`CliError::NotInModel`] for names that do not exist; [`CliError::Mask`] for dead taxels of another size than the
-/// touch; and those of reading files. The answer to a wrong line is its error.
+/// Returns [`CliError::Unexpected`] at the end if an answer differs from the shape of `--expect`; [`CliError::NoSet`]
+/// and [`CliError::NotInModel`] for names that do not exist; [`CliError::Mask`] for dead taxels of another size than
+/// the touch; and the errors of reading files. The answer to a wrong line is its error.
 pub(crate) fn recognise(
     asked: &RecogniseArguments,
     shelf: &Shelf,
@@ -67,10 +67,10 @@ pub(crate) fn recognise(
     }
 }
 
-/// Checks that a model has a shape of the expected name.
+/// Checks that a model has a shape of this name.
 ///
 /// # Errors
-/// [`CliError::NotInModel`].
+/// Returns [`CliError::NotInModel`].
 fn check_expected(name: &str, shapes: &[NamedShape]) -> Result<(), CliError> {
     if shapes.iter().any(|shape| shape.name == name) {
         return Ok(());
@@ -82,13 +82,13 @@ fn check_expected(name: &str, shapes: &[NamedShape]) -> Result<(), CliError> {
     })
 }
 
-/// A model, and how it is asked.
+/// A model with the settings for its answers.
 struct Recogniser<'a> {
     /// The flags.
     asked: &'a RecogniseArguments,
-    /// The shapes to choose from.
+    /// The model.
     model: &'a Model,
-    /// How often its taxels fail, and which always do, if that is given.
+    /// The noise of the taxels and the dead taxels, if given.
     noise: Option<Noise>,
 }
 
@@ -96,7 +96,7 @@ impl Recogniser<'_> {
     /// Answers one imprint, as text or JSON.
     ///
     /// # Errors
-    /// [`CliError::Unexpected`] if the answer is not the expected one.
+    /// Returns [`CliError::Unexpected`] if the answer is not the expected one.
     fn answer_imprint(
         &self,
         imprint: &Imprint,
@@ -138,7 +138,7 @@ impl Recogniser<'_> {
     /// Answers each line by a line of JSON.
     ///
     /// # Errors
-    /// [`CliError::Unexpected`] if some answers are not the expected one.
+    /// Returns [`CliError::Unexpected`] if some answers are not the expected one.
     fn answer_lines(&self, input: LineInput, output: &mut dyn Write) -> Result<(), CliError> {
         let (all, others) = (AtomicU64::new(0), AtomicU64::new(0));
         let answer = |line: &[u8], text: &mut Vec<u8>| {
@@ -174,7 +174,7 @@ impl Recogniser<'_> {
     /// Names the shape that left all these touches.
     ///
     /// # Errors
-    /// [`CliError::Mask`] if the mask of dead taxels has another size than a touch.
+    /// Returns [`CliError::Mask`] if the mask of dead taxels differs in size from a touch.
     fn answer(&self, touches: &[Imprint]) -> Result<Answer, CliError> {
         let mut evidence = self.evidence(touches);
         if let Some(noise) = &self.noise {
@@ -196,10 +196,10 @@ impl Recogniser<'_> {
         Ok(self.model.recognise(evidence))
     }
 
-    /// An answer as JSON; `line` is the question, if it was one of many.
+    /// Returns an answer as JSON; `line` is the question, if it was one of many.
     ///
     /// # Errors
-    /// Those of [`Self::pose`].
+    /// Returns the errors of [`Self::pose`].
     fn json<'b>(
         &'b self,
         touches: &[Imprint],
@@ -218,11 +218,11 @@ impl Recogniser<'_> {
         })
     }
 
-    /// Where the shape of an answer lies in the last touch, if that is asked for. None without an answer, and if the
-    /// shape does not leave that imprint.
+    /// Returns where the shape of an answer lies in the last touch, if this is asked for. None without an answer, and
+    /// if the shape does not leave this imprint.
     ///
     /// # Errors
-    /// [`CliError::Memory`].
+    /// Returns [`CliError::Memory`].
     fn pose(&self, touches: &[Imprint], answer: &Answer) -> Result<Option<PoseReport>, CliError> {
         let (true, Some(shape), Some(touch)) = (self.asked.pose, answer.shape, touches.last())
         else {
@@ -238,7 +238,7 @@ impl Recogniser<'_> {
         }))
     }
 
-    /// Whether the answer is the expected one; yes if none is.
+    /// Returns true if the answer is the expected one, or if none is expected.
     fn is_expected(&self, answer: &Answer) -> bool {
         let Some(expected) = &self.asked.expect else {
             return true;
@@ -247,7 +247,7 @@ impl Recogniser<'_> {
         answer.state != AnswerState::Tied && named == Some(expected)
     }
 
-    /// What an answer says, for the message about one that was not expected: `"ring" (likely)`.
+    /// Returns an answer in words, for the message about one that was not expected: `"ring" (likely)`.
     fn found(&self, answer: &Answer) -> String {
         let name = |shape: usize| format!("{:?}", self.model.shapes()[shape].name);
         let named = match answer.shape {
@@ -262,10 +262,10 @@ impl Recogniser<'_> {
     }
 }
 
-/// How often taxels fail, and which always do, if that is given.
+/// Returns the noise of the taxels and the dead taxels, if given.
 ///
 /// # Errors
-/// If the mask cannot be read.
+/// Returns an error if the mask cannot be read.
 fn noise(asked: &RecogniseArguments, shelf: &Shelf) -> Result<Option<Noise>, CliError> {
     Ok(match (asked.noise, &asked.mask) {
         (Some(noise), Some(mask)) => Some(noise.without(*shelf.find(mask)?.imprint())),
@@ -273,16 +273,16 @@ fn noise(asked: &RecogniseArguments, shelf: &Shelf) -> Result<Option<Noise>, Cli
     })
 }
 
-/// What is to be recognised.
+/// The input to recognise.
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
 enum RecogniseInput {
     /// One touch.
     Imprint(Imprint),
-    /// Lines of JSON, not read yet.
+    /// Lines of JSON that are not read yet.
     Lines(LineInput),
 }
 
-/// Finds out what the argument means: a shape of the library, a file or standard input; and whether that holds lines.
+/// Decides what the argument means: a stored shape, a file or standard input; and whether its content is lines.
 fn input(what: &OsStr, shelf: &Shelf) -> Result<RecogniseInput, CliError> {
     let (name, input): (String, Box<dyn Read + Send>) = match shelf.locate(what)? {
         Located::Shape(shape) => return Ok(RecogniseInput::Imprint(shape.imprint)),
@@ -309,14 +309,14 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<RecogniseInput, CliError> {
         start.clear();
         blank += 1;
     }
-    // Blank lines are not kept, however many there are, but they count.
+    // Blank lines are not kept, since there may be many, but they count.
     let blank = io::repeat(b'\n').take(blank);
     let is_line = if let Some(is_line) = is_line(&start) {
         is_line
     } else {
         let first = start.len();
         line(&mut input, &mut start).map_err(|error| refused(error.into()))?;
-        // Where the first line was torn, the second one tells; else both are the beginning of a stored shape.
+        // If the first line was torn, the second one decides; otherwise both are the beginning of a stored shape.
         let (torn, second) = start.split_at(first);
         match is_line(second) {
             Some(true) if !has(torn, b"\"format\"") => true,
@@ -333,16 +333,16 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<RecogniseInput, CliError> {
     Ok(RecogniseInput::Imprint(*content.imprint()))
 }
 
-/// Reads a line, or as much of it as a line may have. Returns its length; 0 at the end.
+/// Reads a line, but no more than the longest line. Returns its length; 0 at the end.
 fn line(input: &mut impl BufRead, start: &mut Vec<u8>) -> io::Result<usize> {
     let mut limited = Read::by_ref(input).take(MAX_LINE as u64);
     limited.read_until(b'\n', start)
 }
 
-/// Whether the first line of a text is a question of its own: a whole object of JSON that is not a stored shape, or would be
-/// if it were not wrong. None of an object that does not end with it: a stored shape, or a line that was torn.
+/// Returns true if the first line of a text is a question: a whole JSON object that is not a stored shape, even if it
+/// is wrong. None for an object that does not end in this line: it is a stored shape, or a line that was torn.
 fn is_line(text: &[u8]) -> Option<bool> {
-    /// The only key that matters here; stored shapes have it.
+    /// The key that stored shapes have, and questions do not.
     #[derive(Deserialize)]
     struct FormatKey {
         format: Option<IgnoredAny>,
@@ -358,7 +358,7 @@ fn is_line(text: &[u8]) -> Option<bool> {
     }
 }
 
-/// Whether a text without its end was a question: it has a key of one, and none that only stored shapes have.
+/// Returns true if a text without its end was a question: it has a key of one, and none that only stored shapes have.
 fn is_torn_line(text: &[u8]) -> bool {
     let keys = [&b"\"imprint\""[..], b"\"touches\"", b"\"frame\""];
     !has(text, b"\"format\"") && keys.into_iter().any(|key| has(text, key))
@@ -368,13 +368,13 @@ fn has(text: &[u8], word: &[u8]) -> bool {
     text.windows(word.len()).any(|window| window == word)
 }
 
-/// Why a line with none of its keys, or with two, is refused.
+/// The reason to refuse a line with none of these keys, or with two.
 const ONE_KEY: &str = "expected exactly one of the keys frame (with values), imprint, touches";
 
-/// Why a line whose imprint is null is refused.
+/// The reason to refuse a line whose imprint is null.
 const NO_IMPRINT: &str = "imprint: null, as of a frame without a threshold; set one where the frame is read, such as --at-least";
 
-/// The keys of a line that mean something; others are ignored.
+/// The keys of a line that are read; others are ignored.
 #[derive(Deserialize)]
 #[serde(expecting = "an object with an imprint, touches or a frame")]
 struct LineKeys<'a> {
@@ -384,20 +384,21 @@ struct LineKeys<'a> {
     /// Several touches of one shape.
     #[serde(borrow)]
     touches: Option<Vec<Vec<Text<'a>>>>,
-    /// The number of a frame, as `taxel frames --json` writes it.
+    /// The number of a frame, as `taxel frames --json` writes it; or the values of a frame.
     frame: Option<Box<RawValue>>,
-    /// What the recording calls that frame.
+    /// The label of this frame in the recording.
     #[serde(default, deserialize_with = "given")]
     label: Option<Box<RawValue>>,
-    /// Its time in seconds.
+    /// The time of the frame in seconds.
     #[serde(default, deserialize_with = "given")]
     time: Option<Box<RawValue>>,
-    /// Its channel. A recording without channels has null there, which is copied like a name.
+    /// The channel of the frame. It is null for a recording without channels, which is copied like a name.
     #[serde(default, deserialize_with = "given")]
     channel: Option<Box<RawValue>>,
 }
 
-/// The message about a line with none of the keys of a touch, or several of them; and which command reads it.
+/// Returns the message about a line with none of the keys of a touch, or several of them. If another command reads
+/// such lines, the message names it.
 fn no_touch(line: &[u8]) -> String {
     match content::line_of_sources(line) {
         Some((what, command)) => format!("{ONE_KEY}; if this is {what}, use taxel {command}"),
@@ -405,19 +406,19 @@ fn no_touch(line: &[u8]) -> String {
     }
 }
 
-/// A text for each row, `#` for an active taxel; null of a frame without a threshold.
+/// A text for each row, `#` for an active taxel; null for a frame without a threshold.
 #[derive(Deserialize)]
 #[serde(transparent)]
 struct RowsOrNull<'a>(#[serde(borrow)] Option<Vec<Text<'a>>>);
 
-/// Any value of a key that is there, null too.
+/// Reads any value of a key that is there, even null.
 fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {
     T::deserialize(deserializer).map(Some)
 }
 
-/// The values of a frame, in place of an imprint; then `frame` is not a number.
+/// Reads the values of a frame, which are given in place of an imprint if `frame` is not a number.
 fn framed(line: &[u8], frame: Option<&RawValue>) -> Result<Option<Imprint>, String> {
     let Some(frame) = frame.filter(|frame| frame.get().starts_with('[')) else {
         return Ok(None);
@@ -428,19 +429,19 @@ fn framed(line: &[u8], frame: Option<&RawValue>) -> Result<Option<Imprint>, Stri
     rule.imprint(&rows).map(Some)
 }
 
-/// A line, read and checked: one touch or several, and what is copied into its answer.
+/// A line that was read and checked: its touches, and what is copied into its answer.
 struct RecogniseLine {
     /// One or more imprints, each in a matrix of its own size.
     touches: Vec<Imprint>,
-    /// Keys and values that the answer repeats.
+    /// The keys and values that the answer repeats.
     copied: Vec<(&'static str, Box<RawValue>)>,
 }
 
 impl RecogniseLine {
-    /// Other keys are ignored, so that answers of `taxel frames` can be asked about as they are.
+    /// Reads a line. Other keys are ignored, so that answers of `taxel frames` can be given as they are.
     ///
     /// # Errors
-    /// What is wrong with the line, with the key and the row.
+    /// Returns what is wrong with the line, with the key and the row.
     fn read(line: &[u8]) -> Result<Self, String> {
         let keys: LineKeys<'_> = serde_json::from_slice(line).map_err(|error| {
             format!(
@@ -472,7 +473,7 @@ impl RecogniseLine {
             (None, Some(_)) => return Err("touches: empty, expected at least one".to_owned()),
             _ => return Err(no_touch(line)),
         };
-        // Values are not repeated.
+        // Values of a frame are not copied.
         let copied = [
             ("frame", keys.frame.filter(|_| framed.is_none())),
             ("label", keys.label),
@@ -488,7 +489,7 @@ impl RecogniseLine {
         })
     }
 
-    /// In the order frame, label, time, channel, whatever their order in the line.
+    /// Returns what is copied, in the order frame, label, time, channel.
     fn copied(&self) -> Vec<(&'static str, &RawValue)> {
         self.copied
             .iter()
@@ -504,7 +505,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_are_told_from_stored_shapes() {
+    fn lines_are_distinguished_from_stored_shapes() {
         assert_eq!(is_line(b"{\"imprint\":[\"##\"]}\n"), Some(true));
         assert_eq!(is_line(b"{\"imprint\":}\n"), Some(true));
         assert_eq!(is_line(b"{\"format\":\"taxel-shape/1\"}\n"), Some(false));
@@ -514,7 +515,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_says_what_is_wrong_with_it() {
+    fn the_error_of_a_line_says_what_is_wrong() {
         let error = |line: &str| {
             RecogniseLine::read(line.as_bytes())
                 .err()

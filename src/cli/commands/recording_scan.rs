@@ -15,28 +15,28 @@ use crate::formats::value::counted;
 use crate::frame::{FrameError, View};
 use crate::matrix::Matrix;
 
-/// More warnings than these are only counted.
+/// The most warnings that are shown; further ones are counted.
 const MOST_WARNINGS: usize = 20;
 
-/// What one reading of a recording finds.
+/// The result of reading a recording once.
 #[derive(Debug, Default)]
 pub(crate) struct Scan {
-    /// None if damage comes before the format is certain.
+    /// The format; None if a damage comes before the format is certain.
     pub(super) format: Option<RecordingFormat>,
-    /// In the order in which the recording names them; a frame's channel is an index here.
+    /// The channels, in the order of the recording; a frame's channel is an index here.
     pub(super) channels: Vec<ListedChannel>,
     /// The first [`MOST_WARNINGS`] oddities that are not damage, such as a line of the wrong length.
     notes: Vec<RecordingNote>,
-    /// How many more there were.
+    /// The number of further oddities.
     more_notes: u64,
-    /// The damage at which it ended.
+    /// The damage at which reading ended.
     pub(super) error: Option<RecordingError>,
-    /// Why a frame could not be cropped as asked: the first such error.
+    /// The first error of a frame that could not be cropped as asked.
     pub(super) misfit: Option<FrameError>,
 }
 
 impl Scan {
-    /// Reads a recording; sums are those of what the view shows, or of the whole frame if that is too large.
+    /// Reads a recording. Sums are those of the part that the view shows, or of the whole frame if this is too large.
     pub(super) fn of(recording: &mut RecordingFile, view: &View) -> Self {
         let mut scan = Self::default();
         let mut seen = Matrix::filled(1, 1, f64::NAN);
@@ -80,7 +80,7 @@ impl Scan {
         scan
     }
 
-    /// What is odd in the recording, for standard error.
+    /// Returns the oddities of the recording, for standard error.
     pub(super) fn warnings(&self, name: &str) -> Vec<String> {
         let lines = self.notes.iter().map(|note| format!("{name}: {note}"));
         let mut lines: Vec<String> = lines.collect();
@@ -90,7 +90,7 @@ impl Scan {
         lines
     }
 
-    /// That rows and columns were given for a recording that states its own, and others.
+    /// Returns a warning if the given rows and columns differ from those that the recording states.
     pub(super) fn unused_shape(&self, given: Option<(u16, u16)>) -> Option<String> {
         let stated = self
             .channels
@@ -103,11 +103,12 @@ impl Scan {
         })
     }
 
-    /// The number of the channel that is asked for.
-    /// Without `--channel` there must be one only; a channel without a name is called `unnamed`.
+    /// Returns the index of the chosen channel. Without `--channel` there must be only one. A channel without a name
+    /// is called `unnamed`.
     ///
     /// # Errors
-    /// If there is none of that name, or none is named and there are several. The message lists the names.
+    /// Returns an error if no channel has this name, or if none is named and there are several. The message lists the
+    /// names.
     pub(super) fn channel(
         &self,
         recording: &RecordingFile,

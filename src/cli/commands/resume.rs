@@ -1,8 +1,9 @@
-//! `--resume`: resumes the work on a large study. A shard whose file is complete and belongs to the same study is not
-//! computed again.
+//! `--resume`: continues a large study. A shard whose file is complete and belongs to the same study is not computed
+//! again.
 //!
-//! A file appears under its name only when all of it is written, so a killed shard leaves none and is computed. A file that
-//! is damaged or belongs to another study is refused, and the error names it: it is neither merged by mistake nor replaced.
+//! A file gets its name only when it is complete, so a killed shard leaves no file and is computed. A file that is
+//! damaged or belongs to another study is refused with an error that names it; it is neither merged by mistake nor
+//! replaced.
 
 use std::path::Path;
 
@@ -14,13 +15,13 @@ use crate::sensor::Sensor;
 use crate::storage::{ArchiveFileError, load_atlas, load_model};
 use crate::sweep::{Shard, SweepResult};
 
-/// The words before the name of a file that exists already.
+/// The words before the name of a file that is kept.
 pub(crate) const KEPT: &str = "kept, complete and part of this study";
 
-/// The atlas of a shard that was swept before; None if there is no such file.
+/// Returns the atlas of a shard that was swept before; None if there is no such file.
 ///
 /// # Errors
-/// [`CliError::NotResumed`] if the file is damaged or of another study.
+/// Returns [`CliError::NotResumed`] if the file is damaged or belongs to another study.
 pub(crate) fn atlas(
     path: &Path,
     grid: &PoseGrid,
@@ -42,10 +43,10 @@ pub(crate) fn atlas(
     Ok(Some(found))
 }
 
-/// The model of a shard that was trained before; None if there is no such file.
+/// Returns the model of a shard that was trained before; None if there is no such file.
 ///
 /// # Errors
-/// [`CliError::NotResumed`] if the file is damaged or of another study.
+/// Returns [`CliError::NotResumed`] if the file is damaged or belongs to another study.
 pub(crate) fn model(
     path: &Path,
     training: &Training<'_>,
@@ -83,7 +84,7 @@ pub(crate) fn model(
     Ok(Some(found))
 }
 
-/// What was read of a file: None if it is not there; a damaged one is an error that names it.
+/// Returns what was read from a file; None if it does not exist. A damaged file is an error that names it.
 fn whole<T>(path: &Path, read: Result<T, ArchiveFileError>) -> Result<Option<T>, CliError> {
     match read {
         Ok(found) => Ok(Some(found)),
@@ -99,7 +100,7 @@ fn whole<T>(path: &Path, read: Result<T, ArchiveFileError>) -> Result<Option<T>,
     }
 }
 
-/// The error of a file that is damaged.
+/// Returns the error of a file that is damaged.
 fn torn(path: &Path, reason: &str) -> CliError {
     CliError::NotResumed {
         name: path.to_string_lossy().into_owned(),
@@ -108,7 +109,7 @@ fn torn(path: &Path, reason: &str) -> CliError {
     }
 }
 
-/// The error of a file of another study.
+/// Returns the error of a file that belongs to another study.
 fn foreign(path: &Path, reason: &str) -> CliError {
     CliError::NotResumed {
         name: path.to_string_lossy().into_owned(),
@@ -117,7 +118,7 @@ fn foreign(path: &Path, reason: &str) -> CliError {
     }
 }
 
-/// Which poses a shard was to take, without the shapes.
+/// The poses that a shard was to compute, without the shapes.
 #[derive(Clone, Copy, Debug)]
 struct StudyGrid {
     sensor: Sensor,
@@ -136,7 +137,7 @@ impl StudyGrid {
         }
     }
 
-    /// The first thing in which a file differs from what is asked, in words; None if nothing does.
+    /// Returns the first difference between a file and the request, in words; None if there is none.
     fn difference(&self, asked: &Self) -> Option<String> {
         let unlike = |what: &str, own: String, asked: String| {
             (own != asked).then(|| format!("its {what} is {own}, not {asked}"))

@@ -1,8 +1,9 @@
-//! `taxel` without a command: opens the screen, and with `--record` writes what is typed as a script.
+//! `taxel` without a command: opens the screen, and with `--record` records what is typed as a script.
 //!
-//! A record is a script that does the same again (`taxel script`): first the sensor, the look and unsaved work, then every
-//! key with the screen's size. A shape of the user's stands behind the key that used it; of shapes that were only listed
-//! the name is enough. It is written as it happens, so that it survives a crash, and never replaces a file.
+//! A record is a script (`taxel script`) that does the same again: first the sensor, the look and unsaved work, then
+//! every key and every change of the screen's size. A shape of the user's is recorded after the key that used it; for
+//! shapes that were only listed, the name is enough. The record is written as things happen, so that it survives a
+//! crash, and never replaces a file.
 
 use std::cell::RefCell;
 use std::fs::{self, File};
@@ -32,11 +33,12 @@ use crate::tui::terminal::settings::{Flags, TerminalSettings};
 
 /// Runs the screen until the user quits, and returns the exit status.
 ///
-/// With `watched`, it begins with the frames of that source.
+/// With `watched`, it starts with the frames of this source.
 ///
 /// # Errors
-/// [`CliError::Screen`] if there is no terminal; [`CliError::Recorded`] or [`CliError::Record`] if the record cannot be
-/// created. A record that fails later gives messages, and 1 as the exit status of a program that ends well.
+/// Returns [`CliError::Screen`] if there is no terminal; [`CliError::Recorded`] or [`CliError::Record`] if the record
+/// cannot be created. If the record fails later, messages tell this, and the exit status becomes 1 if it would have
+/// been 0.
 pub(crate) fn screen(
     settings: &Effective,
     size: Option<(u16, u16)>,
@@ -50,7 +52,7 @@ pub(crate) fn screen(
         sensor: settings.sensor(),
         theme: terminal.theme(),
         mouse: terminal.mouse,
-        // Another one each time.
+        // A different seed each time.
         seed: RandomState::new().hash_one(0),
     };
     let library = shelf.library()?;
@@ -58,7 +60,7 @@ pub(crate) fn screen(
     let record = record
         .map(|path| ScreenRecord::begin(path, &options, &library, sender.clone()))
         .transpose()?;
-    // Inputs and shapes come from two places.
+    // Inputs and shapes reach the record from two places.
     let record = Rc::new(RefCell::new(record));
     let mut watch = |event: terminal::SessionEvent<'_>| {
         if let Some(record) = &mut *record.borrow_mut() {
@@ -93,18 +95,18 @@ pub(crate) fn screen(
     }
     match ended.map_err(CliError::Screen)?.status() {
         0 => Ok(u8::from(!is_whole)),
-        // What ended the program is more.
+        // The reason that ended the program takes precedence.
         status => Ok(status),
     }
 }
 
-/// How the terminal is used: by the settings, and by what the environment says of it.
+/// Returns how the terminal is used, according to the settings and the environment.
 fn terminal_settings(
     settings: &Effective,
     size: Option<(u16, u16)>,
     charset: Charset,
 ) -> TerminalSettings {
-    // A locale that is not UTF-8 means ASCII; one that is says nothing about the terminal's font.
+    // A locale that is not UTF-8 means ASCII; a UTF-8 locale tells nothing about the terminal's font.
     let ascii = (charset == Charset::Ascii).then_some(true);
     let flags = Flags {
         color: settings.color(),
@@ -116,13 +118,13 @@ fn terminal_settings(
     TerminalSettings::from_environment(std::env::var_os, &flags)
 }
 
-/// A record being written.
+/// A record that is being written.
 struct ScreenRecord {
-    /// Its file, for messages.
+    /// The path of the file, for messages.
     path: PathBuf,
-    /// Writes the file.
+    /// The writer of the file.
     writer: RecordWriter,
-    /// Turns what happens into lines of a script.
+    /// The recorder, which turns events into lines of a script.
     recorder: Recorder,
 }
 
@@ -130,15 +132,15 @@ impl ScreenRecord {
     /// Creates the file, which must not exist: it may be another record.
     ///
     /// # Errors
-    /// [`CliError::Recorded`] if it exists; [`CliError::Record`] if it cannot be created. One that comes later is sent to
-    /// the screen.
+    /// Returns [`CliError::Recorded`] if the file exists; [`CliError::Record`] if it cannot be created. A later error
+    /// is sent to the screen.
     fn begin(
         path: PathBuf,
         options: &Options,
         library: &Library,
         sender: Sender,
     ) -> Result<Self, CliError> {
-        // First whatever else may fail: a file left behind would be in the way of the next try.
+        // The file comes last: if something else failed, it would be left behind and prevent the next try.
         let mut start = of_options(options);
         start.extend(found(library));
         let file = File::create_new(&path).map_err(|error| match error.kind() {
@@ -163,10 +165,10 @@ impl ScreenRecord {
         })
     }
 
-    /// Writes how the program ended. An empty record is removed.
+    /// Records how the program ended. An empty record is removed.
     ///
     /// # Errors
-    /// The error that ended the record early, if there was one.
+    /// Returns the error that ended the record early, if there was one.
     fn end(mut self, outcome: Option<terminal::Outcome>) -> io::Result<()> {
         if let Some(outcome) = outcome {
             let lines = self.recorder.end(outcome);
@@ -176,13 +178,13 @@ impl ScreenRecord {
     }
 }
 
-/// The unsaved work that the program finds at its start, for the record.
+/// Returns the unsaved work that the program finds at its start, for the record.
 fn found(library: &Library) -> impl Iterator<Item = ScriptSetting> {
     let left = Orphan::all(library).into_iter();
     left.map(|orphan| ScriptSetting::Leftover(Box::new(orphan.shape)))
 }
 
-/// A similar name for a file that does not exist: `demo-2.taxel` for `demo.taxel`.
+/// Returns a similar name that no file has: `demo-2.taxel` for `demo.taxel`.
 fn free(path: &Path) -> PathBuf {
     let last = path.with_extension("new");
     let Some(stem) = path.file_stem().map(|stem| stem.to_string_lossy()) else {

@@ -1,18 +1,18 @@
 //! `taxel script`: runs the screen without a terminal, driven by a script.
 //!
-//! The program under test is the same as on a terminal, except that keys come from the script, nothing is drawn but
-//! what it asks for, and the library is an empty one of its own unless `--library` names one. So scripts are tests
-//! (those in `tests/scripts`), demonstrations, and records of `taxel --record`.
+//! The program is the same as on a terminal, except that keys come from the script, only the screens that it asks for
+//! are drawn, and the library is an empty one of its own unless `--library` is given. So scripts are tests (those in
+//! `tests/scripts`), demonstrations, and records of `taxel --record`.
 //!
 //! ```text
 //! $ taxel script -k 'f<Enter>' rest.taxel            keys first, then the script
 //! $ taxel script demo.taxel --svg pictures           pictures/NAME.svg for each 'Screen NAME'
 //! ```
-//! A script ends at its first error; what was printed before stays. Its commands are those of
+//! A script ends at its first error; the output before remains. Its commands are those of
 //! [`command`](crate::tui::script::command).
 //!
-//! A script answers its own questions, and may come from a stranger. So it cannot choose a library of the user's, and
-//! writes only below its own folder, unless `--allow-outside` is given.
+//! A script answers the program's questions itself, and may come from a stranger. So it cannot choose a library of
+//! the user's, and writes only below its own folder, unless `--allow-outside` is given.
 
 use std::collections::{HashMap, HashSet};
 use std::fs::{self, File};
@@ -43,7 +43,7 @@ const MOST_BYTES: u64 = 16 << 20;
 /// Runs a script, and prints and draws its screens as they come.
 ///
 /// # Errors
-/// [`CliError::NoScript`] if it cannot be read; [`CliError::Script`] if it is wrong or an expectation fails.
+/// Returns [`CliError::NoScript`] if it cannot be read; [`CliError::Script`] if it is wrong or an expectation fails.
 pub(crate) fn run(
     asked: &Script,
     settings: &Effective,
@@ -91,11 +91,11 @@ pub(crate) fn run(
     }
 }
 
-/// How the script is run.
+/// Returns how the script is run.
 fn options(asked: &Script, settings: &Effective, charset: Charset) -> ScriptOptions {
     let plain = Theme::plain(charset == Charset::Ascii);
     let theme = match asked.drawings {
-        // Drawings have colours unless the script says otherwise. What is printed stays the same.
+        // Drawings have colours unless the script says otherwise; printed screens stay the same.
         Some(_) => Theme {
             depth: ColorDepth::True,
             palette: Palette::Dark,
@@ -118,8 +118,8 @@ fn options(asked: &Script, settings: &Effective, charset: Charset) -> ScriptOpti
     }
 }
 
-/// The folder that a script may write below: that of its file, or the current one for a script from standard input. None
-/// with `--allow-outside`, and for keys alone: these are the user's own.
+/// Returns the folder that a script may write below: that of its file, or the current one for a script from standard
+/// input. None with `--allow-outside`, and for keys alone, which are the user's own.
 fn folder_of(asked: &Script) -> Option<PathBuf> {
     let source = asked.source.as_ref().filter(|_| !asked.allow_outside)?;
     let own = match source {
@@ -130,7 +130,7 @@ fn folder_of(asked: &Script) -> Option<PathBuf> {
     Some(own.unwrap_or(Path::new(".")).to_owned())
 }
 
-/// Prints a text at once; draws a screen into the folder for drawings, if there is one.
+/// Prints a text at once; draws a screen, if there is a folder for drawings.
 fn write(
     shown: ScriptOutput<'_>,
     asked: &Script,
@@ -152,18 +152,18 @@ fn write(
     }
 }
 
-/// The names of drawings so far: each drawing gets one of its own.
+/// The names of the drawings so far, which must all differ.
 #[derive(Debug, Default)]
 struct Names {
-    /// Those that are taken, folded: some file systems do not distinguish upper and lower case.
+    /// The names that are taken, folded: some file systems do not distinguish upper and lower case.
     taken: HashSet<String>,
-    /// The last number that each name got behind it.
+    /// The last number that was added to each name.
     last: HashMap<String, u32>,
 }
 
 impl Names {
-    /// The file name, without ending, for a screen of this name. Characters that a name cannot have become `-`, a
-    /// screen without a name gets its number, and a name that is taken gets a number behind it.
+    /// Returns the file name of a screen's drawing, without extension. Characters that are not valid become `-`, a
+    /// screen without a name gets its number, and a number is added to a name that is taken.
     fn next(&mut self, name: &str) -> String {
         let fits = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
         let name: String = name
@@ -176,7 +176,7 @@ impl Names {
         };
         let mut free = name.clone();
         while !self.taken.insert(folded(&free)) {
-            // A script may have a million screens of one name.
+            // The last number is kept because a script may have a million screens of one name.
             let number = self.last.entry(folded(&name)).or_insert(1);
             *number += 1;
             free = format!("{name}-{number}");
@@ -185,10 +185,10 @@ impl Names {
     }
 }
 
-/// Reads a script. It may be long, since a record holds a whole library. Invalid UTF-8 is replaced.
+/// Reads a script. It may be long, since a record contains a whole library. Invalid UTF-8 is replaced.
 ///
 /// # Errors
-/// Those of the file, and more than [`MOST_BYTES`] bytes.
+/// Returns the errors of the file, and an error for more than [`MOST_BYTES`] bytes.
 fn text(source: &InputSource) -> io::Result<String> {
     let mut bytes = Vec::new();
     match source {
@@ -213,7 +213,7 @@ mod tests {
     use super::Names;
 
     #[test]
-    fn no_drawing_has_the_name_of_another() {
+    fn each_drawing_has_a_name_of_its_own() {
         let mut names = Names::default();
         let screens = ["a b", "", "a-b", "A b", "../x", ""];
         let drawn = screens.map(|screen| names.next(screen));

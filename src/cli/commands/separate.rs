@@ -1,9 +1,11 @@
-//! `taxel model separate`: the error of a set against the size of its shapes and the threshold of the sensor.
+//! `taxel model separate`: how the error of a set depends on the size of its shapes and on the threshold of the
+//! sensor.
 //!
-//! For each threshold, sizes are tried from the smallest on; each is a training of its own, so the work grows with their
-//! product. With `--want ERROR` the first size that reaches it is then searched between the last one that does not and
-//! itself. Sizes at which no sensor holds the shapes are left out, and standard error says so. What can be refused is
-//! refused before the first training: a set that fits at no size, a file that exists.
+//! For each threshold, sizes are tried from the smallest on. Each is a training of its own, so the work grows with
+//! the product of their numbers. With `--want ERROR`, the first size that reaches the error is then refined: sizes
+//! between it and the last one that does not are tried. Sizes at which no sensor holds the shapes are left out, and
+//! standard error names them. Errors are reported before the first training where possible: a set that fits at no
+//! size, a file that exists.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -30,13 +32,13 @@ use crate::sensor::Sensor;
 use crate::storage::ModelChoice;
 use crate::storage::UnfinishedFile;
 
-/// Sizes between two of a scan that a search looks at.
+/// The number of sizes that a search tries between two sizes of a scan.
 const REFINED: u64 = 9;
 
-/// Looks at all sizes and thresholds. Returns what is printed.
+/// Evaluates all sizes and thresholds. Returns the text to print.
 ///
 /// # Errors
-/// Those of the set and of the file; [`CliError::Stopped`] after a signal.
+/// Returns the errors of the set and of the file; [`CliError::Stopped`] after a signal.
 pub(crate) fn separate(
     asked: &SeparateArguments,
     shelf: &Shelf,
@@ -80,7 +82,8 @@ pub(crate) fn separate(
         }
     }
     if let (EvaluationForm::Csv, Some(wanted)) = (asked.form, asked.wanted) {
-        // The table has no place for it. It is an answer rather than a note, so --quiet does not suppress it.
+        // The table has no place for the result of --want. It is an answer, not a note, so --quiet does not suppress
+        // it.
         let found = separation::all_found(asked.axis, &asked.sizes, &curves, wanted);
         for line in found.lines() {
             crate::cli::note(line, charset);
@@ -95,7 +98,7 @@ pub(crate) fn separate(
     })
 }
 
-/// One curve for each threshold.
+/// Computes one curve for each threshold.
 fn curves(
     asked: &SeparateArguments,
     separation: &Separation,
@@ -120,10 +123,11 @@ fn curves(
     Ok(curves)
 }
 
-/// The sizes at which a sensor holds the shapes, the smallest first.
+/// Returns the sizes at which a sensor holds the shapes, the smallest first.
 ///
 /// # Errors
-/// [`CliError::Separation`] of what would fail on the way: a value out of range, or shapes that fit at no size.
+/// Returns [`CliError::Separation`] for errors that would occur later: a value out of range, or shapes that fit at no
+/// size.
 fn fitting(
     asked: &SeparateArguments,
     separation: &Separation,
@@ -142,7 +146,7 @@ fn fitting(
         });
         match fits {
             Ok(()) => fitting.push(size),
-            // A pitch of 0 makes every shape too large, but it is no pitch.
+            // A pitch of 0 makes every shape too large, but it is not a valid pitch.
             Err(CliError::Separation {
                 place,
                 error: error @ TrainingError::Large,
@@ -158,7 +162,7 @@ fn fitting(
     }
 }
 
-/// Says which sizes are left out, because they do not fit; None if all fit.
+/// Returns a note about the sizes that are left out because they do not fit; None if all fit.
 fn left_out(asked: &SeparateArguments, fitting: &[f64]) -> Option<String> {
     let all = asked.axis.smallest_first(&asked.sizes);
     let left_out: Vec<f64> = (all.into_iter())
@@ -173,7 +177,7 @@ fn left_out(asked: &SeparateArguments, fitting: &[f64]) -> Option<String> {
     Some(format!("left out: {name} {sizes}: {reason}"))
 }
 
-/// The set, and the threshold if none is given.
+/// Returns the set, and the threshold to use if none is given.
 fn set(
     asked: &SeparateArguments,
     shelf: &Shelf,
@@ -200,9 +204,9 @@ fn set(
     Ok((separation, Sensor::default().threshold()))
 }
 
-/// Whether an argument is a model, rather than a shape or a file of shapes.
-/// A kept model takes precedence over a shape of the library of the same name, and that over a built-in set; a file is
-/// a model if it ends in `.npz`.
+/// Returns true if an argument is a model, rather than a shape or a file of shapes. A kept model takes precedence
+/// over a shape of the library of the same name, and the shape over a built-in set; a file is a model if it ends in
+/// `.npz`.
 fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
     let Some(name) = what.to_str().and_then(|name| Name::new(name).ok()) else {
         return ending(Path::new(what)) == "npz";
@@ -214,8 +218,7 @@ fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
     ending(Path::new(what)) == "npz" || model::is_kept(&name, shelf) || built_in()
 }
 
-/// The positions of a model's cell in each direction; 100 where it has another grid than one cell.
-/// Only a grid of one cell has a number of positions: `7:7.8:0.2` are 5.
+/// Returns a model's positions per cell along x and y, such as 5 for `7:7.8:0.2`; 100 if its grid is not one cell.
 fn positions(model: &Model) -> CellPositions {
     let of = |range: &DecimalRange| {
         let count = u8::try_from(range.count()).ok()?;

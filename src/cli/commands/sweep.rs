@@ -1,14 +1,14 @@
-//! `taxel sweep`: sweeps a grid of poses, writes the atlas, prints statistics.
+//! `taxel sweep`: sweeps a grid of poses, writes the atlas, and prints statistics.
 //!
 //! Files are written under another name in the same folder and renamed when all of them are complete. A file that
 //! exists is replaced only with `--force`; this is checked before the work begins.
 //!
-//! SIGINT, SIGTERM and, on a terminal, SIGHUP stop a sweep within a few thousand poses and a file at its next block.
-//! Incomplete files are removed, and the exit status is 128 and the number of the signal. A second signal ends the
-//! program at once.
+//! SIGINT, SIGTERM and, unless it is ignored, SIGHUP stop a sweep within a few thousand poses and a file at its next
+//! block. Incomplete files are removed, and the exit status is 128 plus the number of the signal. A second signal
+//! ends the program at once.
 //!
-//! The ways of a sweep's result: `--atlas` writes every distinct imprint with its number of poses, `--poses` for each
-//! pose the number of its imprint, and standard output gets a summary.
+//! The result of a sweep: `--atlas` writes every distinct imprint with its number of poses, `--poses` writes the
+//! number of its imprint for each pose, and standard output gets a summary.
 
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
@@ -32,25 +32,25 @@ use crate::source::Source;
 use crate::storage::{ArchiveFileError, AtlasFile, FinishedFile, PoseFile, persist_pair};
 use crate::sweep::{Shard, Sweep, SweepResult};
 
-/// What a sweep or a merge is to write and print.
+/// The files that a sweep or a merge writes, and the form of its summary.
 #[derive(Clone, Debug)]
 pub(crate) struct Wanted {
     /// `--atlas`: the file of all distinct imprints.
     pub(crate) atlas: Option<AtlasFile>,
     /// `--poses`: the file of each pose's imprint.
     pub(crate) poses: Option<PathBuf>,
-    /// What becomes of files that exist.
+    /// What to do about files that exist.
     pub(crate) there: ShardFile,
     /// Whether the summary is one line of JSON.
     pub(crate) json: bool,
     /// Whether to show no progress and no notes.
     pub(crate) quiet: bool,
-    /// `--memory`: the most that it may use.
+    /// `--memory`: the most memory to use.
     pub(crate) memory: Option<MemorySize>,
 }
 
 impl Wanted {
-    /// Says which files were written, each in a line on standard error.
+    /// Notes each file that was written, in a line on standard error.
     pub(super) fn note_written(&self, charset: Charset) {
         let atlas = self.atlas.as_ref().map(AtlasFile::path);
         let files = atlas.into_iter().chain(self.poses.as_deref());
@@ -60,10 +60,11 @@ impl Wanted {
     }
 }
 
-/// Returns the grid to sweep, and what to say about it beforehand: the ranges of x0 and y0 that were not given, and how
-/// many poses are cut off all the same.
+/// Returns the grid to sweep, and notes about it: the ranges of x0 and y0 that were not given, and how many poses are
+/// cut off nevertheless.
 ///
-/// A figure takes the paper's cell from 5 on where nothing is cut off there, a picture the cell that it lies in.
+/// A figure gets the paper's cell, which starts at 5, if nothing is cut off there; a picture gets the cell that it
+/// lies in.
 pub(crate) fn grid(
     source: Source,
     sensor: Sensor,
@@ -106,10 +107,11 @@ pub(crate) fn grid(
     Ok((grid, notes))
 }
 
-/// Sweeps a shard of a grid on `jobs` threads (0: one per core), writes the files, and returns the summary to print.
+/// Sweeps a shard of a grid on `jobs` threads (0 means one per core), writes the files, and returns the summary to
+/// print.
 ///
 /// # Errors
-/// [`CliError::Stopped`] after a signal; otherwise those of the files.
+/// Returns [`CliError::Stopped`] after a signal; otherwise the errors of the files.
 pub(crate) fn sweep(
     grid: &PoseGrid,
     shard: Shard,
@@ -197,7 +199,7 @@ pub(super) fn leave(
     Ok(summary(result, start, wanted, charset))
 }
 
-/// What is printed of a result.
+/// Returns the summary of a result to print.
 fn summary(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Charset) -> String {
     let summary = SweepSummary::new(result, start.elapsed());
     if wanted.json {
@@ -207,10 +209,10 @@ fn summary(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Chars
     }
 }
 
-/// The atlas of an earlier run of this shard, for `--resume`.
+/// Returns the atlas of an earlier run of this shard, for `--resume`.
 ///
 /// # Errors
-/// If there is a file that is not that, or if its format could not be read again.
+/// Returns an error if the file is something else, or if its format is one that cannot be read.
 fn kept(file: &AtlasFile, grid: &PoseGrid, shard: Shard) -> Result<Option<SweepResult>, CliError> {
     if !file.is_archive() {
         return Err(CliError::Ending {

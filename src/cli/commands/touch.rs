@@ -1,5 +1,5 @@
-//! `taxel figure` and `taxel picture`: touches a shape once, prints the imprint and its descriptors, and with `--save`
-//! and `--export` stores or writes it too.
+//! `taxel figure` and `taxel picture`: touches a shape once and prints the imprint and its descriptors. `--save`
+//! stores the shape too, and `--export` writes it to a file.
 
 use std::ffi::OsStr;
 
@@ -19,19 +19,19 @@ use crate::touch::Plane;
 
 /// The output of a touch.
 pub(crate) struct Touched {
-    /// For standard output: the imprint with its descriptors; or, with `--export -`, the exported file instead.
+    /// For standard output: the imprint with its descriptors, or with `--export -` the exported file instead.
     pub(crate) answer: Vec<u8>,
-    /// For standard error: what else was done, a line each. A table has these lines itself.
+    /// For standard error: what else was done, one line each. A table contains these lines itself.
     pub(crate) notes: Vec<String>,
 }
 
-/// Touches a source, and stores and exports the shape as wanted.
+/// Touches a source, and stores and exports the shape as asked.
 ///
-/// If the shape is to be stored and exported, either both succeed or neither is done: the file is written under another
-/// name first, then the shape is stored, then the file gets its name.
+/// If the shape is to be stored and exported, both are done or neither: the file is written under another name, then
+/// the shape is stored, then the file gets its name.
 ///
 /// # Errors
-/// Those of the library and of the file.
+/// Returns the errors of the library and of the file.
 pub(crate) fn touch(
     source: Source,
     sensor: Sensor,
@@ -83,13 +83,13 @@ pub(crate) fn touch(
     })
 }
 
-/// Looks up a shape and returns it as a picture, moved as given, with its sensor.
+/// Looks up a shape and returns it as a picture with the given values, with its sensor.
 ///
-/// The sensor is that of the stored shape. An imprint alone lies on the default sensor, or on a larger one if it needs
+/// The sensor is that of the stored shape. An imprint alone gets the default sensor, or a larger one if it needs
 /// that.
 ///
 /// # Errors
-/// If the shape cannot be read, or a value is out of range.
+/// Returns an error if the shape cannot be read, or a value is out of range.
 pub(crate) fn picture(
     what: &OsStr,
     given: &Given,

@@ -1,4 +1,4 @@
-//! The sensor and the poses of a training: the given ones, otherwise those on which no shape is cut off.
+//! The sensor and the poses of a training. Those that are not given are chosen so that no shape is cut off.
 //!
 //! ```text
 //! --columns, --rows   given: that side; otherwise the smallest beyond which nothing is gained, at least 16
@@ -12,21 +12,21 @@ use crate::recognition::{CellPositions, LEAST_SIDE, NamedShape};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
-/// What a training is done on.
+/// The sensor and the poses of a training.
 pub(super) struct TrainingGrid {
     pub(super) sensor: Sensor,
     pub(super) anchor: Anchor,
     pub(super) ranges: Ranges,
-    /// What helps if the sensor cuts off poses.
+    /// The advice if the sensor cuts off poses.
     pub(super) remedy: &'static str,
 }
 
 impl TrainingGrid {
-    /// The grid of some shapes. Where neither x0 nor y0 is given the anchor is the centre, since that of a shape stays
-    /// where it is when the shape turns: one cell is then enough for all positions.
+    /// Returns the grid for some shapes. If neither x0 nor y0 is given, the anchor is the centre, since a shape's
+    /// centre stays in place when it turns: one cell is then enough for all positions.
     ///
     /// # Errors
-    /// If a given value is out of range.
+    /// Returns an error if a given value is out of range.
     pub(super) fn of(asked: &TrainArguments, shapes: &[NamedShape]) -> Result<Self, CliError> {
         let given = &asked.ranges;
         let placed = given[Axis::X0].is_some() || given[Axis::Y0].is_some();
@@ -54,8 +54,8 @@ impl TrainingGrid {
     }
 }
 
-/// What helps if the sensor cuts off poses; `holds` is whether some sensor with these sides holds the shapes at given
-/// positions.
+/// Returns advice in case the sensor cuts off poses. `holds` tells whether some sensor with these sides holds the
+/// shapes at these positions.
 fn remedy(
     asked: &TrainArguments,
     holds: impl Fn(SensorSides, &GivenRanges) -> bool,

@@ -1,4 +1,4 @@
-//! `taxel watch`: a line of JSON for each frame of a source, and a recording of all of them if one is wanted.
+//! `taxel watch`: prints a line of JSON for each frame of a source, and records all frames if a file is given.
 //!
 //! Every frame is recorded before it is answered. A live source that is recorded is never held up: if the reader of the
 //! answers is slow, some frames get no answer, and their number is reported. Otherwise answers wait, as in any
@@ -9,11 +9,11 @@
 //! $ taxel watch - --format lines --percent 50 < rows.txt
 //! {"frame":0,"label":null,"time":null,"channel":null,"sum":42,"max":9,"rule":{"at_least":3,"from":"flag"},"imprint":[…
 //! ```
-//! Without a threshold frames are answered all the same, with `"imprint":null`. With a tare the first frames wait until
-//! it is complete and are then answered together. What is odd goes to standard error, a line each, headed by the
-//! source: `/dev/ttyUSB0: 12 frames dropped so far (torn, short, long or garbled), the last: \x00\x07\xff`. On a terminal the
-//! screen's live page opens instead ([`request`]). The file is long because a frame is recorded, kept for the tare, named
-//! and answered in one pass.
+//! Without a threshold, frames are answered with `"imprint":null`. With a tare, the first frames wait until it is
+//! complete and are then answered together. Oddities go to standard error, a line each, after the name of the source:
+//! `/dev/ttyUSB0: 12 frames dropped so far (torn, short, long or garbled), the last: \x00\x07\xff`. On a terminal,
+//! the screen's live page opens instead ([`request`]). The file is long because a frame is recorded, kept for the
+//! tare, named and answered in one pass.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -45,49 +45,49 @@ use crate::matrix::Matrix;
 use crate::quote::did_you_mean;
 use crate::tui::live::request::WatchRequest;
 
-/// Dropped frames are reported no more often than this.
+/// The shortest time between two reports of dropped frames.
 const REPORT: Duration = Duration::from_secs(1);
 
-/// What is done with frames as they come.
+/// The state of a watched source, which handles its frames as they come.
 struct Watcher<'a> {
     /// The flags.
     asked: &'a WatchArguments,
-    /// The source, as it heads notes and errors.
+    /// The name of the source in notes and errors.
     name: String,
-    /// From values to the imprint; the tare and the rule of the recording are set as they become known.
+    /// The processing from values to the imprint; tare and rule of the recording are set when they become known.
     processing: Processing,
-    /// The threshold in use; None as long as there is neither a flag nor a recording that has one.
+    /// The threshold in use; None if neither a flag nor a recording has set one yet.
     rule: Option<SetRule>,
-    /// Frames of the tare, and those that wait for it.
+    /// The frames of the tare, and those that wait for it.
     tare: Option<(TareFrames, Vec<Frame>)>,
     /// The file of `--write`.
     recorder: Option<FrameRecorder>,
-    /// What the `.json` beside that file says; written again whenever something of it becomes known.
+    /// The content of the `.json` file beside the recording, which is written again when something new becomes known.
     metadata: RecordingMetadata,
     /// All channels so far, in the order in which they came.
     channels: Vec<ChannelInfo>,
-    /// Which of them is answered.
+    /// The choice of the channel that is answered.
     choice: ChannelChoice,
-    /// The first frame of a recording, until it is clear that no other channel comes with it.
+    /// The first frame of a recording, held back until it is clear that there is no other channel.
     held: Option<(Frame, Option<f64>)>,
     begun: bool,
-    /// Standard output, in a thread of its own.
+    /// The writer of standard output, on a thread of its own.
     lines: LineWriter,
-    /// A frame's memory, used again for the next one.
+    /// The memory of a frame, reused for the next one.
     frame: Frame,
     /// Rows and columns of the last frame; None before the first.
     size: Option<(u16, u16)>,
-    /// How many frames were answered.
+    /// The number of frames answered.
     answered: u64,
-    /// How many were not, since crop, tare, mask or gain do not fit their size.
+    /// The number of frames not answered because crop, tare, mask or gain do not fit their size.
     unfit: u64,
-    /// Whether a frame may be left unanswered.
+    /// Whether frames may be left unanswered.
     live: bool,
-    /// How many dropped frames have been reported.
+    /// The number of dropped frames reported so far.
     dropped: u64,
-    /// When that was.
+    /// The time of the last report.
     reported: Option<Instant>,
-    /// Writes a line on standard error.
+    /// The function that writes a line on standard error.
     note: &'a mut dyn FnMut(&str),
     /// The first error; it ends the reading and is returned at the end.
     failure: Option<CliError>,
@@ -96,7 +96,7 @@ struct Watcher<'a> {
 /// Answers the frames of a source until it ends. Returns the exit status: 0, or that of the signal that stopped it.
 ///
 /// # Errors
-/// If the source, the recording or the answers fail.
+/// Returns an error if the source, the recording or the answers fail.
 pub(crate) fn watch(
     asked: &WatchArguments,
     shelf: &Shelf,
@@ -112,7 +112,7 @@ pub(crate) fn watch(
         ..RecordingMetadata::default()
     };
     check(&source, asked)?;
-    // What can be refused is refused before a recording begins.
+    // Errors in these are reported before a recording begins.
     let lines = line_writer(asked, &processing, shelf)?;
     let recorder = asked.write.as_ref().map(|path| {
         source.refuse_as_target(path)?;
@@ -154,11 +154,11 @@ pub(crate) fn watch(
     })
 }
 
-/// Refuses flags that mean nothing for a source: of a line for others, of playing for a stream, and a channel that a recording
-/// does not have.
+/// Refuses flags that have no effect for a source: those of serial lines for others, those of playing for a stream,
+/// and a channel that a recording does not have.
 fn check(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
     let usual = AcquireOptions::default();
-    // The name of a serial line that is not plugged in may be any.
+    // A serial line that is not plugged in may have any name.
     let is_missing = matches!(source, FrameSource::File(path) if !path.exists());
     if asked.baud_named && !is_missing && !matches!(source, FrameSource::Serial(_)) {
         let (flag, reason) = (
@@ -167,7 +167,7 @@ fn check(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
         );
         return Err(CliError::Unused { flag, reason });
     }
-    // One that cannot be read is reported when it is watched.
+    // A source that cannot be read is reported when it is watched.
     if matches!(source.recording(&asked.options), Ok(None)) {
         for (flag, is_given) in [
             ("loop", asked.options.repeat),
@@ -182,8 +182,8 @@ fn check(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
     check_channel(source, asked)
 }
 
-/// Refuses a channel that a recording does not have. It is read for that until the channel comes: played at its own rate, it
-/// would be silent to its end.
+/// Refuses a channel that a recording does not have, by reading the recording until the channel occurs. Otherwise the
+/// recording would be played to its end without an answer.
 fn check_channel(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
     let (FrameSource::File(path), None, Some(wanted)) =
         (source, asked.options.format, &asked.processing.channel)
@@ -191,7 +191,7 @@ fn check_channel(source: &FrameSource, asked: &WatchArguments) -> Result<(), Cli
         return Ok(());
     };
     let (names, is_whole) = channels(path, asked, Some(wanted))?;
-    // A stream, or a damage, which is reported when it is watched.
+    // A stream, or a damage, which is reported when the source is watched.
     if names.contains(wanted) || !is_whole {
         return Ok(());
     }
@@ -202,10 +202,10 @@ fn check_channel(source: &FrameSource, asked: &WatchArguments) -> Result<(), Cli
     })
 }
 
-/// The names of the channels of a recording, up to one of them or all; and whether it could be read up to there.
+/// Returns the names of a recording's channels, all or up to one of them; and whether it could be read that far.
 ///
 /// # Errors
-/// If it cannot be opened.
+/// Returns an error if it cannot be opened.
 fn channels(
     path: &Path,
     asked: &WatchArguments,
@@ -227,7 +227,7 @@ fn channels(
     Ok((names, read.is_ok()))
 }
 
-/// That a recording has no channel of that name, but others.
+/// Returns the message that a recording has no channel of this name; it lists the others.
 pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
     if names == [UNNAMED] {
         return format!(
@@ -241,9 +241,9 @@ pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
     )
 }
 
-/// Writes the answers; with a model it names each imprint before, so that neither its training nor its search holds up a
-/// recording. A model that is in a file is read at once. Standard error is for what is odd about the source: it shows no
-/// progress of a training.
+/// Starts the writer of the answers. With a model, it also names each imprint, so that neither training nor search
+/// delays a recording. A model in a file is read at once. Training shows no progress: standard error is for oddities
+/// of the source.
 fn line_writer(
     asked: &WatchArguments,
     processing: &Processing,
@@ -261,11 +261,11 @@ fn line_writer(
     })
 }
 
-/// The same as a page of the screen.
+/// Returns the same request for the live page of the screen.
 ///
 /// # Errors
-/// If the file, the mask or the gain cannot be read, there is no such model or channel, or the recording cannot be
-/// begun.
+/// Returns an error if the file, the mask or the gain cannot be read, if there is no such model or channel, or if the
+/// recording cannot be started.
 pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequest, CliError> {
     let source = FrameSource::new(&asked.source);
     source.check().map_err(|error| CliError::Frames {
@@ -274,7 +274,7 @@ pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequ
     })?;
     check(&source, asked)?;
     if let Some(path) = &asked.write {
-        // Begun and given up: nothing appears before the first frame.
+        // The recording is created and dropped again: no file appears before the first frame.
         let metadata = RecordingMetadata::default();
         let begun = source
             .refuse_as_target(path)
@@ -297,7 +297,7 @@ pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequ
 }
 
 impl Watcher<'_> {
-    /// Sets the threshold for the answers to come; None to answer without imprints.
+    /// Sets the threshold for the next answers; None to answer without imprints.
     fn set_rule(&mut self, rule: Option<SetRule>) {
         self.rule = rule;
         SetRule::apply(rule, &mut self.processing);
@@ -351,7 +351,7 @@ impl Watcher<'_> {
         (self.note)(&line);
     }
 
-    /// An error of the source with this reason.
+    /// Returns an error of the source with this reason.
     fn refused(&self, message: &str) -> CliError {
         CliError::Frames {
             name: self.name.clone(),
@@ -359,10 +359,12 @@ impl Watcher<'_> {
         }
     }
 
-    /// Another channel of a recording. With its first one come unit and threshold.
+    /// Adds a channel of a recording. With the watched channel come unit and pitch, and threshold and tare unless
+    /// flags set them.
     ///
     /// # Errors
-    /// If there are several channels and none is chosen. All are named if they are in a file; a pipe cannot be read again.
+    /// Returns an error if there are several channels and none is chosen. It names all channels of a file; a pipe
+    /// cannot be read again.
     fn add_channel(&mut self, info: &ChannelInfo) -> Result<(), CliError> {
         self.channels.push(info.clone());
         let is_chosen = self.choice.add(info);
@@ -404,7 +406,8 @@ impl Watcher<'_> {
         described.transpose().map(drop).map_err(CliError::Recorder)
     }
 
-    /// Takes a frame of the channel that is watched: it is recorded, and answered at once or as soon as there is a tare.
+    /// Takes a frame of the watched channel: records it, and answers it at once or when the tare is complete. The
+    /// first frame of a recording may be held back.
     fn add_frame(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
         if !self.choice.takes(frame.channel) {
             return Ok(());
@@ -425,7 +428,7 @@ impl Watcher<'_> {
         self.take(frame, time)
     }
 
-    /// Takes the frame that was held back.
+    /// Takes the frame that was held back, if there is one.
     fn release(&mut self) -> Result<(), CliError> {
         match self.held.take() {
             Some((frame, time)) => self.take(&frame, time),
@@ -433,7 +436,8 @@ impl Watcher<'_> {
         }
     }
 
-    /// Records a frame if that is wanted. The first one of another size is named: no such frame is in the recording.
+    /// Records a frame if a file is given. The first frame of another size is reported: such frames are left out of
+    /// the recording.
     fn record(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
         let Some(recorder) = &mut self.recorder else {
             return Ok(());
@@ -452,12 +456,12 @@ impl Watcher<'_> {
         Ok(())
     }
 
-    /// Takes a frame of the channel: it is recorded, and answered or kept for the tare.
+    /// Takes a frame of the channel: records it, and answers it or keeps it for the tare.
     fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
         let (rows, columns) = (frame.rows(), frame.columns());
         let before = self.size.replace((rows, columns));
         let is_new_size = before.is_some_and(|before| before != (rows, columns));
-        // Each frame of a recording may have its own.
+        // In a recording, each frame may have a size of its own.
         if is_new_size && self.channels.is_empty() {
             let number = frame.number;
             self.say(&format!("{rows} x {columns} cells from frame {number} on"));
@@ -472,7 +476,7 @@ impl Watcher<'_> {
             return answered;
         };
         let mut seen = Matrix::filled(1, 1, f64::NAN);
-        // The whole frames wait, not only what is seen of them.
+        // The whole frames wait, not only their visible parts.
         let added = tare.check_memory(own.values().len());
         let added = added.and_then(|()| self.processing.view.of(&own, &mut seen));
         let added = added.and_then(|()| tare.add(&seen));
@@ -481,7 +485,7 @@ impl Watcher<'_> {
         self.end_tare()
     }
 
-    /// Answers what has waited for the tare, once it has all its frames.
+    /// Answers the frames that waited for the tare, once it is complete.
     fn end_tare(&mut self) -> Result<(), CliError> {
         let Some((tare, waiting)) = self.tare.take_if(|(tare, _)| tare.missing() == 0) else {
             return Ok(());
@@ -495,11 +499,11 @@ impl Watcher<'_> {
         waiting.iter().try_for_each(|frame| self.answer(frame))
     }
 
-    /// Processes a frame and sends its line. One of another size that does not fit crop, tare, mask or gain is left out if
-    /// others did fit: the sensor goes on.
+    /// Processes a frame and sends its line. A frame whose size does not fit crop, tare, mask or gain is left out if
+    /// others did fit: the sensor continues.
     ///
     /// # Errors
-    /// If the first one does not fit; [`CliError::Write`] once standard output is closed.
+    /// Returns an error if the first frame does not fit; [`CliError::Write`] once standard output is closed.
     fn answer(&mut self, frame: &Frame) -> Result<(), CliError> {
         let tare = self.processing.tare.as_ref().map_or(0, Tare::frames);
         let processed = match self.processing.run(frame) {
@@ -534,13 +538,13 @@ impl Watcher<'_> {
         Err(CliError::Write(std::io::ErrorKind::BrokenPipe.into()))
     }
 
-    /// Called ten times a second, frames or not: writes out what is recorded, and reports what was dropped.
+    /// Handles a tick, ten times a second: flushes the recording, and reports dropped frames.
     fn tick(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
         if let Some(recorder) = &mut self.recorder {
             recorder.tick().map_err(CliError::Recorder)?;
         }
         self.shaped(counts)?;
-        // Whoever reads the answers has gone, or there is no model.
+        // The reader of the answers is gone, or there is no model.
         if self.lines.is_over() {
             return Err(CliError::Write(std::io::ErrorKind::BrokenPipe.into()));
         }
@@ -550,10 +554,10 @@ impl Watcher<'_> {
         Ok(())
     }
 
-    /// What cannot be decoded without rows and columns is an error.
+    /// Returns an error if the stream cannot be decoded without rows and columns.
     fn shaped(&self, counts: &StreamCounts) -> Result<(), CliError> {
         match counts.refusal() {
-            // An echo that leaves out values of some messages is refused, too: the others are not all frames.
+            // An echo that leaves out values of some messages is refused too, since the others are not all frames.
             None if counts.cut => Err(self.refused(&StreamRefusal::Cut.to_string())),
             None => Ok(()),
             Some(StreamRefusal::Unknown) => Err(self.unknown()),
@@ -561,7 +565,7 @@ impl Watcher<'_> {
         }
     }
 
-    /// That the source has no known format: of recordings for a file, of streams for anything else.
+    /// Returns the error of an unknown format: one of recordings for a file, one of streams for any other source.
     fn unknown(&self) -> CliError {
         if let FrameSource::File(_) = FrameSource::new(&self.asked.source) {
             let name = self.name.clone();
@@ -571,7 +575,7 @@ impl Watcher<'_> {
         self.refused(&StreamRefusal::Unknown.to_string())
     }
 
-    /// Notes how many frames have been dropped if there are more than at the last time, with the bytes of the last one.
+    /// Reports the number of dropped frames if it has grown, with the bytes of the last one.
     fn report_dropped(&mut self, counts: &StreamCounts) {
         if counts.dropped <= self.dropped {
             return;
@@ -589,10 +593,10 @@ impl Watcher<'_> {
         self.say(&text);
     }
 
-    /// The end of a source that has one.
+    /// Handles the end of a source.
     ///
     /// # Errors
-    /// If there was no frame in all of it, which means that the format, or rows and columns, are wrong.
+    /// Returns an error if there was no frame at all: the format, or rows and columns, are wrong.
     fn ended(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
         self.shaped(counts)?;
         self.report_dropped(counts);
@@ -613,9 +617,9 @@ impl Watcher<'_> {
         Ok(())
     }
 
-    /// Writes out everything.
-    /// The first error in this order is returned: of recording, of writing answers, of the frames, of the source. A
-    /// tare that lacks frames is an error of the frames, unless the source is to blame: nothing was answered.
+    /// Ends the recording and the answers. Returns the first error in this order: of recording, of writing answers,
+    /// of the frames, of the source. A tare that lacks frames is an error of the frames, unless the source has
+    /// failed.
     fn finish(mut self, acquired: Result<(), AcquireError>, stopped: bool) -> Result<(), CliError> {
         let mut failure = self.failure.take();
         if failure.is_none() {
@@ -628,7 +632,7 @@ impl Watcher<'_> {
             let error = FrameError::Tare { frames, wanted };
             failure = Some(self.refused(&self.asked.processing.tare_refused(&error)));
         }
-        // A stream has said so already.
+        // For a stream, this is already an error.
         if failure.is_none() && ended_well && !self.begun {
             let asked = self.asked.processing.channel.as_deref();
             let names: Vec<&str> = self.choice.names().iter().map(String::as_str).collect();
@@ -649,7 +653,7 @@ impl Watcher<'_> {
             self.say(&format!("{frames} of another size not printed"));
         }
         let recorded = self.recorder.take().map(FrameRecorder::finish);
-        // A file that could not be begun is not for want of frames.
+        // If the file could not be created, the reason is not a lack of frames.
         let refused = matches!(failure, Some(CliError::Recorder(_)));
         if let (Some(Ok(0)), Some(path), false) = (&recorded, &self.asked.write, refused) {
             let path = path.display();

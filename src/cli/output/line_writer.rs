@@ -10,8 +10,7 @@ use crate::imprint::Imprint;
 /// The most lines that may wait; for frames of 64 × 64 they take about 5 MB.
 const WAITING: usize = 1000;
 
-/// A line and, if something is to be added to it, the imprint that this depends on. The line has its end only if
-/// nothing is to be added.
+/// A line with its end, and the imprint of its frame, if there is one.
 pub(crate) type PendingLine = (Vec<u8>, Option<Imprint>);
 
 /// Completes a line with what takes longer, on the thread that writes.

@@ -1,6 +1,7 @@
 //! Formats answers: character sets, imprints, evaluations, recordings, progress and more.
 //!
-//! Nothing here writes to standard output: commands return text, and [`crate::cli::run`] writes it.
+//! Only `line_writer` writes to standard output. Other answers are returned by the commands as text, and
+//! [`crate::cli::run`] writes them.
 
 pub(super) mod charset;
 

@@ -1,13 +1,13 @@
-//! Errors against sizes: as a table and a plot for people, and as JSON.
+//! The errors of a set at several sizes and thresholds: as a table and a plot for people, and as JSON.
 //!
 //! ```text
 //! scale     threshold    error  certain       keys  sensor
 //! 0.5             0.5   44.9 %   12.5 %         20  16 × 16
 //! 1               0.5    6.0 %   77.3 %        117  16 × 16
 //! ```
-//! Each row is a training of its own: all shapes at that scale, or in cells of that pitch, on the smallest sensor that
-//! holds them. Plots have the size on the x axis, or the threshold where there is one size only, and the error on the
-//! other, from 0.
+//! Each row is a training of its own: all shapes at this scale, or in cells of this pitch, on the smallest sensor
+//! that holds them. A plot has the error on the y axis, from 0, and the size on the x axis, or the threshold if there
+//! is only one size.
 
 use std::fmt::Write;
 
@@ -23,7 +23,7 @@ use crate::formats::value::{grouped, percent};
 use crate::pose::DecimalRange;
 use crate::recognition::{SeparationPoint, SizeAxis};
 
-/// The name of an axis in a sentence.
+/// Returns the name of an axis in a sentence.
 fn noun(axis: SizeAxis) -> &'static str {
     match axis {
         SizeAxis::Pitch => "pitch",
@@ -31,8 +31,8 @@ fn noun(axis: SizeAxis) -> &'static str {
     }
 }
 
-/// A table and a plot for each threshold, and what was searched for.
-/// `wanted` is the error of `--want`; what was found for it comes last, in a sentence for each threshold.
+/// Returns the table and a plot for each threshold. `wanted` is the error of `--want`; the result of its search comes
+/// last, in a sentence for each threshold.
 pub(crate) fn text(
     axis: SizeAxis,
     sizes: &DecimalRange,
@@ -83,7 +83,7 @@ pub(crate) fn text(
     charset.lines(&text)
 }
 
-/// What a search has found, in a sentence or more for each threshold.
+/// Returns the results of a search, in a sentence or more for each threshold.
 pub(crate) fn all_found(
     axis: SizeAxis,
     sizes: &DecimalRange,
@@ -101,9 +101,8 @@ pub(crate) fn all_found(
     sentences.collect()
 }
 
-/// What a search has found, and how it looked.
-/// The sentence names the steps, because the error is not monotonic in the size: a size between two that were tried
-/// may reach the wanted error as well.
+/// Returns what a search found, and how it searched. The steps are named because the error is not monotonic in the
+/// size: a size between two that were tried may reach the wanted error as well.
 fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &SeparationCurve, wanted: f64) -> String {
     let wanted = short(wanted);
     let coarse = short(sizes.step());
@@ -152,8 +151,8 @@ fn found(axis: SizeAxis, sizes: &DecimalRange, curve: &SeparationCurve, wanted: 
     text
 }
 
-/// One object: the axis, the points, and with `--want` what was found for each threshold.
-/// `want` is only there if an error was asked for, with an entry for each threshold, null where no size reaches it.
+/// Returns one object: the axis, the points, and with `--want` the results of its search, one for each threshold,
+/// with null if no size reaches the error.
 pub(crate) fn json_text(axis: SizeAxis, curves: &[SeparationCurve], wanted: Option<f64>) -> String {
     let point = |point: &SeparationPoint| PointJson {
         pitch_mm: (axis == SizeAxis::Pitch).then_some(point.value),
@@ -182,53 +181,54 @@ pub(crate) fn json_text(axis: SizeAxis, curves: &[SeparationCurve], wanted: Opti
     json::text(&answer) + "\n"
 }
 
-/// All points, and with `--want` what was found for each threshold.
+/// All points, and with `--want` the results of its search.
 #[derive(Serialize)]
 struct CurvesJson {
     /// `scale` or `pitch_mm`.
     axis: &'static str,
     /// All points, threshold by threshold.
     points: Vec<PointJson>,
-    /// What `--want` found.
+    /// The results of `--want`.
     #[serde(skip_serializing_if = "Option::is_none")]
     want: Option<Vec<FoundJson>>,
 }
 
-/// A point as an object of JSON, its keys in the order of the documentation.
+/// A point as a JSON object, with its keys in the order of the documentation.
 #[derive(Serialize)]
 struct PointJson {
-    /// Only if pitches were asked for, in mm; `scale` follows from it.
+    /// The pitch in mm, if pitches were given; `scale` follows from it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pitch_mm: Option<f64>,
-    /// What lengths are multiplied by to be in cells.
+    /// The factor of lengths.
     scale: f64,
-    /// The coverage from which on a taxel is active.
+    /// The coverage from which a taxel is active.
     threshold: f64,
     /// The share of touches that the best classifier names wrong.
     error: f64,
-    /// All touches: poses times shapes.
+    /// The number of touches: poses times shapes.
     touches: Value,
-    /// Those that are named right.
+    /// The number of touches that are named right.
     right: Value,
-    /// Those that only one shape can leave.
+    /// The number of touches that only one shape can leave.
     certain: Value,
-    /// Distinct imprints, wherever they lie.
+    /// The number of distinct imprints, wherever they lie.
     keys: usize,
     /// Columns and rows of the sensor.
     side: u8,
 }
 
-/// The smallest size that was found; null where there is none.
+/// The result of a search; `smallest`, `step` and `missed_again` are null if no size reaches the error.
 #[derive(Serialize)]
 struct FoundJson {
-    /// As of the curve.
+    /// The threshold of the curve.
     threshold: f64,
-    /// The error that was asked for.
+    /// The wanted error.
     error: f64,
-    /// The smallest size that has it.
+    /// The smallest size that reaches it.
     smallest: Option<PointJson>,
-    /// The step of the search there; 0 if the first size that was tried has it: smaller ones may have it, too.
+    /// The step of the search; 0 if the first size that was tried reaches the error, so that smaller ones may reach
+    /// it too.
     step: Option<f64>,
-    /// How many larger sizes have a greater error again.
+    /// The number of larger sizes whose error is too large again.
     missed_again: Option<usize>,
 }

@@ -24,11 +24,11 @@ use crate::formats::value::{counted, grouped};
 use crate::pose::{Axis, PoseGrid};
 use crate::sweep::SweepResult;
 
-/// The result of a sweep, and how long it took.
+/// The result of a sweep, and the time that it took.
 pub(crate) struct SweepSummary<'a> {
-    /// What was found.
+    /// The result.
     result: &'a SweepResult,
-    /// Distinct imprints up to shifts; and up to quarter turns and mirror images too.
+    /// The number of distinct imprints up to shifts, and up to quarter turns and mirror images too.
     classes: (usize, usize),
     /// The time of the sweep, without that of writing files.
     took: Duration,
@@ -44,14 +44,14 @@ impl<'a> SweepSummary<'a> {
         }
     }
 
-    /// The summary as one line of JSON, with its line end.
+    /// Returns the summary as one line of JSON, with its line end.
     pub(crate) fn json(&self) -> String {
         let mut line = json::text(self);
         line.push('\n');
         line
     }
 
-    /// The counts and a table of the statistics, as text.
+    /// Returns the summary as text: the counts and a table of the statistics.
     pub(crate) fn text(&self, charset: Charset) -> String {
         let SweepResult {
             grid,
@@ -71,7 +71,7 @@ impl<'a> SweepSummary<'a> {
             1 => String::new(),
             _ => format!(", shard {shard}"),
         };
-        // A picture is swept at its own size unless zooms are given.
+        // A picture is swept at its own size unless zooms are given, so zooms of one value are not shown.
         let ranges = grid.axes();
         let ranges = ranges.filter(|&axis| grid.counts()[axis] > 1 || !axis.is_zoom());
         let ranges = ranges.map(|axis| format!("{} {}", axis.name(), grid.ranges()[axis]));
@@ -96,7 +96,7 @@ impl<'a> SweepSummary<'a> {
         line("");
         let mut row = format!("{:<16}", "");
         for column in STATISTIC_COLUMNS {
-            // Cannot fail: a String takes everything.
+            // Cannot fail: the text is kept in memory.
             let _ = write!(row, "{:>11}", column.title);
         }
         line(&row);

@@ -8,9 +8,9 @@
 //! | `confusion` | `taxel model confusion` |
 //! | `touches` | `taxel model touches` |
 //!
-//! `show`, `list` and `delete` are small and defined here. A model is named as in `taxel recognise --model`: a model
-//! beside the library takes precedence over a built-in set such as `figures` ([`DEFAULT_MODEL`]), and a built-in set
-//! over a file.
+//! `show`, `list` and `delete` are small and defined here. A model is named as in `taxel recognise --model`: a
+//! built-in set such as `figures` ([`DEFAULT_MODEL`]) takes precedence over a model beside the library, and that over
+//! a file.
 
 use std::ffi::OsString;
 
