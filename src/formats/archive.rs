@@ -2,10 +2,10 @@
 //!
 //! Per imprint, in order: `rows` (a word per row of the sensor, bit `i` for column `i`; shaped imprints × rows),
 //! `count`, `first_pose` (its number in the grid), `first` (its values; imprints × parameters), `pieces`, `holes` and
-//! an array for each feature, NaN where it does not exist, since arrays have no other word for that. Before them
-//! `header`, JSON as bytes: format, source, sensor, anchor, ranges, shard and how many poses there were; and `spread`,
-//! the sums that shards are merged by. The archive is a zip without compression and without dates: equal atlases are
-//! equal files.
+//! an array for each feature, with NaN where the feature does not exist, since arrays have no other way to say this.
+//! Before them comes `header`, JSON as bytes: format, source, sensor, anchor, ranges, shard and the number of poses;
+//! and at the end `spread`, the sums by which shards are merged. The archive is a zip without compression and without
+//! dates, so equal atlases are equal files.
 
 use std::io::{Read, Seek, Write};
 
@@ -22,10 +22,10 @@ use crate::quote::shortened;
 use crate::sensor::Sensor;
 use crate::sweep::{Parts, Shard, SweepResult};
 
-/// The format that the header must name.
+/// The required value of the header's key `format`.
 pub const FORMAT: &str = "taxel-atlas/1";
 
-/// What was swept: written from a source and a sensor, read as the records that they are checked from.
+/// The header of an atlas: written from a source and a sensor, read as records that are then checked.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ArchiveHeader<Shape, Size> {
@@ -43,18 +43,18 @@ struct ArchiveHeader<Shape, Size> {
     angle: String,
     zoom_x: String,
     zoom_y: String,
-    /// `1/1` of the whole grid.
+    /// The shard of the grid: `1/1` for the whole grid.
     shard: String,
-    /// Poses of this shard.
+    /// The number of poses of this shard.
     poses: u64,
-    /// Those in which the shape reaches beyond the sensor.
+    /// The number of poses in which the shape reaches beyond the sensor.
     partly_off: u64,
 }
 
 /// Writes the archive.
 ///
 /// # Errors
-/// Those of the writer.
+/// Returns the errors of the writer.
 pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> Result<(), ArchiveError> {
     let mut archive = ArrayWriter::new(&mut output);
     let (grid, parts) = (&result.grid, result.parts());
@@ -96,7 +96,7 @@ pub fn write(result: &SweepResult, mut output: impl Write + Seek) -> Result<(), 
     archive.finish()
 }
 
-/// The header as JSON: what was swept, over which ranges, and the counts of the whole result.
+/// Returns the header as JSON: what was swept, over which ranges, and the counts of the whole result.
 fn header(result: &SweepResult, parts: &Parts) -> Result<Vec<u8>, ArchiveError> {
     let (grid, ranges) = (&result.grid, result.grid.ranges());
     serde_json::to_vec(&ArchiveHeader {
@@ -116,7 +116,7 @@ fn header(result: &SweepResult, parts: &Parts) -> Result<Vec<u8>, ArchiveError> 
     .map_err(|error| ArchiveError::Io(error.into()))
 }
 
-/// The number of pieces, or of holes, of each imprint, as the bytes of an array.
+/// Returns the number of pieces, or of holes, of each imprint, as the bytes of an array.
 fn regions_of_each(atlas: &Atlas, number: fn(&ImprintSummary) -> u16) -> Vec<u8> {
     let summaries = atlas.entries().map(|entry| entry.summary);
     summaries
@@ -124,7 +124,7 @@ fn regions_of_each(atlas: &Atlas, number: fn(&ImprintSummary) -> u16) -> Vec<u8>
         .collect()
 }
 
-/// An array for each feature, as bytes: its value for each imprint, NaN where it does not exist.
+/// Returns an array for each feature, as bytes: its value for each imprint, NaN where it does not exist.
 fn feature_columns(atlas: &Atlas) -> Vec<Vec<u8>> {
     let mut columns = vec![Vec::with_capacity(atlas.len() * 8); features().len()];
     for entry in atlas.entries() {
@@ -142,11 +142,11 @@ fn feature_columns(atlas: &Atlas) -> Vec<Vec<u8>> {
 /// Reads an archive.
 ///
 /// # Errors
-/// If it is not an atlas; the input may be any bytes.
+/// Returns an error if it is not an atlas; the input may be any bytes.
 pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
-    // First: an archive of another format has other keys.
+    // Another format has other keys, so report the format before a missing key.
     let found = format_in(&header)?;
     if found != FORMAT {
         return Err(ArchiveError::Format {
@@ -182,7 +182,7 @@ pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
     Ok(SweepResult::from_parts(grid, shard, &parts)?)
 }
 
-/// The anchor of that name.
+/// Returns the anchor of that name.
 pub(super) fn anchor(name: &str) -> Result<Anchor, ArchiveError> {
     Anchor::from_name(name).ok_or_else(|| {
         ArchiveError::Header(format!(
@@ -193,7 +193,7 @@ pub(super) fn anchor(name: &str) -> Result<Anchor, ArchiveError> {
     })
 }
 
-/// The ranges that texts stand for, in the order of [`Axis::ALL`].
+/// Parses the ranges, in the order of [`Axis::ALL`].
 pub(super) fn ranges(texts: [&str; 5]) -> Result<Ranges, ArchiveError> {
     let mut ranges = Ranges::default();
     for (axis, text) in Axis::ALL.into_iter().zip(texts) {

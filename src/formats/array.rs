@@ -1,8 +1,8 @@
-//! An imprint as an array of numpy (`numpy.load`): rows × columns, true for an active taxel.
+//! An imprint as a numpy array (`numpy.load`): rows × columns, true for an active taxel.
 //!
-//! Written is `bool`. Read are two-dimensional arrays of `bool`, whole numbers or floats (of 16 bits, too) of either
-//! byte order, in C or Fortran order, whose values are 0 and one other, of the format's versions 1 to 3. Source: that
-//! of [`crate::formats::npy`].
+//! An array of `bool` is written. Two-dimensional arrays of `bool`, whole numbers or floats (even of 16 bits) are
+//! read, in either byte order and in C or Fortran order, if their values are 0 and one other number. The format's
+//! versions 1 to 3 are read. For the source, see [`crate::formats::npy`].
 
 use std::fmt;
 
@@ -18,33 +18,33 @@ use crate::sensor::MAX_SIDE;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ArrayError {
-    /// Not the start of an array's file, or its header is broken.
+    /// Not the start of an array's file, or a broken header.
     Header,
     /// Numbers of another type.
     Type {
-        /// As numpy writes it.
+        /// The type as numpy writes it.
         found: String,
     },
     /// Another number of axes, or an axis too long.
     Shape {
-        /// The lengths of the first axes.
+        /// The lengths of the first axes, at most eight.
         found: Vec<u64>,
     },
-    /// More or fewer numbers than the header says.
+    /// More or fewer bytes than the header says.
     Length {
-        /// How many there are.
+        /// The number of bytes that were found.
         found: usize,
-        /// How many there should be.
+        /// The number of bytes that were expected.
         expected: usize,
     },
-    /// A third value, or one that is not a number.
+    /// A third value, or one that is not a finite number.
     Value {
-        /// Counted from 1.
+        /// The row, from 1.
         row: u8,
-        /// Counted from 1.
+        /// The column, from 1.
         column: u8,
     },
-    /// No 0, and one other value everywhere that is neither 1 nor 255.
+    /// The same value everywhere, which is not 0, 1 or 255.
     Unclear,
 }
 
@@ -82,14 +82,15 @@ fn sides(found: &[u64]) -> String {
     sides.join(", ")
 }
 
-/// What the numbers of an array mean in an imprint, by their bits: no value has to be computed.
+/// The meaning of an array's numbers in an imprint, by their bits: no value has to be computed.
 #[derive(Clone, Copy, Debug)]
 struct TaxelType {
-    /// How a number stands in the file.
+    /// The type of a number in the file.
     number: NumberType,
-    /// The bits of infinity, if it is a float: those of numbers are below. The highest bit is the sign.
+    /// The bits of infinity, if the type is a float: numbers have smaller bits, apart from the sign, which is the
+    /// highest bit.
     infinity: Option<u64>,
-    /// The bits of 1, and of 255 where there is one.
+    /// The bits of 1, and of 255 if the type has it.
     active: [u64; 2],
 }
 
@@ -114,7 +115,7 @@ impl TaxelType {
         })
     }
 
-    /// The bits of a number that is not 0; an error for what is not finite.
+    /// Returns the bits of a number; None for 0, and an error if it is not finite.
     fn value(&self, bytes: &[u8]) -> Result<Option<u64>, ()> {
         let bits = self.number.word(bytes);
         let Some(infinity) = self.infinity else {
@@ -131,7 +132,7 @@ impl TaxelType {
 /// Reads an imprint.
 ///
 /// # Errors
-/// The first thing that is wrong, and where; the input may be any bytes.
+/// Returns the first error and its place; the input may be any bytes.
 ///
 /// ```
 /// use taxel::formats::array::{read, write};
@@ -190,7 +191,7 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ArrayError> {
     Ok(imprint)
 }
 
-/// The content of a file.
+/// Returns the content of the file.
 pub fn write(imprint: &Imprint) -> Vec<u8> {
     let shape = [imprint.rows(), imprint.columns()].map(u64::from);
     let mut file = npy::header(Dtype::Bool, &shape);
@@ -273,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told() {
+    fn errors_say_what_is_wrong() {
         let wrong = |bytes: &[u8], message: &str| {
             let outcome = read(bytes).map_err(|error| error.to_string());
             assert_eq!(outcome, Err(message.to_owned()));

@@ -13,7 +13,7 @@ use crate::formats::described::{RegionRecord, Rows};
 use crate::pose::PoseGrid;
 use crate::sweep::SweepResult;
 
-/// The share of all poses that leave this imprint, above 0, up to 1.
+/// Returns the share of all poses that leave this imprint: above 0, up to 1.
 #[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
 pub fn share(result: &SweepResult, entry: &AtlasEntry) -> f64 {
     entry.count as f64 / result.poses as f64
@@ -22,7 +22,7 @@ pub fn share(result: &SweepResult, entry: &AtlasEntry) -> f64 {
 /// Writes the table as CSV.
 ///
 /// # Errors
-/// Those of the writer.
+/// Returns the errors of the writer.
 pub fn write_csv(result: &SweepResult, output: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(output);
     let mut line = vec!["id".to_owned(), "count".to_owned(), "share".to_owned()];
@@ -61,7 +61,7 @@ pub fn write_csv(result: &SweepResult, output: impl Write) -> io::Result<()> {
 /// as in the answers of `taxel batch`, `null` for an empty imprint.
 ///
 /// # Errors
-/// Those of the writer.
+/// Returns the errors of the writer.
 pub fn write_jsonl(result: &SweepResult, mut output: impl Write) -> io::Result<()> {
     for entry in result.atlas.entries() {
         serde_json::to_writer(&mut output, &AtlasLine(result, &entry))?;
@@ -89,7 +89,7 @@ impl Serialize for AtlasLine<'_> {
     }
 }
 
-/// The first pose that leaves it: a value for each axis that the shape has.
+/// The first pose that leaves an imprint: a value for each axis that the shape has.
 struct First<'a>(&'a PoseGrid, u64);
 
 impl Serialize for First<'_> {

@@ -4,7 +4,7 @@ use crate::formats::imprint_file::{self, ImprintFormatError};
 use crate::formats::shape::{ShapeError, StoredShape};
 use crate::imprint::Imprint;
 
-/// What a file holds.
+/// The content of a file.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
 #[non_exhaustive]
@@ -16,7 +16,7 @@ pub enum Content {
 }
 
 impl Content {
-    /// The imprint, alone or that of the shape.
+    /// Returns the imprint, or that of the stored shape.
     pub fn imprint(&self) -> &Imprint {
         match self {
             Self::Imprint(imprint) => imprint,
@@ -25,23 +25,23 @@ impl Content {
     }
 }
 
-/// Why bytes are neither.
+/// The error for bytes that are neither an imprint nor a stored shape.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ContentError {
-    /// They are not an imprint in any known format.
+    /// Not an imprint in any known format.
     #[error(transparent)]
     Imprint(#[from] ImprintFormatError),
-    /// They start like JSON, but are not a stored shape.
+    /// Text that starts like JSON, but is not a stored shape.
     #[error(transparent)]
     Shape(#[from] ShapeError),
 }
 
-/// Reads any bytes: a stored shape if the first character is `{`, otherwise an imprint as text, PBM, CSV or NPY. A byte
-/// order mark, with which some editors begin every text, is skipped.
+/// Reads any bytes: a stored shape if the first character is `{`, otherwise an imprint as text, PBM, CSV or NPY. A
+/// byte order mark, which some editors put before every text, is skipped.
 ///
 /// # Errors
-/// What is wrong, and where.
+/// Returns the first error and its place.
 pub fn read_content(bytes: &[u8]) -> Result<Content, ContentError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     if bytes.trim_ascii_start().starts_with(b"{") {

@@ -5,7 +5,7 @@ use serde::ser::{Error, Serialize, SerializeMap, SerializeSeq, Serializer};
 use crate::description::{DESCRIPTORS, Description, Value, each_region};
 use crate::imprint::Imprint;
 
-/// Serialises as `{"imprint":[…],"na":…,"regions":[{"kind":…,…},…]}`.
+/// An imprint that serialises as `{"imprint":[…],"na":…,"regions":[{"kind":…,…},…]}`.
 ///
 /// ```
 /// use taxel::formats::DescribedImprint;
@@ -27,7 +27,7 @@ impl Serialize for DescribedImprint<'_> {
     }
 }
 
-/// The regions of an imprint as a list, one after the other: a batch describes millions.
+/// The regions of an imprint as a list, serialised one by one: a batch describes millions of imprints.
 struct Regions<'a>(&'a Imprint);
 
 impl Serialize for Regions<'_> {
@@ -63,7 +63,7 @@ struct Row {
 
 impl Serialize for Row {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        /// Most rows of an imprint are empty.
+        /// Most rows of an imprint are empty, so their text is ready.
         const EMPTY: &str = "................................................................";
         let columns = usize::from(self.columns);
         if self.word == 0 {
@@ -82,7 +82,7 @@ impl Serialize for Row {
     }
 }
 
-/// A region by its descriptors.
+/// A region as an object of its descriptors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RegionRecord(pub Description);
 

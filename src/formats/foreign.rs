@@ -1,9 +1,9 @@
 //! Files of other kinds, recognised by their first bytes and refused by name.
 
-/// The beginning of a file, where in it, and what such a file is.
+/// The first bytes of a kind of file, their offset, and the name of the kind.
 type Magic = (&'static [u8], usize, &'static str);
 
-/// Known kinds; the first that fits counts.
+/// The known kinds; the first match counts.
 const MAGIC: [Magic; 19] = [
     (b"\x89PNG\r\n\x1a\n", 0, "a PNG image"),
     (b"GIF8", 0, "a GIF image"),
@@ -26,11 +26,11 @@ const MAGIC: [Magic; 19] = [
     (b"\xfe\xff", 0, "text in UTF-16 (save it as UTF-8)"),
 ];
 
-/// What a file is that no reader reads, with its article; None if it may be an imprint.
+/// Returns the kind of a file that cannot be read, with its article; None if the file may be an imprint.
 pub(crate) fn kind(bytes: &[u8]) -> Option<&'static str> {
     let is = |magic: &[u8], at: usize| bytes.get(at..).is_some_and(|rest| rest.starts_with(magic));
     let known = MAGIC.iter().find(|&&(magic, at, _)| is(magic, at));
-    // A table may begin with "BM"; the four bytes of a bitmap that are reserved are 0.
+    // A table may begin with "BM"; the four reserved bytes of a bitmap are 0.
     let bmp = is(b"BM", 0) && is(&[0; 4], 6);
     let netpbm =
         |digit: u8| is(&[b'P', digit], 0) && bytes.get(2).is_some_and(u8::is_ascii_whitespace);

@@ -1,4 +1,5 @@
-//! A frame of a real sensor in a line of JSON, with the rule of its imprint: `{"frame":[[0,12],[null,30]],"at_least":10}`.
+//! A frame of a real sensor as a line of JSON, with the rule for its imprint:
+//! `{"frame":[[0,12],[null,30]],"at_least":10}`.
 
 use serde::Deserialize;
 
@@ -11,29 +12,29 @@ use crate::sensor::MAX_SIDE;
 /// The keys beside `frame` that say which values are active.
 pub(crate) const RULE_KEYS: [&str; 5] = ["at_least", "percent", "low", "high", "least"];
 
-/// The values of a frame, row by row; null stands for no cell.
+/// The values of a frame, row by row; null where there is no cell.
 pub(crate) type FrameRows = Vec<Vec<Option<f64>>>;
 
-/// Which values are active, as a line says it.
+/// The rule for active values, as the keys of a line give it.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub(crate) struct RuleRecord {
-    /// Active from this value on.
+    /// The least active value.
     pub(crate) at_least: Option<f64>,
-    /// Active from this share of the largest value on, in percent.
+    /// The least active value, in percent of the largest one.
     pub(crate) percent: Option<f64>,
-    /// Active from this value on where joined to one of `high`.
+    /// The least value that is active if its taxel is joined to one of at least `high`.
     pub(crate) low: Option<f64>,
-    /// See `low`.
+    /// The least value that is active in any case; given together with `low`.
     pub(crate) high: Option<f64>,
-    /// Pieces of fewer taxels are dropped.
+    /// The fewest taxels of a piece; smaller pieces are dropped.
     pub(crate) least: Option<u32>,
 }
 
 impl RuleRecord {
-    /// The rule of these keys.
+    /// Returns the rule that these keys give.
     ///
     /// # Errors
-    /// If the rule is missing or out of range, or if there are several; the message is one sentence.
+    /// Returns a message of one sentence if the rule is missing or out of range, or if there are several.
     pub(crate) fn rule(&self) -> Result<Rule, String> {
         let made = |rule: Result<Rule, FrameError>| rule.map_err(|error| error.to_string());
         match (self.at_least, self.percent, self.low, self.high) {
@@ -44,10 +45,11 @@ impl RuleRecord {
         }
     }
 
-    /// The imprint of a frame by this rule.
+    /// Returns the imprint of a frame by this rule.
     ///
     /// # Errors
-    /// If there is no rule or several, or the rows are not a frame of at most 64 × 64 cells; the message is one sentence.
+    /// Returns a message of one sentence if there is no rule or several, or if the rows are not a frame of at most 64
+    /// × 64 cells.
     pub(crate) fn imprint(&self, rows: &[Vec<Option<f64>>]) -> Result<Imprint, String> {
         let mut processing = Processing::default();
         processing.rule = Some(self.rule()?);
@@ -71,14 +73,14 @@ impl RuleRecord {
     }
 }
 
-/// The taxels of the largest imprint.
+/// The number of taxels of the largest imprint.
 const MOST_TAXELS: u32 = MAX_SIDE as u32 * MAX_SIDE as u32;
 
-/// A matrix of its rows; NaN where there is no cell.
+/// Makes a matrix from its rows; NaN where there is no cell.
 ///
 /// # Errors
-/// If the rows are of different lengths, one of the sides is not from 1 to [`MAX_SIDE`], or a value is beyond
-/// ±[`LARGEST_VALUE`]; the message is one sentence.
+/// Returns a message of one sentence if the rows differ in length, if a side is not from 1 to [`MAX_SIDE`], or if a
+/// value is beyond ±[`LARGEST_VALUE`].
 pub(crate) fn matrix(rows: &[Vec<Option<f64>>]) -> Result<Matrix<f64>, String> {
     let (height, width) = (rows.len(), rows.first().map_or(0, Vec::len));
     let side = |length: usize| {
@@ -108,7 +110,7 @@ pub(crate) fn matrix(rows: &[Vec<Option<f64>>]) -> Result<Matrix<f64>, String> {
     Ok(matrix)
 }
 
-/// That a value is beyond all that are taken.
+/// Returns the message for a value beyond ±[`LARGEST_VALUE`].
 pub(crate) fn too_large(value: f64) -> String {
     if value.is_infinite() {
         return "infinite, expected a number".to_owned();

@@ -1,6 +1,6 @@
 //! The formats in which a plain imprint is exchanged with other programs.
 //!
-//! The content of a file decides its format when it is read, the ending of its name when it is written.
+//! When a file is read, its content decides the format; when it is written, the ending of its name does.
 //!
 //! ```
 //! use taxel::formats::imprint_file::{ImprintFormat, read};
@@ -26,7 +26,7 @@ use crate::parameter::named;
 /// No file of an imprint is larger; a larger one is refused unread. 1 MiB.
 pub const MAX_BYTES: usize = 1 << 20;
 
-/// How an imprint is written.
+/// A format in which an imprint is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ImprintFormat {
@@ -34,19 +34,19 @@ pub enum ImprintFormat {
     Text,
     /// A raw portable bitmap, `P4`.
     Pbm,
-    /// A plain one, `P1`.
+    /// A plain portable bitmap, `P1`.
     PlainPbm,
     /// A table of 0 and 1.
     Csv,
-    /// An array of numpy.
+    /// A numpy array.
     Npy,
 }
 
 impl ImprintFormat {
-    /// All of them.
+    /// All formats.
     pub const ALL: &'static [Self] = &[Self::Text, Self::Pbm, Self::PlainPbm, Self::Csv, Self::Npy];
 
-    /// What it is called on the command line.
+    /// Returns the name of the format on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Text => "txt",
@@ -57,7 +57,7 @@ impl ImprintFormat {
         }
     }
 
-    /// The format of a file whose name ends like this, in upper or lower case; none of another ending.
+    /// Returns the format for this ending of a file name, in upper or lower case; None for an unknown ending.
     pub fn of_ending(ending: &str) -> Option<Self> {
         // The plain bitmap has no ending of its own.
         let formats = Self::ALL.iter().copied();
@@ -66,7 +66,7 @@ impl ImprintFormat {
             .find(|format| format.name().eq_ignore_ascii_case(ending))
     }
 
-    /// A file's content.
+    /// Returns the content of a file in this format.
     pub fn write(self, imprint: &Imprint) -> Vec<u8> {
         match self {
             Self::Text => text::write(imprint).into_bytes(),
@@ -80,26 +80,26 @@ impl ImprintFormat {
 
 named!(ImprintFormat, "format", ImprintFormat::ALL);
 
-/// Why bytes are not an imprint.
+/// The error for bytes that are not an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ImprintFormatError {
-    /// Too many of them.
+    /// More than [`MAX_BYTES`] bytes.
     Large,
     /// A file of another kind.
     Foreign {
-        /// What it is, with its article: "a PNG image".
+        /// The kind of file, with its article: "a PNG image".
         kind: &'static str,
     },
-    /// No text of `#` and `.`.
+    /// Not a valid text of `#` and `.`.
     Text(TextError),
-    /// No bitmap.
+    /// Not a valid bitmap.
     Pbm(PbmError),
-    /// No grey image of two shades.
+    /// Not a valid greymap of two shades.
     Pgm(PbmError),
-    /// No table.
+    /// Not a valid table.
     Table(TableError),
-    /// No array.
+    /// Not a valid array.
     Array(ArrayError),
 }
 
@@ -122,14 +122,14 @@ impl fmt::Display for ImprintFormatError {
 
 impl std::error::Error for ImprintFormatError {}
 
-/// The imprint in any bytes, of any format.
+/// Reads an imprint from any bytes, in any of the formats.
 ///
 /// A bitmap or greymap begins with `P` and a digit, an array with its magic bytes. Images and archives of other kinds
-/// are refused by name. All else is a text of `#` and `.` or a table of numbers; a byte order mark before it is passed
-/// over, and line ends may be of any system.
+/// are refused by name. Everything else is a text of `#` and `.` or a table of numbers; a byte order mark before it
+/// is skipped, and line ends may be those of any system.
 ///
 /// # Errors
-/// What is wrong first, and where.
+/// Returns the first error and its place.
 pub fn read(bytes: &[u8]) -> Result<Imprint, ImprintFormatError> {
     if bytes.len() > MAX_BYTES {
         return Err(ImprintFormatError::Large);
@@ -146,7 +146,7 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ImprintFormatError> {
         _ => {}
     }
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    // Long ago a line ended in CR alone.
+    // Files of the classic Mac OS have lines that end in CR alone.
     let lines;
     let text = if text.contains(&b'\r') && !text.contains(&b'\n') {
         let unix = |&byte: &u8| if byte == b'\r' { b'\n' } else { byte };
@@ -164,8 +164,8 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ImprintFormatError> {
     }
 }
 
-/// Whether a text is a table of numbers: its first line that is neither blank nor a comment is not one of taxels, and
-/// there is a number, a separator or a word of a table in it.
+/// Returns true if a text is a table of numbers: its first line that is neither blank nor a comment is not a row of
+/// taxels, and there is a digit, a separator or a word of a table.
 fn is_table(text: &[u8]) -> bool {
     let lines = text.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
     let mut lines = lines.filter(|line| !line.is_empty());

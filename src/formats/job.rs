@@ -1,5 +1,5 @@
-//! One line of `taxel batch`: a figure, a picture or a whole matrix, and perhaps a sensor of its own; or the values of a real
-//! sensor with a threshold.
+//! One line of `taxel batch`: a figure, a picture or a whole matrix, perhaps with a sensor of its own; or the values
+//! of a real sensor with a threshold.
 
 use std::fmt;
 
@@ -13,13 +13,13 @@ use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::touch::Plane;
 
-/// What a line asks for.
+/// The task that a line sets.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Job {
-    /// To touch something with a sensor.
+    /// Touch a source with a sensor.
     Touch(Sensor, Source),
-    /// To describe a matrix as it is.
+    /// Describe a matrix as it is.
     Describe(Imprint),
 }
 
@@ -37,9 +37,9 @@ pub enum JobError {
     /// Not JSON, or not an object with known keys.
     #[error("column {column}: {message}")]
     Json {
-        /// Where, counted from 1.
+        /// The column of the error, from 1.
         column: usize,
-        /// What is wrong.
+        /// What is wrong, in words.
         message: String,
     },
     /// A value without a meaning.
@@ -54,11 +54,11 @@ pub enum JobError {
 }
 
 impl Job {
-    /// Reads a line. The sensor is `sensor`, changed as the line says; `lookup` finds pictures given by name. A whole
-    /// matrix is not touched, and has no sensor.
+    /// Reads a line. Its sensor is `sensor` with the changes that the line makes; `lookup` finds pictures given by
+    /// name. A whole matrix is not touched and has no sensor.
     ///
     /// # Errors
-    /// If the line has no answer; the message is one sentence.
+    /// Returns an error if the line has no answer; the message is one sentence.
     pub fn read(
         line: &[u8],
         sensor: Sensor,
@@ -96,7 +96,7 @@ impl Job {
         }
     }
 
-    /// The imprint to describe. `plane` is reused if it has the right sensor.
+    /// Returns the imprint to describe. `plane` is reused if it has the right sensor.
     pub fn imprint(&self, plane: &mut Plane) -> Imprint {
         match self {
             Self::Describe(imprint) => *imprint,
@@ -110,7 +110,7 @@ impl Job {
     }
 }
 
-/// The figure or the picture of a line; the error for none of them names all keys that a line can have.
+/// Returns the figure or the picture of a line. If there is neither, the error lists all keys that a line can have.
 fn touched(
     record: &Record<'_>,
     sensor: &Sensor,
@@ -122,10 +122,10 @@ fn touched(
     })
 }
 
-/// A line has one of these keys.
+/// The keys of which a line has exactly one.
 const KEYS: &str = "figure, picture, imprint, frame";
 
-/// A line as it stands.
+/// A line as it is parsed.
 #[derive(Default)]
 struct JobLine<'a> {
     record: Record<'a>,
@@ -134,7 +134,7 @@ struct JobLine<'a> {
 }
 
 impl JobLine<'_> {
-    /// The imprint of a frame, beside which only the keys of its rule may stand.
+    /// Returns the imprint of a frame. Only the keys of its rule may accompany it.
     fn describe(&self, frame: &FrameRows) -> Result<Imprint, JobError> {
         let Record {
             figure: None,

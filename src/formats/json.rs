@@ -1,4 +1,4 @@
-//! Values as JSON text, and the messages of its parser without the position that callers report themselves.
+//! Values as JSON text, and the messages of the parser without positions, which callers report themselves.
 
 #[cfg(feature = "cli")]
 use std::io::{self, Write};
@@ -7,14 +7,14 @@ use serde::Serialize;
 
 use crate::quote::shortened_message;
 
-/// A value on one line.
+/// Returns a value as JSON on one line.
 #[cfg(feature = "tui")]
 pub(crate) fn text(value: &(impl Serialize + ?Sized)) -> String {
     serde_json::to_string(value).unwrap_or_else(|error| failure(&error))
 }
 
-/// A value on one line, with everything but ASCII escaped: the same bytes in every locale, and safe to print even if it
-/// quotes text from files.
+/// Returns a value as JSON on one line, with everything except ASCII escaped: the same bytes in every locale, and
+/// safe to print even if it quotes text from files.
 #[cfg(feature = "cli")]
 pub(crate) fn ascii(value: &(impl Serialize + ?Sized)) -> String {
     let mut text = Vec::new();
@@ -22,7 +22,7 @@ pub(crate) fn ascii(value: &(impl Serialize + ?Sized)) -> String {
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// Appends [`ascii`] of a value to a text.
+/// Appends a value to a text, as [`ascii`] writes it.
 #[cfg(feature = "cli")]
 pub(crate) fn extend_ascii(text: &mut Vec<u8>, value: &(impl Serialize + ?Sized)) {
     let start = text.len();
@@ -65,25 +65,25 @@ impl serde_json::ser::Formatter for AsciiFormatter {
     }
 }
 
-/// A value over several lines.
+/// Returns a value as JSON over several lines.
 pub(crate) fn pretty(value: &(impl Serialize + ?Sized)) -> String {
     serde_json::to_string_pretty(value).unwrap_or_else(|error| failure(&error))
 }
 
-/// What is written for a value that has no form in JSON. All of ours have one: their keys are texts and their numbers
-/// finite. Should one not, the error stands in its place, as in the answers of a batch, and is not mistaken for an
-/// empty answer.
+/// Returns an object with the error, for a value that cannot be written as JSON. All of ours can: their keys are
+/// texts and their numbers finite. Should one fail, the error takes its place, as in the answers of a batch, and is
+/// not mistaken for an empty answer.
 fn failure(error: &serde_json::Error) -> String {
     format!("{{\"error\":{:?}}}", error.to_string())
 }
 
-/// What is wrong with a JSON text, in words that do not suppose that one knows its parser; without the position, which
-/// callers report.
+/// Returns what is wrong with a JSON text, in words that require no knowledge of the parser, and without the
+/// position, which callers report.
 pub(crate) fn message(error: &serde_json::Error) -> String {
     shortened_message(&plain(&error.to_string()))
 }
 
-/// A message of the parser in our words. Messages that are ours already come back as they are.
+/// Rewrites a message of the parser in our words. Messages that are ours already are returned as they are.
 pub(crate) fn plain(text: &str) -> String {
     let text = text.rfind(" at line ").map_or(text, |end| &text[..end]);
     let known = PARSER.iter().find(|(theirs, _)| *theirs == text);
@@ -107,7 +107,7 @@ pub(crate) fn plain(text: &str) -> String {
     }
 }
 
-/// What the parser says of a text that is no JSON, and what we do.
+/// The parser's messages for text that is not JSON, and ours.
 const PARSER: [(&str, &str); 20] = [
     ("expected ident", VALUE),
     ("expected value", VALUE),
@@ -161,10 +161,10 @@ const PARSER: [(&str, &str); 20] = [
     ),
 ];
 
-/// What may stand where a value must.
+/// The message for a missing value.
 const VALUE: &str = "expected a value: a string in double quotes, a number, a list or an object";
 
-/// What was found, as people call it: `string "3"` is the text "3".
+/// Returns the name of a found value in plain words: `string "3"` becomes `the string "3"`.
 fn noun(found: &str) -> String {
     let value = |start: &str| found.strip_prefix(start)?.strip_suffix('`');
     let number = value("integer `").or_else(|| value("floating point `"));
@@ -185,7 +185,7 @@ fn noun(found: &str) -> String {
     }
 }
 
-/// What was expected: a type has a name of its own for people, the others have one already.
+/// Returns the name of an expected value in plain words; a type has a name of its own, the others stay as they are.
 fn kind(expected: &str) -> &str {
     match expected {
         "f64" | "f32" => "a number",

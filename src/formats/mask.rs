@@ -1,15 +1,16 @@
-//! Which of two values a taxel has: masks of other programs are 0 and 1, 0 and 255, or 0 and any other number.
+//! Decides which of two values is active: masks of other programs consist of 0 and 1, 0 and 255, or 0 and any other
+//! number.
 
-/// The values of a mask as they come: 0 for an inactive taxel, one other value for an active one.
+/// The values of a mask seen so far: 0 for an inactive taxel, one other value for an active one.
 pub(crate) struct Mask<T> {
-    /// The value other than 0, once there was one.
+    /// The value other than 0, once it has been seen.
     other: Option<T>,
-    /// Whether there was a 0.
+    /// Whether a 0 has been seen.
     zero: bool,
 }
 
 impl<T: Copy + PartialEq> Mask<T> {
-    /// Nothing was seen yet.
+    /// Makes a mask of which no value has been seen.
     pub(crate) fn new() -> Self {
         Self {
             other: None,
@@ -17,10 +18,10 @@ impl<T: Copy + PartialEq> Mask<T> {
         }
     }
 
-    /// Returns whether the taxel of the next value is active; `None` is the value 0.
+    /// Takes the next value and returns true if its taxel is active; `None` is the value 0.
     ///
     /// # Errors
-    /// For a third value; the second one, which is not 0.
+    /// If this is a third value, returns the second one, which is not 0.
     pub(crate) fn take(&mut self, value: Option<T>) -> Result<bool, T> {
         let Some(value) = value else {
             self.zero = true;
@@ -30,7 +31,8 @@ impl<T: Copy + PartialEq> Mask<T> {
         if value == other { Ok(true) } else { Err(other) }
     }
 
-    /// The only value, where none is 0 and it is not one of those that are known to mean active.
+    /// Returns the mask's only value, if it is not 0 and not among `active`, the values that are known to mean
+    /// active.
     pub(crate) fn unclear(&self, active: &[T]) -> Option<T> {
         self.other
             .filter(|other| !self.zero && !active.contains(other))

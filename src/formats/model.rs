@@ -1,14 +1,14 @@
 //! A model of shapes as an archive of numpy arrays, which can be read back and merged.
 //!
-//! Per key, in order of height, width and taxels: `height` and `width` of its box, and `rows` (a word per row, bit `i`
-//! for column `i`; keys × rows of the highest, in the smallest unsigned type that holds the widest). Per shape and key
-//! that it leaves, key after key: `key` (its number), `shape` (its number in the header) and `count` (in how many
-//! poses). Before them `header`, JSON as bytes: format, shapes, sensor, anchor, ranges, shard, poses of each shape, and
-//! how many of them are cut off. Equal models are equal files.
+//! Per key, in order of height, width and taxels: `height` and `width` of its box, and `rows` (a word per row, bit
+//! `i` for column `i`; keys × rows of the highest key, in the smallest unsigned type that holds the widest). Per key
+//! and shape that leaves it, key after key: `key` (its number), `shape` (its number in the header) and `count` (the
+//! number of poses). Before them comes `header`, JSON as bytes: format, shapes, sensor, anchor, ranges, shard, poses
+//! of each shape, and the number of poses in which it is cut off. Equal models are equal files.
 //!
-//! What is refused: another format or an unknown key of the header; arrays of other types or lengths; keys that are not
-//! cut to their boxes or are there twice; counts that are not in the order of the shapes, or whose sum is not that of
-//! the poses. So a model that can be read is one that training could have written.
+//! A file is refused if it has another format or an unknown key in the header; arrays of other types or lengths; keys
+//! that are not cut to their boxes or occur twice; counts that are not in the order of the shapes, or do not add up
+//! to the number of poses. So every model that can be read is one that training could have written.
 
 use std::io::{Read, Seek, Write};
 
@@ -26,16 +26,16 @@ use crate::quote::shortened;
 use crate::recognition::{Model, ModelParts, NamedShape, ShapeCount};
 use crate::sensor::{MAX_SIDE, Sensor};
 
-/// What the header must say first.
+/// The required value of the header's key `format`.
 pub const FORMAT: &str = "taxel-model/1";
 
-/// What was trained: written from sources and a sensor, read as the records that they are checked from.
+/// The header of a model: written from sources and a sensor, read as records that are then checked.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ModelHeader<Shape, Size> {
     /// [`FORMAT`].
     format: String,
-    /// The set, in its order; ties go to the first.
+    /// The shapes of the set, in order; ties go to the first.
     shapes: Vec<ShapeHeader<Shape>>,
     /// Columns, rows and threshold of the sensor.
     sensor: Size,
@@ -47,9 +47,9 @@ struct ModelHeader<Shape, Size> {
     angle: String,
     zoom_x: String,
     zoom_y: String,
-    /// `1/1` of the whole grid.
+    /// The shard of the grid: `1/1` for the whole grid.
     shard: String,
-    /// Poses of each shape.
+    /// The number of poses of each shape.
     poses: u64,
 }
 
@@ -57,11 +57,11 @@ struct ModelHeader<Shape, Size> {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ShapeHeader<Shape> {
-    /// Its name.
+    /// The name.
     name: String,
-    /// How often it is expected, compared with the others.
+    /// The weight: how often the shape is expected, compared with the others.
     weight: u32,
-    /// In how many poses the sensor cuts it off.
+    /// The number of poses in which the sensor cuts the shape off.
     cut: u64,
     /// The figure or the imprint.
     source: Shape,
@@ -70,7 +70,7 @@ struct ShapeHeader<Shape> {
 /// Writes a model.
 ///
 /// # Errors
-/// Those of the writer.
+/// Returns the errors of the writer.
 pub fn write(model: &Model, mut output: impl Write + Seek) -> Result<(), ArchiveError> {
     let mut archive = ArrayWriter::new(&mut output);
     let header = header(model)?;
@@ -110,12 +110,12 @@ pub fn write(model: &Model, mut output: impl Write + Seek) -> Result<(), Archive
     archive.finish()
 }
 
-/// The largest of some sides; 0 of none.
+/// Returns the largest side; 0 if there are none.
 fn largest(sides: &[u8]) -> u8 {
     sides.iter().fold(0, |largest, &side| largest.max(side))
 }
 
-/// The smallest type for rows of that many columns.
+/// Returns the smallest type for rows of that many columns.
 fn row_type(columns: u8) -> Dtype {
     match columns {
         0..=8 => Dtype::U8,
@@ -125,7 +125,7 @@ fn row_type(columns: u8) -> Dtype {
     }
 }
 
-/// The header as JSON.
+/// Returns the header as JSON.
 fn header(model: &Model) -> Result<Vec<u8>, ArchiveError> {
     let ranges = model.ranges();
     let shapes = model.shapes().iter().zip(model.cut());
@@ -155,7 +155,7 @@ fn header(model: &Model) -> Result<Vec<u8>, ArchiveError> {
 /// Reads a model.
 ///
 /// # Errors
-/// What is wrong with it; any bytes are taken.
+/// Returns an error that says what is wrong; the input may be any bytes.
 pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
@@ -193,10 +193,10 @@ pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
     Ok(Model::from_parts(parts)?)
 }
 
-/// Keys in the order of the file, each with the shapes that leave it; None is the empty imprint.
+/// The keys in the order of the file, each with the shapes that leave it; None is the empty imprint.
 type Keys = Vec<(Option<Imprint>, Vec<ShapeCount>)>;
 
-/// The keys with their counts.
+/// Reads the keys with their counts.
 fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<Keys, ArchiveError> {
     let heights = archive.bytes("height", Dtype::U8)?;
     let widths = archive.bytes("width", Dtype::U8)?;
@@ -235,7 +235,7 @@ fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<Keys, ArchiveErr
     Ok(keys)
 }
 
-/// The imprint of a key that has taxels; None of what is not cut to its box.
+/// Returns the imprint of a key that has taxels; None if it is not cut to its box.
 fn imprint(rows: &[u8], kind: Dtype, (width, height): (u8, u8)) -> Option<Imprint> {
     if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE {
         return None;

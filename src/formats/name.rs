@@ -5,14 +5,14 @@ use std::str::FromStr;
 
 use crate::quote::is_invisible;
 
-/// The longest name.
+/// The most characters of a name.
 pub const LONGEST: usize = 64;
 
-/// The most bytes of a name: file systems take 255, and `.json` and a number in the trash come to them.
+/// The most bytes of a name: file systems allow 255, of which `.json` and a number in the trash take some.
 const MOST_BYTES: usize = 200;
 
-/// A name that a file can have on every Unix-like system: 1 to 64 visible letters, digits, spaces, `-`, `_`, `.`; not starting
-/// with `.` or a space, not ending with a space.
+/// A name that a file can have on every Unix-like system: 1 to 64 visible letters, digits, spaces, `-`, `_`, `.`; not
+/// starting with `.` or a space, not ending with a space.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Name(String);
 
@@ -20,17 +20,17 @@ pub struct Name(String);
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NameError {
-    /// It is empty.
+    /// The text is empty.
     Empty,
-    /// It is too long.
+    /// The text has more than [`LONGEST`] characters; their number.
     Long(usize),
-    /// It is too long for a file name, which is counted in bytes.
+    /// The text is too long for a file name; the number of its bytes in UTF-8.
     Bytes(usize),
     /// A character that some file systems do not allow.
     Character(char),
-    /// It starts with a dot, which would make a hidden file.
+    /// The first character, a dot or a space: a dot would make a hidden file, a space cannot be seen.
     Start(char),
-    /// It starts or ends with a space, which cannot be seen.
+    /// The text ends with a space, which cannot be seen.
     End,
 }
 
@@ -59,10 +59,10 @@ impl fmt::Display for NameError {
 impl std::error::Error for NameError {}
 
 impl Name {
-    /// Checks a name.
+    /// Makes a name from a text that keeps the rules.
     ///
     /// # Errors
-    /// The first rule that it breaks.
+    /// Returns the first rule that the text breaks.
     pub fn new(text: &str) -> Result<Self, NameError> {
         let first = text.chars().next().ok_or(NameError::Empty)?;
         let fits =
@@ -79,12 +79,12 @@ impl Name {
         }
     }
 
-    /// The text.
+    /// Returns the text.
     pub fn as_str(&self) -> &str {
         &self.0
     }
 
-    /// Whether two names are the same on a file system that ignores case.
+    /// Returns true if two names are the same on a file system that ignores case.
     ///
     /// ```
     /// use taxel::formats::Name;
@@ -98,14 +98,15 @@ impl Name {
     }
 }
 
-/// The case-folded form of a text. Names with the same folded form are the same name.
+/// Returns the case-folded form of a text. Names with the same folded form are the same name.
 ///
-/// By way of upper case, since some letters have two lower ones (`Σ` has `σ` and `ς`), and before that of lower case, since
-/// some have two upper ones (`ß` has `SS` and `ẞ`): all of these are one letter. A character at a time, since lower case of
-/// a whole text chooses by the letters around.
+/// The text is mapped to upper case and back, since some letters have two lower-case forms (`Σ` has `σ` and `ς`), and
+/// before that to lower case, since some have two upper-case forms (`ß` has `SS` and `ẞ`): all forms of a letter are
+/// folded into one. This is done character by character, since the lower case of a whole text depends on neighbouring
+/// letters.
 pub fn folded(text: &str) -> String {
     if text.is_ascii() {
-        // The same, at once: a library of 100,000 shapes is sorted by this.
+        // The same result, only faster: a library of 100,000 shapes is sorted by this.
         return text.to_ascii_lowercase();
     }
     let lower = text.chars().flat_map(char::to_lowercase);

@@ -1,4 +1,4 @@
-//! The shapes of a set: a JSON object each, or a line of words on the command line.
+//! The shapes of a set: one JSON object each, or a few words on the command line.
 //!
 //! ```text
 //! {"name":"disc","figure":"ellipse","radius_x":3.09,"radius_y":3.09}
@@ -25,16 +25,16 @@ use crate::recognition::NamedShape;
 use crate::sensor::Sensor;
 use crate::source::Source;
 
-/// Why an object or a text is not a shape with a name.
+/// The error for an object or a text that is not a shape of a set.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NamedShapeError {
     /// Not JSON, or not an object with known keys.
     #[error("column {column}: {message}")]
     Json {
-        /// Where, counted from 1.
+        /// The column of the error, from 1.
         column: usize,
-        /// What is wrong.
+        /// What is wrong, in words.
         message: String,
     },
     /// No name.
@@ -46,23 +46,23 @@ pub enum NamedShapeError {
     /// Words that are not a shape.
     #[error("{found:?}: expected NAME=KIND KEY=NUMBER … or NAME=picture SHAPE")]
     Words {
-        /// What was given.
+        /// The text that was given.
         found: String,
     },
     /// A word of a figure that is not a value.
     #[error("{found:?}: expected KEY=NUMBER, such as radius_x=3")]
     Word {
-        /// What was given.
+        /// The word that was given.
         found: String,
     },
-    /// A key that no figure has; a weight can be given in JSON only.
+    /// A key that is not a parameter; a weight can be given in JSON only.
     #[error(
         "{found:?}: not a parameter of the figure {}, which has {}; weights are given in JSON",
         figure.name(),
         keys(*figure)
     )]
     Key {
-        /// What was given.
+        /// The key that was given.
         found: String,
         /// The figure.
         figure: FigureKind,
@@ -72,32 +72,32 @@ pub enum NamedShapeError {
         "{key}: a shape of a set has no pose of its own; it is touched in all poses of the grid"
     )]
     Pose {
-        /// Its key.
+        /// The key of the parameter.
         key: &'static str,
     },
     /// A parameter that is given twice.
     #[error("{key}: given twice")]
     Twice {
-        /// Its key.
+        /// The key of the parameter.
         key: &'static str,
     },
 }
 
-/// The keys of the parameters of a figure that matter in a set, where its position and angle do not.
+/// Returns the keys of a figure's parameters that matter in a set: not those of its position and angle.
 fn keys(figure: FigureKind) -> String {
     let sizes = figure.sizes().iter().chain([&Parameter::Thickness]);
     let keys = sizes.map(|parameter| parameter.row().key);
     keys.collect::<Vec<_>>().join(", ")
 }
 
-/// Finds the imprint of a stored shape.
+/// A function that finds the imprint of a stored shape.
 pub type ShapeLookup<'a> = dyn Fn(&str) -> Result<Imprint, String> + 'a;
 
-/// Reads a shape of a set from a JSON object. It has neither a pose nor a sensor: a set is touched in the poses of a grid, on
-/// one sensor.
+/// Reads a shape of a set from a JSON object. It has neither a pose nor a sensor: the shapes of a set are touched in
+/// the poses of a grid, on one sensor.
 ///
 /// # Errors
-/// What is wrong with it, in one sentence.
+/// Returns an error that says in one sentence what is wrong.
 ///
 /// ```
 /// use taxel::formats::named_shape;
@@ -120,7 +120,7 @@ pub fn named_shape(line: &[u8], lookup: &ShapeLookup<'_>) -> Result<NamedShape, 
 /// Reads a shape of a set from words, `disc=ellipse radius_x=3 radius_y=3` or `ring=picture washer`.
 ///
 /// # Errors
-/// What is wrong with it, in one sentence.
+/// Returns an error that says in one sentence what is wrong.
 ///
 /// ```
 /// use taxel::formats::named_shape_of_words;

@@ -1,8 +1,8 @@
-//! Arrays as numpy reads them: a header and the numbers, little-endian, the last axis fastest.
+//! Arrays in numpy's file format: a header and the numbers, little-endian, the last axis fastest.
 //!
-//! Source: <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>. Written are `bool`, unsigned whole
-//! numbers and `f64` in version 1.0; headers are read of any type and shape in versions 1 to 3, and real numbers of any
-//! size in either byte order.
+//! Source: <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>. Arrays of `bool`, unsigned whole
+//! numbers and `f64` are written, in version 1.0. Headers of any type and shape are read, in versions 1 to 3, and
+//! real numbers of any size in either byte order.
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ const MAGIC: &[u8] = b"\x93NUMPY\x01\x00";
 /// The numbers of an array begin at a multiple of this.
 const ALIGNMENT: usize = 64;
 
-/// What an array is made of.
+/// The type of the numbers of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Dtype {
@@ -29,7 +29,7 @@ pub enum Dtype {
 }
 
 impl Dtype {
-    /// Returns the number of bytes of one.
+    /// Returns the size of a number in bytes.
     pub const fn width(self) -> usize {
         match self {
             Self::Bool | Self::U8 => 1,
@@ -51,19 +51,19 @@ impl Dtype {
     }
 }
 
-/// How a number stands in a file that is read, from this program or another.
+/// The type of the numbers in a file that is read, from this program or another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NumberType {
-    /// `b` a truth value, `i` and `u` whole, `f` a float; as in numpy.
+    /// The kind of number, as in numpy: `b` for truth values, `i` and `u` for whole numbers, `f` for floats.
     kind: u8,
-    /// Bytes of a number: 1, 2, 4 or 8.
+    /// The size of a number in bytes: 1, 2, 4 or 8.
     size: usize,
     /// Whether the highest byte comes first.
     big_endian: bool,
 }
 
 impl NumberType {
-    /// A kind of number (`b`, `i`, `u` or `f`) of 1, 2, 4 or 8 bytes.
+    /// Makes a type from a kind (`b`, `i`, `u` or `f`) and a size of 1, 2, 4 or 8 bytes.
     #[cfg(feature = "mcap")]
     pub(super) fn new(kind: u8, size: usize, big_endian: bool) -> Self {
         Self {
@@ -73,7 +73,7 @@ impl NumberType {
         }
     }
 
-    /// That of a code such as `<f4`.
+    /// Returns the type of a code such as `<f4`; None if it is unknown.
     pub(super) fn of(code: &str) -> Option<Self> {
         let [order, kind, size @ ..] = code.as_bytes() else {
             return None;
@@ -92,17 +92,17 @@ impl NumberType {
         })
     }
 
-    /// `b` for truth values, `i` and `u` for whole numbers, `f` for floats.
+    /// Returns the kind of number: `b` for truth values, `i` and `u` for whole numbers, `f` for floats.
     pub(super) fn kind(self) -> u8 {
         self.kind
     }
 
-    /// Bytes of a number.
+    /// Returns the size of a number in bytes.
     pub(super) fn size(self) -> usize {
         self.size
     }
 
-    /// The bytes as a word.
+    /// Returns the bits of a number, from its bytes.
     pub(super) fn word(self, bytes: &[u8]) -> u64 {
         let mut word = [0; 8];
         for (slot, byte) in word.iter_mut().zip(bytes) {
@@ -114,7 +114,7 @@ impl NumberType {
         u64::from_le_bytes(word)
     }
 
-    /// A whole number; none of floats.
+    /// Returns a whole number; None if the type is a float.
     #[cfg(feature = "frames")]
     pub(super) fn whole(self, bytes: &[u8]) -> Option<i128> {
         let word = self.word(bytes);
@@ -126,8 +126,7 @@ impl NumberType {
         }
     }
 
-    /// The number, of the nearest float.
-    /// Whole numbers beyond 2^53 become the nearest float.
+    /// Returns the number as a float; a whole number beyond 2^53 becomes the nearest float.
     #[cfg(feature = "frames")]
     #[expect(
         clippy::cast_precision_loss,
@@ -147,8 +146,8 @@ impl NumberType {
     }
 }
 
-/// A number of IEEE 754's binary16.
-/// Sign, five bits of exponent with a bias of 15, ten of fraction; the smallest exponent has no leading 1.
+/// Returns the value of a half-precision number, IEEE 754's binary16: a sign, five bits of exponent with a bias of
+/// 15, and ten bits of fraction. With the smallest exponent there is no leading 1.
 #[cfg(feature = "frames")]
 fn half(bits: u16) -> f64 {
     let (exponent, fraction) = (i32::from(bits >> 10 & 31), f64::from(bits & 1023));
@@ -161,7 +160,7 @@ fn half(bits: u16) -> f64 {
     if bits >> 15 == 1 { -value } else { value }
 }
 
-/// What stands before the numbers of an array of that shape.
+/// Returns the header of an array of that type and shape: all bytes before its numbers.
 ///
 /// ```
 /// use taxel::formats::npy::{Dtype, header};
@@ -170,14 +169,14 @@ fn half(bits: u16) -> f64 {
 /// assert_eq!((header.len(), header.last()), (128, Some(&b'\n')));
 /// ```
 pub fn header<const N: usize>(kind: Dtype, shape: &[u64; N]) -> Vec<u8> {
-    // The length of the text takes two bytes; a side takes 22 at most.
+    // The length of the text takes two bytes; a side takes 22 characters at most.
     const { assert!(N <= 64, "numpy has no more axes") };
     let mut sides = String::new();
     for side in shape {
         // Cannot fail: a String takes everything.
         let _ = write!(sides, "{side}, ");
     }
-    // A tuple of one keeps its comma, one of several has none at its end.
+    // A tuple of one element ends in a comma, a longer one does not.
     let sides = sides.trim_end();
     let sides = if shape.len() > 1 {
         sides.trim_end_matches(',')
@@ -197,11 +196,12 @@ pub fn header<const N: usize>(kind: Dtype, shape: &[u64; N]) -> Vec<u8> {
     header
 }
 
-/// What a file says of its numbers.
+/// The header of a file: the type and the arrangement of its numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Header {
-    /// Their type, as numpy writes it: `<f8` and the like; of records the list of their fields, in its brackets.
+    /// The type of the numbers as numpy writes it, such as `<f8`; for records, the list of their fields, in its
+    /// brackets.
     pub code: String,
     /// Whether the first axis is the fastest.
     pub fortran_order: bool,
@@ -209,7 +209,7 @@ pub struct Header {
     pub shape: Vec<u64>,
 }
 
-/// The header of a file, and the numbers behind it; none of what is not an array.
+/// Splits a file into its header and the numbers behind it; None if it is not an array.
 ///
 /// ```
 /// use taxel::formats::npy::{Dtype, header, parse};
@@ -232,7 +232,7 @@ pub fn parse(file: &[u8]) -> Option<(Header, &[u8])> {
     Some((dictionary(text)?, numbers))
 }
 
-/// Python's notation of the three entries, each there once, in any order.
+/// Parses the header's three entries in Python's notation, each once, in any order.
 fn dictionary(text: &str) -> Option<Header> {
     let mut rest = text.strip_prefix('{')?.strip_suffix('}')?.trim();
     let (mut code, mut fortran_order, mut shape) = (None, None, None);
@@ -276,7 +276,7 @@ fn dictionary(text: &str) -> Option<Header> {
     })
 }
 
-/// A text in quotes of either kind, without escapes, and what comes after it.
+/// Splits off a text in quotes of either kind, without escapes; returns it and what follows.
 fn quoted(text: &str) -> Option<(&str, &str)> {
     let quote = text
         .chars()
@@ -286,13 +286,14 @@ fn quoted(text: &str) -> Option<(&str, &str)> {
     (!inner.contains('\\')).then_some((inner, after))
 }
 
-/// A list in square brackets with these, and what comes after it. Names of fields have no brackets.
+/// Splits off a list in square brackets, with the brackets; returns it and what follows. Names of fields have no
+/// brackets.
 fn bracketed(text: &str) -> Option<(&str, &str)> {
     let end = text.starts_with('[').then(|| text.find(']'))??;
     Some(text.split_at(end + 1))
 }
 
-/// The numbers between the brackets of a tuple; a comma may follow the last.
+/// Parses the numbers between the brackets of a tuple; a comma may follow the last.
 fn tuple(text: &str) -> Option<Vec<u64>> {
     let text = text.trim();
     let text = text.strip_suffix(',').unwrap_or(text);
@@ -303,7 +304,7 @@ fn tuple(text: &str) -> Option<Vec<u64>> {
     sides.collect()
 }
 
-/// The numbers of a file that [`header`] could have begun, with its kind; none of anything else.
+/// Returns the numbers of a file whose header is like one of [`header`] with this type; None for any other file.
 pub fn content(file: &[u8], kind: Dtype) -> Option<&[u8]> {
     let rest = file.strip_prefix(MAGIC)?;
     let (length, rest) = rest.split_first_chunk::<2>()?;
@@ -312,7 +313,7 @@ pub fn content(file: &[u8], kind: Dtype) -> Option<&[u8]> {
     text.starts_with(expected.as_bytes()).then_some(numbers)
 }
 
-/// The same as whole numbers.
+/// Returns the numbers of such a file of `uint64`; None for any other file.
 pub fn words(file: &[u8]) -> Option<Vec<u64>> {
     let chunks = content(file, Dtype::U64)?.chunks_exact(8);
     if !chunks.remainder().is_empty() {

@@ -15,17 +15,17 @@ use crate::pose::{GridError, RangeError};
 use crate::quote::shortened;
 use crate::sweep::{PartsError, Shard, ShardError};
 
-/// The array that says what an archive holds: JSON as bytes.
+/// The name of the array that describes the archive: JSON as bytes.
 pub(crate) const HEADER: &str = "header";
 
-/// No header is larger: a shape of 64 × 64 taxels takes some thousand bytes.
+/// The size limit of a header in bytes: a shape of 64 × 64 taxels takes a few thousand.
 const MAX_HEADER: u64 = 1 << 26;
 
-/// No array of an archive may be larger; what is larger is not read.
+/// The size limit of an array in bytes; a larger one is not read.
 const MAX_BYTES: u64 = 1 << 34;
 
-/// Where an archive is written to. Behind a reference to this, the code that writes one is there once, not once for each
-/// kind of output: that of zip is large.
+/// The output of an archive. Writing to a reference to this trait compiles the code of zip, which is large, once
+/// instead of once for each kind of output.
 pub(crate) trait WriteSeek: Write + Seek {}
 
 impl<W: Write + Seek> WriteSeek for W {}
@@ -34,12 +34,12 @@ impl<W: Write + Seek> WriteSeek for W {}
 pub(crate) struct ArrayWriter<'a>(ZipWriter<&'a mut dyn WriteSeek>);
 
 impl<'a> ArrayWriter<'a> {
-    /// An archive without arrays yet.
+    /// Makes an archive without arrays.
     pub(crate) fn new(output: &'a mut dyn WriteSeek) -> Self {
         Self(ZipWriter::new(output))
     }
 
-    /// Writes an array of that shape; its numbers are given as bytes, the last axis fastest.
+    /// Writes an array of that shape; `numbers` are its bytes, the last axis fastest.
     pub(crate) fn add<const N: usize>(
         &mut self,
         name: &str,
@@ -68,9 +68,9 @@ impl<'a> ArrayWriter<'a> {
 /// Reads arrays by name.
 pub(crate) struct ArrayReader<R> {
     archive: ZipArchive<R>,
-    /// The bytes of the whole archive.
+    /// The number of bytes of the whole archive.
     length: u64,
-    /// The arrays that were read.
+    /// The names of the arrays that have been read.
     read: Vec<&'static str>,
 }
 
@@ -84,7 +84,7 @@ impl<R: Read + Seek> ArrayReader<R> {
         })
     }
 
-    /// Returns the file of an array.
+    /// Returns the bytes of an array's file.
     fn file(&mut self, name: &'static str) -> Result<Vec<u8>, ArchiveError> {
         self.read.push(name);
         let mut file = match self.archive.by_name(&format!("{name}.npy")) {
@@ -101,16 +101,16 @@ impl<R: Read + Seek> ArrayReader<R> {
             return Err(ArchiveError::Array(name));
         }
         let mut bytes = Vec::new();
-        // The size that the archive states may be wrong.
+        // The size that the archive gives may be wrong.
         let read = file.by_ref().take(most).read_to_end(&mut bytes);
         read.map_err(|error| damaged(name, error))?;
         Ok(bytes)
     }
 
-    /// Reads all arrays that nobody asked for, and forgets them: a damaged one is found at its end only, and what is called
-    /// whole has none.
+    /// Reads and discards all other arrays: damage to an array is only found at its end, and an archive must not pass
+    /// as intact if one of them is damaged.
     pub(crate) fn finish(mut self) -> Result<(), ArchiveError> {
-        // Arrays that share their bytes would take for ever, however short the archive.
+        // Arrays that share their bytes could take for ever, however short the archive.
         let mut rest = self.length;
         for index in 0..self.archive.len() {
             let mut file = self.archive.by_index(index).map_err(zip_error)?;
@@ -151,13 +151,13 @@ impl<R: Read + Seek> ArrayReader<R> {
         npy::words(&self.file(name)?).ok_or(ArchiveError::Array(name))
     }
 
-    /// Returns the JSON that says what the archive holds.
+    /// Returns the JSON that describes the archive.
     pub(crate) fn header(&mut self) -> Result<Vec<u8>, ArchiveError> {
         self.bytes(HEADER, Dtype::U8)
     }
 }
 
-/// Holds that an array is not compressed: unpacked, a short file might take all memory.
+/// Checks that an array is not compressed: decompressed, a short file could fill all memory.
 fn is_stored(file: &ZipFile<'_, impl Read>, name: &str) -> Result<(), ArchiveError> {
     if file.compression() == CompressionMethod::Stored {
         return Ok(());
@@ -165,7 +165,7 @@ fn is_stored(file: &ZipFile<'_, impl Read>, name: &str) -> Result<(), ArchiveErr
     Err(ArchiveError::Compressed(shortened(name)))
 }
 
-/// Why an array cannot be read to its end: the system's reason, or its checksum.
+/// Returns the error for an array that cannot be read to its end: the system's reason, or a wrong checksum.
 fn damaged(name: &str, error: io::Error) -> ArchiveError {
     if error.raw_os_error().is_some() {
         return error.into();
@@ -173,25 +173,25 @@ fn damaged(name: &str, error: io::Error) -> ArchiveError {
     ArchiveError::Damaged(shortened(name))
 }
 
-/// Whole numbers as bytes.
+/// Returns whole numbers as bytes.
 pub(crate) fn little_endian(words: &[u64]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
-/// What the header of an archive says first: what kind of file it is, and which shard.
+/// The kind of an archive and its shard, from the header.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ArchiveKind {
     /// The value of the key `format`.
     pub format: String,
-    /// The part of the study that the file holds.
+    /// The shard of the sweep or model that the file holds.
     pub shard: Shard,
 }
 
-/// Returns what an archive is, without reading more than its header.
+/// Returns the kind of an archive, reading only its header.
 ///
 /// # Errors
-/// If it is not an archive with such a header.
+/// Returns an error if it is not an archive with such a header.
 pub fn kind_of(input: impl Read + Seek) -> Result<ArchiveKind, ArchiveError> {
     #[derive(serde::Deserialize)]
     struct Part {
@@ -205,7 +205,7 @@ pub fn kind_of(input: impl Read + Seek) -> Result<ArchiveKind, ArchiveError> {
     Ok(ArchiveKind { format, shard })
 }
 
-/// What a header says that its archive holds; whatever else is in it.
+/// Returns the format in a header, without checking the other keys.
 pub(crate) fn format_in(header: &[u8]) -> Result<String, ArchiveError> {
     #[derive(serde::Deserialize)]
     struct Format {
@@ -216,8 +216,8 @@ pub(crate) fn format_in(header: &[u8]) -> Result<String, ArchiveError> {
     Ok(format.format)
 }
 
-/// What is wrong with an archive, in words that do not suppose that one knows its layout. The type of the crate that reads
-/// archives is no part of the interface.
+/// Returns the error for an archive, in words that require no knowledge of its layout. The error type of the zip
+/// crate is not part of the interface.
 fn zip_error(error: ZipError) -> ArchiveError {
     match error {
         ZipError::Io(error) if error.raw_os_error().is_some() => ArchiveError::Io(error),
@@ -226,7 +226,7 @@ fn zip_error(error: ZipError) -> ArchiveError {
     }
 }
 
-/// That an archive is of another format: of another kind, or of another version.
+/// Returns the message for an archive of another format: another kind, or another version.
 fn other_format(found: &str, expected: &str) -> String {
     let kind = |format: &str| match format.split_once('/')? {
         ("taxel-atlas", _) => Some("an atlas of taxel sweep"),
@@ -241,31 +241,31 @@ fn other_format(found: &str, expected: &str) -> String {
     }
 }
 
-/// Why an archive cannot be written or read.
+/// The error for an archive that cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ArchiveError {
-    /// The system's word.
+    /// An error of the system.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// No zip, or a broken one.
+    /// Not a zip, or a broken one.
     #[error("no archive of arrays: {0}")]
     Zip(String),
-    /// An array whose bytes are not those that were written.
+    /// An array whose bytes have changed since they were written.
     #[error("array {0:?} is damaged")]
     Damaged(String),
     /// An array that another program has compressed.
     #[error("array {0:?} is compressed, expected one as taxel writes it, without compression")]
     Compressed(String),
-    /// An array that is not what it should be.
+    /// An array that is missing, or not of the expected type or size.
     #[error("array {0:?} is not as taxel writes it")]
     Array(&'static str),
-    /// Another format, or a newer one.
+    /// Another format, perhaps a newer version.
     #[error("{}", other_format(found, expected))]
     Format {
-        /// What it says it is.
+        /// The format of the archive.
         found: String,
-        /// What can be read here.
+        /// The format that can be read here.
         expected: &'static str,
     },
     /// An invalid header.
@@ -286,18 +286,18 @@ pub enum ArchiveError {
     /// Numbers that contradict each other.
     #[error(transparent)]
     Parts(#[from] PartsError),
-    /// A part of a model where a whole one is wanted.
+    /// A shard of a model where a whole one is wanted.
     #[cfg(feature = "recognition")]
     #[error("shard {shard} of a model only; 'taxel merge' puts shards together")]
     PartOfModel {
-        /// Which part.
+        /// The shard.
         shard: Shard,
     },
-    /// Text where a model is expected, which may be the set of shapes to train one of.
+    /// Text where a model is expected, perhaps a set of shapes to train one on.
     #[cfg(feature = "recognition")]
     #[error("not a model; if it is a set of shapes, 'taxel model train' makes a model of it")]
     Untrained,
-    /// Shapes or numbers that make no model.
+    /// Shapes or numbers that do not make a model.
     #[cfg(feature = "recognition")]
     #[error(transparent)]
     Model(#[from] crate::recognition::ModelError),

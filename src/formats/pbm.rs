@@ -1,10 +1,10 @@
 //! An imprint as a portable bitmap: plain (`P1`, digits) or raw (`P4`, bits), black for an active taxel.
 //!
-//! Source: <https://netpbm.sourceforge.net/doc/pbm.html>. A comment runs from `#` to the end of its line; the digits of
-//! a plain one need no spaces between them. A file holds one bitmap, of at most 64 × 64. Bits that fill up the last
-//! byte of a row do not count. Lines and columns of errors count from 1, a column is a byte.
+//! Source: <https://netpbm.sourceforge.net/doc/pbm.html>. A comment runs from `#` to the end of its line; the digits
+//! of a plain bitmap need no spaces between them. A file holds one bitmap, of at most 64 × 64. Padding bits in the
+//! last byte of a row do not count. In errors, lines and columns count from 1; a column is a byte.
 //!
-//! Read are grey images of two shades, too (`P2`, `P5`): [`read`] says which shade is an active taxel.
+//! Grey images of two shades (`P2`, `P5`) are read, too: [`read`] says which shade is active.
 
 mod pgm;
 
@@ -14,72 +14,72 @@ use crate::imprint::Imprint;
 use crate::parameter::number::counted;
 use crate::sensor::MAX_SIDE;
 
-/// Why bytes are not a bitmap, or not one that is an imprint.
+/// The error for bytes that are not a bitmap, or not one of an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PbmError {
-    /// None of the four kinds.
+    /// Not one of the four kinds `P1`, `P2`, `P4` and `P5`.
     Magic,
-    /// No number where one must be, or none from 1 to 64.
+    /// A width or height that is missing, or not from 1 to 64.
     Side {
-        /// Which line.
+        /// The line number.
         line: usize,
-        /// Which byte of it.
+        /// The byte in the line.
         column: usize,
-        /// Width or height.
+        /// `width` or `height`.
         what: &'static str,
     },
-    /// A character that should be a digit.
+    /// A byte other than the digits 0 and 1.
     Digit {
-        /// Which line.
+        /// The line number.
         line: usize,
-        /// Which byte of it.
+        /// The byte in the line.
         column: usize,
-        /// What stands there.
+        /// The byte that was found.
         byte: u8,
     },
-    /// Something else than a space before the bits of a raw bitmap.
+    /// A comment in place of the one space before the bits of a raw bitmap.
     Space {
-        /// Which line.
+        /// The line number.
         line: usize,
-        /// Which byte of it.
+        /// The byte in the line.
         column: usize,
     },
-    /// The end comes too early.
+    /// Too few taxels.
     Short {
-        /// How many there are.
+        /// The number that was found.
         found: usize,
-        /// How many there should be.
+        /// The number that was expected.
         expected: usize,
-        /// What they are.
+        /// The unit of the numbers.
         unit: &'static str,
     },
-    /// No brightest shade where one must be, or none from 1 to 65535.
+    /// A brightest shade that is missing, or not from 1 to 65535.
     Maximum {
-        /// Which line.
+        /// The line number.
         line: usize,
-        /// Which byte of it.
+        /// The byte in the line.
         column: usize,
     },
-    /// No shade where one must be, or one above the brightest.
+    /// A shade that is missing, or above the brightest.
     Shade {
-        /// Which line.
+        /// The line number.
         line: usize,
-        /// Which byte of it.
+        /// The byte in the line.
         column: usize,
     },
     /// A third shade.
     Third {
-        /// Row, from 1.
+        /// The row, from 1.
         row: u8,
-        /// Column, from 1.
+        /// The column, from 1.
         column: u8,
     },
-    /// One shade everywhere that is neither black nor the brightest.
+    /// The same shade everywhere, neither black nor the brightest.
     Unclear,
-    /// Something comes after the end.
+    /// More bytes after the image.
     Long {
-        /// How many.
+        /// The number of bytes.
         found: usize,
     },
 }
@@ -129,13 +129,13 @@ impl fmt::Display for PbmError {
 
 impl std::error::Error for PbmError {}
 
-/// Reads any bytes: a bitmap, or a grey image of two shades.
+/// Reads a bitmap, or a grey image of two shades, from any bytes.
 ///
-/// In a bitmap black is active. In a grey image the brighter of the two shades is, as in the masks of other programs;
-/// one that is all black is empty, one that is all of the brightest shade is full.
+/// In a bitmap, black is active. In a grey image, the brighter of the two shades is active, as in the masks of other
+/// programs; an image that is all black is empty, and one that is all of the brightest shade is full.
 ///
 /// # Errors
-/// What is wrong first, and where.
+/// Returns the first error and its place.
 ///
 /// ```
 /// use taxel::formats::pbm::{plain, raw, read};
@@ -172,14 +172,14 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, PbmError> {
     }
 }
 
-/// Where reading has come to.
+/// A position in the bytes of a file.
 pub(super) struct Cursor<'a> {
     pub(super) bytes: &'a [u8],
     pub(super) at: usize,
 }
 
 impl Cursor<'_> {
-    /// Line and column of what comes next.
+    /// Returns the line and column of the position.
     pub(super) fn line_and_column(&self) -> (usize, usize) {
         let before = &self.bytes[..self.at];
         let start = before.iter().rposition(|&byte| byte == b'\n');
@@ -187,7 +187,7 @@ impl Cursor<'_> {
         (line, self.at - start.map_or(0, |start| start + 1) + 1)
     }
 
-    /// The next byte that is neither space nor comment.
+    /// Skips spaces and comments, and returns the next byte.
     pub(super) fn next(&mut self) -> Option<u8> {
         loop {
             match *self.bytes.get(self.at)? {
@@ -209,7 +209,7 @@ impl Cursor<'_> {
         side.ok_or(PbmError::Side { line, column, what })
     }
 
-    /// A number that stands apart from what is before and after it, and its line and column.
+    /// Reads a number that is separated from what is before and after it; returns it with its line and column.
     pub(super) fn number(&mut self) -> (Option<u32>, (usize, usize)) {
         let start = self.at;
         let _ = self.next();
@@ -229,7 +229,7 @@ impl Cursor<'_> {
         (number.filter(|_| stands_apart && ends), place)
     }
 
-    /// Digits, until all taxels have one; gives the place after the last.
+    /// Reads a digit for each taxel; returns the offset after the last.
     fn digits(&mut self, imprint: &mut Imprint) -> Result<usize, PbmError> {
         let expected = usize::from(imprint.columns()) * usize::from(imprint.rows());
         let mut found = 0;
@@ -254,14 +254,14 @@ impl Cursor<'_> {
                 self.at += 1;
             }
         }
-        // Comments after the last digit are none of a second bitmap.
+        // Comments after the last digit do not begin a second bitmap.
         let _ = self.next();
         Ok(self.at)
     }
 
-    /// Bytes of eight taxels, each row in bytes of its own; gives the place after the last.
+    /// Reads bytes of eight taxels, where each row begins a new byte; returns the offset after the last.
     fn bits(&mut self, imprint: &mut Imprint) -> Result<usize, PbmError> {
-        // Just one space parts the height from the bits, which may look like spaces.
+        // Exactly one space separates the height from the bits, which may look like spaces.
         if self.bytes.get(self.at) == Some(&b'#') {
             let (line, column) = self.line_and_column();
             return Err(PbmError::Space { line, column });
@@ -286,7 +286,7 @@ impl Cursor<'_> {
     }
 }
 
-/// The plain bitmap: a line a row.
+/// Returns the plain bitmap, one line per row.
 pub fn plain(imprint: &Imprint) -> String {
     let mut text = format!("P1\n{} {}\n", imprint.columns(), imprint.rows());
     for row in 0..imprint.rows() {
@@ -297,7 +297,7 @@ pub fn plain(imprint: &Imprint) -> String {
     text
 }
 
-/// The raw bitmap.
+/// Returns the raw bitmap.
 pub fn raw(imprint: &Imprint) -> Vec<u8> {
     let mut bytes = format!("P4\n{} {}\n", imprint.columns(), imprint.rows()).into_bytes();
     let width = usize::from(imprint.columns()).div_ceil(8);
@@ -313,7 +313,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place() {
+    fn errors_name_their_place() {
         let outcome = |bytes: &[u8]| read(bytes).map_err(|error| error.to_string());
         let wrong =
             |bytes: &[u8], message: &str| assert_eq!(outcome(bytes), Err(message.to_owned()));
@@ -323,7 +323,7 @@ mod tests {
             "expected P1, P4, P2 or P5 at the start",
         );
         wrong(b"P1", "line 1, column 3: expected the width, 1 to 64");
-        // Not "P1" and 11 columns, but a number that does not stand apart.
+        // Not "P1" and 11 columns: the number is not separated from the "P1".
         wrong(b"P111 1 1", "line 1, column 3: expected the width, 1 to 64");
         wrong(
             b"P1\n65 1\n",
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn bits_that_look_like_spaces_and_bits_that_fill_up_are_taken_rightly() {
+    fn bits_that_look_like_spaces_count_and_padding_does_not() {
         let spaces = read(b"P4 8 2\n\n ").expect("0x0a and 0x20 are rows");
         assert_eq!(spaces.to_string(), "....#.#.\n..#.....");
         let filled = read(b"P4\n1 1\n\xff").expect("seven bits fill the byte up");
@@ -374,7 +374,7 @@ mod tests {
     }
 
     #[test]
-    fn comments_may_stand_anywhere_in_a_plain_one() {
+    fn comments_may_stand_anywhere_in_a_plain_bitmap() {
         let text = b"P1#a\n# b\n2#c\n#d\n 2 #e\n1#f\n0 01# g\n# h\n";
         assert_eq!(
             read(text).map(|cup| cup.to_string()),

@@ -18,42 +18,42 @@ use crate::quote::{did_you_mean, shortened};
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
 
-/// Why an object has no meaning, though it is JSON and its keys are known.
+/// The error for an object without a meaning, although it is JSON and its keys are known.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
     /// A value out of range, or missing.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// A value that this kind of thing does not have.
+    /// A key that this kind of object does not have.
     #[error("{key}: not a value of {article} {thing}{expected}", article = article(thing))]
     Foreign {
         /// The key that does not belong here.
         key: &'static str,
-        /// What it was given for.
+        /// The kind of object.
         thing: &'static str,
-        /// The keys that do belong, in the form of a clause; empty where none does.
+        /// The keys that do belong here, as a clause of a sentence; empty if there are none.
         expected: String,
     },
-    /// A figure of another name than the seven.
+    /// A name that is not one of the seven figures.
     #[error(
         "figure: {found:?} is unknown, expected one of {}{}",
         FigureKind::ALL.map(FigureKind::name).join(", "),
         figure_meant(found)
     )]
     FigureKind {
-        /// What was given.
+        /// The name that was given.
         found: String,
     },
-    /// None, or several, of the keys that tell what an object is.
+    /// None, or several, of the keys that say what an object is.
     #[error("expected exactly one of the keys {0}")]
     Which(&'static str),
-    /// A picture's name where names are not known.
+    /// A picture's name where names cannot be looked up, or one that was not found.
     #[error("picture: {0}")]
     Name(String),
 }
 
-/// The end of a message about a figure that there is not: which one was probably meant.
+/// Returns the end of the message about an unknown figure: which one was probably meant.
 fn figure_meant(found: &str) -> String {
     match FigureKind::of_other_name(found) {
         Some(known) => format!("; {known}"),
@@ -61,7 +61,7 @@ fn figure_meant(found: &str) -> String {
     }
 }
 
-/// `a` or `an`, by the first letter.
+/// Returns `a` or `an`, by the first letter.
 fn article(noun: &str) -> &'static str {
     if noun.starts_with(['a', 'e', 'i', 'o', 'u']) {
         "an"
@@ -70,22 +70,22 @@ fn article(noun: &str) -> &'static str {
     }
 }
 
-/// Numbers by parameter.
+/// The values of the parameters that were given.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Values([Option<f64>; PARAMETERS.len()]);
 
 impl Values {
-    /// The number of a parameter's row in the table.
+    /// Returns the index of a parameter in the table.
     fn index(parameter: Parameter) -> Option<usize> {
         PARAMETERS.iter().position(|row| row.parameter == parameter)
     }
 
-    /// The value of a parameter, where one was given.
+    /// Returns the value of a parameter; None if it was not given.
     pub(crate) fn get(&self, parameter: Parameter) -> Option<f64> {
         self.0[Self::index(parameter)?]
     }
 
-    /// Gives a parameter a value.
+    /// Sets the value of a parameter.
     #[cfg(feature = "recognition")]
     pub(crate) fn set(&mut self, parameter: Parameter, value: f64) {
         if let Some(index) = Self::index(parameter) {
@@ -93,7 +93,7 @@ impl Values {
         }
     }
 
-    /// Refuses the first value that is not of the parameters expected.
+    /// Refuses the first value whose parameter is not an expected one.
     pub(crate) fn only(
         &self,
         thing: &'static str,
@@ -121,19 +121,19 @@ impl Values {
         })
     }
 
-    /// The figure that these values give.
+    /// Makes a figure from these values.
     ///
     /// # Errors
-    /// The first value that is missing, out of range, or not of this kind.
+    /// Returns an error for the first value that is missing, out of range, or not of this kind of figure.
     pub(crate) fn figure(&self, kind: FigureKind, sensor: &Sensor) -> Result<Figure, RecordError> {
         self.only(kind.name(), kind.parameters())?;
         Ok(Figure::new(kind, sensor, |parameter| self.get(parameter))?)
     }
 
-    /// The picture that these values give.
+    /// Makes a picture from these values.
     ///
     /// # Errors
-    /// The first value that is missing, out of range, or not of a picture.
+    /// Returns an error for the first value that is missing, out of range, or not of a picture.
     fn picture(&self, imprint: &Imprint, sensor: &Sensor) -> Result<Picture, RecordError> {
         self.only("picture", &PICTURE_PARAMETERS)?;
         Ok(Picture::new(*imprint, sensor, |parameter| {
@@ -141,10 +141,10 @@ impl Values {
         })?)
     }
 
-    /// The sensor that these values give, the others as in `base`.
+    /// Makes a sensor from these values; the missing ones are those of `base`.
     ///
     /// # Errors
-    /// The first value that is out of range or not of a sensor.
+    /// Returns an error for the first value that is out of range or not of a sensor.
     pub(crate) fn sensor(&self, base: Sensor) -> Result<Sensor, RecordError> {
         self.only("sensor", &SENSOR_PARAMETERS)?;
         SENSOR_PARAMETERS
@@ -156,20 +156,20 @@ impl Values {
     }
 }
 
-/// An imprint, or the name of a shape that has one.
+/// An imprint, or the name of a shape.
 #[derive(Clone, Debug)]
 pub(crate) enum ImprintOrName<'a> {
-    /// It was given as rows of `#` and `.`.
+    /// An imprint, given as rows of `#` and `.`.
     Imprint(Box<Imprint>),
-    /// A name.
+    /// The name of a shape.
     Name(Cow<'a, str>),
 }
 
 impl ImprintOrName<'_> {
-    /// The imprint; a name is looked up.
+    /// Returns the imprint; a name is looked up.
     ///
     /// # Errors
-    /// Where the name leads to none.
+    /// Returns an error if the lookup of the name fails.
     pub(crate) fn imprint(
         &self,
         lookup: &dyn Fn(&str) -> Result<Imprint, String>,
@@ -184,23 +184,23 @@ impl ImprintOrName<'_> {
 /// An object with any of the keys that occur in jobs, sensors and sources.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Record<'a> {
-    /// A figure's name.
+    /// The name of a figure.
     pub(crate) figure: Option<Cow<'a, str>>,
-    /// A picture's rows or name.
+    /// The rows or the name of a picture.
     pub(crate) picture: Option<ImprintOrName<'a>>,
     /// A whole matrix.
     pub(crate) imprint: Option<Imprint>,
     /// A sensor.
     pub(crate) sensor: Option<Values>,
-    /// All keys that are parameters.
+    /// The values of all keys that are parameters.
     pub(crate) values: Values,
 }
 
 impl Record<'_> {
-    /// The figure or the picture that it gives, whose key must be the only one of its kind.
+    /// Returns the figure or the picture of the record. Exactly one of the two keys must be there, and not `imprint`.
     ///
     /// # Errors
-    /// Any [`RecordError`].
+    /// Returns any [`RecordError`].
     pub(crate) fn source(
         &self,
         sensor: &Sensor,
@@ -221,7 +221,7 @@ impl Record<'_> {
         }
     }
 
-    /// Refuses a sensor where it would change nothing.
+    /// Refuses a sensor, for objects in which it would change nothing.
     pub(crate) fn no_sensor(&self, thing: &'static str) -> Result<(), RecordError> {
         if self.sensor.is_none() {
             return Ok(());
@@ -259,7 +259,7 @@ impl<'de> Visitor<'de> for RecordVisitor {
 }
 
 impl<'a> Record<'a> {
-    /// Takes the value of a key, which should be one of `known`.
+    /// Reads the value of a key, which should be one of `known`.
     pub(crate) fn take<'de: 'a, A: MapAccess<'de>>(
         &mut self,
         key: &str,
@@ -286,19 +286,19 @@ impl<'a> Record<'a> {
 pub(crate) struct KnownKeys {
     /// The keys that a message about an unknown key lists.
     pub(crate) named: &'static [&'static str],
-    /// More of them, listed behind those.
+    /// More keys, listed after those.
     pub(crate) others: &'static [&'static str],
     /// Whether the keys of all parameters are known as well.
     pub(crate) parameters: bool,
 }
 
-/// Those of a record by itself.
+/// The keys of a record by itself.
 const RECORD_KEYS: KnownKeys = KnownKeys {
     named: &["figure", "picture", "imprint", "sensor"],
     others: &[],
     parameters: true,
 };
-/// Those of a sensor.
+/// The keys of a sensor.
 const SENSOR_KEYS: KnownKeys = KnownKeys {
     named: &["columns", "rows", "threshold", "pitch_mm"],
     others: &[],
@@ -306,7 +306,7 @@ const SENSOR_KEYS: KnownKeys = KnownKeys {
 };
 
 impl KnownKeys {
-    /// The message about a key that is not one of these.
+    /// Returns the message about an unknown key.
     fn unknown(&self, key: &str) -> String {
         let mut named = [self.named, self.others].concat();
         let parameters = self
@@ -330,7 +330,7 @@ impl KnownKeys {
     }
 }
 
-/// The value of a key; an error names the key, and stays where it was found.
+/// Reads the value of a key; an error names the key and keeps its position.
 pub(crate) fn value_of<'de, T: Deserialize<'de>, A: MapAccess<'de>>(
     key: &str,
     map: &mut A,
@@ -345,7 +345,7 @@ pub(crate) fn value_of<'de, T: Deserialize<'de>, A: MapAccess<'de>>(
 /// Stores the value of a key.
 ///
 /// # Errors
-/// If it was given before: neither value would be more right than the other.
+/// Returns an error if there was a value already: neither would be more right than the other.
 pub(crate) fn once<T, E: Error>(
     key: &'static str,
     slot: &mut Option<T>,
@@ -359,7 +359,7 @@ pub(crate) fn once<T, E: Error>(
 }
 
 impl Values {
-    /// Takes the value of a key that must be a parameter.
+    /// Reads the value of a key that must be a parameter.
     fn take<'de, A: MapAccess<'de>>(
         &mut self,
         key: &str,
@@ -394,7 +394,7 @@ impl<'de> Deserialize<'de> for Values {
     }
 }
 
-/// A text, borrowed where JSON needs no unescaping.
+/// A text, borrowed if JSON needs no unescaping.
 pub(crate) struct Text<'a>(pub(crate) Cow<'a, str>);
 
 impl<'de: 'a, 'a> Deserialize<'de> for Text<'a> {
@@ -462,10 +462,10 @@ impl<'de> Visitor<'de> for RowsVisitor {
     }
 }
 
-/// What an imprint is given as.
+/// The form of an imprint in JSON, for messages.
 const ROWS: &str = "rows of '#' and '.'";
 
-/// Takes a row of an imprint where it stands, so that an error is reported there.
+/// Parses the next row of an imprint in place, so that an error is reported at the row.
 struct NextRow<'a>(&'a mut ImprintRows);
 
 impl<'de> DeserializeSeed<'de> for NextRow<'_> {
@@ -486,7 +486,7 @@ impl Visitor<'_> for NextRow<'_> {
 }
 
 impl Serialize for Source {
-    /// The object that reads back as the same source.
+    /// Writes the object that reads back as the same source.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         match self {

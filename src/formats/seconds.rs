@@ -1,22 +1,24 @@
-//! Times of frames in seconds, without the noise of their subtraction.
+//! Times of frames in seconds, without the rounding noise of subtraction.
 
 use crate::parameter::number::to_decimals;
 
-/// Times up to here are exact to less than a nanosecond; those from 1970 on are to less than a microsecond.
+/// The limit up to which times are exact to less than a nanosecond. Times since 1970 are exact to less than a
+/// microsecond.
 const FINE: f64 = 1e6;
 
-/// A number of seconds, to the nanosecond; finite.
+/// Rounds a number of seconds to the nanosecond; the result is finite.
 pub(crate) fn to_nanoseconds(seconds: f64) -> f64 {
     to_decimals(finite(seconds), 9)
 }
 
-/// The seconds from `start` to `time`, both finite, as exactly as these are: 2.3 s − 2.2 s is 0.1 s. Finite.
+/// Returns the seconds from `start` to `time`, both finite, as exactly as these are: 2.3 s − 2.2 s is 0.1 s. The
+/// result is finite.
 pub(crate) fn since(start: f64, time: f64) -> f64 {
     let is_fine = start.abs().max(time.abs()) < FINE;
     to_decimals(finite(time - start), if is_fine { 9 } else { 6 })
 }
 
-/// The nearest finite number: a file may give times whose product or difference overflows.
+/// Returns the nearest finite number: the times of a file may have a product or difference that overflows.
 fn finite(seconds: f64) -> f64 {
     seconds.clamp(f64::MIN, f64::MAX)
 }

@@ -1,4 +1,4 @@
-//! Errors against sizes in files: comma-separated values, and curves to draw.
+//! Errors against sizes, as files: comma-separated values, and curves to draw.
 
 use std::fmt::Write;
 
@@ -6,12 +6,12 @@ use crate::formats::LinePlot;
 use crate::formats::value::decimal;
 use crate::recognition::{SeparationPoint, SizeAxis, SmallestSize};
 
-/// The points of one threshold.
+/// The curve of one threshold.
 #[derive(Clone, Debug)]
 pub(crate) struct SeparationCurve {
     /// The threshold.
     pub(crate) threshold: f64,
-    /// The limit in each size.
+    /// The limit of one touch at each size.
     pub(crate) points: Vec<SeparationPoint>,
     /// The smallest size that reaches the wanted error; None if none does, or none is wanted.
     #[cfg_attr(
@@ -21,12 +21,12 @@ pub(crate) struct SeparationCurve {
     pub(crate) smallest: Option<SmallestSize>,
 }
 
-/// A value as short as it can be written.
+/// Formats a value with at most six decimals.
 pub(crate) fn short(value: f64) -> String {
     decimal(value, 6)
 }
 
-/// A value of the axis with its unit.
+/// Formats a value of the axis with its name and unit.
 pub(crate) fn size_label(axis: SizeAxis, value: f64) -> String {
     match axis {
         SizeAxis::Pitch => format!("pitch {} mm", short(value)),
@@ -34,8 +34,8 @@ pub(crate) fn size_label(axis: SizeAxis, value: f64) -> String {
     }
 }
 
-/// A row of names, then a row for each size and threshold.
-/// Shares are written with all digits, counts as whole numbers:
+/// Returns a row of names, then a row for each size and threshold. Shares are written with all digits, counts as
+/// whole numbers:
 /// ```text
 /// scale,threshold,error,touches,right,certain,keys,side
 /// 0.5,0.5,0.44907407407407407,864,476,108,20,16
@@ -62,7 +62,7 @@ pub(crate) fn csv(axis: SizeAxis, curves: &[SeparationCurve]) -> String {
     text
 }
 
-/// The curves, over the sizes, or over the thresholds where there is one size only; and the wanted error.
+/// Draws the curves over the sizes, or over the thresholds if there is only one size; and the wanted error.
 pub(crate) fn drawing(axis: SizeAxis, curves: &[SeparationCurve], wanted: Option<f64>) -> LinePlot {
     let one_size = curves.iter().all(|curve| curve.points.len() == 1);
     if one_size && curves.len() > 1 {
@@ -89,7 +89,7 @@ pub(crate) fn drawing(axis: SizeAxis, curves: &[SeparationCurve], wanted: Option
     with_wanted(plot, wanted, &all)
 }
 
-/// With a line at the wanted error, as long as the curves.
+/// Adds a line at the wanted error, as long as the curves.
 fn with_wanted(plot: LinePlot, wanted: Option<f64>, points: &[(f64, f64)]) -> LinePlot {
     let Some(wanted) = wanted else { return plot };
     let values = || points.iter().map(|point| point.0);

@@ -13,44 +13,44 @@ use crate::quote::shortened;
 use crate::sensor::Sensor;
 use crate::source::Source;
 
-/// What the first key of a file must say.
+/// The required value of a file's first key.
 pub const FORMAT: &str = "taxel-shape/1";
 
-/// No shape file is larger; what is larger is not read.
+/// The size limit of a shape file in bytes; a larger file is not read.
 pub const MAX_BYTES: usize = 1 << 20;
 
-/// A shape as it is stored; made by [`StoredShape::new`] or [`StoredShape::read`].
+/// A stored shape; made by [`StoredShape::new`] or [`StoredShape::read`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StoredShape {
-    /// Its name.
+    /// The name.
     pub name: Name,
-    /// The sensor that it was made on.
+    /// The sensor that the shape was made on.
     pub sensor: Sensor,
-    /// Its taxels; as many columns and rows as the sensor has.
+    /// The taxels; as many columns and rows as the sensor has.
     pub imprint: Imprint,
-    /// What made it.
+    /// The figure or picture that left the imprint; None if it was drawn by hand.
     pub source: Option<Source>,
 }
 
-/// Why a text is not a stored shape.
+/// The error for text that is not a stored shape.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeError {
-    /// Too large to be one.
+    /// More than [`MAX_BYTES`] bytes.
     #[error("larger than 1 MiB, the limit for a shape")]
     Large,
-    /// Not JSON, not an object with the keys of a shape, or another format, a newer one perhaps.
+    /// Not JSON, not an object with the keys of a shape, or of another format, perhaps a newer one.
     #[error("line {line}, column {column}: {message}")]
     Json {
-        /// Counted from 1.
+        /// The line number, from 1.
         line: usize,
-        /// Counted from 1.
+        /// The column number, from 1.
         column: usize,
-        /// What is wrong.
+        /// What is wrong, in words.
         message: String,
     },
-    /// A key without which it is not a shape.
+    /// A required key that is missing.
     #[error("{0}: missing")]
     Missing(&'static str),
     /// An invalid source.
@@ -67,10 +67,10 @@ pub enum ShapeError {
 }
 
 impl StoredShape {
-    /// A shape of these parts.
+    /// Makes a stored shape of these parts.
     ///
     /// # Errors
-    /// [`ShapeError::Size`] where the imprint has another number of columns or rows than the sensor.
+    /// Returns [`ShapeError::Size`] if the imprint has another number of columns or rows than the sensor.
     pub fn new(
         name: Name,
         sensor: Sensor,
@@ -92,7 +92,7 @@ impl StoredShape {
         })
     }
 
-    /// The same under another name.
+    /// Returns the same shape under another name.
     #[must_use]
     pub fn renamed(self, name: Name) -> Self {
         Self { name, ..self }
@@ -101,7 +101,7 @@ impl StoredShape {
     /// Reads a file's content; a byte order mark before it is skipped.
     ///
     /// # Errors
-    /// What is wrong with it, where, and what was expected.
+    /// Returns an error that says what is wrong, where, and what was expected.
     pub fn read(text: &[u8]) -> Result<Self, ShapeError> {
         if text.len() > MAX_BYTES {
             return Err(ShapeError::Large);
@@ -130,7 +130,7 @@ impl StoredShape {
         Self::new(name, sensor, imprint, source.map_err(ShapeError::Source)?)
     }
 
-    /// The file's content, a line per row of the imprint.
+    /// Returns the content of the file, with a line per row of the imprint.
     pub fn write(&self) -> String {
         let mut text = json::pretty(self);
         text.push('\n');
@@ -152,7 +152,7 @@ impl Serialize for StoredShape {
     }
 }
 
-/// The name of a file; refused where it stands if it is none.
+/// The name in a file; an invalid one is refused at its place in the file.
 struct NameRecord(Name);
 
 impl<'de> Deserialize<'de> for NameRecord {
@@ -171,7 +171,7 @@ impl<'de> Deserialize<'de> for NameRecord {
     }
 }
 
-/// The sensor of a file.
+/// The sensor in a file.
 struct SensorRecord(Sensor);
 
 impl<'de> Deserialize<'de> for SensorRecord {
@@ -181,18 +181,18 @@ impl<'de> Deserialize<'de> for SensorRecord {
     }
 }
 
-/// A file's keys.
+/// The keys of a file.
 #[derive(Default)]
 struct ShapeFile<'a> {
-    /// Whether it says that it is one of [`FORMAT`].
+    /// Whether the key `format` was given, with the value [`FORMAT`].
     format: bool,
-    /// Its name.
+    /// The name.
     name: Option<NameRecord>,
-    /// The sensor that it was stored on.
+    /// The sensor.
     sensor: Option<SensorRecord>,
-    /// Its rows.
+    /// The imprint.
     imprint: Option<ImprintRecord>,
-    /// What made it, if that is known.
+    /// The figure or picture that left the imprint, if it is known.
     source: Option<Record<'a>>,
 }
 
@@ -218,7 +218,7 @@ impl<'de: 'a, 'a> Deserialize<'de> for ShapeFile<'a> {
                         "format" => {
                             let format: String = map.next_value()?;
                             if format != FORMAT {
-                                // What comes after it is that format's business: said before its keys are refused.
+                                // Another format has other keys, so its name is reported before its keys are refused.
                                 return Err(A::Error::custom(format_args!(
                                     "format: {:?} is not known here, expected {FORMAT:?}",
                                     shortened(&format)

@@ -1,10 +1,11 @@
-//! An imprint as a table of numbers (CSV): a line a row, 1 for an active taxel, 0 for an inactive one.
+//! An imprint as a table of numbers (CSV): one line per row, 1 for an active taxel, 0 for an inactive one.
 //!
-//! Written with commas and without a heading. Read as other programs write such a table: parted by commas, semicolons,
-//! tabs or spaces, with or without quotes, as `1`, `1.0`, `1.000e+00` or `true`; any one value may stand for active
-//! taxels beside 0. Around the values may be what these programs add: a line `sep=;`, lines of comments that begin with
-//! `#`, a row of names, a first column of row numbers or names (with the name of that column empty, or missing), and a
-//! separator after the last value of every row. Lines and columns of errors count from 1; a column is one of the table.
+//! Tables are written with commas and without a heading. They are read as other programs write them: separated by
+//! commas, semicolons, tabs or spaces, with or without quotes, with values such as `1`, `1.0`, `1.000e+00` or `true`;
+//! any one value besides 0 may mean active. Around the values there may be the additions of these programs: a line
+//! `sep=;`, comment lines that begin with `#`, a row of names, a first column of row numbers or names (with the name
+//! of that column empty or missing), and a separator after the last value of every row. In errors, lines and columns
+//! count from 1; a column is one of the table.
 
 use std::fmt;
 
@@ -14,61 +15,61 @@ use crate::parameter::number::counted;
 use crate::quote::shortened;
 use crate::sensor::MAX_SIDE;
 
-/// Why bytes are not a table of an imprint.
+/// The error for bytes that are not a table of an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TableError {
-    /// A byte that is not text.
+    /// A line that is not UTF-8.
     Text {
-        /// Which line.
+        /// The line number.
         line: usize,
     },
-    /// No number.
+    /// A field that is not a number.
     Value {
-        /// Which line.
+        /// The line number.
         line: usize,
-        /// Which value of it.
+        /// The column number.
         column: usize,
-        /// What stands there.
+        /// The text of the field.
         found: String,
     },
-    /// A number beside 0 and another one.
+    /// A third number, besides 0 and the number of active taxels.
     Third {
-        /// Which line.
+        /// The line number.
         line: usize,
-        /// Which value of it.
+        /// The column number.
         column: usize,
-        /// What stands there.
+        /// The text of the field.
         found: String,
-        /// The number that active taxels have.
+        /// The number of active taxels.
         active: String,
     },
-    /// One number everywhere that is neither 0 nor 1 nor 255.
+    /// The same number everywhere, which is not 0, 1 or 255.
     Unclear {
-        /// That number.
+        /// The number.
         found: String,
     },
-    /// A line of another length than the first.
+    /// A line with another number of values than the first.
     Ragged {
-        /// Which line.
+        /// The line number.
         line: usize,
-        /// Its length.
+        /// The number of values in this line.
         found: usize,
-        /// The first line's number.
+        /// The line number of the first row.
         first: usize,
-        /// The first line's length.
+        /// The number of values in the first row.
         expected: usize,
     },
     /// A line with too many values.
     Columns {
-        /// Which line.
+        /// The line number.
         line: usize,
-        /// Its length.
+        /// The number of values in this line.
         found: usize,
     },
     /// No lines, or too many.
     Lines {
-        /// How many.
+        /// The number of lines.
         found: usize,
     },
 }
@@ -127,10 +128,10 @@ impl fmt::Display for TableError {
 
 impl std::error::Error for TableError {}
 
-/// Reads any bytes.
+/// Reads a table from any bytes.
 ///
 /// # Errors
-/// What is wrong first, and where.
+/// Returns the first error and its place.
 ///
 /// ```
 /// use taxel::formats::table::{read, write};
@@ -181,35 +182,35 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, TableError> {
     }
 }
 
-/// A line's fields, without spaces and quotes around them.
+/// A line's fields, without the spaces and quotes around them.
 struct Row<'a> {
-    /// Its number in the file, from 1.
+    /// The line number in the file, from 1.
     line: usize,
     fields: Vec<&'a str>,
 }
 
-/// What is left of a file without comments, names and numbers of rows: 1 to 64 rows of as many fields each.
+/// The rows of a table, without comments, names and row numbers: 1 to 64 rows with equally many fields each.
 struct Table<'a> {
-    /// What parts the fields of a line; none where spaces do.
+    /// The separator between the fields of a line; None for spaces.
     mark: Option<char>,
     rows: Vec<Row<'a>>,
-    /// How many columns before the first were taken away.
+    /// The number of columns removed before the first.
     skipped: usize,
 }
 
-/// Names, row numbers and a separator at the end add one each.
+/// The most lines, and fields in a line: names, row numbers and a separator at the end add one each.
 const MOST: usize = MAX_SIDE as usize + 2;
 
 impl<'a> Table<'a> {
     fn of(text: &'a str) -> Result<Self, TableError> {
-        // Without the blank lines at the end; the last line may end in a separator.
+        // Leave out the blank lines at the end; the last line may end in a separator.
         let end = text.trim_end().len();
         let end = text[end..].find('\n').map_or(text.len(), |rest| end + rest);
         let lines = (1..).zip(text[..end].split('\n'));
         let lines = lines.filter(|(_, line)| !line.trim_start().starts_with('#'));
         let lines = lines.skip_while(|(_, line)| line.trim().is_empty());
         let found = lines.clone().count();
-        // One more, which may name the separator.
+        // One more line, which may name the separator.
         let mut lines: Vec<(usize, &str)> = lines.take(MOST + 1).collect();
         let given = lines.first();
         let given = given.and_then(|(_, line)| named_separator(line.as_bytes()).map(char::from));
@@ -220,7 +221,7 @@ impl<'a> Table<'a> {
         let Some((_, last)) = lines.last().filter(|_| found <= MOST) else {
             return Err(TableError::Lines { found });
         };
-        // The last line is one of numbers: names may hold any character.
+        // The last line holds numbers; names may contain any character.
         let in_last = |mark: &char| last.contains(*mark);
         let in_any = |mark: &char| lines.iter().any(|(_, line)| line.contains(*mark));
         let marks = ['\t', ';', ','].into_iter();
@@ -246,7 +247,8 @@ impl<'a> Table<'a> {
         Ok(table)
     }
 
-    /// Takes away the row of names, the column of row numbers, and what follows the separator at the end of every row.
+    /// Removes the row of names, the column of row numbers, and the empty field behind a separator at the end of
+    /// every row.
     fn drop_names(&mut self) {
         let Some(first) = self.rows.first() else {
             return;
@@ -277,8 +279,8 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Whether the fields of the first row are names: none of them is a number, or they count from 0 after an empty
-    /// one.
+    /// Returns true if the fields of the first row are names: none of them is a number, or they count from 0 after an
+    /// empty one.
     fn are_names(&self, fields: &[&str]) -> bool {
         let words = fields
             .iter()
@@ -291,7 +293,7 @@ impl<'a> Table<'a> {
         words || numbered
     }
 
-    /// Whether there are as many rows and columns as an imprint has, the same number of columns in each row.
+    /// Checks that an imprint can have this number of rows and columns, and that all rows have equally many columns.
     fn check(&self) -> Result<(), TableError> {
         let most = usize::from(MAX_SIDE);
         let found = self.rows.len();
@@ -315,7 +317,7 @@ impl<'a> Table<'a> {
         Ok(())
     }
 
-    /// The number in a field; None if it is none, or not finite.
+    /// Returns the number in a field; None if it is not a number, or not finite.
     fn value(&self, field: &str) -> Option<f64> {
         if field.eq_ignore_ascii_case("true") {
             return Some(1.0);
@@ -324,7 +326,7 @@ impl<'a> Table<'a> {
             return Some(0.0);
         }
         let number: Option<f64> = field.parse().ok();
-        // Where a comma parts nothing, it is the decimal sign.
+        // Where the comma is not the separator, it is the decimal sign.
         let decimal = || field.replacen(',', ".", 1).parse().ok();
         let number = if self.mark == Some(',') {
             number
@@ -351,11 +353,11 @@ pub(crate) fn named_separator(line: &[u8]) -> Option<u8> {
     (is_usual && marks.iter().all(|&byte| byte == mark)).then_some(mark)
 }
 
-/// The fields of a line; those between spaces where no mark parts them.
+/// Splits a line into its fields, at the separator, or at spaces if there is none.
 fn split(line: &str, mark: Option<char>) -> impl Iterator<Item = &str> {
     let marked = mark.map(|mark| line.split(mark));
     let spaced = mark.is_none().then(|| line.split_whitespace());
-    // A blank line has one field, an empty one, as it has with a mark.
+    // A blank line has one empty field, as it has with a separator.
     let blank = (mark.is_none() && line.trim().is_empty()).then_some("");
     marked
         .into_iter()
@@ -364,7 +366,7 @@ fn split(line: &str, mark: Option<char>) -> impl Iterator<Item = &str> {
         .chain(blank)
 }
 
-/// A field without the spaces and the quotes around it.
+/// Removes the spaces and the quotes around a field.
 fn bare(field: &str) -> &str {
     let field = field.trim();
     let inner = field
@@ -373,12 +375,13 @@ fn bare(field: &str) -> &str {
     inner.unwrap_or(field).trim()
 }
 
-/// Whether a field is a number of any kind, also one that is not finite.
+/// Returns true if a field is a number of any kind, even one that is not finite.
 fn is_number(field: &str) -> bool {
     field.parse::<f64>().is_ok()
 }
 
-/// Whether fields count on, from 0 or 1: at least three of them, for 0 and 1 may be values.
+/// Returns true if the fields count up from 0 or 1. There must be at least three of them, since 0 and 1 may be
+/// values.
 fn counts(fields: &[&str]) -> bool {
     fields.len() > 2 && (counts_from(fields, 0) || counts_from(fields, 1))
 }
@@ -388,7 +391,7 @@ fn counts_from(fields: &[&str], start: usize) -> bool {
     numbered.all(|(number, field)| field.parse() == Ok(number))
 }
 
-/// The table, with a line end after each row.
+/// Returns the table, with a line end after each row.
 pub fn write(imprint: &Imprint) -> String {
     let mut text = String::new();
     for row in 0..imprint.rows() {
@@ -424,7 +427,7 @@ mod tests {
             "0,1,2\n1,0,1\n1,1,1\n",
             ",x,y,z\ntop,True,False,True\nbottom,True,True,True\n",
             "x,y,z\n1,0,1\n1,1,1\n",
-            // R: one name less than there are columns.
+            // R writes one name fewer than there are columns.
             "\"V1\" \"V2\" \"V3\"\n\"1\" 1 0 1\n\"2\" 1 1 1\n",
             "\"\",\"V1\",\"V2\",\"V3\"\n\"1\",1,0,1\n\"2\",1,1,1\n",
             // Spreadsheets.
@@ -454,10 +457,10 @@ mod tests {
             read(b"1\n0\n").map(|bar| bar.to_string()),
             Ok("#\n.".to_owned())
         );
-        // The first column counts on, so it is not a mask.
+        // The first column counts up, so it is not part of the mask.
         let bars = read(b"0,1,0\n1,0,1\n2,1,0\n").map(|bars| bars.to_string());
         assert_eq!(bars, Ok("#.\n.#\n#.".to_owned()));
-        // 0 and 1 are values wherever they can be.
+        // 0 and 1 are taken as values wherever possible.
         let step = read(b"0,1\n1,1\n").map(|step| step.to_string());
         assert_eq!(step, Ok(".#\n##".to_owned()));
         let full = |text: &[u8]| read(text).map(|full| full.count());
@@ -468,7 +471,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place() {
+    fn errors_name_their_place() {
         let wrong = |bytes: &[u8], message: &str| {
             let outcome = read(bytes).map_err(|error| error.to_string());
             assert_eq!(outcome, Err(message.to_owned()));

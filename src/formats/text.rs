@@ -1,57 +1,58 @@
-//! An imprint as a text of its own: a line a row, `#` for an active taxel, `.` for an inactive one.
+//! An imprint as plain text: one line per row, `#` for an active taxel, `.` for an inactive one.
 //!
-//! Lines may end in blanks and CRLF, and blank ones may follow the last row. Lines and columns of errors count from 1.
+//! Lines may end in blanks and in CRLF, and blank lines may follow the last row. In errors, lines and columns count
+//! from 1.
 
 use std::fmt;
 
 use crate::imprint::{Imprint, ImprintError};
 use crate::parameter::number::counted;
 
-/// Why bytes are not an imprint as text.
+/// The error for bytes that are not an imprint as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TextError {
-    /// A byte that is not text.
+    /// A byte that is not UTF-8.
     Byte {
-        /// Which line.
+        /// The line number.
         line: usize,
-        /// Which character of it.
+        /// The character in the line.
         column: usize,
-        /// What stands there.
+        /// The byte that was found.
         byte: u8,
     },
     /// A character that is not a taxel.
     Character {
-        /// Which line.
+        /// The line number.
         line: usize,
-        /// Which character of it.
+        /// The character in the line.
         column: usize,
-        /// What stands there.
+        /// The character that was found.
         found: char,
     },
     /// A line of another length than the first.
     Ragged {
-        /// Which line.
+        /// The line number.
         line: usize,
-        /// Where it is too long, or ends too early.
+        /// The column of the first taxel too many, or after the end of a shorter line.
         column: usize,
-        /// Its length.
+        /// The length of the line.
         found: usize,
-        /// The first line's length.
+        /// The length of the first line.
         expected: u8,
     },
-    /// An empty line, or one with too many taxels.
+    /// An empty line, or a line with too many taxels.
     Columns {
-        /// Which line.
+        /// The line number.
         line: usize,
-        /// Where it is too long, or ends too early.
+        /// The column of the first taxel too many, or 1 in an empty line.
         column: usize,
-        /// Its length.
+        /// The length of the line.
         found: usize,
     },
     /// No lines, or too many.
     Lines {
-        /// How many.
+        /// The number of lines.
         found: usize,
     },
 }
@@ -104,10 +105,10 @@ impl fmt::Display for TextError {
 
 impl std::error::Error for TextError {}
 
-/// Reads any bytes.
+/// Reads an imprint as text from any bytes.
 ///
 /// # Errors
-/// What is wrong first, and where.
+/// Returns the first error and its place.
 ///
 /// ```
 /// use taxel::formats::text::{read, write};
@@ -154,10 +155,10 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, TextError> {
     })
 }
 
-/// Reads rows of `0` and `1` without separators, and rows of `#` and `.` with a blank between the taxels, as other programs
-/// write them; None for anything else.
+/// Reads rows of `0` and `1` without separators, and rows of `#` and `.` with a blank between the taxels, as other
+/// programs write them; None for anything else.
 ///
-/// A row of one digit is left to tables, where it is a column.
+/// A row of a single digit is left to tables, where it is a column.
 pub(crate) fn of_other_signs(bytes: &[u8]) -> Option<Imprint> {
     let taxels = |row: &str| {
         let row = row.trim_end_matches([' ', '\t']).as_bytes();
@@ -175,7 +176,7 @@ pub(crate) fn of_other_signs(bytes: &[u8]) -> Option<Imprint> {
     Imprint::from_rows(rows?.iter().map(String::as_str)).ok()
 }
 
-/// What is wrong first in bytes that are UTF-8 only up to an end.
+/// Returns the first error in bytes that are UTF-8 only up to `end`.
 fn no_text(bytes: &[u8], end: usize) -> TextError {
     let valid = String::from_utf8_lossy(&bytes[..end]);
     let is_stray = |found: &(usize, char)| !matches!(found.1, '#' | '.' | ' ' | '\t' | '\r' | '\n');
@@ -197,7 +198,7 @@ fn no_text(bytes: &[u8], end: usize) -> TextError {
     }
 }
 
-/// The lines without their ends, and without the blank ones after the last that is not.
+/// Splits a text into lines, without line ends and without the blank lines at the end.
 pub(crate) fn lines(text: &str) -> Vec<&str> {
     let mut lines: Vec<&str> = text
         .split('\n')
@@ -209,7 +210,7 @@ pub(crate) fn lines(text: &str) -> Vec<&str> {
     lines
 }
 
-/// The text, with a line end after each row.
+/// Returns the text, with a line end after each row.
 pub fn write(imprint: &Imprint) -> String {
     format!("{imprint}\n")
 }
@@ -219,7 +220,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn digits_and_spaced_signs_are_read_and_nothing_else() {
+    fn rows_of_digits_and_spaced_signs_are_read() {
         let shown = |text: &str| of_other_signs(text.as_bytes()).map(|imprint| write(&imprint));
         assert_eq!(shown("010\n111 \r\n\n").as_deref(), Some(".#.\n###\n"));
         assert_eq!(shown(". # .\n# # #\n").as_deref(), Some(".#.\n###\n"));

@@ -4,7 +4,7 @@ use crate::description::{Dimension, Value};
 
 pub use crate::parameter::number::{counted, grouped};
 
-/// The text of a value; None if the value does not exist.
+/// Formats a value; None if the value does not exist.
 ///
 /// ```
 /// use taxel::description::{Dimension, Value};
@@ -21,7 +21,7 @@ pub fn text(value: Value, unit: Dimension) -> Option<String> {
     }
 }
 
-/// The text of a length in mm or an area in mm²; None for any other dimension, or if the value does not exist.
+/// Formats a length in mm or an area in mm²; None for any other dimension, or if the value does not exist.
 pub fn in_millimetres(value: Value, unit: Dimension, pitch_mm: f64) -> Option<String> {
     match unit {
         Dimension::Length => times(value, pitch_mm, 4).map(|text| format!("{text} mm")),
@@ -30,7 +30,7 @@ pub fn in_millimetres(value: Value, unit: Dimension, pitch_mm: f64) -> Option<St
     }
 }
 
-/// The numbers of a value times a factor, with at most `decimals` decimals; None if the value does not exist.
+/// Formats the numbers of a value times a factor, with at most `decimals` decimals; None if the value does not exist.
 pub fn times(value: Value, factor: f64, decimals: usize) -> Option<String> {
     let number = |number: f64| decimal(number * factor, decimals);
     match value {
@@ -52,8 +52,8 @@ pub fn times(value: Value, factor: f64, decimals: usize) -> Option<String> {
     }
 }
 
-/// A number with as many decimals as fit into `width` characters, at most four, and no zeros at their end; longer where
-/// it does not fit without any.
+/// Formats a number with as many decimals as fit into `width` characters, at most four, without trailing zeros. The
+/// text is longer if even the whole number does not fit.
 ///
 /// ```
 /// use taxel::formats::value::fitting;
@@ -67,8 +67,8 @@ pub fn fitting(number: f64, width: usize) -> String {
         .unwrap_or_else(|| decimal(number, 0))
 }
 
-/// The same of a measured value, which may lie far below 1. It has three digits that count then; where these do not fit,
-/// a power of ten with as many as do; and where no power of ten fits, it is 0.
+/// Formats a measured value, like [`fitting`]. A value nearer to 0 than 0.01 gets three significant digits;
+/// if these do not fit, a power of ten with as many digits as fit; and if no power of ten fits, "0".
 ///
 /// ```
 /// use taxel::formats::value::measured;
@@ -108,12 +108,12 @@ pub fn percent(share: f64) -> String {
     }
 }
 
-/// The decimals of the smallest number.
+/// The number of decimals of the smallest positive f64.
 const MOST_DECIMALS: usize = 1074;
 
-/// A number with at most `decimals` decimals, without trailing zeros, and without a minus before a zero.
+/// Formats a number with at most `decimals` decimals, without trailing zeros, and without a minus before a zero.
 pub(crate) fn decimal(number: f64, decimals: usize) -> String {
-    // No number has more, and a format string takes no more than 65,535.
+    // No number has more decimals, and a format string takes no more than 65,535.
     let decimals = decimals.min(MOST_DECIMALS);
     let text = format!("{number:.decimals$}");
     let text = if text.contains('.') {
@@ -128,8 +128,8 @@ pub(crate) fn decimal(number: f64, decimals: usize) -> String {
     }
 }
 
-/// A standard deviation with at most `decimals` decimals. One that would be rounded to 0 is shown as `<0.01`, or less than
-/// one in the last decimal there is.
+/// Formats a standard deviation with at most `decimals` decimals. If it would be rounded to 0, the text says that it
+/// is less than one in the last decimal: `<0.01`.
 ///
 /// ```
 /// use taxel::formats::value::deviation;

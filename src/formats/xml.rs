@@ -1,6 +1,6 @@
-//! Text inside XML.
+//! Escapes text for XML.
 
-/// The text with what has a meaning in XML escaped, and characters that XML does not have replaced. For the content of
+/// Escapes the characters that have a meaning in XML, and replaces those that XML does not allow. For the content of
 /// an element and for values in double quotes.
 pub(crate) fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());

@@ -1,30 +1,30 @@
-//! The marks of an axis: round numbers, and not too many.
+//! The marks of an axis: round numbers, and not too many of them.
 
-/// The largest number of steps between marks.
+/// The most steps between the first and the last mark.
 const STEPS: f64 = 8.0;
 
-/// Where the marks of an axis stand, in its unit, with their labels.
+/// The marks of an axis: their places in its unit, and their labels.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ticks(pub(super) Vec<(f64, String)>);
 
 impl Ticks {
-    /// Ticks from 0 to `length`, at steps of 1, 2 or 5 times a power of ten, none smaller than `least`.
+    /// Makes marks from 0 to `length`, at steps of 1, 2 or 5 times a power of ten, none smaller than `least`.
     pub(super) fn new(length: f64, least: f64) -> Self {
         Self::between((0.0, length), least, STEPS)
     }
 
-    /// The same from one number to another, at most about `steps` of them.
+    /// Makes such marks from one number to another, at most about `steps` of them.
     pub(super) fn between((low, high): (f64, f64), least: f64, steps: f64) -> Self {
         let smallest = ((high - low) / steps).max(least);
         let power = libm::pow(10.0, libm::log10(smallest).floor());
-        // A hair is allowed for the roundings of the logarithm.
+        // A small tolerance absorbs the rounding of the logarithm.
         let fits = |factor: &f64| factor * power >= smallest * (1.0 - 1e-9);
         let factor = [1.0, 2.0, 5.0].into_iter().find(fits).unwrap_or(10.0);
         let step = factor * power;
         let decimals = (1..=12_u8).find(|&n| step * 10_f64.powi(n.into()) >= 10.0 * (1.0 - 1e-9));
         let decimals = usize::from(decimals.map_or(12, |n| n - 1));
         let first = (low / step - 1e-9).ceil();
-        // Never a negative zero.
+        // Adding 0.0 turns a negative zero into a positive one.
         let place = |index: u32| (first + f64::from(index)) * step + 0.0;
         let last = high + (high - low) * 1e-9;
         let places = (0..=10).map(place).take_while(|&place| place <= last);
@@ -35,22 +35,22 @@ impl Ticks {
         )
     }
 
-    /// The longest label, in characters.
+    /// Returns the number of characters of the longest label.
     pub(super) fn width(&self) -> usize {
         let widths = self.0.iter().map(|(_, label)| label.chars().count());
         widths.max().unwrap_or(0)
     }
 }
 
-/// The numbers that an axis from `low` to `high` is marked with, and how each is written: at most about `steps` of them.
+/// Returns the marks of an axis between two ends, each with its label: at most about `steps` of them.
 #[cfg(any(test, feature = "tui"))]
 pub(crate) fn axis_marks(ends: (f64, f64), steps: u16) -> Vec<(f64, String)> {
     let steps = f64::from(steps.max(1));
     Ticks::between(ends, 0.0, steps).0
 }
 
-/// The ends of an axis for some values: a little beyond the smallest and the largest, so that no point lies on the frame.
-/// From 0 to 1 where there is none.
+/// Returns the ends of an axis for some values: a little beyond the smallest and the largest, so that no point lies
+/// on the frame. Without a finite value they are 0 and 1.
 pub(crate) fn axis_ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let nothing = (f64::INFINITY, f64::NEG_INFINITY);
     let (low, high) = values
@@ -61,7 +61,7 @@ pub(crate) fn axis_ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
     if low > high {
         return (0.0, 1.0);
     }
-    // A billionth of the size of the numbers is the least that their digits can tell.
+    // The digits of the numbers do not show differences below a billionth of their size.
     let least = low.abs().max(high.abs()).max(1e-6) * 1e-9;
     let beyond = if high - low > least {
         (high - low) * 0.04

@@ -1,20 +1,20 @@
 //! A confusion matrix as a heat map with its numbers: a row per true shape, a column per name.
 //!
-//! A cell holds a number of touches and its share of the row; the larger the share, the darker the cell. Whoever cannot
-//! tell the shades apart reads the numbers.
+//! A cell holds a number of touches and its share of the row; the larger the share, the darker the cell. The numbers
+//! are there for readers who cannot tell the shades apart.
 
 use crate::formats::drawing::page::{DrawingPage, MARGIN, TEXT, width};
 use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
 use crate::formats::value::percent;
 use crate::parameter::number::share;
 
-/// More shapes would make a page that nothing prints.
+/// The most shapes; more would make a page too large to print.
 const MOST: usize = 64;
 
-/// Longer names are cut.
+/// The most characters of a name; longer ones are cut.
 const LONGEST: usize = 30;
 
-/// The grey of a whole row in one cell: black text on it is readable.
+/// The grey of a cell that holds its whole row: black text on it is still readable.
 const DARKEST: f64 = 160.0;
 
 /// The lines between cells.
@@ -35,15 +35,15 @@ const CELL: Stroke = Stroke {
 pub struct ConfusionMap {
     /// The names of the shapes, as rows and as columns.
     labels: Vec<String>,
-    /// Touches by true shape and by the name given.
+    /// The touches by true shape and by the name given.
     counts: Vec<Vec<u128>>,
-    /// A line above the matrix.
+    /// The title above the matrix.
     title: Option<String>,
 }
 
 impl ConfusionMap {
-    /// The matrix of some shapes: `counts[i][j]` touches of shape i are named j; missing ones are 0. None without a
-    /// shape, and for more than 64.
+    /// Makes the matrix of some shapes: `counts[i][j]` touches of shape i are named j; missing counts are 0. None if
+    /// there is no shape, or more than 64.
     pub fn new(labels: &[String], counts: impl IntoIterator<Item = Vec<u128>>) -> Option<Self> {
         if labels.is_empty() || labels.len() > MOST {
             return None;
@@ -56,14 +56,14 @@ impl ConfusionMap {
         })
     }
 
-    /// With a line above; at most the first 100 characters of it.
+    /// Adds a title above; only its first 100 characters are kept.
     #[must_use]
     pub fn with_title(mut self, title: &str) -> Self {
         self.title = Some(title.chars().take(100).collect());
         self
     }
 
-    /// 0 where a row is shorter than the others.
+    /// Returns the count of a cell; 0 if its row is too short.
     fn count(&self, row: usize, column: usize) -> u128 {
         let cell = self.counts.get(row).and_then(|row| row.get(column));
         cell.copied().unwrap_or_default()
@@ -82,7 +82,7 @@ impl ConfusionMap {
             count.to_string().len()
         }));
         let cell = (width(digits.max(7)) + 8.0, TEXT * 2.0 + 8.0);
-        // Names that are wider than a cell run upwards.
+        // Names wider than a cell are written upwards.
         let upright = width(names) + 4.0 > cell.0;
         let heading = if upright { width(names) } else { TEXT };
         let title = self.title.as_ref().map_or(0.0, |_| TEXT + 6.0);
@@ -119,7 +119,7 @@ impl ConfusionMap {
     }
 }
 
-/// The page while it is laid out.
+/// A page while it is being laid out.
 struct MapLayout<'a> {
     map: &'a ConfusionMap,
     marks: Vec<Element>,
@@ -128,7 +128,7 @@ struct MapLayout<'a> {
 }
 
 impl MapLayout<'_> {
-    /// The top left corner of a cell.
+    /// Returns the top left corner of a cell.
     #[expect(clippy::cast_precision_loss, reason = "at most 64 cells")]
     fn position(&self, row: usize, column: usize) -> Position {
         (
@@ -146,7 +146,7 @@ impl MapLayout<'_> {
         });
     }
 
-    /// The cells: shades first, then lines, then numbers.
+    /// Draws the cells: shades first, then lines, then numbers.
     fn cells(&mut self) {
         let shapes = self.map.labels.len();
         let (mut lines, mut numbers) = (Vec::new(), Vec::new());
@@ -183,7 +183,7 @@ impl MapLayout<'_> {
             }
         }
         self.line("cells", lines, CELL);
-        // The diagonal, what is named right, has a frame.
+        // The diagonal, where touches are named correctly, has a frame.
         let right = (0..shapes).flat_map(|shape| {
             rectangle(
                 self.position(shape, shape),
@@ -206,7 +206,7 @@ impl MapLayout<'_> {
         });
     }
 
-    /// The names of rows and columns, and what they are.
+    /// Draws the names of rows and columns, and the titles of both axes.
     fn names(&mut self, upright: bool) {
         let (shapes, map) = (self.map.labels.len(), self.map);
         for (index, label) in map.labels.iter().enumerate() {
@@ -239,7 +239,7 @@ impl MapLayout<'_> {
     }
 }
 
-/// White for a share of 0, the darkest grey for 1.
+/// Returns the grey of a share: white for 0, the darkest grey for 1.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

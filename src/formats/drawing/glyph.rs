@@ -1,18 +1,18 @@
-//! Text in pixels: the letters of a typewriter face as the font's crate has drawn them, in one size.
+//! Text in pixels, made of the monospaced letters that a font crate contains as images of one size.
 
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
 use crate::formats::drawing::ink::Ink;
 use crate::formats::drawing::scene::{Position, TextAnchor};
 
-/// The only weight that is in the program.
+/// The only weight that is compiled in.
 const WEIGHT: FontWeight = FontWeight::Regular;
-/// Eight points at four pixels.
+/// The height of a letter: eight points at four pixels each.
 const HEIGHT: RasterHeight = RasterHeight::Size32;
-/// The base line, in pixels from the top of a letter's field.
+/// The distance of the base line from the top of a letter's image, in pixels.
 const ABOVE: i32 = 26;
 
-/// Writes a line of text; the place, in pixels, is on its base line.
+/// Writes a line of text; its place, in pixels, lies on its base line.
 pub(super) fn write(ink: &mut Ink, text: &str, place: Position, anchor: TextAnchor, upright: bool) {
     let step = whole_of(get_raster_width(WEIGHT, HEIGHT));
     let width = step.saturating_mul(whole_of(text.chars().count()));
@@ -25,7 +25,7 @@ pub(super) fn write(ink: &mut Ink, text: &str, place: Position, anchor: TextAnch
     let mut along = -back;
     for letter in text.chars() {
         let raster = get_raster(letter, WEIGHT, HEIGHT);
-        // Every question mark is there; were it not, the letter would be a blank.
+        // The question mark always exists; if it did not, the letter would be left blank.
         if let Some(raster) = raster.or_else(|| get_raster('?', WEIGHT, HEIGHT)) {
             for (down, row) in (-ABOVE..).zip(raster.rows()) {
                 for (right, &dark) in (along..).zip(row.iter()) {
@@ -42,12 +42,12 @@ pub(super) fn write(ink: &mut Ink, text: &str, place: Position, anchor: TextAnch
     }
 }
 
-/// A number of characters or pixels of a label; far below what would not fit.
+/// Converts a number of characters or pixels of a label; both are far below the limit.
 fn whole_of(count: usize) -> i32 {
     i32::try_from(count).unwrap_or(i32::MAX)
 }
 
-/// The nearest pixel.
+/// Returns the nearest pixel.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "saturates far off the page"

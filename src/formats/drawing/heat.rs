@@ -1,23 +1,23 @@
 //! A heat map in greys: the shade of each cell, and the edge of the active taxels.
 //!
-//! A value has the grey of its share of the largest one, from white at 0 and below to black; where there is no cell the
-//! page stays white. Active taxels are not filled, which would hide their values, but edged.
+//! The grey of a cell shows its value as a share of the largest one, from white at 0 and below to black; where there
+//! is no cell, the page stays white. Active taxels are edged instead of filled, which would hide their values.
 
 use crate::formats::drawing::scene::{Position, Segment};
 use crate::formats::value::fitting;
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 
-/// Shades from white to black.
+/// The number of shades from white to black.
 const SHADES: u8 = 16;
 
-/// The largest value; None where none is above 0.
+/// Returns the largest value; None if no value is above 0.
 fn largest(values: &Matrix<f64>) -> Option<f64> {
     let largest = values.values().iter().copied().fold(0.0, f64::max);
     (largest > 0.0).then_some(largest)
 }
 
-/// The cells of each shade but white, by their top left corners.
+/// Returns each grey except white with its cells, given by their top left corners.
 pub(super) fn shades(values: &Matrix<f64>) -> Vec<(u8, Vec<Position>)> {
     let Some(largest) = largest(values) else {
         return Vec::new();
@@ -42,7 +42,7 @@ pub(super) fn shades(values: &Matrix<f64>) -> Vec<(u8, Vec<Position>)> {
     all.filter(|(_, cells)| !cells.is_empty()).collect()
 }
 
-/// The lines between active and inactive taxels, in cell sides.
+/// Returns the lines between active and inactive taxels, in cell sides.
 pub(super) fn edges(imprint: &Imprint) -> Vec<Segment> {
     let mut edges = Vec::new();
     let mut line = |from: (u8, u8), to: (u8, u8)| {
@@ -66,7 +66,7 @@ pub(super) fn edges(imprint: &Imprint) -> Vec<Segment> {
     edges
 }
 
-/// What the shades mean.
+/// Returns the legend of the shades.
 pub(super) fn legend(values: &Matrix<f64>) -> String {
     match largest(values) {
         Some(largest) => format!("values from 0 (white) to {} (black)", fitting(largest, 9)),

@@ -1,8 +1,8 @@
-//! Draws on a page of grey pixels what a drawing needs: upright rectangles, lines, and the pixels of letters. A library
-//! for paths would be the natural choice, but each of the two candidates made the program larger by a tenth, 280 and
-//! 230 KB, in place of these 230 lines.
+//! Draws the elements of a page on grey pixels: upright rectangles, lines, and the pixels of letters. A library for
+//! paths would be the natural choice, but each of the two candidates made the program larger by a tenth, 280 and 230
+//! KB, instead of these 230 lines.
 //!
-//! A pixel's share of a rectangle is the product of two overlaps. Its share of a line follows from its distance: within
+//! A pixel's share of a rectangle is the product of two overlaps. Its share of a line depends on its distance: within
 //! half a pixel of the edge it falls from 1 to 0, so ends and corners are round.
 
 use std::ops::Range;
@@ -10,23 +10,23 @@ use std::ops::Range;
 use crate::formats::drawing::scene::{Position, Segment, Stroke};
 use crate::index::wide;
 
-/// The number of straight pieces that a cubic curve is drawn as. An ellipse has eight curves; a piece is off by 0.04
-/// pixels of 600 at most.
+/// The number of straight pieces in which a cubic curve is drawn. An ellipse has eight curves; if it is 600 pixels
+/// large, a piece is off by at most 0.04 pixels.
 const PIECES: u8 = 32;
 
-/// A page, row by row: 0 is black, 255 white. Positions are in pixels from its top left corner.
+/// A page of pixels. Positions are in pixels from its top left corner.
 #[derive(Clone, Debug)]
 pub(super) struct Ink {
-    /// Greys, row by row.
+    /// The greys, row by row: 0 is black, 255 white.
     pixels: Vec<u8>,
-    /// Pixels of a row.
+    /// The number of pixels in a row.
     width: u32,
-    /// Rows.
+    /// The number of rows.
     height: u32,
 }
 
 impl Ink {
-    /// A white page.
+    /// Makes a white page.
     pub(super) fn new(width: u32, height: u32) -> Self {
         Self {
             pixels: vec![255; wide(width) * wide(height)],
@@ -35,27 +35,27 @@ impl Ink {
         }
     }
 
-    /// All greys, row by row, as PNG stores them.
+    /// Returns all greys, row by row, as PNG stores them.
     pub(super) fn pixels(&self) -> &[u8] {
         &self.pixels
     }
 
-    /// Pixels of a row.
+    /// Returns the number of pixels in a row.
     pub(super) fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows.
+    /// Returns the number of rows.
     pub(super) fn height(&self) -> u32 {
         self.height
     }
 
-    /// The corners of the page.
+    /// Returns two opposite corners of the page.
     fn all(&self) -> (Position, Position) {
         ((0.0, 0.0), (self.width.into(), self.height.into()))
     }
 
-    /// Makes a pixel at least this dark; nothing beyond the page.
+    /// Makes a pixel at least this dark; positions beyond the page are ignored.
     pub(super) fn darken(&mut self, x: i32, y: i32, by: u8) {
         let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else {
             return;
@@ -67,7 +67,7 @@ impl Ink {
         }
     }
 
-    /// Fills rectangles that do not overlap; where they touch no seam is left.
+    /// Fills rectangles that do not overlap; where they touch, no seam is left.
     pub(super) fn fill(&mut self, rectangles: &[(Position, Position)], grey: u8) {
         let areas = rectangles.iter();
         let areas = areas.map(|&area| Area::touched(area, self.all()));
@@ -84,7 +84,7 @@ impl Ink {
         self.blend(&shares, grey);
     }
 
-    /// Draws a path's line, only inside `within` where that is given.
+    /// Draws the line of a path, only inside `within` if that is given.
     pub(super) fn stroke(
         &mut self,
         steps: &[Segment],
@@ -141,22 +141,22 @@ impl Ink {
     }
 }
 
-/// The index of a pixel.
+/// Returns the index of a pixel.
 fn index(x: u32, y: u32, width: u32) -> usize {
     wide(y).saturating_mul(wide(width)).saturating_add(wide(x))
 }
 
-/// The smaller of both coordinates.
+/// Returns the smaller of both coordinates each.
 fn smaller(one: Position, other: Position) -> Position {
     (one.0.min(other.0), one.1.min(other.1))
 }
 
-/// The larger of both coordinates.
+/// Returns the larger of both coordinates each.
 fn larger(one: Position, other: Position) -> Position {
     (one.0.max(other.0), one.1.max(other.1))
 }
 
-/// Pixels side by side, in rows one below the other.
+/// A rectangle of pixels.
 #[derive(Default)]
 struct Area {
     columns: Range<u32>,
@@ -164,7 +164,7 @@ struct Area {
 }
 
 impl Area {
-    /// The pixels that a rectangle touches inside of another one, which lies on the page.
+    /// Returns the pixels that a rectangle touches inside another one, which lies on the page.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -179,7 +179,7 @@ impl Area {
         }
     }
 
-    /// The smallest area that holds both.
+    /// Returns the smallest area that holds both.
     fn with(self, other: Self) -> Self {
         if self.is_empty() {
             return other;
@@ -206,16 +206,16 @@ impl FromIterator<Area> for Area {
     }
 }
 
-/// How much of each pixel around a mark is drawn on. A mark is mostly far smaller than the page.
+/// The share of each pixel near a mark that the mark covers. Most marks are far smaller than the page.
 struct Shares {
-    /// Row by row.
+    /// The shares, row by row.
     values: Vec<f32>,
-    /// Where they are.
+    /// The pixels of the shares.
     area: Area,
 }
 
 impl Shares {
-    /// No pixel is drawn on yet.
+    /// Makes shares of 0.
     fn new(area: Area) -> Self {
         Self {
             values: vec![0.0; area.columns.len() * area.rows.len()],
@@ -223,7 +223,7 @@ impl Shares {
         }
     }
 
-    /// Gives each pixel of a part of the area another share.
+    /// Replaces the share of each pixel in a part of the area.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "a share needs no more digits"
@@ -234,7 +234,7 @@ impl Shares {
         let Ok(width) = u32::try_from(columns.len()) else {
             return;
         };
-        // A part without pixels may lie outside of the area.
+        // A part without pixels may lie outside the area.
         if part.is_empty() {
             return;
         }
@@ -248,7 +248,7 @@ impl Shares {
     }
 }
 
-/// From a place to a straight piece.
+/// Returns the distance from a point to a straight piece.
 fn distance(place: Position, from: Position, to: Position) -> f64 {
     let (way, off) = (
         (to.0 - from.0, to.1 - from.1),
@@ -263,7 +263,7 @@ fn distance(place: Position, from: Position, to: Position) -> f64 {
     libm::hypot(off.0 - way.0 * along, off.1 - way.1 * along)
 }
 
-/// The pieces of a path as corners.
+/// Returns the corners of each piece of a path.
 fn flat(steps: &[Segment]) -> Vec<Vec<Position>> {
     let mut pieces: Vec<Vec<Position>> = Vec::new();
     for step in steps {
@@ -271,7 +271,7 @@ fn flat(steps: &[Segment]) -> Vec<Vec<Position>> {
             pieces.push(vec![*to]);
             continue;
         }
-        // A path begins with a move: there is a piece, and a corner in it.
+        // A path begins with a move, so there is a piece with a corner.
         let Some(piece) = pieces.last_mut() else {
             continue;
         };
@@ -302,7 +302,7 @@ fn flat(steps: &[Segment]) -> Vec<Vec<Position>> {
     pieces
 }
 
-/// The dashes along pieces; each piece begins with one.
+/// Cuts pieces into dashes; each piece begins with a dash.
 fn dashed(pieces: &[Vec<Position>], [dash, gap]: [f64; 2]) -> Vec<Vec<Position>> {
     let mut dashes = Vec::new();
     for piece in pieces {
@@ -312,7 +312,7 @@ fn dashed(pieces: &[Vec<Position>], [dash, gap]: [f64; 2]) -> Vec<Vec<Position>>
             let (mut from, to) = (pair[0], pair[1]);
             loop {
                 let length = libm::hypot(to.0 - from.0, to.1 - from.1);
-                // What is not a length ends the piece too.
+                // A length that is not a number ends the piece, too.
                 if length <= left || !length.is_finite() {
                     left -= length;
                     open.push(to);
@@ -360,7 +360,7 @@ mod tests {
         assert_eq!((column(0), column(2)), (vec![255; 4], vec![255; 4]));
     }
 
-    /// Blends a mark over all of a page, as the pixels of a mark alone must come out.
+    /// Blends a mark over the whole page, to compare with blending only its own pixels.
     fn blended(page: &Ink, grey: u8, share: impl Fn(f64, f64) -> f64) -> Vec<u8> {
         let pixels = page.pixels().iter().zip(0_u32..);
         let blend = |(&old, at): (&u8, u32)| {
@@ -374,7 +374,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mark_has_the_pixels_that_blending_all_of_the_page_gives() {
+    fn a_mark_has_the_same_pixels_as_when_the_whole_page_is_blended() {
         let places = [
             (-3.5, -2.0),
             (1.25, 0.5),
@@ -408,7 +408,7 @@ mod tests {
     }
 
     #[test]
-    fn a_small_mark_takes_the_pixels_that_it_touches_and_no_others() {
+    fn shares_cover_only_the_pixels_that_a_mark_touches() {
         let page = Ink::new(4000, 4000);
         let touched = |low, high| Area::touched((low, high), page.all());
         let areas = [
@@ -435,7 +435,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_far_away_or_no_number_draws_nothing() {
+    fn positions_far_away_or_not_finite_draw_nothing() {
         let mut page = Ink::new(2, 2);
         for far in [1e300, -1e300, f64::NAN, f64::INFINITY] {
             let line = [

@@ -5,16 +5,16 @@ use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, width};
 use crate::formats::drawing::plane::{axes, label, path_of};
 use crate::formats::drawing::scene::{Position, Segment, Stroke, TextAnchor, circle};
 
-/// Width and height of the plane, in points.
+/// The width and height of the plane, in points.
 const PLANE: Position = (324.0, 200.0);
 
-/// Each curve has its own dashes; after these they repeat.
+/// The dashes of the curves, in turn; after the last they repeat.
 const DASHES: [Option<[f64; 2]>; 4] = [None, Some([6.0, 3.0]), Some([1.0, 3.0]), Some([12.0, 4.0])];
 
-/// The largest number of curves.
+/// The most curves.
 const MOST: usize = 32;
 
-/// Longer names are cut.
+/// The most characters of a name; longer ones are cut.
 const LONGEST: usize = 60;
 
 /// Curves to draw.
@@ -26,14 +26,14 @@ const LONGEST: usize = 60;
 /// ```
 #[derive(Clone, Debug)]
 pub struct LinePlot {
-    /// What the axes are, with their units: x, y.
+    /// The names of the axes with their units: x, y.
     labels: [String; 2],
-    /// The name of each curve in the legend, and its points by x.
+    /// The name of each curve in the legend, and its points in their order.
     curves: Vec<(String, Vec<Position>)>,
 }
 
 impl LinePlot {
-    /// A plot without a curve, with what its axes are.
+    /// Makes a plot without curves; `x` and `y` name its axes.
     pub fn new(x: &str, y: &str) -> Self {
         let cut = |text: &str| text.chars().take(LONGEST).collect();
         Self {
@@ -42,8 +42,8 @@ impl LinePlot {
         }
     }
 
-    /// With a curve through points, in their order; points that are below 0 or not finite are left out. Curves
-    /// beyond the first 32 are left out.
+    /// Adds a curve through points, in their order; points that are below 0 or not finite are left out. Only the
+    /// first 32 curves are kept.
     #[must_use]
     pub fn with_curve(mut self, name: &str, points: &[(f64, f64)]) -> Self {
         if self.curves.len() < MOST {
@@ -58,13 +58,13 @@ impl LinePlot {
         self
     }
 
-    /// The largest number on each axis; above 0.
+    /// Returns the largest number on each axis, above 0.
     fn ends(&self) -> Position {
         let points = self.curves.iter().flat_map(|(_, points)| points);
         let ends = points.fold((0.0_f64, 0.0_f64), |end, point| {
             (end.0.max(point.0), end.1.max(point.1))
         });
-        // Below a billionth marks have no labels of their own.
+        // Marks less than a billionth apart cannot be labelled.
         let end = |end: f64| if end > 1e-9 { end } else { 1.0 };
         (end(ends.0), end(ends.1))
     }

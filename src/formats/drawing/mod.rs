@@ -1,9 +1,9 @@
 //! A drawing of a touch for papers and reports: the matrix, the true outline, the circumscribed rectangle, CG and CD.
 //!
-//! It is black, white and grey, and no information depends on a shade alone, so it survives any printer. Both axes are
-//! labelled, in cell sides, or in mm where a pitch is given; a legend tells the values. Coordinates on the page are
-//! points of 1/72 inch; a matrix is at most four inches wide. As SVG, text stays text; as PNG the page has 288 dots an
-//! inch.
+//! It is black, white and grey, and no information depends on a shade alone, so it survives any printer. Both axes
+//! are labelled, in cell sides, or in mm if a pitch is given; a legend gives the values. Coordinates on the page are
+//! points of 1/72 inch; a matrix is at most four inches wide. In SVG, text stays text; in PNG, the page has 288 dots
+//! per inch.
 //!
 //! ```
 //! use taxel::formats::Drawing;
@@ -72,19 +72,19 @@ use scene::Segment;
 
 written!(Drawing, ConfusionMap, LinePlot, PointPlot, PoseMap);
 
-/// Wider ones would make the page wider than paper.
+/// The most characters of a title; more would make the page wider than paper.
 const LONGEST_TITLE: usize = 100;
 
-/// In mm: smaller than any atom.
+/// The least pitch in mm: smaller than any atom.
 const LEAST_PITCH: f64 = 1e-9;
 
-/// What is drawn. A region of the imprint is described: the main one, unless another is chosen.
+/// A drawing of an imprint. One region is described: the main one, unless another is chosen.
 #[derive(Clone, Debug)]
 pub struct Drawing {
     imprint: Imprint,
     regions: Vec<Region<'static>>,
     chosen: Option<usize>,
-    /// In cell sides.
+    /// The outline of the shape, in cell sides.
     outline: Vec<Segment>,
     pitch_mm: Option<f64>,
     title: Option<String>,
@@ -92,7 +92,7 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// The matrix, with the rectangle, CG and CD of its main region, in cell sides.
+    /// Makes a drawing of the matrix with the rectangle, CG and CD of its main region, in cell sides.
     pub fn new(imprint: &Imprint) -> Self {
         let regions = regions(imprint);
         Self {
@@ -106,16 +106,16 @@ impl Drawing {
         }
     }
 
-    /// With the outline of what touched; what reaches beyond the sensor is cut off. Curves are drawn as cubic ones that
-    /// stray from the true ellipse by less than a hundred-thousandth of its size.
+    /// Adds the outline of the solid that touched; parts beyond the sensor are cut off. Curves are drawn as cubic
+    /// ones that differ from the true ellipse by less than a hundred-thousandth of its size.
     #[must_use]
     pub fn with_outline(mut self, solid: &impl Solid) -> Self {
         self.outline = outline::steps(solid);
         self
     }
 
-    /// With axes and values in mm for cells of this side; unchanged by one that is not a sensor's pitch, and by one below
-    /// a picometre (1e-9 mm), whose axis could not be labelled.
+    /// Draws axes and values in mm, for cells of this side. A value that a sensor cannot have as its pitch changes
+    /// nothing, nor does one below a picometre (1e-9 mm), whose axis could not be labelled.
     #[must_use]
     pub fn with_pitch(mut self, mm: f64) -> Self {
         if let Ok(mm) = Sensor::LARGEST.check(Parameter::Pitch, mm)
@@ -126,8 +126,8 @@ impl Drawing {
         self
     }
 
-    /// With the values of all cells in shades, white for 0 and less, black for the largest, and a bold edge around
-    /// active taxels. A value that is NaN has no cell. Unchanged by values of another size.
+    /// Adds the values of all cells as shades, white for 0 and less, black for the largest, and a bold edge around
+    /// active taxels. A NaN means that there is no cell. A matrix of another size changes nothing.
     #[must_use]
     pub fn with_heat(mut self, values: &Matrix<f64>) -> Self {
         let size = (values.columns(), values.rows());
@@ -137,7 +137,7 @@ impl Drawing {
         self
     }
 
-    /// With a line above; at most the first 100 characters of it.
+    /// Adds a title above; only its first 100 characters are kept.
     #[must_use]
     pub fn with_title(mut self, title: &str) -> Self {
         self.title = Some(title.chars().take(LONGEST_TITLE).collect());

@@ -6,7 +6,8 @@ use crate::formats::drawing::scene;
 use crate::formats::drawing::scene::{Position, Segment};
 use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
 
-/// The whole boundary. Edges that follow each other are one piece, so that their corners are whole.
+/// Returns the whole boundary. Edges that follow each other form one piece, so that the corners between them are
+/// drawn whole.
 pub(super) fn steps(solid: &impl Solid) -> Vec<Segment> {
     let mut tracer = Tracer::default();
     solid.draw(&mut tracer);
@@ -14,17 +15,17 @@ pub(super) fn steps(solid: &impl Solid) -> Vec<Segment> {
     tracer.steps
 }
 
-/// Writes down what is drawn.
+/// A pen that records the path it draws.
 #[derive(Debug, Default)]
 struct Tracer {
     /// The path so far.
     steps: Vec<Segment>,
-    /// The corners of the piece under way. It grows at its end, or at its start where a ring is drawn backwards.
+    /// The corners of the current piece. It grows at its end, or at its start if a ring is drawn backwards.
     piece: VecDeque<Position>,
 }
 
 impl Tracer {
-    /// Writes down the piece under way.
+    /// Adds the current piece to the path.
     fn end(&mut self, closed: bool) {
         let mut corners = self.piece.drain(..);
         self.steps.extend(corners.next().map(Segment::Move));
@@ -51,8 +52,8 @@ impl Pen<f64> for Tracer {
         }
     }
 
-    /// A quarter of an ellipse would be off by 0.03 % as one cubic curve; an eighth is by far less than a printer
-    /// shows.
+    /// As a single cubic curve, a quarter of an ellipse would be off by 0.03 %; an eighth is off by far less than a
+    /// printer can show.
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
         let pair = |point: Point<f64>| (point.x, point.y);
         self.end(false);
@@ -102,7 +103,7 @@ mod tests {
             for part in 0..=10 {
                 let ahead = f64::from(part) / 10.0;
                 let mix = |p: f64, q: f64| p + (q - p) * ahead;
-                // De Casteljau's way: between the corners, between these, between these.
+                // De Casteljau's algorithm: interpolate between the corners, then between these points, then again.
                 let bend = |corners: [f64; 4]| {
                     let [start, first, second, end] = corners;
                     let middle = mix(first, second);

@@ -1,4 +1,4 @@
-//! Where everything stands on the page: the plane with its axes, what is described on it, the legend below.
+//! The layout of a drawing: the plane with its axes, the descriptors shown on it, and the legend below.
 //! ```text
 //!  title
 //!             x / cells
@@ -8,8 +8,8 @@
 //!  cells 8 +---------------+
 //!  ▒ active taxels: 36             a row of the legend for each of these that is there
 //! ```
-//! Lengths are points (1/72 inch), y down, from the page's top left corner. The page is as large as what is on it, and
-//! a margin. Marks are in the order in which they are drawn; SVG and PNG draw the same ones.
+//! Lengths are points (1/72 inch), y down, from the page's top left corner. The page is as large as its content plus
+//! a margin. Marks are in drawing order; SVG and PNG draw the same ones.
 
 use crate::description::{Description, RegionKind, Value};
 use crate::formats::drawing::axis::Ticks;
@@ -23,20 +23,20 @@ use crate::matrix::Matrix;
 
 /// The size of all text, in points.
 pub(super) const TEXT: f64 = 8.0;
-/// The width of a character of a typewriter face, as a share of its size.
+/// The width of a character in a monospaced font, as a share of its size.
 const ADVANCE: f64 = 0.6;
-/// The larger side of the plane, unless its cells would be too large.
+/// The larger side of the plane, unless its cells would become too large.
 const PLANE: f64 = 288.0;
 /// The largest side of a cell, for small matrices.
 const LARGEST_CELL: f64 = 24.0;
-/// Around everything.
+/// The margin on all sides.
 pub(super) const MARGIN: f64 = 8.0;
-/// A line of the title or the legend.
+/// The height of a line of the title or the legend.
 pub(super) const ROW: f64 = 13.0;
-/// What stands for a thing in the legend.
+/// The width of a sign in the legend.
 const SWATCH: f64 = 16.0;
 
-/// Taxels of the region that is described, and others; the lines between cells.
+/// The grey of taxels of the described region.
 const DESCRIBED: u8 = 168;
 /// The grey of taxels of other regions.
 const OTHER: u8 = 220;
@@ -46,7 +46,7 @@ const CELLS: Stroke = Stroke {
     grey: 150,
     dash: None,
 };
-/// Through the taxels of other regions: a shade alone is lost on a bad printer.
+/// The hatching of taxels of other regions: a shade alone is lost on a bad printer.
 const HATCH: Stroke = Stroke {
     width: 0.5,
     grey: 110,
@@ -54,7 +54,7 @@ const HATCH: Stroke = Stroke {
 };
 /// The true outline of the shape.
 const OUTLINE: Stroke = Stroke::black(1.3);
-/// Around active taxels where shades tell values.
+/// The edge around active taxels when shades show values.
 const EDGE: Stroke = Stroke::black(2.0);
 /// The rectangle around the region.
 const RECTANGLE: Stroke = Stroke {
@@ -65,54 +65,54 @@ const RECTANGLE: Stroke = Stroke {
 /// The signs of CG and CD.
 const POINT: Stroke = Stroke::black(1.1);
 
-/// What a page shows.
+/// The content of a page.
 pub(super) struct Subject<'a> {
     /// The active taxels.
     pub(super) imprint: &'a Imprint,
-    /// The taxels of a region and its description.
+    /// The taxels of the described region, and its description.
     pub(super) described: Option<(&'a Imprint, Description)>,
-    /// In cell sides.
+    /// The outline of the shape, in cell sides.
     pub(super) outline: &'a [Segment],
-    /// The side of a cell; with it axes and legend are in mm.
+    /// The side of a cell in mm; if it is given, axes and legend are in mm.
     pub(super) pitch_mm: Option<f64>,
-    /// The line above the plane.
+    /// The title above the plane.
     pub(super) title: Option<&'a str>,
-    /// The values of all cells.
+    /// The values of all cells, drawn as shades.
     pub(super) heat: Option<&'a Matrix<f64>>,
 }
 
-/// A page: its size in points, where the plane is on it, and what it shows.
+/// A page: its size in points, the place of the plane, and the marks.
 pub(super) struct DrawingPage {
-    /// Width and height.
+    /// The width and the height.
     pub(super) size: Position,
-    /// Top left and bottom right corner of the sensory plane.
+    /// The top left and the bottom right corner of the sensory plane.
     pub(super) plane: (Position, Position),
-    /// What the drawing is called where it is not seen, as by screen readers.
+    /// The name of the drawing for those who cannot see it, as read by screen readers.
     pub(super) title: String,
-    /// What is drawn, in this order.
+    /// The marks, in drawing order.
     pub(super) marks: Vec<Element>,
 }
 
-/// The page while it is laid out.
+/// A page while it is being laid out.
 struct PageLayout<'a> {
-    /// What is shown.
+    /// The content of the page.
     subject: &'a Subject<'a>,
-    /// What is drawn so far.
+    /// The marks so far.
     marks: Vec<Element>,
     /// The top left corner of the plane.
     corner: Position,
     /// The side of a cell.
     cell: f64,
-    /// How far down and to the right something stands.
+    /// The right and the lower end of everything so far.
     end: Position,
 }
 
 impl DrawingPage {
-    /// Lays out what is to be shown.
+    /// Lays out a page.
     pub(super) fn of(subject: &Subject<'_>) -> Self {
         let (columns, rows) = (subject.imprint.columns(), subject.imprint.rows());
         let pitch = subject.pitch_mm.unwrap_or(1.0);
-        // In cells no mark stands between two of them.
+        // In cells, marks stand at whole numbers only.
         let least = subject.pitch_mm.map_or(1.0, |_| 0.0);
         let marks = |side: u8| Ticks::new(f64::from(side) * pitch, least);
         let (across, along) = (marks(columns), marks(rows));
@@ -148,19 +148,19 @@ impl DrawingPage {
     }
 }
 
-/// The width of a text of that many characters.
+/// Returns the width of a text of that many characters.
 #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
 pub(super) fn width(characters: usize) -> f64 {
     TEXT * ADVANCE * characters as f64
 }
 
 impl PageLayout<'_> {
-    /// Where a point of the plane, in cell sides, is on the page.
+    /// Returns the position on the page of a point of the plane, given in cell sides.
     fn position(&self, (x, y): Position) -> Position {
         (self.corner.0 + x * self.cell, self.corner.1 + y * self.cell)
     }
 
-    /// A horizontal text, whose end widens the page if it begins at `place`.
+    /// Adds a horizontal text; if it starts at `place`, its end may widen the page.
     fn text(&mut self, text: &str, place: Position, anchor: TextAnchor) {
         if anchor == TextAnchor::Start {
             let end = place.0 + width(text.chars().count());
@@ -174,7 +174,7 @@ impl PageLayout<'_> {
         });
     }
 
-    /// Rectangles in one grey; `what` is the class of the group in SVG.
+    /// Adds rectangles in one grey; `what` is the class of the group in SVG.
     fn filled(&mut self, what: &'static str, rectangles: Vec<(Position, Position)>, grey: u8) {
         self.marks.push(Element::Fill {
             what,
@@ -183,7 +183,7 @@ impl PageLayout<'_> {
         });
     }
 
-    /// A path with a line of that width, grey and dashes.
+    /// Adds a path with a line of that width, grey and dashes.
     fn line(&mut self, what: &'static str, steps: Vec<Segment>, line: Stroke) {
         self.marks.push(Element::Line {
             what,
@@ -193,7 +193,8 @@ impl PageLayout<'_> {
         });
     }
 
-    /// The active taxels, those described darker; or the values of all cells, and the edge of the active ones.
+    /// Draws the active taxels, darker in the described region; or the values of all cells and the edge of the active
+    /// ones.
     fn taxels(&mut self) {
         let subject = self.subject;
         let imprint = subject.imprint;
@@ -235,7 +236,7 @@ impl PageLayout<'_> {
         }
     }
 
-    /// The lines between all cells.
+    /// Draws the lines between all cells.
     fn cells(&mut self) {
         let imprint = self.subject.imprint;
         let (columns, rows) = (f64::from(imprint.columns()), f64::from(imprint.rows()));
@@ -253,7 +254,7 @@ impl PageLayout<'_> {
         self.line("cells", lines, CELLS);
     }
 
-    /// The frame, the marks of both axes, what they are and their unit.
+    /// Draws the frame, the marks of both axes, and the name and unit of each axis.
     fn axes(&mut self, across: &Ticks, along: &Ticks, (from, to): (Position, Position)) {
         let scale = self.cell / self.subject.pitch_mm.unwrap_or(1.0);
         let unit = self.unit();
@@ -284,7 +285,7 @@ impl PageLayout<'_> {
         });
     }
 
-    /// The outline of the shape, cut off at the rim of the plane; nothing for imprints of unknown shapes.
+    /// Draws the outline of the shape, cut off at the edge of the plane; nothing if the shape is not known.
     fn outline(&mut self) {
         let place = |place| self.position(place);
         let steps = self.subject.outline.iter().map(|step| step.map(place));
@@ -299,7 +300,7 @@ impl PageLayout<'_> {
         }
     }
 
-    /// The rectangle of the region described, a circle at its CD and a cross at its CG.
+    /// Draws the rectangle of the described region, a circle at its CD and a cross at its CG.
     fn described(&mut self) {
         let subject = self.subject;
         let Some((_, description)) = &subject.described else {
@@ -315,12 +316,12 @@ impl PageLayout<'_> {
         self.line("cg", cross(cg, 3.5), POINT);
     }
 
-    /// The unit of axes and legend.
+    /// Returns the unit of axes and legend.
     fn unit(&self) -> &'static str {
         self.subject.pitch_mm.map_or("cells", |_| "mm")
     }
 
-    /// The legend below the plane: what each sign means, with the values of the region described.
+    /// Draws the legend below the plane: the meaning of each sign, with the values of the described region.
     fn legend(&mut self) {
         let mut y = self.end.1 + ROW * 1.4;
         self.legend_of_taxels(&mut y);
@@ -353,7 +354,7 @@ impl PageLayout<'_> {
         });
     }
 
-    /// The legend's first rows: the taxels of the region described, and the other active ones.
+    /// Draws the legend's first rows: the taxels of the described region, and the other active ones.
     fn legend_of_taxels(&mut self, y: &mut f64) {
         let all = self.subject.imprint.count();
         let described = self
@@ -409,7 +410,8 @@ impl PageLayout<'_> {
         }
     }
 
-    /// A row of the legend: `sign` draws at the given place, the text stands to its right. `y` moves to the next row.
+    /// Draws a row of the legend: `sign` draws at the given place, the text stands to its right. `y` moves to the
+    /// next row.
     fn legend_row(&mut self, y: &mut f64, text: &str, sign: impl FnOnce(&mut Self, Position)) {
         sign(self, (self.corner.0 + SWATCH / 2.0, *y - TEXT * 0.35));
         let place = (self.corner.0 + SWATCH + 6.0, *y);
@@ -419,18 +421,18 @@ impl PageLayout<'_> {
     }
 }
 
-/// The box of a legend's sign.
+/// Returns the box of a sign in the legend.
 fn box_of((x, y): Position) -> (Position, Position) {
     ((x - 6.0, y - 4.0), (x + 6.0, y + 4.0))
 }
 
-/// A legend's piece of a line.
+/// Returns a piece of line for the legend.
 fn stretch((x, y): Position) -> Vec<Segment> {
     let half = SWATCH / 2.0;
     vec![Segment::Move((x - half, y)), Segment::Line((x + half, y))]
 }
 
-/// A stroke through each cell, from its lower left corner up.
+/// Returns a stroke through each cell, from its lower left corner to its upper right one.
 fn hatch(cells: &[(Position, Position)]) -> Vec<Segment> {
     let stroke = |&((left, top), (right, bottom)): &(Position, Position)| {
         [Segment::Move((left, bottom)), Segment::Line((right, top))]
@@ -438,7 +440,7 @@ fn hatch(cells: &[(Position, Position)]) -> Vec<Segment> {
     cells.iter().flat_map(stroke).collect()
 }
 
-/// An upright cross.
+/// Returns an upright cross.
 fn cross((x, y): Position, arm: f64) -> Vec<Segment> {
     vec![
         Segment::Move((x - arm, y)),

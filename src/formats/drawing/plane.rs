@@ -1,4 +1,4 @@
-//! The plane of a plot: its frame, its axes with their marks, and the elements that plots are made of.
+//! The plane of a plot: its frame, its axes with their marks, and the elements of which plots are made.
 
 use crate::formats::drawing::axis::Ticks;
 use crate::formats::drawing::page::{MARGIN, TEXT};
@@ -11,7 +11,7 @@ const GRID: Stroke = Stroke {
     dash: None,
 };
 
-/// The frame between two corners, lines at the marks of both axes, and what the axes are: x, y.
+/// Draws the frame between two corners, lines at the marks of both axes, and the labels of the axes: x, y.
 pub(super) fn axes(
     labels: [&str; 2],
     (across, upwards): (&Ticks, &Ticks),
@@ -44,7 +44,7 @@ pub(super) fn axes(
     marks
 }
 
-/// A line of the page, by the name of what it is.
+/// Makes a line on the page; `what` is the kind of line.
 pub(super) fn path_of(what: &'static str, steps: Vec<Segment>, line: Stroke) -> Element {
     Element::Line {
         what,
@@ -54,7 +54,7 @@ pub(super) fn path_of(what: &'static str, steps: Vec<Segment>, line: Stroke) -> 
     }
 }
 
-/// A text of the page.
+/// Makes a text on the page.
 pub(super) fn label(text: &str, place: Position, anchor: TextAnchor) -> Element {
     Element::Text {
         text: text.to_owned(),

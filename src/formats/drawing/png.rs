@@ -1,4 +1,4 @@
-//! A page as PNG: four pixels a point, 8 bits of grey.
+//! A page as PNG: four pixels per point, 8 bits of grey.
 
 use std::io;
 
@@ -9,12 +9,12 @@ use crate::formats::drawing::ink::Ink;
 use crate::formats::drawing::page::DrawingPage;
 use crate::formats::drawing::scene::{Element, Position, Stroke};
 
-/// Pixels a point.
+/// The pixels per point.
 const SCALE: f64 = 4.0;
-/// 288 dots an inch.
+/// The resolution: 288 dots per inch.
 const DOTS_A_METRE: u32 = 11_339;
 
-/// The file.
+/// Returns the content of the file.
 pub(super) fn write(page: &DrawingPage) -> io::Result<Vec<u8>> {
     let place = |(x, y): Position| (x * SCALE, y * SCALE);
     let plane = (place(page.plane.0), place(page.plane.1));
@@ -54,7 +54,7 @@ pub(super) fn write(page: &DrawingPage) -> io::Result<Vec<u8>> {
     encode(&ink)
 }
 
-/// Eight-bit grey, compressed; with the resolution, so that it is printed at the size of the SVG.
+/// Encodes the page in eight-bit grey, compressed; with the resolution, so that it is printed at the size of the SVG.
 fn encode(ink: &Ink) -> io::Result<Vec<u8>> {
     let mut file = Vec::new();
     let mut encoder = Encoder::new(&mut file, ink.width(), ink.height());
@@ -71,7 +71,7 @@ fn encode(ink: &Ink) -> io::Result<Vec<u8>> {
     Ok(file)
 }
 
-/// Points as pixels, rounded up so that nothing at the rim is lost.
+/// Converts points to pixels, rounded up so that nothing at the edge is lost.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -7,16 +7,16 @@ use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, width};
 use crate::formats::drawing::plane::{axes, label, path_of};
 use crate::formats::drawing::scene::{Position, Segment, Stroke, TextAnchor, circle};
 
-/// Width and height of the plane, in points.
+/// The width and height of the plane, in points.
 const PLANE: Position = (324.0, 243.0);
 
-/// Most marks of an axis.
+/// The most steps between the marks of an axis.
 const STEPS: f64 = 8.0;
 
-/// Longer texts are cut.
+/// The most characters of a text; longer ones are cut.
 const LONGEST: usize = 100;
 
-/// Points nearer than this share of the plane's width are drawn once.
+/// The fineness of the plane's width: points closer than one part in this many are drawn once.
 const RASTER: f64 = 1000.0;
 
 /// Points and curves to draw.
@@ -31,13 +31,13 @@ pub struct PointPlot {
     labels: [String; 2],
     title: String,
     points: Vec<Position>,
-    /// Curves with their names, and whether each is dashed.
+    /// The curves: their names, their points, and whether each is dashed.
     curves: Vec<(String, Vec<Position>, bool)>,
     chosen: Option<Position>,
 }
 
 impl PointPlot {
-    /// A plot without a point, with what its axes are.
+    /// Makes a plot without points; `x` and `y` name its axes.
     pub fn new(x: &str, y: &str) -> Self {
         Self {
             labels: [cut(x), cut(y)],
@@ -48,14 +48,14 @@ impl PointPlot {
         }
     }
 
-    /// With a line above; at most the first 100 characters of it.
+    /// Adds a title above; only its first 100 characters are kept.
     #[must_use]
     pub fn with_title(mut self, title: &str) -> Self {
         self.title = cut(title);
         self
     }
 
-    /// With points; those with a coordinate that is not finite are left out.
+    /// Adds points; those with a coordinate that is not finite are left out.
     #[must_use]
     pub fn with_points(mut self, points: &[(f64, f64)]) -> Self {
         self.points
@@ -63,22 +63,22 @@ impl PointPlot {
         self
     }
 
-    /// With a curve through points, in their order; it has a gap where a coordinate is not finite. A dashed one differs from
-    /// the others without colours.
+    /// Adds a curve through points, in their order, with a gap where a coordinate is not finite. A dashed curve can
+    /// be told from the others without colours.
     #[must_use]
     pub fn with_curve(mut self, name: &str, points: &[(f64, f64)], dashed: bool) -> Self {
         self.curves.push((cut(name), points.to_vec(), dashed));
         self
     }
 
-    /// With a ring around a point.
+    /// Adds a ring around a point.
     #[must_use]
     pub fn with_chosen(mut self, x: f64, y: f64) -> Self {
         self.chosen = Some((x, y)).filter(finite);
         self
     }
 
-    /// All points, those of the curves too.
+    /// Returns all points, including those of the curves.
     fn all(&self) -> impl Iterator<Item = &Position> {
         let curves = self.curves.iter().flat_map(|(_, points, _)| points);
         curves.filter(|point| finite(point)).chain(&self.points)
@@ -141,7 +141,7 @@ impl PointPlot {
         }
     }
 
-    /// Lines without length, whose round ends are the points; those that lie on each other once.
+    /// Returns lines without length, whose round ends are the points; points that lie on each other are drawn once.
     #[expect(clippy::cast_possible_truncation, reason = "within the plane")]
     fn specks(&self, place: &dyn Fn(Position) -> Position) -> Vec<Segment> {
         let raster = |at: f64| (at * RASTER / PLANE.0).round() as i32;
@@ -156,17 +156,17 @@ impl PointPlot {
     }
 }
 
-/// As much of a text as fits onto a page.
+/// Returns as much of a text as fits onto a page.
 fn cut(text: &str) -> String {
     text.chars().take(LONGEST).collect()
 }
 
-/// Whether a point can be drawn.
+/// Returns true if a point can be drawn.
 fn finite(point: &Position) -> bool {
     point.0.abs() <= 1e300 && point.1.abs() <= 1e300
 }
 
-/// The path through points, broken where one cannot be drawn.
+/// Returns the path through points, broken where one cannot be drawn.
 fn curve(points: &[Position], place: &dyn Fn(Position) -> Position) -> Vec<Segment> {
     let mut drawn = false;
     let mut path = Vec::new();

@@ -1,6 +1,6 @@
-//! A map of positions: which imprint each x0 and y0 leaves, as areas with borders.
+//! A map of positions: the imprint at each x0 and y0, as areas with borders.
 //!
-//! Borders tell the areas apart; greys only help the eye, and are lost without harm on a bad printer.
+//! Borders separate the areas; greys only help the eye, and a bad printer may lose them.
 
 use crate::formats::drawing::axis::Ticks;
 use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, width};
@@ -11,20 +11,20 @@ use crate::formats::value::decimal;
 /// The larger side of the plane, in points.
 const PLANE: f64 = 288.0;
 
-/// More cells along a side cannot be told apart in print.
+/// The most cells along a side; more cannot be told apart in print.
 const MOST: usize = 1024;
 
-/// Greys of areas, by the number of the imprint.
+/// The greys of areas, by the number of the imprint.
 const GREYS: [u8; 5] = [255, 232, 209, 186, 163];
 
-/// What the axes are.
+/// The titles of the axes.
 const X_TITLE: &str = "x0 / cells";
 const Y_TITLE: &str = "y0 / cells";
 
-/// Between two areas.
+/// The line between two areas.
 const BORDER: Stroke = Stroke::black(0.5);
 
-/// A map to draw.
+/// A map of positions to draw.
 ///
 /// ```
 /// use taxel::formats::PoseMap;
@@ -34,7 +34,7 @@ const BORDER: Stroke = Stroke::black(0.5);
 /// ```
 #[derive(Clone, Debug)]
 pub struct PoseMap {
-    /// The first and the last x0, and y0.
+    /// The first and the last x0, then those of y0.
     ends: [(f64, f64); 2],
     columns: usize,
     ids: Vec<Option<u32>>,
@@ -43,8 +43,9 @@ pub struct PoseMap {
 }
 
 impl PoseMap {
-    /// A map of the imprints' numbers, row by row, at places from the first x0 and y0 to the last ones; None is a position
-    /// without one. None where the rows are not whole, or a side has no cell or more than 1,024.
+    /// Makes a map from the numbers of the imprints, row by row, at positions from the first x0 and y0 to the last;
+    /// an entry of None is a position without an imprint. Returns None if the last row is not full, if a side has no
+    /// cell or more than 1,024, or if an end is not finite.
     pub fn new(
         x0: (f64, f64),
         y0: (f64, f64),
@@ -65,26 +66,26 @@ impl PoseMap {
         })
     }
 
-    /// With a line above; at most the first 100 characters of it.
+    /// Adds a title above; only its first 100 characters are kept.
     #[must_use]
     pub fn with_title(mut self, title: &str) -> Self {
         self.title = title.chars().take(100).collect();
         self
     }
 
-    /// With a frame around a cell, given by column and row.
+    /// Adds a frame around a cell, given by column and row.
     #[must_use]
     pub fn with_chosen(mut self, column: usize, row: usize) -> Self {
         self.chosen = Some((column, row)).filter(|_| column < self.columns && row < self.rows());
         self
     }
 
-    /// How many rows it has.
+    /// Returns the number of rows.
     fn rows(&self) -> usize {
         self.ids.len() / self.columns
     }
 
-    /// The imprint of a cell.
+    /// Returns the number of a cell's imprint.
     fn id(&self, column: usize, row: usize) -> Option<u32> {
         let index = row * self.columns + column;
         self.ids.get(index).copied().flatten()
@@ -97,7 +98,7 @@ impl PoseMap {
         let across = ticks(x0, self.columns);
         let along = ticks(y0, self.rows());
         let above = if self.title.is_empty() { 0.0 } else { ROW };
-        // The titles of the axes stand at the middle, and may be longer than the axes.
+        // The titles of the axes are centred, and may be longer than the axes.
         let title = width(X_TITLE.len().max(Y_TITLE.len())) / 2.0;
         let middle = |cells: usize| count(cells) * side / 2.0;
         let (half_width, half_height) = (middle(self.columns), middle(self.rows()));
@@ -127,7 +128,7 @@ impl PoseMap {
         }
         self.axes(&mut marks, [&across, &along], (corner, end), side);
         let right = end.0.max(corner.0 + width(self.title.chars().count()));
-        // A mark stands at the middle of a cell, half a cell from the end.
+        // A mark stands at the centre of a cell, half a cell from the end of the axis.
         let mark = width(across.width()) / 2.0 - side / 2.0;
         let right = right.max(end.0 + mark).max(end.0 - half_width + title);
         let bottom = (end.1 + TEXT).max(end.1 - half_height + title);
@@ -139,7 +140,7 @@ impl PoseMap {
         }
     }
 
-    /// The cells of each grey, those side by side in one rectangle.
+    /// Returns the cells of each grey; neighbours in a row with the same imprint form one rectangle.
     fn areas(&self, place: &dyn Fn(usize, usize) -> Position) -> Vec<Element> {
         let mut areas: Vec<Vec<(Position, Position)>> = vec![Vec::new(); GREYS.len()];
         for row in 0..self.rows() {
@@ -165,7 +166,7 @@ impl PoseMap {
         filled.map(fill).collect()
     }
 
-    /// The lines between cells of different imprints, those in a row as one.
+    /// Returns the lines between cells of different imprints; adjoining ones form one line.
     fn borders(&self, place: &dyn Fn(usize, usize) -> Position) -> Vec<Segment> {
         let mut lines = Vec::new();
         let mut line = |from: Position, to: Position| {
@@ -187,7 +188,7 @@ impl PoseMap {
         lines
     }
 
-    /// The frame, the marks of both axes at the middles of cells, and what the axes are.
+    /// Draws the frame, the marks of both axes at the centres of cells, and the titles of the axes.
     fn axes(
         &self,
         marks: &mut Vec<Element>,
@@ -229,20 +230,20 @@ impl PoseMap {
     }
 }
 
-/// A number of cells, for lengths.
+/// Converts a number of cells for use in lengths.
 #[expect(clippy::cast_precision_loss, reason = "at most 1,024")]
 fn count(cells: usize) -> f64 {
     cells as f64
 }
 
-/// The index of an imprint's grey.
+/// Returns the index of an imprint's grey.
 fn shade(id: u32) -> usize {
-    // The remainder has one byte.
+    // The remainder fits into one byte.
     let [shade, ..] = (id % 5).to_le_bytes();
     shade.into()
 }
 
-/// The marks of an axis with a number of cells from one value to another; a single one of a single value.
+/// Returns the marks of an axis with a number of cells from one value to another; a single mark if both are the same.
 fn ticks((one, other): (f64, f64), cells: usize) -> Ticks {
     let (low, high) = (one.min(other), one.max(other));
     if cells > 1 && low < high {
@@ -252,7 +253,7 @@ fn ticks((one, other): (f64, f64), cells: usize) -> Ticks {
     }
 }
 
-/// The runs of indices below a number that a condition holds for: first, and behind the last.
+/// Returns the runs of consecutive indices below `count` for which a condition holds, as half-open ranges.
 fn runs(count: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
     let mut runs: Vec<(usize, usize)> = Vec::new();
     for index in (0..count).filter(|&index| holds(index)) {

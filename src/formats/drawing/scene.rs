@@ -1,23 +1,23 @@
 //! The elements of a page: paths and texts, in points from its top left corner, y down.
 
-/// A point of the page, or of the plane in cell sides.
+/// A point on the page, or on the plane in cell sides.
 pub(super) type Position = (f64, f64);
 
-/// A piece of a path.
+/// A step of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Segment {
-    /// Begins a new piece.
+    /// Begins a new piece at a point.
     Move(Position),
-    /// A straight line.
+    /// A straight line to a point.
     Line(Position),
-    /// A cubic curve: two control points, the end.
+    /// A cubic curve: its two control points and its end.
     Curve(Position, Position, Position),
-    /// Back to where the piece began.
+    /// A straight line back to the start of the piece.
     Close,
 }
 
 impl Segment {
-    /// The step with each of its points moved by a function.
+    /// Returns the step with each of its points mapped by a function.
     pub(super) fn map(self, place: impl Fn(Position) -> Position) -> Self {
         match self {
             Self::Move(to) => Self::Move(place(to)),
@@ -28,7 +28,7 @@ impl Segment {
     }
 }
 
-/// A rectangle's path.
+/// Returns the path of a rectangle.
 pub(super) fn rectangle((left, top): Position, (right, bottom): Position) -> Vec<Segment> {
     vec![
         Segment::Move((left, top)),
@@ -39,17 +39,17 @@ pub(super) fn rectangle((left, top): Position, (right, bottom): Position) -> Vec
     ]
 }
 
-/// A circle's path.
+/// Returns the path of a circle.
 pub(super) fn circle((x, y): Position, radius: f64) -> Vec<Segment> {
     ellipse((x, y), (radius, 0.0), (0.0, radius))
 }
 
-/// The path of an ellipse, the image of the unit circle: its centre, and where the circle's two axes go. Eight cubic
-/// curves, which stray from it by 4·10⁻⁶ of its size.
+/// Returns the path of an ellipse, the image of the unit circle, from its centre and the images of the circle's two
+/// axes. It has eight cubic curves, which differ from the ellipse by 4·10⁻⁶ of its size.
 pub(super) fn ellipse(centre: Position, across: Position, along: Position) -> Vec<Segment> {
     const PARTS: u8 = 8;
     let part = std::f64::consts::TAU / f64::from(PARTS);
-    // The usual length of a circle's control arms.
+    // The usual length of the control arms for a circle.
     let arm = 4.0 / 3.0 * libm::tan(part / 4.0);
     let image = |u: f64, v: f64| {
         (
@@ -71,14 +71,14 @@ pub(super) fn ellipse(centre: Position, across: Position, along: Position) -> Ve
     steps
 }
 
-/// How a line is drawn; with round ends.
+/// The style of a line; its ends are round.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stroke {
-    /// Points.
+    /// The width in points.
     pub(super) width: f64,
-    /// 0 black, 255 white.
+    /// The grey: 0 is black, 255 white.
     pub(super) grey: u8,
-    /// Lengths of a dash and of the gap behind it.
+    /// The lengths of a dash and of the gap after it.
     pub(super) dash: Option<[f64; 2]>,
 }
 
@@ -93,37 +93,37 @@ impl Stroke {
     }
 }
 
-/// Which point of a text stands at its place.
+/// The point of a text that lies at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TextAnchor {
-    /// Where it begins.
+    /// The start of the text.
     Start,
-    /// The middle.
+    /// The middle of the text.
     Middle,
-    /// Where it ends.
+    /// The end of the text.
     End,
 }
 
-/// A thing on the page; later ones lie on earlier ones.
+/// An element of the page; later ones lie on top of earlier ones.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Element {
-    /// Rectangles that do not overlap, by two corners each, filled.
+    /// Filled rectangles that do not overlap, each given by two corners.
     Fill {
-        /// What it is, in a word.
+        /// The kind of element in a word; the class in SVG.
         what: &'static str,
         rectangles: Vec<(Position, Position)>,
-        /// 0 black, 255 white.
+        /// The grey: 0 is black, 255 white.
         grey: u8,
     },
-    /// A path's line. A clipped one is cut off at the plane's edge.
+    /// A path that is drawn as a line. A clipped one is cut off at the plane's edge.
     Line {
-        /// What it is, in a word.
+        /// The kind of element in a word; the class in SVG.
         what: &'static str,
         steps: Vec<Segment>,
         line: Stroke,
         clipped: bool,
     },
-    /// A line of text; the place is on its base line. An upright one runs upwards.
+    /// A line of text whose place lies on its base line. An upright one runs upwards.
     Text {
         text: String,
         place: Position,

@@ -1,15 +1,15 @@
-//! A page as SVG: one element a mark, text as text.
+//! A page as SVG: one element per mark, with text as text.
 //!
-//! Each kind of mark is a group with a class (`outline`, `cg`, `legend`, …), so that a style sheet can find it. Colours
-//! are greys, and dashes and hatching tell things apart as well: a drawing can be printed in black. Equal subjects give
-//! equal bytes.
+//! Each kind of mark is a group with a class (`outline`, `cg`, `legend`, …), so that a style sheet can address it.
+//! Colours are greys, and dashes and hatching distinguish the marks as well, so a drawing can be printed in black.
+//! Equal subjects give equal bytes.
 
 use crate::formats::drawing::page::{DrawingPage, TEXT};
 use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
 use crate::formats::value::decimal;
 use crate::formats::xml::escaped;
 
-/// The file.
+/// Returns the content of the file.
 pub(super) fn write(page: &DrawingPage) -> String {
     let (width, height) = (number(page.size.0), number(page.size.1));
     let title = escaped(&page.title);
@@ -60,8 +60,8 @@ pub(super) fn write(page: &DrawingPage) -> String {
     svg + "</g>\n</svg>\n"
 }
 
-/// What is inside a rectangle of the page only. An inner viewport needs no name, which could be that of another
-/// drawing's on the same web page.
+/// Clips an element to a rectangle of the page. An inner viewport needs no name, which could clash with the name in
+/// another drawing on the same web page.
 fn cut_off(inner: &str, ((left, top), (right, bottom)): (Position, Position)) -> String {
     let (x, y) = (number(left), number(top));
     let (width, height) = (number(right - left), number(bottom - top));
@@ -71,7 +71,7 @@ fn cut_off(inner: &str, ((left, top), (right, bottom)): (Position, Position)) ->
     )
 }
 
-/// A text, rotated by a quarter turn counter-clockwise if it is upright. Special characters are escaped.
+/// Returns a text, rotated by a quarter turn counter-clockwise if it is upright. Special characters are escaped.
 fn label(text: &str, (x, y): Position, anchor: TextAnchor, upright: bool) -> String {
     let (x, y) = (number(x), number(y));
     let anchor = match anchor {
@@ -88,7 +88,7 @@ fn label(text: &str, (x, y): Position, anchor: TextAnchor, upright: bool) -> Str
     format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\"{turned}>{text}</text>\n")
 }
 
-/// The attribute `d` of a path, in points with at most three decimals.
+/// Returns the attribute `d` of a path, in points with at most three decimals.
 fn data(steps: &[Segment]) -> String {
     let at = |(x, y): Position| format!("{} {}", number(x), number(y));
     let steps = steps.iter().map(|step| match step {
@@ -100,7 +100,7 @@ fn data(steps: &[Segment]) -> String {
     steps.collect()
 }
 
-/// The attributes of a line.
+/// Returns the attributes of a line.
 fn stroke(line: Stroke) -> String {
     let dash = line.dash.map_or(String::new(), |[dash, gap]| {
         format!(" stroke-dasharray=\"{dash} {gap}\"")
@@ -109,12 +109,12 @@ fn stroke(line: Stroke) -> String {
     format!(" stroke=\"{grey}\" stroke-width=\"{width}\"{dash}")
 }
 
-/// A grey as `#rrggbb`.
+/// Returns a grey as `#rrggbb`.
 fn paint(grey: u8) -> String {
     format!("#{grey:02x}{grey:02x}{grey:02x}")
 }
 
-/// A thousandth of a point is finer than any printer.
+/// Formats a number of points; a thousandth of a point is finer than any printer.
 fn number(value: f64) -> String {
     decimal(value, 3)
 }

@@ -1,13 +1,13 @@
-//! The shades of a portable greymap, plain (`P2`, numbers) or raw (`P5`, bytes): two of them, the brighter for an
-//! active taxel.
+//! The shades of a portable greymap, plain (`P2`, numbers) or raw (`P5`, bytes). There are two shades; the brighter
+//! one is active.
 //!
-//! Source: <https://netpbm.sourceforge.net/doc/pgm.html>. A raw shade takes two bytes, the higher one first, where the
-//! brightest is above 255.
+//! Source: <https://netpbm.sourceforge.net/doc/pgm.html>. If the brightest shade is above 255, a raw shade takes two
+//! bytes, the higher one first.
 
 use crate::formats::pbm::{Cursor, PbmError};
 use crate::imprint::Imprint;
 
-/// Reads what comes after the height; gives the place after the last shade.
+/// Reads everything after the height; returns the offset after the last shade.
 pub(super) fn shades(
     cursor: &mut Cursor<'_>,
     raw: bool,
@@ -41,10 +41,10 @@ pub(super) fn shades(
     Ok(cursor.at)
 }
 
-/// Decimal numbers, parted by blanks and comments.
+/// Reads decimal numbers that are separated by blanks and comments.
 ///
 /// # Errors
-/// If there are fewer than expected, or one is above the brightest.
+/// Returns an error if there are too few shades, or if one is above the brightest.
 fn plain_shades(
     cursor: &mut Cursor<'_>,
     brightest: u32,
@@ -65,21 +65,22 @@ fn plain_shades(
             None => return Err(PbmError::Shade { line, column }),
         }
     }
-    // Comments after the last number are none of a second image.
+    // Comments after the last number do not begin a second image.
     let _ = cursor.next();
     Ok(shades)
 }
 
-/// One or two bytes each.
+/// Reads shades of one or two bytes each.
 ///
 /// # Errors
-/// As for plain ones; and if a comment stands where the one space must.
+/// Returns an error if there are too few shades, if one is above the brightest, or if a comment stands in place of
+/// the one space before them.
 fn raw_shades(
     cursor: &mut Cursor<'_>,
     brightest: u32,
     taxels: usize,
 ) -> Result<Vec<u32>, PbmError> {
-    // Just one space parts the brightest shade from the first one, which may look like a space.
+    // Exactly one space separates the brightest shade from the first one, which may look like a space.
     let (line, column) = cursor.line_and_column();
     if cursor.bytes.get(cursor.at) == Some(&b'#') {
         return Err(PbmError::Space { line, column });
@@ -126,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place() {
+    fn errors_name_their_place() {
         for (bytes, message) in [
             (
                 &b"P2 1 1"[..],
