@@ -3,8 +3,8 @@
 //! {"frame":65,"label":66,"time":6.5,"channel":null,"sum":42,"max":9,
 //!  "rule":{"at_least":10,"from":"flag"},"imprint":[".###.",…],"na":5,"regions":[{"kind":"exterior",…}]}
 //! ```
-//! Sum and maximum are those of the values as recorded, in the recording's unit, before tare and gain; the imprint is
-//! that after both.
+//! Sum and maximum are those of the recorded values, in the recording's unit, before tare and gain; the imprint is
+//! made after both.
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
@@ -12,25 +12,27 @@ use crate::description::{Description, regions};
 use crate::formats::described::{RegionRecord, Rows};
 use crate::frame::{Frame, Processed, Rule, SetRule};
 
-/// Serialises as `{"frame":65,"label":66,"time":6.5,"channel":null,"sum":…,"max":…,"rule":{…},"imprint":[…],"na":…,
-/// "regions":[…]}`; rule, imprint and NA are null without a rule. With a tare, the answer says what it was made of.
+/// An answer that serialises as
+/// `{"frame":65,"label":66,"time":6.5,"channel":null,"sum":…,"max":…,"rule":{…},"imprint":[…],"na":…,
+/// "regions":[…]}`; rule, imprint and NA are null without a rule. With a tare, the answer says of how many frames it
+/// was made.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct FrameAnswer<'a> {
     /// The frame, for its number, label and time.
     pub frame: &'a Frame,
-    /// The name of its channel.
+    /// The name of the frame's channel.
     pub channel: Option<&'a str>,
-    /// What has become of it.
+    /// The frame after processing.
     pub processed: Processed<'a>,
-    /// The rule of its imprint.
+    /// The rule of the imprint.
     pub rule: Option<SetRule>,
-    /// The number of frames that its tare was made of; 0 without one.
+    /// The number of frames of which the tare was made; 0 without a tare.
     pub tare: u64,
 }
 
 impl<'a> FrameAnswer<'a> {
-    /// The answer for a frame and what has become of it, without a channel, a rule or a tare.
+    /// Makes the answer for a frame and its processed form, without a channel, a rule or a tare.
     pub fn new(frame: &'a Frame, processed: Processed<'a>) -> Self {
         Self {
             frame,
@@ -87,7 +89,7 @@ impl Serialize for SetRule {
     }
 }
 
-/// A finite number, without a fraction where it has none.
+/// A finite number, written without a fraction if it is whole.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shortest(pub(crate) f64);
 
@@ -127,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rule_says_what_and_from_where() {
+    fn a_rule_is_written_with_its_threshold_and_origin() {
         let rule = |rule, least| {
             json::text(&SetRule {
                 rule,

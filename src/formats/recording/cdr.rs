@@ -1,5 +1,5 @@
-//! Common data representation, as ROS 2 writes messages: numbers at multiples of their size, counted from behind a
-//! header of four bytes that says their byte order.
+//! Reads the common data representation, in which ROS 2 writes messages: numbers at multiples of their size, counted
+//! from the end of a header of four bytes that gives their byte order.
 //! ```text
 //! 00 01 00 00   header: little endian
 //! 05 00 00 00   the length of a text, with its zero
@@ -9,19 +9,19 @@
 
 use crate::formats::npy::NumberType;
 
-/// Reads a message field by field; None where it ends too early.
+/// A reader of a message, field by field; its methods return None if the message ends too early.
 #[derive(Debug)]
 pub(super) struct CdrReader<'a> {
-    /// The message behind the header.
+    /// The message after the header.
     bytes: &'a [u8],
-    /// How many of them have been read.
+    /// The number of bytes that have been read.
     at: usize,
-    /// The byte order that the header names.
+    /// Whether the header says that the highest byte comes first.
     big_endian: bool,
 }
 
 impl<'a> CdrReader<'a> {
-    /// A message; None if it is in another representation.
+    /// Reads the header of a message; None if it is in another representation.
     pub(super) fn new(message: &'a [u8]) -> Option<Self> {
         let (head, bytes) = message.split_first_chunk::<4>()?;
         let big_endian = match head {
@@ -36,7 +36,7 @@ impl<'a> CdrReader<'a> {
         })
     }
 
-    /// The next bytes at a multiple of the alignment.
+    /// Reads the next bytes at a multiple of the alignment.
     fn take(&mut self, length: usize, alignment: usize) -> Option<&'a [u8]> {
         let start = self.at.next_multiple_of(alignment);
         let end = start.checked_add(length)?;
@@ -45,12 +45,12 @@ impl<'a> CdrReader<'a> {
         Some(taken)
     }
 
-    /// A byte.
+    /// Reads a byte.
     pub(super) fn byte(&mut self) -> Option<u8> {
         self.take(1, 1)?.first().copied()
     }
 
-    /// Four bytes as a number.
+    /// Reads four bytes as a number.
     pub(super) fn word(&mut self) -> Option<u32> {
         let bytes: [u8; 4] = self.take(4, 4)?.try_into().ok()?;
         Some(if self.big_endian {
@@ -60,26 +60,26 @@ impl<'a> CdrReader<'a> {
         })
     }
 
-    /// The number of elements of a list, each of at least `least` bytes: no more than fit.
+    /// Reads the number of elements of a list, each of at least `least` bytes; None if they cannot fit.
     pub(super) fn count(&mut self, least: usize) -> Option<usize> {
         let count = usize::try_from(self.word()?).ok()?;
         (count.checked_mul(least)? <= self.bytes.len()).then_some(count)
     }
 
-    /// A text, without the zero at its end.
+    /// Reads a text, without the zero at its end.
     pub(super) fn text(&mut self) -> Option<&'a str> {
         let length = self.count(1)?;
         let text = self.take(length, 1)?;
         str::from_utf8(text.strip_suffix(&[0]).unwrap_or(text)).ok()
     }
 
-    /// A list of bytes.
+    /// Reads a list of bytes.
     pub(super) fn bytes(&mut self) -> Option<&'a [u8]> {
         let length = self.count(1)?;
         self.take(length, 1)
     }
 
-    /// Adds a list of numbers of a kind and size, as of numpy.
+    /// Appends a list of numbers of a kind and size, named as in numpy.
     pub(super) fn numbers(&mut self, kind: u8, size: usize, values: &mut Vec<f64>) -> Option<()> {
         let count = self.count(size)?;
         // An empty list is not aligned.

@@ -1,49 +1,50 @@
-//! Which fields of a table are cells, by the names in its header: `S0_0`, `r3c12`, or counted 0, 1, 2 and so on.
+//! Finds the fields of a table that are cells, by the names in its header: `S0_0`, `r3c12`, or 0, 1, 2 and so on.
 //!
 //! | names | are |
 //! |---|---|
-//! | `r0c0,r0c1,r1c0,r1c1`, `S3_12`, `pad2[0][1]` | rows and columns: the last two numbers of a name, the rest being the same in all |
+//! | `r0c0,r0c1,r1c0,r1c1`, `S3_12`, `pad2[0][1]` | rows and columns: the last two numbers of each name; the rest is the same in all |
 //! | `c0r0`, `col0_row0`, `x0y0` | the same, but columns and rows |
-//! | `0,1,2,3`, `v1,v2,v3` | cells one after the other, of which rows and columns are not known |
-//! | `frame`, `index`, `id`, … or an empty first name | what the recording calls the frame |
-//! | `time`, `t_ns`, `Time (ms)`, `host_time`, `timestampMs`, … | its time, with its unit if there is one |
-//! | `sec` beside `nanosec`, `header.stamp.secs` beside `header.stamp.nsecs` | the whole seconds of its time, and the rest |
+//! | `0,1,2,3`, `v1,v2,v3` | cells one after the other; their rows and columns are not known |
+//! | `frame`, `index`, `id`, … or an empty first name | the frame's label in the recording |
+//! | `time`, `t_ns`, `Time (ms)`, `host_time`, `timestampMs`, … | the frame's time, with its unit if there is one |
+//! | `sec` beside `nanosec`, `header.stamp.secs` beside `header.stamp.nsecs` | the whole seconds of the frame's time, and the rest |
 //!
-//! Numbers of rows and columns may begin anywhere, but none may be missing: otherwise the names describe no cells.
+//! Numbers of rows and columns may start anywhere, but none may be missing: otherwise the names do not describe
+//! cells.
 
 use crate::formats::recording::frame_time::TimeUnit;
 
-/// What the header of a table says of its cells.
+/// The cells that the header of a table names.
 #[derive(Debug, PartialEq)]
 pub(crate) enum NamedCells {
     /// Rows, columns, and the field of each cell in reading order.
     Grid(u16, u16, Vec<usize>),
-    /// Counted fields, one after the other: the first of them and how many.
+    /// Consecutive fields that count up: the first of them and their number.
     Counted(usize, usize),
-    /// Only this many of the cells of these rows and columns.
+    /// A grid with missing cells: rows, columns and the number of cells that are there.
     Incomplete(u16, u16, usize),
 }
 
-/// What a field that is not a cell says of a frame.
+/// The role of a field that is not a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum FieldRole {
-    /// What the recording calls the frame.
+    /// The frame's label.
     Label,
-    /// Its time, and the unit if the name has one.
+    /// The frame's time, and the unit if the name gives one.
     Time(Option<TimeUnit>),
 }
 
 /// The most patterns of names that are distinguished.
 const MOST_PATTERNS: usize = 64;
 
-/// The cells that the names describe; None where they describe none.
+/// Returns the cells that the names describe; None if they do not describe any.
 pub(crate) fn cells(names: &[&str]) -> Option<NamedCells> {
     let (named, counted) = (largest_grid(names), counted(names));
     let in_row = match counted {
         Some(NamedCells::Counted(_, length)) => length,
         _ => 0,
     };
-    // Each row of a grid counts, too. What has a pair of numbers by chance is less than the cells.
+    // Each row of a grid counts up, too. If fewer names have a pair of numbers than count up, the pairs are chance.
     if named.len() < in_row {
         counted
     } else {
@@ -51,8 +52,8 @@ pub(crate) fn cells(names: &[&str]) -> Option<NamedCells> {
     }
 }
 
-/// A name's text around its last numbers, and these.
-/// `pad2[0][1]` split for two numbers is `pad2[#][#]` and 0, 1. None if there are fewer.
+/// Splits the last `N` numbers off a name; returns the text around them and the numbers. `pad2[0][1]` split for two
+/// numbers is `pad2[#][#]` and 0, 1. None if there are fewer numbers.
 fn split<const N: usize>(name: &str) -> Option<(String, [u32; N])> {
     let mut numbers = [0; N];
     let mut skeleton = String::new();
@@ -70,7 +71,8 @@ fn split<const N: usize>(name: &str) -> Option<(String, [u32; N])> {
     Some((format!("{rest}{skeleton}"), numbers))
 }
 
-/// Whether a pattern such as `pad_col#_row#` names the column before the row. Without words for both, the row comes first.
+/// Returns true if a pattern such as `pad_col#_row#` names the column before the row. Without words for both, the row
+/// comes first.
 fn is_column_first(skeleton: &str) -> bool {
     let mut before = skeleton.rsplit('#').skip(1).map(|text| {
         let text = text.trim_end_matches(|character: char| !character.is_alphanumeric());
@@ -86,7 +88,7 @@ fn is_column_first(skeleton: &str) -> bool {
 /// The index of a field, and its row and column: the last two numbers of its name.
 type NumberedField = (usize, [u32; 2]);
 
-/// The fields whose names have two numbers, with their rows and columns, in the pattern that most of them have.
+/// Returns the fields whose names have two numbers, with their rows and columns, for the most frequent pattern.
 fn largest_grid(names: &[&str]) -> Vec<NumberedField> {
     let split = names.iter().map(|name| split::<2>(name)).enumerate();
     let mut patterns: Vec<(String, Vec<NumberedField>)> = Vec::new();
@@ -97,12 +99,12 @@ fn largest_grid(names: &[&str]) -> Vec<NumberedField> {
         let is_full = patterns.len() == MOST_PATTERNS;
         match patterns.iter_mut().find(|(own, _)| *own == skeleton) {
             Some((_, fields)) => fields.push((field, numbers)),
-            // A table of cells has few patterns; one of words and dates may have one for each name.
+            // A table of cells has few patterns; one of words and dates may have a pattern for each name.
             None if is_full => {}
             None => patterns.push((skeleton, vec![(field, numbers)])),
         }
     }
-    // Of equals the last, as cells come after what is said of the frame.
+    // Of equally frequent patterns the last counts, since cells come after the other fields of a frame.
     let most = patterns.into_iter().max_by_key(|(_, fields)| fields.len());
     let (skeleton, mut fields) = most.unwrap_or_default();
     if is_column_first(&skeleton) {
@@ -113,8 +115,8 @@ fn largest_grid(names: &[&str]) -> Vec<NumberedField> {
     fields
 }
 
-/// Cells named by row and column; there must be exactly one for each. None of names that are cells by chance at most:
-/// of which less than half are there, or one is there twice.
+/// Returns the cells named by row and column; there must be exactly one for each position. None if the names are
+/// cells by chance at most: half of them or more are missing, or one occurs twice.
 fn grid(named: &[NumberedField]) -> Option<NamedCells> {
     let range = |part: usize| {
         let numbers = named.iter().map(|(_, numbers)| numbers[part]);
@@ -135,7 +137,7 @@ fn grid(named: &[NumberedField]) -> Option<NamedCells> {
         return (2 * found > fields.len()).then_some(NamedCells::Incomplete(rows, columns, found));
     }
     for &(field, [row, column]) in named {
-        // Below 512 both.
+        // Both are below 512.
         let index = (row - top) * u32::from(columns) + (column - left);
         fields[usize::try_from(index).ok()?] = Some(field);
     }
@@ -143,7 +145,7 @@ fn grid(named: &[NumberedField]) -> Option<NamedCells> {
     Some(NamedCells::Grid(rows, columns, fields?))
 }
 
-/// The longest run of names that count up from 0 or 1; three or more.
+/// Returns the longest run of names that count up from 0 or 1; it must have at least three.
 fn counted(names: &[&str]) -> Option<NamedCells> {
     let named = |name: &&str| split::<1>(name);
     let mut best: Option<(usize, usize)> = None;
@@ -174,7 +176,8 @@ fn counted(names: &[&str]) -> Option<NamedCells> {
         .map(|(start, length)| NamedCells::Counted(start, length))
 }
 
-/// What the names of a header's fields say of the frame. A first field without a name is an index, as pandas writes it.
+/// Returns the roles of a header's fields by their names. A first field without a name is an index, as pandas writes
+/// it.
 pub(crate) fn roles(names: &[&str]) -> Vec<Option<FieldRole>> {
     let mut roles: Vec<_> = names.iter().map(|name| role(name)).collect();
     if let ([first, _, ..], [own, ..]) = (names, &mut roles[..])
@@ -185,7 +188,7 @@ pub(crate) fn roles(names: &[&str]) -> Vec<Option<FieldRole>> {
     roles
 }
 
-/// The words for each unit of time. A minute may also be a minimum, so it needs a word for a time before it.
+/// The words for each unit of time. `min` may also mean a minimum, so it needs a word for a time before it.
 const UNITS: [(TimeUnit, &[&str]); 5] = [
     (
         TimeUnit::Nanoseconds,
@@ -234,7 +237,7 @@ const UNITS: [(TimeUnit, &[&str]); 5] = [
     (TimeUnit::Minutes, &["min", "mins", "minutes"]),
 ];
 
-/// Words that stand for a time.
+/// The words for a time.
 const TIMES: [&str; 15] = [
     "t",
     "time",
@@ -253,19 +256,19 @@ const TIMES: [&str; 15] = [
     "walltime",
 ];
 
-/// Words that say which clock a time is from.
+/// The words for the clock of a time.
 const CLOCKS: [&str; 17] = [
     "header", "field", "msg", "ros", "unix", "host", "log", "system", "sys", "device", "sensor",
     "recv", "received", "utc", "cpu", "wall", "tv",
 ];
 
-/// Words for what a recording calls a frame.
+/// The words for a frame's label.
 const LABELS: [&str; 13] = [
     "frame", "index", "idx", "number", "no", "nr", "n", "id", "label", "seq", "sequence", "sample",
     "count",
 ];
 
-/// The words of a name in small letters: `timestampMs` has two, and so has `Time (ms)`.
+/// Splits a name into words in lower case: `timestampMs` and `Time (ms)` have two.
 fn words(name: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word = String::new();
@@ -275,7 +278,7 @@ fn words(name: &str) -> Vec<String> {
             words.extend((!word.is_empty()).then(|| std::mem::take(&mut word)));
         }
         if character.is_alphabetic() {
-            // The Greek letter looks the same as the micro sign.
+            // The Greek letter looks like the micro sign.
             let small = character.to_lowercase();
             word.extend(small.map(|small| if small == 'μ' { 'µ' } else { small }));
         }
@@ -285,18 +288,18 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// The unit of time that a text names: `ms`, `[s]`.
+/// Returns the unit of time that a text names, such as `ms` or `[s]`.
 pub(crate) fn time_unit(text: &str) -> Option<TimeUnit> {
     words(text).first().and_then(|word| unit(word))
 }
 
-/// The unit that a word names.
+/// Returns the unit of time that a word names.
 fn unit(word: &str) -> Option<TimeUnit> {
     let found = UNITS.iter().find(|(_, words)| words.contains(&word));
     found.map(|(unit, _)| *unit)
 }
 
-/// The first word of a name behind the clock: of `host_time` or `header.stamp`, what comes behind that.
+/// Returns the first word of a name that does not name a clock: `time` of `host_time`, `stamp` of `header.stamp`.
 fn word_behind_clock(words: &[String]) -> Option<&String> {
     let mut behind = words.iter();
     behind
@@ -304,23 +307,24 @@ fn word_behind_clock(words: &[String]) -> Option<&String> {
         .or(words.first())
 }
 
-/// Whether a name says that it is a time, and not only that it has the unit of one: `t_ms`, but not `latency_ms`.
+/// Returns true if a name says that it is a time, instead of only having the unit of one: `t_ms`, but not
+/// `latency_ms`.
 pub(crate) fn is_named_time(name: &str) -> bool {
     word_behind_clock(&words(name)).is_some_and(|word| TIMES.contains(&word.as_str()))
 }
 
-/// What a field's name says of the frame, if it is a usual one.
+/// Returns the role of a field by its name; None if the name is not a usual one.
 pub(crate) fn role(name: &str) -> Option<FieldRole> {
     let words = words(name);
     let first = words.first()?;
     let time = word_behind_clock(&words)?;
-    // A letter with a number is one of several like it: `S00` is not a second.
+    // A letter with a number is one of several: `S00` is not a second.
     let has_number = name.contains(|character: char| character.is_ascii_digit());
     let is_one_of_several = |word: &str| has_number && word.chars().count() == 1;
     if is_one_of_several(first) || is_one_of_several(time) {
         return None;
     }
-    // The smallest unit, if there are several.
+    // If there are several units, the smallest one counts.
     let unit = words.iter().filter_map(|word| unit(word)).min();
     let is_time = TIMES.contains(&time.as_str())
         || unit.is_some_and(|unit| match unit {
@@ -337,8 +341,8 @@ pub(crate) fn role(name: &str) -> Option<FieldRole> {
     }
 }
 
-/// The field with the rest of a time whose whole seconds are in another, and the unit of that rest: `nanosec` beside `sec`.
-/// Only such names are a pair; `time_s` and `time_ns` may be the same time twice.
+/// Returns the field with the rest of a time whose whole seconds are in the field `seconds`, and the unit of that
+/// rest: `nanosec` beside `sec`. Only such names form a pair; `time_s` and `time_ns` may be the same time twice.
 pub(crate) fn rest_of_second(names: &[&str], seconds: usize) -> Option<(usize, TimeUnit)> {
     let own = words(names.get(seconds)?);
     let (last, stem) = own.split_last()?;
@@ -368,7 +372,7 @@ mod tests {
             grid(2, 2, &[0, 2, 1, 3])
         );
         assert_eq!(cells(&["pad2[0][0]", "pad2[1][0]"]), grid(2, 1, &[0, 1]));
-        // The letters say which of the two is the column.
+        // The letters show which of the two is the column.
         for [column, between, behind] in [
             ["c", "r", ""],
             ["col", "_row", ""],
@@ -392,34 +396,34 @@ mod tests {
             cells(&["v1", "v2", "v3", "note"]),
             Some(NamedCells::Counted(0, 3))
         );
-        // A cell is missing; nothing counts.
+        // A cell is missing, and no names count up.
         let incomplete = |rows, columns, found| Some(NamedCells::Incomplete(rows, columns, found));
         assert_eq!(cells(&["r0c0", "r0c1", "r1c0"]), incomplete(2, 2, 3));
         assert_eq!(
             cells(&["r0c0", "r0c1", "r0c2", "r0c4"]),
             incomplete(1, 5, 4)
         );
-        // Half of them are too few to be cells.
+        // Half of the cells are too few.
         assert_eq!(cells(&["r0c0", "r1c1"]), None);
-        // One is there twice.
+        // One cell is there twice.
         assert_eq!(cells(&["r0c0", "r0c1", "r0c1"]), None);
         assert_eq!(cells(&["a", "b"]), None);
-        // What is said of the frame may come after its cells.
+        // Other fields of the frame may come after its cells.
         let named = [
             "S0_0", "S0_1", "S0_2", "S1_0", "S1_1", "S1_2", "total", "run_1_2",
         ];
         assert_eq!(cells(&named), grid(2, 3, &[0, 1, 2, 3, 4, 5]));
         let label = cells(&["S0_0", "S0_1", "S0_2", "S1_0", "label"]);
         assert_eq!(label, incomplete(2, 3, 4));
-        // A pair of numbers is no cell where more names count.
+        // A pair of numbers is not a cell if more names count up.
         let counted = Some(NamedCells::Counted(2, 4));
         for [first, second] in [["a_1_1", "a_1_2"], ["x_2024_01", "x_2025_02"]] {
             assert_eq!(cells(&[first, second, "c0", "c1", "c2", "c3"]), counted);
         }
         assert_eq!(cells(&["s0_0", "s0_4294967295"]), None);
-        // The names of a single row count, too, but they are pairs.
+        // The names of a single row count up, too, but they are pairs.
         assert_eq!(cells(&["S0_0", "S0_1", "S0_2"]), grid(1, 3, &[0, 1, 2]));
-        // Of two counts of the same length the first.
+        // Of two runs of the same length, the first counts.
         assert_eq!(
             cells(&["a1", "a2", "a3", "b1", "b2", "b3"]),
             Some(NamedCells::Counted(0, 3))
@@ -427,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_cells_are_those_of_at_most_512_a_side() {
+    fn names_of_cells_have_at_most_512_rows_and_columns() {
         let row = |length: u16| -> Vec<String> {
             (0..length).map(|column| format!("r0c{column}")).collect()
         };

@@ -1,20 +1,20 @@
-//! Chooses the channel of a source to watch, while the channels become known one after the other.
+//! Chooses the channel of a source to watch, while its channels appear one by one.
 
 use crate::formats::recording::event::ChannelInfo;
 
-/// The channel that was asked for, or else the first one. A stream without channels has all its frames taken.
+/// A choice of the requested channel, or else of the first one. If the stream has no channels, all frames are taken.
 #[derive(Clone, Debug, Default)]
 pub struct ChannelChoice {
-    /// The name that was asked for.
+    /// The name of the requested channel.
     asked: Option<String>,
     /// The names of the channels so far.
     names: Vec<String>,
-    /// The index of the channel that is watched, once that is known.
+    /// The index of the chosen channel, once it has appeared.
     chosen: Option<usize>,
 }
 
 impl ChannelChoice {
-    /// The channel of that name; without a name the first one.
+    /// Chooses the channel of that name, or the first channel if there is no name.
     pub fn new(asked: Option<&str>) -> Self {
         Self {
             asked: asked.map(str::to_owned),
@@ -22,7 +22,7 @@ impl ChannelChoice {
         }
     }
 
-    /// Adds the next channel. Returns whether it is the one that is watched.
+    /// Adds the next channel. Returns true if it is the chosen one.
     pub fn add(&mut self, info: &ChannelInfo) -> bool {
         let name = info.shown_name();
         let fits = self.asked.as_deref().is_none_or(|asked| asked == name);
@@ -34,8 +34,8 @@ impl ChannelChoice {
         is_chosen
     }
 
-    /// Whether frames of the channel of that index are taken. As long as the one that was asked for has not come, those of
-    /// the others are not.
+    /// Returns true if frames of the channel with that index are taken. Until the requested channel appears, frames
+    /// of other channels are not taken.
     pub fn takes(&self, channel: usize) -> bool {
         match self.chosen {
             Some(chosen) => chosen == channel,
@@ -43,7 +43,7 @@ impl ChannelChoice {
         }
     }
 
-    /// The names of the channels so far; `unnamed` for one without.
+    /// Returns the names of the channels so far; `unnamed` for a channel without a name.
     pub fn names(&self) -> &[String] {
         &self.names
     }
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_of_others_are_not_taken_before_the_channel_comes() {
+    fn frames_of_other_channels_are_not_taken_before_the_chosen_one_appears() {
         let mut choice = ChannelChoice::new(Some("right"));
         assert!(!choice.add(&channel(Some("left"))));
         assert!(!choice.takes(0));
@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_name_the_first_channel_is_taken_and_of_a_stream_all_frames() {
+    fn without_a_name_the_first_channel_is_taken_or_all_frames() {
         assert!(ChannelChoice::new(Some("right")).takes(0));
         let mut choice = ChannelChoice::new(None);
         assert!(choice.takes(0));

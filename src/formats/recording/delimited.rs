@@ -1,5 +1,5 @@
-//! Tables of numbers: a frame a line, with or without a header and other columns, or a row a line with an empty line
-//! between frames.
+//! Tables of numbers. Either a line is a frame, with or without a header and other columns, or a line is a row and an
+//! empty line separates frames.
 //! ```text
 //! frame,time,r0c0,r0c1,r1c0,r1c1          0 12  7
 //! 0,0.00,1,2,3,4                          3  9 NaN
@@ -7,20 +7,20 @@
 //!                                         0 11  8      or 12:00:00.25 0 11 8
 //!                                         2  9  1
 //! ```
-//! Fields are parted by semicolons (then a comma is the decimal sign), commas, tabs or spaces; the first line decides.
-//! Quotes around a field do not count. An empty field, `NaN`, `-nan`, `null`, `none`, `NA`, `N/A`, `#N/A` and `<NA>` stand for
-//! no cell. Lines that begin with `#`, `//` or `%` and a blank are passed over.
+//! Fields are separated by semicolons (then a comma is the decimal sign), commas, tabs or spaces; the first line
+//! decides. Quotes around a field do not count. An empty field, `NaN`, `-nan`, `null`, `none`, `NA`, `N/A`, `#N/A`
+//! and `<NA>` mean that there is no cell. Lines that begin with `#`, with `//`, or with `%` and a blank are skipped.
 //!
-//! Below names of cells there may be a line with the unit of each field.
+//! A line below the names of cells may hold the unit of each field.
 //!
-//! How the fields are arranged is found from the first lines, see [`table_layout`](super::table_layout); the file is then
+//! The first lines decide how the fields are arranged, see [`table_layout`](super::table_layout); then the file is
 //! read from its beginning.
 //!
-//! A line of commas alone between two frames is one without cells, unless frames have a number or a time; elsewhere it is
-//! an empty line, as spreadsheet programs write it.
+//! A line of commas between two frames is a frame without cells, unless frames have a number or a time; elsewhere it
+//! is an empty line as spreadsheet programs write it.
 //!
-//! Refused, with line and field: words where numbers are expected, and lines or blocks of another length. Nothing is
-//! padded, since a value that is missing in the middle would shift all that follow.
+//! Errors, with line and field, are words in place of numbers, and lines or blocks of another length. Nothing is
+//! padded, since a missing value in the middle would shift all later ones.
 
 use std::io::{BufRead, Seek};
 use std::ops::ControlFlow;
@@ -72,12 +72,12 @@ pub(super) fn read(
     }
 }
 
-/// Reads a text that is known to be one frame, a line for each row, up to its end or an empty line. In a recording a single
-/// row would be a frame of unknown shape, and a single column no table at all.
+/// Reads a text that is known to be a single frame, one line per row, up to its end or an empty line. As a recording,
+/// a single row would be a frame of unknown shape, and a single column not even a table.
 ///
 /// # Errors
-/// [`RecordingError::Unknown`] of what does not begin with a line of numbers or is larger than a frame; if a row has another
-/// number of values than the first, or something other than numbers.
+/// Returns [`RecordingError::Unknown`] if the text does not begin with a line of numbers or is larger than a frame,
+/// and an error if a row has another number of values than the first, or anything other than numbers.
 #[cfg(feature = "cli")]
 pub(crate) fn read_rows(text: &[u8], sink: &mut Sink<'_>) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(text);
@@ -99,14 +99,14 @@ pub(crate) fn read_rows(text: &[u8], sink: &mut Sink<'_>) -> Result<(), Recordin
     RowBlock::new(separator, (rows, columns), false).read(&mut TextLines::new(text), sink)
 }
 
-/// Reads frames of a line each.
+/// Reads frames of one line each.
 fn frames(
     lines: &mut TextLines<impl BufRead>,
     layout: &TableLayout,
     fields: &FrameFields,
     sink: &mut Sink<'_>,
 ) -> Result<(), RecordingError> {
-    // The slot of each field: that of a cell, or none.
+    // The index of the cell in each field; None if the field is not a cell.
     let mut slots = vec![None; fields.count];
     for (slot, &field) in fields.cells.iter().enumerate() {
         slots[field] = Some(slot);
@@ -114,7 +114,7 @@ fn frames(
     let (rows, columns) = layout.shape;
     let mut frame = Frame::new(columns, rows);
     let mut clock = TableClock::new(layout.separator, fields.time);
-    // Lines of commas since the last frame.
+    // The number of lines of commas since the last frame.
     let mut without_cells = 0_u64;
     while lines.advance()? {
         let (line, number) = (lines.line(), lines.number());
@@ -153,10 +153,10 @@ fn frames(
 }
 
 impl FrameFields {
-    /// Whether a line of commas is a frame without cells, if another frame follows. Spreadsheet programs write such lines in
-    /// place of empty ones, but hardly between frames.
+    /// Returns true if a line of commas is a frame without cells, provided that another frame follows. Spreadsheet
+    /// programs write such lines instead of empty ones, but rarely between frames.
     fn may_be_commas(&self, line: &[u8]) -> bool {
-        // As many as part the fields, or one more at the end.
+        // As many commas as separate the fields, or one more at the end.
         let fields = line.split(|&byte| byte == b',').count();
         let is_frame = fields > 1 && (fields == self.count || fields == self.count + 1);
         is_frame && self.label.is_none() && self.time.is_none()
@@ -164,10 +164,10 @@ impl FrameFields {
 
     /// Fills the values and the label of a frame from a line. Returns the text of its time.
     ///
-    /// Text in a field that is neither cell nor label nor time is not looked at.
+    /// Text in a field that is neither cell nor label nor time is ignored.
     ///
     /// # Errors
-    /// If the line has another number of fields, or something other than a number for a cell.
+    /// Returns an error if the line has another number of fields, or if a cell is not a number.
     fn fill<'a>(
         &self,
         slots: &[Option<usize>],
@@ -209,22 +209,22 @@ impl FrameFields {
     }
 }
 
-/// A frame of several lines, of which some have been read.
+/// A frame of several lines, of which some may have been read.
 struct RowBlock {
-    /// What parts fields.
+    /// The separator between fields.
     separator: Separator,
-    /// The frame that is being filled.
+    /// The frame that is being read.
     frame: Frame,
-    /// How many of its rows are there.
+    /// The number of rows read so far.
     found: u16,
     /// Whether an empty line ends a frame.
     parted: bool,
-    /// Reads the moment at the beginning of its first row.
+    /// The clock that reads the timestamp at the beginning of the first row.
     clock: TableClock,
 }
 
 impl RowBlock {
-    /// Before the first row of frames of that many rows and columns.
+    /// Starts before the first row of frames with that many rows and columns.
     fn new(separator: Separator, (rows, columns): (u16, u16), parted: bool) -> Self {
         Self {
             separator,
@@ -238,7 +238,7 @@ impl RowBlock {
     /// Reads all frames.
     ///
     /// # Errors
-    /// If a row has another number of values, or a frame another number of rows.
+    /// Returns an error if a row has another number of values, or a frame another number of rows.
     fn read(
         mut self,
         lines: &mut TextLines<impl BufRead>,
@@ -253,7 +253,7 @@ impl RowBlock {
                 continue;
             } else {
                 self.row(line, number)?;
-                // Without empty lines, the number of rows alone parts the frames.
+                // Without empty lines, frames are separated by their number of rows alone.
                 if self.parted {
                     continue;
                 }
@@ -265,7 +265,8 @@ impl RowBlock {
         }
     }
 
-    /// Ends the frame at an empty line or at the end of the file. Between frames there may be any number of them.
+    /// Ends the frame at an empty line or at the end of the file. There may be any number of empty lines between
+    /// frames.
     fn end(&mut self, number: u64, sink: &mut Sink<'_>) -> Result<ControlFlow<()>, RecordingError> {
         let given = self.give(sink);
         if given.is_break() || self.found == 0 {
@@ -277,7 +278,7 @@ impl RowBlock {
         Err(RecordingError::in_line(number, message))
     }
 
-    /// Reports the frame if all of its rows are there.
+    /// Reports the frame if all its rows have been read.
     fn give(&mut self, sink: &mut Sink<'_>) -> ControlFlow<()> {
         if self.found < self.frame.rows() {
             return ControlFlow::Continue(());
@@ -295,7 +296,7 @@ impl RowBlock {
             let message = format!("another row, expected an empty line after {rows} of them");
             return Err(RecordingError::in_line(number, message));
         }
-        // Each row may have its moment; that of the first one counts.
+        // Each row may have its timestamp; that of the first row counts.
         let (moment, line) = match moment::leading(line) {
             Some((moment, row)) => (Some(moment), row),
             None => (None, line),

@@ -1,16 +1,16 @@
-//! What lies beside a recording of taxel's own: `touch.json` says where the frames of `touch.npy` are from, their unit, and how
-//! they were looked at.
+//! The description beside one of taxel's own recordings: `touch.json` says where the frames of `touch.npy` come from,
+//! their unit, and how they were viewed.
 //!
 //! ```text
 //! {"format":"taxel-touch/1","source":"/dev/ttyUSB0","unit":"kPa","pitch_mm":[2.0,2.0],"seconds_per_frame":0.01,
 //!  "rule":{"at_least":10,"from":"flag"},"tare_frames":30,"tare":[[0.5,null],…],"marks":[{"number":65,"time":6.5}],
 //!  "ended":true}
 //! ```
-//! `ended` is false while frames are recorded, and stays so when the program is killed. `ended_by` says what went wrong where a
-//! recording was ended by that, as by a full disk.
+//! `ended` is false while frames are recorded, and stays false if the program is killed. `ended_by` gives the reason
+//! if an error ended the recording, such as a full disk.
 //!
-//! Everything but `format` may be missing. The values in the array are as the sensor sent them, in f64: what is said here
-//! is done again when they are read, unless flags say otherwise.
+//! Every key except `format` may be missing. The array holds the values as the sensor sent them, in f64: rule and
+//! tare are applied again when they are read, unless flags say otherwise.
 
 use std::io;
 
@@ -29,50 +29,50 @@ const FORMAT: &str = "taxel-touch/1";
 /// A frame that was marked while it was recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameMark {
-    /// Its number, as that of its record.
+    /// The source's number of the frame, which is its label in the recording.
     pub number: u64,
-    /// Its time in seconds.
+    /// The time of the frame in seconds.
     pub time: Option<f64>,
 }
 
-/// How the frames of a recording are looked at while it is written, which may change meanwhile.
+/// The current view of the frames while they are recorded, which may change meanwhile.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct RecordedView {
-    /// The rule of the imprints that are shown.
+    /// The rule of the imprints on view.
     pub rule: Option<SetRule>,
-    /// What is subtracted from each cell.
+    /// The tare that is subtracted from each cell.
     pub tare: Option<Tare>,
-    /// Frames that are marked.
+    /// The marked frames.
     pub marks: Vec<FrameMark>,
 }
 
-/// What `touch.json` says.
+/// The content of `touch.json`.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct RecordingMetadata {
-    /// The source's name.
+    /// The name of the source.
     pub source: String,
     /// The unit of the values.
     pub unit: Option<String>,
-    /// The distance of two cells, in mm, along x and along y.
+    /// The distance between neighbouring cells in mm, along x and along y.
     pub pitch_mm: Option<[f64; 2]>,
-    /// Seconds from a frame to the next.
+    /// The time from one frame to the next, in seconds.
     pub seconds_per_frame: Option<f64>,
-    /// The rule of the imprints that were shown last.
+    /// The rule of the imprints on view at the end.
     pub rule: Option<SetRule>,
-    /// What was subtracted from each cell then. The recorded values are those before that.
+    /// The tare that was subtracted from each cell at the end. The recorded values are those before that.
     pub tare: Option<Tare>,
-    /// Frames that were marked.
+    /// The frames that were marked.
     pub marks: Vec<FrameMark>,
-    /// Whether the recording was ended: false while frames are recorded, and after the program was killed. None where
-    /// nothing is said of it.
+    /// Whether the recording was ended properly: false while frames are recorded, and after the program was killed;
+    /// None if the description does not say.
     pub ended: Option<bool>,
-    /// What ended it early.
+    /// The error that ended the recording early.
     pub ended_by: Option<String>,
 }
 
-/// The object as it stands.
+/// The description as a JSON object.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 struct Described {
@@ -93,7 +93,7 @@ struct Described {
     ended_by: Option<String>,
 }
 
-/// A rule, read and written in different ways: it is from a file as soon as it is read.
+/// A rule. It is written with its origin, but once it is read, its origin is the file.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 enum DescribedRule {
@@ -107,7 +107,7 @@ enum DescribedRule {
     Other(RuleRecord),
 }
 
-/// The rule as an object, null without one.
+/// Writes the rule as an object, or null if there is none.
 #[expect(clippy::ref_option, reason = "serde calls it so")]
 fn rule_or_null<S: Serializer>(
     rule: &Option<DescribedRule>,
@@ -120,11 +120,11 @@ fn rule_or_null<S: Serializer>(
 }
 
 impl RecordingMetadata {
-    /// Reads the description. None if the bytes are something else, which may well lie beside an array; a torn one is
-    /// told by the name of its format.
+    /// Reads a description. Returns None if the bytes are something else, which may well be the case beside an array;
+    /// a torn description is recognised by the name of its format.
     ///
     /// # Errors
-    /// What is wrong with it, in one sentence.
+    /// Returns a message of one sentence if the description is invalid.
     pub fn read(bytes: &[u8]) -> Option<Result<Self, String>> {
         #[derive(Deserialize)]
         struct Format {
@@ -187,10 +187,10 @@ impl RecordingMetadata {
         })
     }
 
-    /// The description as the text of a file.
+    /// Returns the description as the text of a file.
     ///
     /// # Errors
-    /// None that is known of; what the writer of JSON reports.
+    /// Returns the errors of the JSON writer; none are known.
     pub fn text(&self) -> io::Result<Vec<u8>> {
         let tare = self.tare.as_ref();
         let text = serde_json::to_vec_pretty(&Described {

@@ -1,8 +1,8 @@
 //! Detects the format of a recording from its content.
 //!
-//! Tested in this order, from what cannot be mistaken to what is left: magic bytes, then JSON, then words that only one
-//! vendor writes, then ROS, then a table. A `.csv` of XSENSOR or Tekscan would pass for a table, and is therefore
-//! looked for before it.
+//! The tests go from the most to the least distinctive: magic bytes first, then JSON, then words that only one vendor
+//! writes, then ROS, then a table. A `.csv` of XSENSOR or Tekscan would pass for a table, so it is tested before
+//! that.
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
@@ -18,22 +18,23 @@ use crate::formats::recording::{
     delimited, emed, flexitac, json_lines, npz, numpy, popu, ros_text, tekscan, xsensor, zebris,
 };
 
-/// What an MCAP file begins with.
+/// The first bytes of an MCAP file.
 const MCAP: &[u8] = b"\x89MCAP0\r\n";
 
-/// Bytes at the start of a file that decide the format.
+/// The number of bytes at the start of a file that decide its format.
 const LOOKED_AT: usize = 1 << 16;
 
-/// Bytes read at a time.
+/// The number of bytes read at a time.
 const CHUNK: usize = 1 << 16;
 
-/// The format of a recording, by its first 64 KiB; None of what is not a recording. A text of numbers counts as a table, but
-/// not a single column of them, which many other files are.
+/// Returns the format of a recording, from its first 64 KiB; None if it is not a recording. A text of numbers counts
+/// as a table, except a single column, since many other files are one.
 pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
     recognised_with(start, ReadOptions::default())
 }
 
-/// The same, but if rows and columns are given, a single column of numbers is a table too.
+/// Detects the format like [`recognised`]; if rows and columns are given, a single column of numbers counts as a
+/// table, too.
 fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat> {
     let start = &start[..start.len().min(LOOKED_AT)];
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
@@ -69,14 +70,14 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
         _ if has(b"SensCountX=") => RecordingFormat::Zebris,
         _ if has(b"Pict-No.:") && has(b"Matrix:") => RecordingFormat::Emed,
         _ if is_ros(ros_text::without_notices(trimmed)) => RecordingFormat::Ros2,
-        // Bare rows, or all objects in one list: the reader of JSON lines says what was expected.
+        // For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.
         _ if is_list_of(trimmed, b'[') || is_list_of(trimmed, b'{') => RecordingFormat::JsonLines,
         _ if is_table(row) || options.shape.is_some() && is_number(row) => RecordingFormat::Csv,
         _ => return None,
     })
 }
 
-/// What is wrong with a file that is no recording.
+/// Returns the error for a file that is not a recording.
 fn refused(start: &[u8]) -> RecordingError {
     match foreign::kind(start) {
         Some(kind) => RecordingError::Foreign { kind },
@@ -100,7 +101,8 @@ fn refused(start: &[u8]) -> RecordingError {
     }
 }
 
-/// The first of two lines of numbers, where text stands above them: what a board sent when it started.
+/// Returns the number of the first of two successive lines of numbers; the text above them may be what a board sent
+/// at its start.
 fn numbers_below_text(text: &[u8]) -> Option<u64> {
     let is_row = |line: &[u8]| {
         let separator = Separator::of(line);
@@ -125,12 +127,12 @@ fn numbers_below_text(text: &[u8]) -> Option<u64> {
     })
 }
 
-/// Whether it is a black-and-white or grey image of netpbm.
+/// Returns true if a file is a black-and-white or grey image of netpbm.
 fn is_bitmap(start: &[u8]) -> bool {
     matches!(start, [b'P', b'1' | b'2' | b'4' | b'5', blank, ..] if blank.is_ascii_whitespace())
 }
 
-/// Whether a text is numbers alone, one a line.
+/// Returns true if a text consists of numbers, one per line.
 fn is_column(text: &[u8]) -> bool {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     let lines = text.split(|&byte| byte == b'\n');
@@ -140,26 +142,26 @@ fn is_column(text: &[u8]) -> bool {
     rows.peek().is_some() && rows.all(is_number)
 }
 
-/// Whether a line is a single number, or a word for a cell that is none.
+/// Returns true if a line is a single number, or a word for a cell without a value.
 fn is_number(line: &[u8]) -> bool {
     Separator::of(line) == Separator::Spaces && Separator::Spaces.is_numeric(line.trim_ascii())
 }
 
-/// Whether a text is a list in JSON whose first part begins with this byte.
+/// Returns true if a text is a JSON list whose first element begins with this byte.
 fn is_list_of(text: &[u8], first: u8) -> bool {
     let inside = text.strip_prefix(b"[").map(<[u8]>::trim_ascii_start);
     inside.is_some_and(|inside| inside.first() == Some(&first))
 }
 
-/// Whether a text is what `ros2 topic echo` prints.
+/// Returns true if a text is the output of `ros2 topic echo`.
 fn is_ros(text: &[u8]) -> bool {
     let first = text.split(|&byte| byte == b'\n').next().unwrap_or(b"");
     ros_text::begins_message(first)
         || first.starts_with(b"[") && text.windows(4).any(|word| word == b"\n---")
 }
 
-/// Whether a line may be the first of a table: it has a digit, and fields.
-/// A line of words alone may be the names of columns, if they are parted by commas or semicolons.
+/// Returns true if a line may be the first of a table: it has several fields and a digit. A line of words alone may
+/// be the names of columns, if they are separated by commas or semicolons.
 fn is_table(line: &[u8]) -> bool {
     let is_text = line
         .iter()
@@ -169,12 +171,12 @@ fn is_table(line: &[u8]) -> bool {
     is_text && has_mark && (has_digit || line.contains(&b',') || line.contains(&b';'))
 }
 
-/// Whether bytes that are no imprint and no shape look like a recording, for the message about them. Of JSON this is said only
-/// where there is a frame: most is a stored shape with a mistake.
+/// Returns true if bytes that are neither an imprint nor a shape look like a recording, for the message about them.
+/// JSON must contain a frame for this: most JSON is a stored shape with a mistake.
 #[cfg(feature = "tui")]
 pub(crate) fn may_be_recording(bytes: &[u8]) -> bool {
     let frame = b"\"frame\"";
-    // PBM and PGM say by themselves what they are.
+    // PBM and PGM files have messages of their own.
     if matches!(bytes, [b'P', b'1'..=b'6', ..]) {
         return false;
     }
@@ -184,19 +186,20 @@ pub(crate) fn may_be_recording(bytes: &[u8]) -> bool {
     }
 }
 
-/// The same as [`recognised`], of what is read from its present place on.
+/// Returns the format of a recording like [`recognised`], reading the input from its current position.
 ///
 /// # Errors
-/// If it cannot be read.
+/// Returns the system's error if the input cannot be read.
 pub fn recognised_input(input: impl Read) -> io::Result<Option<RecordingFormat>> {
     Ok(recognised(&start_of(input)?))
 }
 
-/// The format of what is read from its present place on.
+/// Returns the format of a recording, reading the input from its current position.
 ///
 /// # Errors
-/// If it is no recording: [`RecordingError::Foreign`] of a file of another kind, [`RecordingError::Shape`] of a column of
-/// numbers that may be one, else [`RecordingError::Unknown`]; or if it cannot be read.
+/// Returns [`RecordingError::Foreign`] for a file of another kind, [`RecordingError::Shape`] for a column of numbers
+/// that may be a recording, [`RecordingError::Unknown`] for anything else that is not one, and the system's error if
+/// the input cannot be read.
 pub(crate) fn format_of(
     input: impl Read,
     options: ReadOptions,
@@ -211,11 +214,11 @@ fn start_of(input: impl Read) -> io::Result<Vec<u8>> {
     Ok(start)
 }
 
-/// Reads a recording from its beginning to its end, and reports what is found to `sink`, which may break off.
+/// Reads a recording from beginning to end, and reports its events to `sink`, which may stop the reading.
 ///
 /// # Errors
-/// If it cannot be read, is not a recording, is damaged, or does not say how its values are arranged. Whole frames before
-/// a damage have been reported.
+/// Returns an error if the input cannot be read, is not a recording, is damaged, or does not say how its values are
+/// arranged. Whole frames before the damage have been reported.
 pub fn read(
     mut input: impl Read + Seek,
     options: ReadOptions,
@@ -227,12 +230,13 @@ pub fn read(
     Ok(format)
 }
 
-/// What recordings are read from. Bytes come in large pieces, so the readers need not be compiled for each kind of input.
+/// The input of a recording. It is read in large pieces through a `dyn` reference, so the readers are compiled only
+/// once.
 pub(crate) trait RecordingInput: Read + Seek {}
 
 impl<T: Read + Seek> RecordingInput for T {}
 
-/// The same for a recording whose format is known.
+/// Reads a recording whose format is known, like [`read`].
 pub(crate) fn read_as(
     format: RecordingFormat,
     input: &mut dyn RecordingInput,
@@ -337,7 +341,7 @@ mod tests {
         let expected = "line 1: found text, expected a table; numbers begin in line 3: delete the lines above, or read the \
                         file with taxel watch --once";
         assert_eq!(error_of(log), expected);
-        // A line of a growing file, up to its CR.
+        // A growing file may have been read up to the CR of a line.
         assert_eq!(recognised(b"1,2\r"), Some(RecordingFormat::Csv));
     }
 }

@@ -1,11 +1,11 @@
 //! novel's emed `.lst` export: pages with a header, the printed window of the matrix with its indices, and sums of
 //! forces.
 //!
-//! The printed window is the frame; the numbers of its first row and column are reported with it. A picture that is too
-//! wide or too high for a page is printed on several, which the numbers of their rows and columns join again. Pages
-//! without a `Pict-No.`, which summarise (MVP, MPP), are passed over.
+//! The printed window is the frame; the numbers of its first row and column are reported with it. A picture that is
+//! too wide or too high for a page is printed on several, which are joined by the numbers of their rows and columns.
+//! Pages without a `Pict-No.`, which summarise (MVP, MPP), are skipped.
 //! ```text
-//! (fields are parted by tabs, or end where those of the heading end and are empty for 0)
+//! (fields are separated by tabs, or end where those of the heading end and are empty for 0)
 //!     Page 1
 //!
 //!     File: …\2.dat     Matrix: 64x95
@@ -18,9 +18,9 @@
 //! …
 //! Force    0.00    0.00    0.38    …
 //! ```
-//! `Matrix` counts columns × rows of the whole sensor, of which only the loaded part is printed. Values are kPa; the
-//! forces of rows, of columns and of all are in N, and are checked. Time is the number of the picture times `Time/picture`. Source:
-//! exports of novel's emed software.
+//! `Matrix` counts columns × rows of the whole sensor, of which only the loaded part is printed. Values are in kPa;
+//! the forces of rows, of columns and of all cells are in N, and are checked. The time is the number of the picture
+//! times `Time/picture`. Source: exports of novel's emed software.
 
 use std::io::BufRead;
 
@@ -34,41 +34,42 @@ use crate::formats::recording::text_row::{self, Field};
 use crate::formats::seconds::to_nanoseconds;
 use crate::frame::{Frame, MAX_FRAME_SIDE};
 
-/// A pressure of 1 kPa on 1 cm² is a force of 0.1 N.
+/// The force in N of a pressure of 1 kPa on 1 cm².
 const NEWTON: f64 = 0.1;
-/// Values and forces have two decimals.
+/// The rounding error of values and forces, which have two decimals.
 const ROUNDING: f64 = 0.005;
 
-/// No picture is printed on more pages.
+/// The most pages of a picture.
 const MOST_PAGES: usize = 16;
 
-/// What the headers so far say; a value holds until another page says another.
+/// The content of the headers so far; a value holds until another page changes it.
 #[derive(Default)]
 struct EmedState {
-    /// The area of a cell, which makes forces of pressures.
+    /// The area of a cell, by which pressures become forces.
     area_cm2: Option<f64>,
     /// The size of a cell along x and along y.
     pitch_mm: Option<[f64; 2]>,
-    /// From a picture to the next.
+    /// The time from one picture to the next.
     seconds: Option<f64>,
-    /// Whether a page has begun whose values have not come yet.
+    /// Whether a page has begun but not yet its values.
     in_header: bool,
-    /// `Pict-No.` of the picture whose window comes next; None on other pages.
+    /// The `Pict-No.` of the picture whose window comes next; None on other pages.
     label: Option<i64>,
-    /// Whether that line says that windows end in a line of forces.
+    /// Whether the line of the `Pict-No.` says that windows end in a line of forces.
     has_forces: bool,
-    /// The pages so far of the picture that was read last; another page may follow.
+    /// The pages so far of the last picture; another page may follow.
     picture: Vec<EmedWindow>,
     /// Whether pictures so far have forces of rows, which their last page prints.
     has_row_forces: bool,
-    /// Pictures that were given.
+    /// The number of pictures that have been reported.
     frames: u64,
 }
 
 /// Reads a recording.
 ///
 /// # Errors
-/// If a page has a header but no window; those of the window; if the pages of a picture leave out cells.
+/// Returns an error if a page has a header but no window, or if the pages of a picture leave out cells, and the
+/// errors of the window.
 pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(input);
     let mut state = EmedState::default();
@@ -87,24 +88,24 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
     ended
 }
 
-/// The line above a window: the numbers of its columns, and `Force` if each row ends in its sum.
+/// The heading of a window: the numbers of its columns, and `Force` if each row ends in its force.
 /// ```text
 ///          21      22      23     Force
 /// 45     0.00   12.50    7.50      2.00
 /// Force  0.00    1.25    0.75      2.00
 /// ```
 struct EmedHeading {
-    /// The column of the whole sensor that the window begins at.
+    /// The first column of the window, counted on the whole sensor.
     first_column: u32,
-    /// Columns of the window.
+    /// The number of columns in the window.
     columns: u16,
-    /// Whether rows have a sum, and a line of sums follows them.
+    /// Whether each row has a force, and a line of forces follows the rows.
     has_force: bool,
-    /// Where fields end; none where tabs part them.
+    /// The positions where fields end; empty if tabs separate them.
     ends: Vec<usize>,
 }
 
-/// The words of a line, each with the position of its end.
+/// Returns the words of a line, each with the position of its end.
 fn words(line: &[u8]) -> impl Iterator<Item = (&[u8], usize)> {
     let mut end = 0;
     let fields = line.split(u8::is_ascii_whitespace);
@@ -120,7 +121,7 @@ impl EmedHeading {
     /// Reads the heading in line `number`.
     ///
     /// # Errors
-    /// If its numbers do not follow one another, or are more than a frame has columns.
+    /// Returns an error if its numbers are not consecutive, or if there are more than a frame has columns.
     fn of(line: &[u8], number: u64) -> Result<Self, RecordingError> {
         let (names, ends): (Vec<&[u8]>, Vec<usize>) = words(line).unzip();
         let has_force = names.last().is_some_and(|last| *last == b"Force");
@@ -147,7 +148,8 @@ impl EmedHeading {
         })
     }
 
-    /// The fields of a line below the heading: the number of its row, its values, and its force if rows have one.
+    /// Splits a line below the heading into its fields: the number of the row, its values, and its force if rows have
+    /// one.
     fn fields<'a>(&self, line: &'a [u8]) -> Vec<&'a [u8]> {
         if self.ends.is_empty() {
             return Separator::Byte(b'\t').split(line).collect();
@@ -158,14 +160,14 @@ impl EmedHeading {
             match column.filter(|_| index > 0) {
                 Some(column) => fields[column + 1] = word,
                 None if index == 0 => fields[0] = word,
-                // Not in columns, so none is left out.
+                // Words that are not in columns: no field is left out.
                 None => return words(line).map(|(word, _)| word).collect(),
             }
         }
         fields
     }
 
-    /// Reads a line of numbers into as many values. `name` stands for the first field, if that is none.
+    /// Reads the numbers of a line into `values`. `name` replaces the first field, if that is not a number.
     fn fill(
         &self,
         values: &mut [f64],
@@ -183,31 +185,31 @@ impl EmedHeading {
     }
 }
 
-/// The window that a page prints, or several joined to that of a picture.
+/// The window on a page, or several joined into that of a picture.
 struct EmedWindow {
-    /// `Pict-No.` of its page.
+    /// The `Pict-No.` of the page.
     label: i64,
-    /// The row of the whole sensor that it begins at.
+    /// The first row of the window, counted on the whole sensor.
     first_row: u32,
-    /// The column of the whole sensor that it begins at.
+    /// The first column of the window, counted on the whole sensor.
     first_column: u32,
-    /// Rows of the window.
+    /// The number of rows in the window.
     rows: u16,
-    /// Columns of the window.
+    /// The number of columns in the window.
     columns: u16,
-    /// Its values, row by row.
+    /// The values, row by row.
     values: Vec<f64>,
     /// The force of each row, if it is printed.
     row_forces: Vec<f64>,
-    /// The force of each column, and that of all behind them, if they are printed.
+    /// The force of each column, and after these that of all cells, if they are printed.
     column_forces: Vec<f64>,
 }
 
 impl EmedWindow {
-    /// Reads the rows of the window below its heading; the line behind them is read, too.
+    /// Reads the rows of the window below its heading, and the line after them.
     ///
     /// # Errors
-    /// If rows are not numbered one after the other, or the window ends before the line of forces.
+    /// Returns an error if rows are not numbered consecutively, or if the window ends before the line of forces.
     fn read(
         heading: &EmedHeading,
         lines: &mut TextLines<impl BufRead>,
@@ -254,10 +256,11 @@ impl EmedWindow {
         Ok(window)
     }
 
-    /// Goes to the next row of the window; false at its end: the line of forces, or without them an empty line.
+    /// Moves to the next row of the window; returns false at its end, which is the line of forces, or an empty line
+    /// if there are none.
     ///
     /// # Errors
-    /// If the window ends before its first row, or without its line of forces.
+    /// Returns an error if the window ends before its first row, or without its line of forces.
     fn has_next_row(
         &self,
         lines: &mut TextLines<impl BufRead>,
@@ -274,7 +277,7 @@ impl EmedWindow {
         Ok(false)
     }
 
-    /// Rows and columns of the whole sensor, from the first to the one behind the last.
+    /// Returns the ranges of rows and columns on the whole sensor, each from the first to the one after the last.
     fn ranges(&self) -> [(u32, u32); 2] {
         let behind = |first: u32, count: u16| (first, first.saturating_add(count.into()));
         [
@@ -283,21 +286,20 @@ impl EmedWindow {
         ]
     }
 
-    /// Whether both print a cell of the sensor.
+    /// Returns true if both windows include some cell of the sensor.
     fn overlaps(&self, other: &Self) -> bool {
         let mut pairs = self.ranges().into_iter().zip(other.ranges());
         pairs.all(|(own, other)| own.0 < other.1 && other.0 < own.1)
     }
 }
 
-/// Whether a line has the forces of columns.
+/// Returns true if a line holds the forces of columns.
 fn is_forces(line: &[u8]) -> bool {
     line.trim_ascii_start().starts_with(b"Force")
 }
 
-/// The number that follows a word.
-/// `Time/picture:10.0 ms` has 10 behind `Time/picture:`; the number ends at the first character that is not a digit or
-/// point.
+/// Returns the number that follows a word, up to the first character that is not a digit or a point: 10 for the word
+/// `Time/picture:` in `Time/picture:10.0 ms`.
 fn after(line: &str, word: &str) -> Option<f64> {
     let rest = line.split_once(word)?.1.trim_start();
     let end = rest.find(|character: char| !character.is_ascii_digit() && character != '.');
@@ -305,7 +307,7 @@ fn after(line: &str, word: &str) -> Option<f64> {
 }
 
 impl EmedState {
-    /// Reads all pages; true if no more is wanted.
+    /// Reads all pages; returns true if the sink wants no more.
     fn pages(
         &mut self,
         lines: &mut TextLines<impl BufRead>,
@@ -339,7 +341,7 @@ impl EmedState {
         Ok(false)
     }
 
-    /// Takes from a header line what it says; there may be several things in one line.
+    /// Reads a line of the header, which may hold several values.
     fn line(&mut self, line: &str) {
         if let Some(area) = after(line, "Sensor area:") {
             self.area_cm2 = Some(area);
@@ -365,10 +367,12 @@ impl EmedState {
         }
     }
 
-    /// Reads the window below the line of column numbers, and gives the picture before it; true if no more is wanted.
+    /// Reads the window below the line of column numbers, and reports the picture before it; returns true if the sink
+    /// wants no more.
     ///
     /// # Errors
-    /// If columns or rows are not numbered one after the other, or the window ends before the line of forces.
+    /// Returns an error if columns or rows are not numbered consecutively, or if the window ends before the line of
+    /// forces.
     fn window(
         &mut self,
         lines: &mut TextLines<impl BufRead>,
@@ -388,7 +392,7 @@ impl EmedState {
                 window.column_forces = fields.split_off(1);
             }
         }
-        // The values are whole even if the line of forces is not.
+        // The values are complete even if the line of forces is not.
         self.label = None;
         let joins = |own: &EmedWindow| own.label == label && !own.overlaps(&window);
         if !self.picture.iter().all(joins) && self.give(sink)? {
@@ -402,8 +406,8 @@ impl EmedState {
         forces.map(|()| false)
     }
 
-    /// Whether a page of the picture that was read last is missing where the file ends or is damaged: the one that is damaged,
-    /// or the last one, with the forces of rows that earlier pictures have.
+    /// Returns true if the last picture lacks a page where the file ends or is damaged: the damaged page itself, or
+    /// the last one, which has the forces of rows if earlier pictures have them.
     fn lacks_pages(&self) -> bool {
         let label = self.picture.first().map(|window| window.label);
         let has_row_forces = self
@@ -413,10 +417,10 @@ impl EmedState {
         label.is_some() && (self.label == label || self.has_row_forces && !has_row_forces)
     }
 
-    /// Gives the picture that was read last, if there is one; true if no more is wanted.
+    /// Reports the last picture, if there is one; returns true if the sink wants no more.
     ///
     /// # Errors
-    /// If its pages leave out cells, or are more than a frame.
+    /// Returns an error if its pages leave out cells, or are larger than a frame.
     fn give(&mut self, sink: &mut Sink<'_>) -> Result<bool, RecordingError> {
         let pages = std::mem::take(&mut self.picture);
         let Some(first) = pages.first() else {
@@ -450,11 +454,12 @@ impl EmedState {
         Ok(sink(RecordingEvent::Frame(&frame)).is_break())
     }
 
-    /// The forces of rows, of columns and of all that are not those of the values. Of a row on several pages only the last
-    /// one prints its force; where several do, nothing says what is summed.
+    /// Returns notes about the forces of rows, of columns and of all cells that differ from those of the values. The
+    /// force of a row on several pages is printed on the last one only; if several pages print one, it is unclear
+    /// what is summed, so it is not checked.
     ///
-    /// A force has two decimals, and so has each value it is the sum of: the difference may be half of the last digit
-    /// for each. That of all may be the sum of those of the rows or of the columns.
+    /// A force has two decimals, as has each value that it sums: the difference may be half of the last digit for
+    /// each. The force of all cells may be the sum of those of the rows or of the columns.
     fn odd_sums(&self, frame: &Frame, pages: &[EmedWindow]) -> Vec<RecordingNote> {
         let (Some(area), Some((top, left))) = (self.area_cm2, frame.first) else {
             return Vec::new();
@@ -514,10 +519,10 @@ impl EmedState {
     }
 }
 
-/// The frame that the pages of a picture print, none of which print a cell twice.
+/// Joins the pages of a picture into a frame; no cell is on two pages.
 ///
 /// # Errors
-/// If they leave out cells, or are more than a frame.
+/// Returns an error if the pages leave out cells, or are larger than a frame.
 fn joined(first: &EmedWindow, pages: &[EmedWindow]) -> Result<Frame, RecordingError> {
     let range = |axis: usize| {
         let ranges = pages.iter().map(|page| page.ranges()[axis]);
@@ -537,7 +542,7 @@ fn joined(first: &EmedWindow, pages: &[EmedWindow]) -> Result<Frame, RecordingEr
         return Err(RecordingError::damaged(message));
     }
     for page in pages {
-        // Within the bounds of all pages, which are those of a frame.
+        // The page lies within the bounds of all pages, which are those of the frame.
         let (above, before) = (top..page.first_row, left..page.first_column);
         let start = above.count() * usize::from(columns) + before.count();
         let width = usize::from(page.columns);

@@ -1,58 +1,60 @@
-//! What can be wrong with a recording, and where.
+//! The errors of a recording, with their places.
 
 use std::io;
 
 use crate::parameter::number::counted;
 
-/// Why a recording cannot be read, or not to its end.
+/// The error for a recording that cannot be read, or not to its end.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// The system refuses.
+    /// An error of the system.
     #[error("cannot read: {0}")]
     Io(#[from] io::Error),
-    /// None of the formats that are known.
+    /// Not one of the known formats.
     #[error("not a recording of a known format: expected {FORMS}")]
     Unknown,
     /// A file of another kind.
     #[error("{kind}, expected {FORMS}")]
     Foreign {
-        /// What it is, with its article: "a PNG image".
+        /// The kind of file, with its article: "a PNG image".
         kind: &'static str,
     },
-    /// The file does not follow its format from here on. Lines and columns count from 1; a column is a field of the line.
+    /// A place from which on the file does not follow its format. Lines and columns count from 1; a column is a field
+    /// of the line.
     #[error("{}{message}", prefix(*line, *column))]
     Damaged {
-        /// Which line, in a text.
+        /// The line number, if the file is a text.
         line: Option<u64>,
-        /// Which field of it, where it is one.
+        /// The field in the line, if a single field is wrong.
         column: Option<u64>,
-        /// What is wrong, and what would be right.
+        /// What was found and what was expected.
         message: String,
     },
-    /// The file does not say how its values are arranged.
-    /// A list of cells, without rows. The numbers can be named with [`ReadOptions`](super::ReadOptions).
+    /// A file that does not say how its values are arranged: it has a list of cells, without rows. The rows and
+    /// columns can be given with [`ReadOptions`](super::ReadOptions).
     #[error("{} a frame, but no rows and columns; give --rows and --columns", counted(*values, "value"))]
     Shape {
-        /// How many values a frame has.
+        /// The number of values of a frame.
         values: u64,
     },
-    /// The same of a table without a header: not all numbers of a line need be values.
+    /// A table without a header, which does not say how its values are arranged: not all numbers of a line need be
+    /// values.
     #[error(
         "{} a line, but no rows and columns; give --rows and --columns (a frame number and a time may be among the numbers)",
         counted(*numbers, "number")
     )]
     Columns {
-        /// How many numbers a line has.
+        /// The number of numbers in a line.
         numbers: u64,
     },
 }
 
-/// The formats for a file whose content is none of them.
+/// The known formats, for the message about any other file.
 const FORMS: &str = "Tekscan ASCII, XSENSOR CSV, emed .lst, zebris .apd, CSV, NPY, NPZ, JSON lines, PoPu JSON, MCAP, \
                      ros2 topic echo";
 
-/// `line 3, column 2: `; nothing in a file that has no lines.
+/// Returns the place for a message, `line 3, column 2: `; empty in a file without lines.
 fn prefix(line: Option<u64>, column: Option<u64>) -> String {
     match (line, column) {
         (Some(line), Some(column)) => format!("line {line}, column {column}: "),
@@ -62,12 +64,12 @@ fn prefix(line: Option<u64>, column: Option<u64>) -> String {
 }
 
 impl RecordingError {
-    /// Whether rows and columns would help.
+    /// Returns true if giving rows and columns would help.
     pub fn is_of_size(&self) -> bool {
         matches!(self, Self::Shape { .. } | Self::Columns { .. })
     }
 
-    /// A damage without a place.
+    /// Returns the error for damage without a place.
     pub(crate) fn damaged(message: impl Into<String>) -> Self {
         let message = message.into();
         Self::Damaged {
@@ -77,7 +79,7 @@ impl RecordingError {
         }
     }
 
-    /// A damage of a line.
+    /// Returns the error for damage in a line.
     pub(crate) fn in_line(line: u64, message: impl Into<String>) -> Self {
         let message = message.into();
         Self::Damaged {
@@ -87,7 +89,7 @@ impl RecordingError {
         }
     }
 
-    /// A damage of a field of a line.
+    /// Returns the error for damage in a field of a line.
     pub(crate) fn in_field(line: u64, column: usize, message: impl Into<String>) -> Self {
         Self::Damaged {
             line: Some(line),

@@ -1,4 +1,4 @@
-//! What a reader reports while it reads: what is in the file, frame after frame, and what is odd.
+//! The events that a reader reports: the channels of a file, its frames one by one, and notes about oddities.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -10,7 +10,7 @@ use crate::parameter::number::counted;
 #[cfg(feature = "tui")]
 use crate::parameter::number::short;
 
-/// The formats of recordings.
+/// A format of recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum RecordingFormat {
@@ -22,26 +22,26 @@ pub enum RecordingFormat {
     Emed,
     /// zebris `.apd` pictures.
     Zebris,
-    /// Numbers parted by commas, semicolons, tabs or spaces: a frame a line, or a row a line.
+    /// Numbers separated by commas, semicolons, tabs or spaces: one frame per line, or one row per line.
     Csv,
-    /// An array of numpy.
+    /// A numpy array.
     Npy,
-    /// An archive of such arrays.
+    /// An archive of numpy arrays.
     Npz,
-    /// A JSON object a line.
+    /// JSON lines: one object per line.
     JsonLines,
     /// JSON of the `PoPu` data set.
     Popu,
-    /// What `ros2 topic echo` prints.
+    /// The output of `ros2 topic echo`.
     Ros2,
     /// An MCAP file.
     Mcap,
-    /// Bytes of a `FlexiTac` board.
+    /// The bytes of a `FlexiTac` board.
     Flexitac,
 }
 
 impl RecordingFormat {
-    /// All of them.
+    /// All formats.
     pub const ALL: [Self; 12] = [
         Self::Tekscan,
         Self::Xsensor,
@@ -57,7 +57,7 @@ impl RecordingFormat {
         Self::Flexitac,
     ];
 
-    /// Its name in answers.
+    /// Returns the name of the format, as it is in answers.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tekscan => "tekscan",
@@ -75,7 +75,8 @@ impl RecordingFormat {
         }
     }
 
-    /// Whether frames are written at its end as they are measured, as in a live stream, and can be read from there.
+    /// Returns true if frames are appended to such a file as they are measured, as in a live stream, and can be read
+    /// from there.
     #[cfg(feature = "acquire")]
     pub(crate) fn is_appended_to(self) -> bool {
         matches!(
@@ -87,16 +88,16 @@ impl RecordingFormat {
 
 named!(RecordingFormat, "format", &RecordingFormat::ALL);
 
-/// What is known beforehand.
+/// Options for reading a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// Rows and columns, for files that do not say them.
+    /// The rows and columns of a frame, for files that do not give them.
     pub shape: Option<(u16, u16)>,
 }
 
 impl ReadOptions {
-    /// With rows and columns, for files that do not say them.
+    /// Sets the rows and columns of a frame, for files that do not give them.
     #[must_use]
     pub fn with_shape(mut self, rows: u16, columns: u16) -> Self {
         self.shape = Some((rows, columns));
@@ -104,44 +105,45 @@ impl ReadOptions {
     }
 }
 
-/// What a channel without a name is called.
+/// The name of a channel without a name.
 pub(crate) const UNNAMED: &str = "unnamed";
 
-/// What a recording says of one of its channels. None where it does not say it.
+/// A description of a channel, as far as the recording gives it: a field is None if it does not.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ChannelInfo {
-    /// The channel's name: a sensor, an array, a topic.
+    /// The name of the channel: a sensor, an array, a topic.
     pub name: Option<String>,
-    /// Rows and columns of its frames.
+    /// The rows and columns of its frames.
     pub shape: Option<(u16, u16)>,
-    /// How many values a frame has, where rows and columns are not known.
+    /// The number of values in a frame, if rows and columns are not known.
     pub values: Option<u64>,
-    /// The unit of its values.
+    /// The unit of the values.
     pub unit: Option<String>,
-    /// When the recording began, as it writes it.
+    /// The start of the recording, as it is written there.
     pub start: Option<String>,
-    /// Seconds from a frame to the next.
+    /// The time from one frame to the next, in seconds.
     pub seconds_per_frame: Option<f64>,
-    /// The distance of two cells, in mm, along x and along y.
+    /// The distance between neighbouring cells in mm, along x and along y.
     pub pitch_mm: Option<[f64; 2]>,
-    /// The value from which on the recording's own software shows a cell as touched.
+    /// The least value at which the recording's own software shows a cell as touched.
     pub threshold: Option<f64>,
-    /// The rule of the imprints while it was recorded.
+    /// The rule of the imprints while the recording was made.
     pub rule: Option<SetRule>,
-    /// What was subtracted from each cell then, after crop, flip and turn; the values are those before that.
+    /// The tare while the recording was made, subtracted after crop, flip and turn; the recorded values are those
+    /// before that.
     pub tare: Option<Tare>,
-    /// Frames that were marked then.
+    /// The frames that were marked while the recording was made.
     pub marks: Vec<FrameMark>,
 }
 
 impl ChannelInfo {
-    /// The name that a channel is listed and chosen by: `unnamed` where the recording gives it none.
+    /// Returns the name by which a channel is listed and chosen: `unnamed` if the recording gives it none.
     pub fn shown_name(&self) -> &str {
         self.name.as_deref().unwrap_or(UNNAMED)
     }
 
-    /// The channel with what the recording does not say itself, but the description beside it does, if there is one.
+    /// Returns the channel, with missing fields taken from the description beside the recording, if there is one.
     #[must_use]
     pub fn completed(&self, description: Option<&RecordingMetadata>) -> Self {
         let mut info = self.clone();
@@ -156,13 +158,14 @@ impl ChannelInfo {
         info
     }
 
-    /// The side of a cell in mm; None where it is not known or cells are not square.
-    /// A sensor has one pitch only. A file writes that of square cells as the same number twice, so nothing is rounded.
+    /// Returns the side of a cell in mm; None if it is unknown or cells are not square: a sensor has only one pitch.
+    /// Files write the pitch of square cells as the same number twice, so nothing is rounded.
     pub fn square_pitch_mm(&self) -> Option<f64> {
         self.pitch_mm.and_then(|[x, y]| (x == y).then_some(x))
     }
 
-    /// That lengths are not in mm although the distance of cells is known; None where they are or it is not.
+    /// Returns the reason why lengths are not in mm although the cell distances are known; None if they are in mm, or
+    /// if the distances are unknown.
     #[cfg(feature = "tui")]
     pub(crate) fn why_not_in_mm(&self) -> Option<String> {
         let [x, y] = self.pitch_mm.filter(|_| self.square_pitch_mm().is_none())?;
@@ -173,7 +176,7 @@ impl ChannelInfo {
         ))
     }
 
-    /// The recording's own tare, if it has the size of what that view shows of its frames.
+    /// Returns the recording's own tare, if it has the size of the frames in that view.
     pub fn tare_for(&self, view: &View) -> Option<&Tare> {
         let (rows, columns) = self.shape?;
         self.tare.as_ref().filter(|tare| {
@@ -182,8 +185,8 @@ impl ChannelInfo {
         })
     }
 
-    /// The rule of the recording itself: that of its description, else its threshold. Pieces of fewer taxels than `least` are
-    /// dropped; 0 leaves that to the description.
+    /// Returns the rule of the recording itself: that of its description, otherwise its threshold. Pieces of fewer
+    /// taxels than `least` are dropped; 0 keeps the description's limit.
     pub fn own_rule(&self, least: u32) -> Option<SetRule> {
         let threshold = || {
             let rule = self.threshold.and_then(|own| Rule::at_least(own).ok());
@@ -198,57 +201,57 @@ impl ChannelInfo {
     }
 }
 
-/// Something odd that does not stop a reader.
+/// An oddity that does not stop a reader.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RecordingNote {
-    /// A sum of a frame that the file states is not that of its values.
+    /// A sum in the file that differs from the sum of the values in the frame.
     Checksum {
-        /// The frame's number, from 0.
+        /// The number of the frame, from 0.
         frame: u64,
-        /// What its file calls it.
+        /// The label of the frame in its file.
         label: Option<i64>,
-        /// What is summed.
+        /// The name of the sum.
         what: &'static str,
-        /// What the file says.
+        /// The sum according to the file.
         stated: f64,
-        /// What the values give.
+        /// The sum of the values.
         found: f64,
     },
-    /// Rows and columns follow from the number of values alone.
+    /// Rows and columns that were derived from the number of values alone.
     Square {
-        /// How many rows, and how many columns.
+        /// The number of rows, and of columns.
         side: u16,
     },
-    /// A two-dimensional array is taken as one frame, though it is larger than 64 × 64.
+    /// A two-dimensional array that is taken as one frame, although it is larger than 64 × 64.
     Flat {
-        /// How many rows.
+        /// The number of rows.
         rows: u16,
-        /// How many columns.
+        /// The number of columns.
         columns: u16,
     },
-    /// Times whose unit follows from their size alone.
+    /// Times whose unit was derived from their size alone.
     TimeUnit {
         /// The unit: `nanoseconds`.
         unit: &'static str,
     },
     /// Bytes that belong to no frame.
     Garbled {
-        /// How many frames were dropped.
+        /// The number of frames that were dropped.
         frames: u64,
     },
-    /// The file ends before the last of the records that its header counts.
+    /// A file that ends before the last of the records that its header counts.
     Cut {
-        /// How many whole records it has.
+        /// The number of whole records in the file.
         records: u64,
-        /// How many the header counts.
+        /// The number of records according to the header.
         counted: u64,
     },
-    /// A picture is left out: it is the maximum of the others (zebris).
+    /// A picture that is left out because it is the maximum of the others (zebris).
     Maximum,
-    /// The description beside the recording is broken or cannot be read, and is left out.
+    /// A description beside the recording that is ignored, because it is broken or cannot be read.
     Description {
-        /// What is wrong with it, headed by its path.
+        /// What is wrong with it, after its path.
         complaint: String,
     },
 }
@@ -301,19 +304,19 @@ impl fmt::Display for RecordingNote {
     }
 }
 
-/// What a reader reports.
+/// An event that a reader reports.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum RecordingEvent<'a> {
-    /// A channel, before its first frame. The first one is channel 0, the next one 1.
+    /// A channel, before its first frame. Channels are numbered from 0.
     Channel(&'a ChannelInfo),
     /// A frame.
     Frame(&'a Frame),
-    /// Something odd.
+    /// An oddity.
     Note(&'a RecordingNote),
 }
 
-/// Takes what a reader reports; `Break` ends the reading without an error.
+/// A function that takes the events of a reader; `Break` ends the reading without an error.
 pub(crate) type Sink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a;
 
 #[cfg(test)]
@@ -322,7 +325,7 @@ mod tests {
     use crate::matrix::Matrix;
 
     #[test]
-    fn a_description_completes_a_channel_but_for_what_the_recording_says() {
+    fn a_description_fills_only_the_missing_fields_of_a_channel() {
         let rule = |percent| SetRule {
             rule: Rule::Percent(percent),
             least: 0,
@@ -349,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn a_least_size_that_is_asked_for_goes_before_that_of_the_description() {
+    fn a_given_least_size_takes_precedence_over_the_description() {
         let described = ChannelInfo {
             rule: Some(SetRule {
                 rule: Rule::Percent(30.0),
@@ -375,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tare_is_for_the_view_that_shows_as_many_cells() {
+    fn a_tare_fits_only_views_of_its_size() {
         let tare = Tare::from_parts(Matrix::filled(3, 2, 1.0), None, None, 1).expect("sizes fit");
         let info = ChannelInfo {
             shape: Some((2, 3)),
@@ -388,7 +391,7 @@ mod tests {
         };
         assert_eq!(info.tare_for(&View::default()), Some(&tare));
         assert_eq!(info.tare_for(&turned), None);
-        // Without the size of its frames nothing tells whether it fits.
+        // If the size of the frames is unknown, nothing shows whether the tare fits.
         let unknown = ChannelInfo {
             shape: None,
             ..info

@@ -1,8 +1,8 @@
-//! The bytes of a `FlexiTac` board in a file: `AA 55`, then a byte a cell.
+//! The bytes of a `FlexiTac` board in a file: `AA 55`, then a byte per cell.
 //!
-//! The same bytes as from the board itself, so the decoder of streams reads them. The file names no rows and columns;
-//! if they are not known, the error says how many cells the first frame has. Frames that are torn are dropped and
-//! counted in a note, as there is no checksum that would tell what is wrong with them.
+//! The bytes are the same as from the board itself, so the decoder of streams reads them. The file does not give rows
+//! and columns; if the caller does not either, the error says how many cells the first frame has. Torn frames are
+//! dropped and counted in a note, as no checksum could show what is wrong with them.
 
 use std::cell::Cell;
 use std::io::{ErrorKind, Read};
@@ -14,13 +14,13 @@ use crate::formats::recording::event::{
 };
 use crate::formats::stream::{StreamDecoder, StreamEvent, StreamFormat, StreamOptions};
 
-/// Bytes read at a time, at most.
+/// The most bytes read at a time.
 const CHUNK: usize = 1 << 16;
 
 /// Reads a recording.
 ///
 /// # Errors
-/// [`RecordingError::Shape`] if rows and columns are not named.
+/// Returns [`RecordingError::Shape`] if rows and columns are not given.
 pub(super) fn read(
     input: &mut impl Read,
     options: ReadOptions,
@@ -53,7 +53,7 @@ pub(super) fn read(
         }
     };
     while state.get().is_continue() {
-        // What is there, at once: the end of a file that grows is waited for.
+        // Read only the bytes that are there: a full read would wait for the end of a growing file.
         let length = match input.read(&mut bytes) {
             Ok(0) => break,
             Ok(length) => length,

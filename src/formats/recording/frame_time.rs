@@ -1,7 +1,7 @@
-//! Times of frames as tables and arrays write them, in seconds since the first one.
+//! Reads the times of frames in tables and arrays, as seconds since the first one.
 //!
 //! Nanoseconds since 1970 have more digits than a float, so numbers are subtracted as they are written: in whole
-//! picoseconds. A number with an exponent or of more than 20 digits is taken as the nearest float.
+//! picoseconds. A number with an exponent, or with more than 20 digits, is taken as the nearest float.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use crate::formats::recording::separator::Separator;
 use crate::formats::recording::text_row::Field;
 use crate::formats::seconds::{since, to_nanoseconds};
 
-/// The unit of a time; the smaller one first.
+/// A unit of time; smaller units come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum TimeUnit {
     Nanoseconds,
@@ -21,7 +21,7 @@ pub(crate) enum TimeUnit {
 }
 
 impl TimeUnit {
-    /// Its name in messages.
+    /// Returns the name of the unit in messages.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Nanoseconds => "nanoseconds",
@@ -32,7 +32,7 @@ impl TimeUnit {
         }
     }
 
-    /// How many picoseconds it has.
+    /// Returns the number of picoseconds in the unit.
     fn picoseconds(self) -> u64 {
         match self {
             Self::Nanoseconds => 1_000,
@@ -43,9 +43,9 @@ impl TimeUnit {
         }
     }
 
-    /// A number of them in seconds.
+    /// Converts a number in this unit to seconds.
     pub(crate) fn seconds(self, number: f64) -> f64 {
-        // Quotients of whole numbers are rounded once.
+        // A quotient of whole numbers is rounded only once.
         match self {
             Self::Nanoseconds => number / 1e9,
             Self::Microseconds => number / 1e6,
@@ -55,8 +55,8 @@ impl TimeUnit {
         }
     }
 
-    /// That of a time without a unit: milliseconds or less if that makes it a date between 2000 and 2100, else seconds. The
-    /// clock of a machine may count in any unit from its start; nothing tells it.
+    /// Guesses the unit of a time without one: milliseconds or smaller if that makes it a date between 2000 and 2100,
+    /// otherwise seconds. A machine's clock may count in any unit since its start; no number shows which.
     pub(crate) fn by_size(number: f64) -> Self {
         const DATES: Range<f64> = 946_684_800.0..4_102_444_800.0;
         let smaller = [Self::Milliseconds, Self::Microseconds, Self::Nanoseconds];
@@ -66,19 +66,19 @@ impl TimeUnit {
     }
 }
 
-/// The fields of a line that have its time.
+/// The fields of a line that hold its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TimeFields {
     /// The field with the time, or with its whole seconds.
     pub(super) field: usize,
-    /// Its unit; None where nothing names it.
+    /// The unit; None if nothing names it.
     pub(super) unit: Option<TimeUnit>,
     /// The field with the rest of the second, and its unit.
     pub(super) rest: Option<(usize, TimeUnit)>,
 }
 
 impl TimeFields {
-    /// A single field.
+    /// Makes the fields of a time in a single field.
     pub(super) fn new(field: usize, unit: Option<TimeUnit>) -> Self {
         Self {
             field,
@@ -88,7 +88,7 @@ impl TimeFields {
     }
 }
 
-/// A time, as exactly as it is written.
+/// A time, exactly as it is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Time {
     Picoseconds(i128),
@@ -96,7 +96,7 @@ pub(super) enum Time {
 }
 
 impl Time {
-    /// That of a field which is this number.
+    /// Reads the time in a field whose value is `number`.
     pub(super) fn read(field: &[u8], number: f64, unit: TimeUnit) -> Self {
         match picoseconds(field, unit) {
             Some(exact) => Self::Picoseconds(exact),
@@ -119,7 +119,7 @@ impl Time {
         }
     }
 
-    /// The seconds from `start` to this time, to the nanosecond.
+    /// Returns the seconds from `start` to this time, to the nanosecond.
     pub(super) fn since(self, start: Self) -> f64 {
         let seconds = match (start, self) {
             (Self::Picoseconds(start), Self::Picoseconds(own)) => {
@@ -131,7 +131,7 @@ impl Time {
     }
 }
 
-/// The picoseconds of a decimal number of up to 20 digits without an exponent; what is less than one is rounded.
+/// Returns the picoseconds of a decimal number of up to 20 digits without an exponent, rounded to whole ones.
 fn picoseconds(field: &[u8], unit: TimeUnit) -> Option<i128> {
     const MOST_DIGITS: u32 = 20;
     let (negative, digits) = match field {
@@ -162,7 +162,7 @@ fn picoseconds(field: &[u8], unit: TimeUnit) -> Option<i128> {
     Some(if negative { -number } else { number })
 }
 
-/// The text of a frame's time in its line.
+/// The text of a frame's time.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct TimeText<'a> {
     /// The time, or its whole seconds.
@@ -171,23 +171,23 @@ pub(super) struct TimeText<'a> {
     pub(super) rest: Option<&'a [u8]>,
 }
 
-/// Reads the times of a table.
+/// A clock that reads the times of a table.
 #[derive(Debug)]
 pub(super) struct TableClock {
-    /// What parts fields, which decides about the decimal sign.
+    /// The separator between fields, which decides about the decimal sign.
     separator: Separator,
-    /// The unit; None where it is not named, until the first time tells it.
+    /// The unit; None if it is not named, until the size of the first time decides it.
     unit: Option<TimeUnit>,
     /// The unit of the rest of a second.
     rest: Option<TimeUnit>,
     /// The first time.
     start: Option<Time>,
-    /// Counts midnights of clocks without a date.
+    /// The count of midnights, for clocks without a date.
     midnights: Midnights,
 }
 
 impl TableClock {
-    /// For a table with such fields.
+    /// Makes the clock of a table with these time fields.
     pub(super) fn new(separator: Separator, fields: Option<TimeFields>) -> Self {
         Self {
             separator,
@@ -198,12 +198,12 @@ impl TableClock {
         }
     }
 
-    /// The unit of times; None where none is named and there was no number yet.
+    /// Returns the unit of times; None if no unit is named and there was no number yet.
     pub(super) fn unit(&self) -> Option<TimeUnit> {
         self.unit
     }
 
-    /// The seconds from the first time to this one; None if there is none, or a text that is not read.
+    /// Returns the seconds from the first time to this one; None if there is no time, or a text that cannot be read.
     pub(super) fn seconds(&mut self, text: TimeText<'_>) -> Option<f64> {
         let field = text.time?;
         match self.separator.value(field) {
@@ -224,7 +224,7 @@ impl TableClock {
         }
     }
 
-    /// The seconds from the first time to a moment.
+    /// Returns the seconds from the first time to a timestamp.
     pub(super) fn moment(&mut self, moment: moment::Moment) -> f64 {
         let seconds = self.midnights.seconds(moment);
         self.since_first(Time::Seconds(seconds))
@@ -240,13 +240,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_a_date_of_our_time_has_a_smaller_unit_than_seconds() {
+    fn only_a_present_day_date_has_a_smaller_unit_than_seconds() {
         for (number, expected) in [
             (1_714_564_800.0, TimeUnit::Seconds),
             (1_714_564_800_123.0, TimeUnit::Milliseconds),
             (1_714_564_800_123_456.0, TimeUnit::Microseconds),
             (1_714_564_800_123_456_789.0, TimeUnit::Nanoseconds),
-            // Up for five days: in nanoseconds and in microseconds.
+            // Running for five days: in nanoseconds and in microseconds.
             (4.3e14, TimeUnit::Seconds),
             (4.3e11, TimeUnit::Seconds),
             (5e12, TimeUnit::Seconds),
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_less_than_a_picosecond_is_rounded() {
+    fn fractions_of_a_picosecond_are_rounded() {
         let seconds = |text: &str| picoseconds(text.as_bytes(), TimeUnit::Seconds);
         assert_eq!(seconds("1.0000000000005"), Some(1_000_000_000_001));
         assert_eq!(seconds("-1,0000000000005"), Some(-1_000_000_000_001));

@@ -1,4 +1,4 @@
-//! Whether a first line of a table has the names of its fields or values, and lines that are neither.
+//! Decides whether the first line of a table holds names or values, and finds the lines that hold neither.
 
 use std::io::BufRead;
 
@@ -8,13 +8,14 @@ use crate::formats::recording::lines::{TextLines, is_blank};
 use crate::formats::recording::moment;
 use crate::formats::recording::separator::{Separator, is_comment};
 
-/// Lines that are compared with the first one, or among each other where nothing names what stands beside the cells.
+/// The number of lines that are compared with the first one, or with each other if no header names the numbers beside
+/// the cells.
 pub(super) const COMPARED: u16 = 8;
 
-/// The first line that is neither blank nor a comment.
+/// Returns the first line that is neither blank nor a comment.
 ///
 /// # Errors
-/// [`RecordingError::Unknown`] if there is none.
+/// Returns [`RecordingError::Unknown`] if there is no such line.
 pub(super) fn first_line(lines: &mut TextLines<impl BufRead>) -> Result<Vec<u8>, RecordingError> {
     while lines.advance_to_content()? && is_comment(lines.line()) {}
     let first = lines.line();
@@ -24,7 +25,8 @@ pub(super) fn first_line(lines: &mut TextLines<impl BufRead>) -> Result<Vec<u8>,
     Ok(first.to_owned())
 }
 
-/// The moment at the beginning of a line of numbers and nothing else, as it is written, and these numbers.
+/// Splits a line into the text of the timestamp at its beginning and the numbers after it; None if anything else is
+/// there.
 pub(super) fn moment_of_row(separator: Separator, line: &[u8]) -> Option<(&[u8], &[u8])> {
     let (_, row) = moment::leading(line)?;
     let moment = line[..line.len() - row.len()].trim_ascii();
@@ -36,8 +38,9 @@ pub(super) fn moment_of_row(separator: Separator, line: &[u8]) -> Option<(&[u8],
         .then_some((moment.trim_ascii(), row))
 }
 
-/// Whether a first line 0, 1, 2, … has values, as of a test pattern, and not the names of cells. It has if the next line
-/// counts on, if one of the next lines is the same, or if it begins the first of two blocks of as many lines.
+/// Returns true if a first line 0, 1, 2, … holds values, as of a test pattern, and not the names of cells. It does if
+/// the next line continues the count, if one of the next lines equals it, or if it begins the first of two blocks of
+/// equally many lines.
 pub(super) fn is_ramp(
     lines: &mut TextLines<impl BufRead>,
     separator: Separator,
@@ -67,7 +70,7 @@ pub(super) fn is_ramp(
     Ok(matches!(heights[..], [first, second] if first == second && first > 1))
 }
 
-/// How many cells are named, if names are those of cells and nothing else, counted from 0; pandas writes an empty one before
+/// Returns the number of names if they are those of cells only, counted from 0; pandas writes an empty name before
 /// them, above its index.
 pub(super) fn count_from_0(names: &[&str]) -> Option<usize> {
     let names = names.strip_prefix(&[""]).unwrap_or(names);
@@ -75,9 +78,9 @@ pub(super) fn count_from_0(names: &[&str]) -> Option<usize> {
     (names.first() == Some(&"0") && all).then_some(names.len())
 }
 
-/// Whether a line with words is a frame like the next line, with a date or a label beside its cells: words and numbers stand
-/// in the same fields. Otherwise it has the names of the fields, such as `label,0,1,2,3` above `cup,7,5,9,3`: its numbers
-/// count, from 0 or beside a word that is a usual name.
+/// Returns true if a line with words is a frame like the next line, with a date or a label beside its cells: words
+/// and numbers are in the same fields. Otherwise it holds the names of the fields, such as `label,0,1,2,3` above
+/// `cup,7,5,9,3`: its numbers count up, from 0 or beside a word that is a usual name.
 pub(super) fn is_like_next(names: &[&str], separator: Separator, next: &[u8]) -> bool {
     let next = separator.fields_of(next, names.len());
     let next: Vec<&[u8]> = next.take(names.len() + 1).collect();
@@ -102,7 +105,7 @@ pub(super) fn is_like_next(names: &[&str], separator: Separator, next: &[u8]) ->
     repeats || !counts
 }
 
-/// Whether a line has numbers in half of its fields or more.
+/// Returns true if at least half of the fields of a line are numbers.
 pub(super) fn is_mostly_numeric(separator: Separator, line: &[u8]) -> bool {
     let (mut all, mut numeric) = (0, 0);
     for field in separator.fields(line) {

@@ -1,15 +1,16 @@
-//! A JSON object a line: `{"t": 0.1, "frame": [[0, 12], [null, 3]]}`, null or Python's `NaN` for a missing cell.
+//! Recordings of one JSON object per line: `{"t": 0.1, "frame": [[0, 12], [null, 3]]}`, null or Python's `NaN` for a
+//! missing cell.
 //! ```text
 //! {"t": 0.00, "frame": [[0, 12], [null, 3]]}
 //! {"t": 0.05, "frame": [0, 13, null, 4], "label": 7}
 //! {"t": 0.05, "frame": [[5, 6], [7, 8]], "channel": "left"}
 //! ```
-//! Frames are lists of rows, or lists of cells where rows and columns are known beforehand. `t` or `time` is in seconds
-//! and counts from the first one; without either, another key may give the time, see [`json_time`](super::json_time).
-//! `label` is a whole number; `channel` is the name, or the number, of one of several sensors; other keys are passed over. All
-//! frames of a channel have one size.
-//! Refused, with line and column: rows of different lengths, lists within cells, infinite values, two frames, times
-//! or labels in one line.
+//! A frame is a list of rows, or a list of cells if rows and columns are given by the caller. `t` or `time` is in
+//! seconds and counts from the first one; without either, another key may give the time, see
+//! [`json_time`](super::json_time). `label` is a whole number; `channel` is the name or the number of one of several
+//! sensors; other keys are ignored. All frames of a channel have the same size.
+//! These are errors, with line and column: rows of different lengths, lists within cells, infinite values, and two
+//! frames, times or labels in one line.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -32,10 +33,10 @@ use crate::formats::seconds::since;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::parameter::number::counted;
 
-/// No recording and no stream has more channels.
+/// The most channels of a recording or a stream.
 pub(crate) const MOST_CHANNELS: usize = 256;
 
-/// No channel has a longer name, in bytes.
+/// The most bytes of a channel's name.
 const LONGEST_NAME: usize = 1024;
 
 /// Reads a recording.
@@ -47,7 +48,7 @@ pub(super) fn read(
     let mut lines = TextLines::new(input);
     let mut line = FrameLine::new(options.shape);
     let (mut clock, mut start) = (JsonClock::default(), None);
-    // The name of each channel, the size of its frames, and how many there are.
+    // The name of each channel, the size of its frames, and their number so far.
     let mut channels: Vec<(Option<String>, (u16, u16), u64)> = Vec::new();
     let mut frame = Frame::new(1, 1);
     while lines.advance_to_content()? {
@@ -93,34 +94,34 @@ pub(super) fn read(
     Ok(())
 }
 
-/// What a line says, in memory that is used again.
+/// The content of a line, in memory that is reused.
 #[derive(Debug)]
 pub(crate) struct FrameLine {
-    /// Rows and columns, for lists of cells without rows.
+    /// The given rows and columns, for lists of cells without rows.
     asked: Option<(u16, u16)>,
-    /// Rows and columns of the frame.
+    /// The rows and columns of the frame.
     pub(crate) shape: (u16, u16),
-    /// Its cells, row by row; NaN for null.
+    /// The cells, row by row; NaN for null.
     pub(crate) values: Vec<f64>,
-    /// In seconds: as `t` or `time` is written, or since the first time under another key.
+    /// The time in seconds: as `t` or `time` gives it, or since the first time under another key.
     pub(crate) time: Option<f64>,
-    /// What the recording calls the frame.
+    /// The frame's label in the recording.
     pub(crate) label: Option<i64>,
-    /// The sensor that it is of, where there are several.
+    /// The name of the sensor, if there are several.
     pub(crate) channel: Option<String>,
 }
 
-/// Why a line is not a frame.
+/// The error for a line that is not a frame.
 #[derive(Debug)]
 pub(crate) enum FrameLineError {
-    /// What is wrong, from which byte on, counted from 1.
+    /// The column of the error, from 1, and what is wrong.
     Json(usize, String),
-    /// A list of cells without rows; how many cells.
+    /// A list of cells without rows; the number of cells.
     Shape(u64),
 }
 
 impl FrameLineError {
-    /// What is wrong with that line of a recording.
+    /// Returns the error for that line of a recording.
     fn in_line(self, number: u64) -> RecordingError {
         match self {
             Self::Json(column, message) => RecordingError::in_field(number, column, message),
@@ -128,7 +129,7 @@ impl FrameLineError {
         }
     }
 
-    /// How many values a frame seems to have, if only its rows and columns are missing.
+    /// Returns the number of values in the frame, if only its rows and columns are missing.
     pub(crate) fn unshaped(&self) -> Option<u64> {
         match self {
             Self::Shape(values) => Some(*values),
@@ -136,7 +137,7 @@ impl FrameLineError {
         }
     }
 
-    /// What is wrong, if it is more than rows and columns that are missing.
+    /// Returns what is wrong, unless only rows and columns are missing.
     pub(crate) fn reason(self) -> Option<String> {
         match self {
             Self::Shape(_) => None,
@@ -146,7 +147,7 @@ impl FrameLineError {
 }
 
 impl FrameLine {
-    /// `asked` are rows and columns, if they are known beforehand.
+    /// Prepares for the first line; `asked` are the rows and columns, if the caller gives them.
     pub(crate) fn new(asked: Option<(u16, u16)>) -> Self {
         Self {
             asked,
@@ -158,7 +159,7 @@ impl FrameLine {
         }
     }
 
-    /// The channel of the line, if this is its first frame.
+    /// Returns the channel of the line, to be reported before its first frame.
     pub(crate) fn channel_info(&self) -> ChannelInfo {
         ChannelInfo {
             name: self.channel.clone(),
@@ -224,10 +225,10 @@ impl FrameLine {
     }
 }
 
-/// A line in which `NaN`, which Python writes although JSON has no such number, is `null`.
+/// A line in which each `NaN` is replaced by `null`: Python writes it, although JSON has no such number.
 struct WithoutNan<'a> {
     line: Cow<'a, [u8]>,
-    /// Where the words that are longer now begin.
+    /// The positions of the replaced words, which are longer now.
     replaced: Vec<usize>,
 }
 
@@ -259,14 +260,14 @@ impl<'a> WithoutNan<'a> {
         }
     }
 
-    /// The column of the line as it was, both counted from 1.
+    /// Converts a column of this line to one of the original line, both from 1.
     fn column(&self, column: usize) -> usize {
         let before = self.replaced.iter().filter(|&&start| start + 4 < column);
         column - before.count()
     }
 }
 
-/// What is wrong with a line from that column on.
+/// Returns what is wrong with a line from that column on.
 fn complaint(line: &[u8], column: usize, error: &serde_json::Error) -> String {
     let rest = line.get(column - 1..).unwrap_or(&[]);
     let begins_list = line.trim_ascii_start().strip_prefix(b"[");
@@ -275,7 +276,7 @@ fn complaint(line: &[u8], column: usize, error: &serde_json::Error) -> String {
             "found a list of objects, expected one object a line, as `jq -c '.[]'` writes them"
                 .to_owned()
         }
-        // Some programs write it, but it is no value.
+        // Some programs write infinity, but it is not a value.
         _ if rest.starts_with(b"Infinity") || rest.starts_with(b"-Infinity") => {
             "found Infinity, expected a number, or null where there is no cell".to_owned()
         }
@@ -286,7 +287,7 @@ fn complaint(line: &[u8], column: usize, error: &serde_json::Error) -> String {
 /// The object of a line.
 struct ObjectSeed<'a> {
     line: &'a mut FrameLine,
-    /// Is set to the number of rows; stays 0 for cells without rows.
+    /// The number of rows, which is set; it stays 0 for cells without rows.
     rows: &'a mut usize,
     clock: &'a mut JsonClock,
 }
@@ -345,7 +346,7 @@ impl<'de> Visitor<'de> for ObjectSeed<'_> {
     }
 }
 
-/// The name of a channel; a number is a name, too, and null is none.
+/// Reads the name of a channel: a number is a name, too, and null means no name.
 fn channel_name<E: Error>(value: &Value) -> Result<Option<String>, E> {
     let name = match value {
         Value::Null => return Ok(None),
@@ -366,10 +367,10 @@ fn channel_name<E: Error>(value: &Value) -> Result<Option<String>, E> {
     Ok(Some(name))
 }
 
-/// Notes the key that gave a value.
+/// Notes that a key gave a value.
 ///
 /// # Errors
-/// If a key gave it before.
+/// Returns an error if a key gave the value before.
 fn once<E: Error>(given: &mut Option<&'static str>, key: &'static str) -> Result<(), E> {
     match given.replace(key) {
         None => Ok(()),
@@ -380,7 +381,7 @@ fn once<E: Error>(given: &mut Option<&'static str>, key: &'static str) -> Result
     }
 }
 
-/// A list of rows, or of cells. Where a count of rows is asked for, lists inside of this one are rows.
+/// Reads a list of rows or of cells. Lists inside it are rows only if there is a counter of rows.
 pub(super) struct CellsSeed<'a>(
     pub(super) &'a mut Vec<f64>,
     pub(super) Option<&'a mut usize>,
@@ -435,7 +436,7 @@ impl<'de> Visitor<'de> for CellsSeed<'_> {
     }
 }
 
-/// A number, null, or a row of these; true for a row.
+/// Reads a number, null, or a row of these; returns true for a row.
 struct CellSeed<'a>(&'a mut Vec<f64>, bool);
 
 impl<'de> DeserializeSeed<'de> for CellSeed<'_> {

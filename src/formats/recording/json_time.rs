@@ -1,7 +1,7 @@
-//! Times of JSON lines that have neither `t` nor `time`: a key that is the name of a time, such as `timestamp` or `t_ms`, or
-//! two of which one has the rest of the second, such as `sec` and `nanosec`.
+//! Reads the times of JSON lines that have neither `t` nor `time`: from a key that is the name of a time, such as
+//! `timestamp` or `t_ms`, or from two keys of which one has the rest of the second, such as `sec` and `nanosec`.
 //!
-//! The first line with a time decides which key it is, and its unit. Whole numbers are subtracted before they become floats.
+//! The first line with a time decides the key and its unit. Whole numbers are subtracted before they become floats.
 
 use serde_json::Value;
 
@@ -10,27 +10,27 @@ use crate::formats::recording::frame_time::{Time, TimeUnit};
 use crate::formats::recording::moment;
 use crate::frame::LARGEST_VALUE;
 
-/// No line has more keys that may be its time.
+/// The most keys of a line that are considered as its time.
 const MOST_KEYS: usize = 16;
 
-/// The key with the time of each line.
+/// The key that holds the time in each line.
 #[derive(Debug)]
 struct TimeKey {
     name: String,
-    /// Its unit; None until a number tells it.
+    /// The unit of the key; None until the size of a number decides it.
     unit: Option<TimeUnit>,
     /// The key with the rest of the second, and its unit.
     rest: Option<(String, TimeUnit)>,
 }
 
-/// Turns the times of lines into seconds since the first of them.
+/// A clock that turns the times of lines into seconds since the first one.
 #[derive(Debug, Default)]
 pub(crate) struct JsonClock {
-    /// None until a line has a time.
+    /// The key of the time; None until a line has a time.
     key: Option<TimeKey>,
     /// The first time.
     start: Option<Time>,
-    /// The unit that its size alone told, until it is reported.
+    /// The unit that was derived from the size alone, until it is reported.
     assumed: Option<TimeUnit>,
 }
 
@@ -50,7 +50,7 @@ impl TimeCandidates {
 }
 
 impl JsonClock {
-    /// Whether a key may be the time of a line, or a part of it.
+    /// Returns true if a key may be the time of a line, or a part of it.
     pub(super) fn takes(&self, name: &str, others: &TimeCandidates) -> bool {
         match &self.key {
             Some(key) => {
@@ -60,7 +60,7 @@ impl JsonClock {
         }
     }
 
-    /// The seconds from the first time to that of a line; None if it has none.
+    /// Returns the seconds from the first time to that of a line; None if the line has no time.
     pub(super) fn seconds(&mut self, line: &TimeCandidates) -> Option<f64> {
         if self.key.is_none() {
             self.key = TimeKey::of(line);
@@ -77,14 +77,15 @@ impl JsonClock {
         Some(time.since(*self.start.get_or_insert(time)))
     }
 
-    /// The unit that the size of the first time told, if it is not seconds; once.
+    /// Returns once the unit that was derived from the size of the first time, unless it is seconds.
     pub(super) fn take_assumed(&mut self) -> Option<TimeUnit> {
         self.assumed.take()
     }
 }
 
 impl TimeKey {
-    /// The one of a first line: seconds with their rest in another key, else the first that is called a time.
+    /// Chooses the key of a first line: seconds with their rest in another key, otherwise the first key that is
+    /// called a time.
     fn of(line: &TimeCandidates) -> Option<Self> {
         let are_times = line
             .0
@@ -103,7 +104,7 @@ impl TimeKey {
     }
 }
 
-/// The unit that the name of a time has.
+/// Returns the unit in the name of a time.
 fn role_unit(name: &str) -> Option<TimeUnit> {
     match role(name) {
         Some(FieldRole::Time(unit)) => unit,
@@ -111,7 +112,7 @@ fn role_unit(name: &str) -> Option<TimeUnit> {
     }
 }
 
-/// The time that a value is: a number, whose size tells its unit if there is none yet, or a text with a date.
+/// Reads a time: a number, whose size decides the unit if there is none yet, or a text with a date.
 fn read(value: &Value, unit: &mut Option<TimeUnit>) -> Option<Time> {
     match value {
         Value::String(text) => moment::read(text.as_bytes())
@@ -132,7 +133,7 @@ fn read(value: &Value, unit: &mut Option<TimeUnit>) -> Option<Time> {
 mod tests {
     use super::*;
 
-    /// The seconds of lines that are such objects, and the unit that was assumed.
+    /// Returns the seconds of such lines, and the unit that was assumed.
     fn seconds(lines: &[&str]) -> (Vec<Option<f64>>, Option<TimeUnit>) {
         let mut clock = JsonClock::default();
         let of_line = |line: &&str| {
@@ -168,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_only_the_unit_of_a_time_is_none() {
+    fn a_key_with_only_the_unit_of_a_time_is_not_a_time() {
         for key in [
             "latency_ms",
             "exposure_us",

@@ -1,27 +1,30 @@
-//! Lines of a text of any length, one at a time in the same memory.
+//! The lines of a text of any length, read one at a time into the same memory.
 //!
-//! Lines end in `\n` or `\r\n`. A byte order mark at the beginning of the text belongs to no line.
+//! Lines end in `
+//! ` or `\r
+//! `. A byte order mark at the beginning of the text is not part of a line.
 
 use std::io::{self, BufRead};
 
 use crate::formats::recording::error::RecordingError;
 
-/// A frame of 512 × 512 values a line takes less. A longer line is refused, so that one line cannot take all memory.
+/// The size limit of a line in bytes, more than a frame of 512 × 512 values takes; thus one line cannot fill all
+/// memory.
 const LONGEST: usize = 8 << 20;
 
 /// The lines of a text, counted from 1, without their ends and without a byte order mark.
 #[derive(Debug)]
 pub(crate) struct TextLines<R> {
-    /// Where bytes come from.
+    /// The source of the bytes.
     input: R,
     /// The line that was read last, without its end.
     line: Vec<u8>,
-    /// Its number; 0 before the first.
+    /// The number of that line; 0 before the first.
     number: u64,
 }
 
 impl<R: BufRead> TextLines<R> {
-    /// Before the first line.
+    /// Starts before the first line.
     pub(crate) fn new(input: R) -> Self {
         Self {
             input,
@@ -30,20 +33,20 @@ impl<R: BufRead> TextLines<R> {
         }
     }
 
-    /// The number of the line that was read last.
+    /// Returns the number of the line that was read last.
     pub(crate) fn number(&self) -> u64 {
         self.number
     }
 
-    /// The line that was read last.
+    /// Returns the line that was read last.
     pub(crate) fn line(&self) -> &[u8] {
         &self.line
     }
 
-    /// Reads the next line; false at the end.
+    /// Reads the next line; returns false at the end.
     ///
     /// # Errors
-    /// If it cannot be read, or is longer than 8 MiB.
+    /// Returns an error if the line cannot be read or is longer than 8 MiB.
     pub(crate) fn advance(&mut self) -> Result<bool, RecordingError> {
         self.line.clear();
         loop {
@@ -81,10 +84,10 @@ impl<R: BufRead> TextLines<R> {
         Ok(true)
     }
 
-    /// Reads the next line that is not blank; false at the end. A line of commas is blank.
+    /// Reads the next line that is not blank; returns false at the end. A line of commas is blank.
     ///
     /// # Errors
-    /// As for [`TextLines::advance`].
+    /// Returns the errors of [`TextLines::advance`].
     pub(crate) fn advance_to_content(&mut self) -> Result<bool, RecordingError> {
         while self.advance()? {
             if !is_blank(&self.line) {
@@ -95,20 +98,20 @@ impl<R: BufRead> TextLines<R> {
     }
 }
 
-/// Whether a line has nothing but blanks and commas, which spreadsheet programs pad lines with.
+/// Returns true if a line has only blanks and commas, with which spreadsheet programs pad lines.
 pub(crate) fn is_blank(line: &[u8]) -> bool {
     line.iter()
         .all(|byte| byte.is_ascii_whitespace() || *byte == b',')
 }
 
-/// A line without the commas and blanks at its end.
+/// Removes the commas and blanks at the end of a line.
 pub(crate) fn unpadded(line: &[u8]) -> &[u8] {
     let is_padding = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
     let end = line.iter().rposition(|byte| !is_padding(byte));
     &line[..end.map_or(0, |end| end + 1)]
 }
 
-/// A text in UTF-8, or else in Latin-1; for names and units.
+/// Decodes a name or a unit: as UTF-8, or as Latin-1 if it is not UTF-8.
 pub(crate) fn text(bytes: &[u8]) -> String {
     match str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),

@@ -1,19 +1,20 @@
-//! MCAP files of ROS 2: arrays, images and tactile states in CDR, a channel a topic, of a tactile state a channel a
-//! sensor.
+//! MCAP files of ROS 2: arrays, images and tactile states in CDR. A topic is a channel; of a tactile state, each
+//! sensor is a channel.
 //!
-//! Records follow one another, those of chunks too, so the file is read from front to back in the same memory, and one
-//! that was never closed gives all its whole messages. Chunks packed by LZ4 or Zstandard are unpacked as they are read, by
-//! decoders in Rust. The records are read here, since the crate `mcap` needs 18 others, more than this project allows itself.
-//! Source: <https://mcap.dev/spec>.
+//! Records follow each other, even within chunks, so the file is read from front to back in the same memory, and a
+//! file that was never closed still gives all its whole messages. Chunks compressed by LZ4 or Zstandard are
+//! decompressed as they are read, by decoders in Rust. The records are read here, since the crate `mcap` needs 18
+//! others, more than this project allows itself. Source: <https://mcap.dev/spec>.
 //!
-//! What messages have frames, [`ros_message`](super::ros_message) says; a sensor of a tactile state is the channel
-//! `TOPIC#SENSOR`. Others are passed over. Time is that of the log, from the first message with a frame on.
+//! The messages that have frames are listed in [`ros_message`](super::ros_message); other messages are skipped. A
+//! sensor of a tactile state is the channel `TOPIC#SENSOR`. The time is that of the log, from the first message with
+//! a frame on.
 //!
-//! Writers may leave out a checksum; it is 0 then. One that is there is that of a whole chunk, or of all that comes before
-//! the end of the data, so it tells that a message is damaged, but not which: messages are given as they are read, then
-//! the error.
+//! Writers may leave out a checksum, which is 0 then. A checksum covers a whole chunk, or everything before the end
+//! of the data, so it shows that a message is damaged, but not which one: messages are reported as they are read,
+//! then the error.
 //!
-//! The file is long because records, chunks and messages are read in one pass, each from within the one before.
+//! The file is long because records, chunks and messages are read in one pass, each inside the one before.
 
 use std::collections::HashMap;
 use std::io::{self, BufRead, BufReader, Read, Take};
@@ -34,78 +35,79 @@ use crate::index::wide;
 use crate::parameter::number::counted;
 use crate::quote::shortened_message;
 
-/// The magic number, at the start, where it was recognised already, and at the end.
+/// The magic number: at the start, where it has been recognised already, and at the end.
 const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 
-/// No message of a frame is larger.
+/// The size limit of a message with a frame, in bytes.
 const LARGEST_RECORD: u64 = 1 << 24;
 
-/// What Zstandard may look back at, in bytes; its usual levels need 8 MiB at most.
+/// The size limit of Zstandard's window in bytes; its usual levels need 8 MiB at most.
 const LARGEST_WINDOW: u64 = 16 << 20;
 
-/// No chunk is larger, unpacked.
+/// The size limit of a decompressed chunk, in bytes.
 const LARGEST_CHUNK: u64 = 1 << 30;
 
-/// No file has more topics or sensors with frames.
+/// The most topics or sensors with frames.
 const MOST_CHANNELS: usize = 256;
 
-/// No file names more topics whose messages could have frames.
+/// The most topics whose messages could have frames.
 const MOST_TOPICS: usize = 4096;
 
-/// No topic has a longer name, nor a topic with a sensor behind it; in bytes.
+/// The most bytes of a topic's name, including the name of a sensor after it.
 const LONGEST_NAME: usize = 1024;
 
-/// Ends the records. What follows is the magic.
+/// The end of the records. The magic number follows.
 const FOOTER: u8 = 2;
-/// A type of message: its number and name.
+/// A schema, the type of messages: its number and name.
 const SCHEMA: u8 = 3;
-/// A topic: its number, that of its schema, its name and its encoding.
+/// A topic: its number, the number of its schema, its name and its encoding.
 const CHANNEL: u8 = 4;
-/// A message: the number of its channel, sequence, time of the log, time of publishing, data.
+/// A message: the number of its channel, its sequence number, the times of logging and publishing, and its data.
 const MESSAGE: u8 = 5;
-/// Records behind a head of their own.
+/// A chunk: a head, and records after it.
 const CHUNK: u8 = 6;
-/// Ends the messages. It has the checksum of all that comes before it.
+/// The end of the messages, with the checksum of everything before it.
 const DATA_END: u8 = 15;
 
-/// A channel that was reported.
+/// A channel that has been reported.
 struct GivenChannel {
-    /// The topic; behind `#` the sensor of a tactile state.
+    /// The topic, with the sensor of a tactile state after `#`.
     name: String,
-    /// Rows and columns of its frames, if they are known.
+    /// The rows and columns of its frames, if they are known.
     shape: Option<(u16, u16)>,
-    /// How many frames it has so far.
+    /// The number of its frames so far.
     frames: u64,
 }
 
-/// What the records so far have named, and the frame that is being filled.
+/// The state of the reader: the names in the records so far, and the frame that is being filled.
 struct McapState<'a, 'b> {
-    /// Rows and columns for what does not say them.
+    /// The given rows and columns, for messages that do not have them.
     options: ReadOptions,
-    /// The schemas so far, by number; None where their messages have no frames.
+    /// The schemas so far, by number; None for a schema whose messages have no frames.
     schemas: HashMap<u16, Option<MessageKind>>,
-    /// The channels of those with frames, by number: the name, and the kind of message.
+    /// The topics whose messages have frames, by number: the name, and the kind of message.
     topics: HashMap<u16, (Rc<str>, MessageKind)>,
     /// The channels that have been reported.
     given: Vec<GivenChannel>,
     /// The time of the first message with a frame, in nanoseconds.
     start: Option<u64>,
-    /// The time of the message that is read.
+    /// The time of the current message, in nanoseconds.
     time: u64,
-    /// The cells of a message.
+    /// The cells of the current message.
     values: Vec<f64>,
-    /// The frame made of them.
+    /// The frame made of these cells.
     frame: Frame,
-    /// The record that is read.
+    /// The current record.
     record: Vec<u8>,
-    /// Takes channels and frames.
+    /// The receiver of channels and frames.
     sink: &'a mut Sink<'b>,
 }
 
 /// Reads a recording.
 ///
 /// # Errors
-/// If the file was not closed, after all whole messages; if a record or a message is broken; if no message has frames.
+/// Returns an error if the file was not closed, after all whole messages; if a record or a message is broken; or if
+/// no message has frames.
 pub(super) fn read(
     input: &mut impl BufRead,
     options: ReadOptions,
@@ -134,35 +136,35 @@ pub(super) fn read(
     Ok(())
 }
 
-/// What records are read from, with the checksum of what has been read.
+/// An input of records that computes the checksum of the bytes read.
 type SummedInput<'a> = CrcReader<&'a mut dyn Read>;
 
-/// What records stand in.
+/// The container of records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Container {
-    /// In the file, up to its footer.
+    /// The file, which ends with its footer.
     File,
-    /// In a chunk, up to its end.
+    /// A chunk.
     Chunk,
 }
 
-/// Why no more records follow.
+/// The reason why no more records follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ended {
-    /// The footer of the file has come.
+    /// The footer of the file was reached.
     AtFooter,
-    /// The chunk is over.
+    /// The end of the chunk was reached.
     OfChunk,
-    /// No more is wanted.
+    /// The sink wants no more.
     ByReader,
 }
 
-/// Why no more records can be read.
+/// The reason why no more records can be read.
 #[derive(Debug)]
 enum RecordsError {
-    /// The bytes end within a record, or the file before its footer.
+    /// The bytes end within a record, or the file ends before its footer.
     Torn,
-    /// Anything else.
+    /// Any other error.
     Other(RecordingError),
 }
 
@@ -184,12 +186,12 @@ impl From<RecordsError> for RecordingError {
 }
 
 impl RecordsError {
-    /// A damage that is not the end of the bytes.
+    /// Returns the error for damage other than a premature end.
     fn damaged(message: impl Into<String>) -> Self {
         RecordingError::damaged(message).into()
     }
 
-    /// What is wrong with the records of a chunk, whose bytes are all there or not: if they are, the file is not torn.
+    /// Converts an error among the records of a chunk: if all bytes of the chunk were there, the file is not torn.
     fn within_chunk(self, is_whole: bool) -> Self {
         match self {
             Self::Torn if is_whole => Self::damaged("a record reaches beyond its chunk"),
@@ -198,15 +200,15 @@ impl RecordsError {
     }
 }
 
-/// Fills all bytes.
+/// Fills all of `bytes`.
 ///
 /// # Errors
-/// [`RecordsError::Torn`] if there are fewer.
+/// Returns [`RecordsError::Torn`] if there are fewer.
 fn whole(input: &mut dyn Read, bytes: &mut [u8]) -> Result<(), RecordsError> {
     input.read_exact(bytes).map_err(refused)
 }
 
-/// The error of a reader, of the file itself or of what unpacks a chunk.
+/// Converts the error of a reader, which is the file itself or the decoder of a chunk.
 fn refused(error: io::Error) -> RecordsError {
     match error.kind() {
         io::ErrorKind::UnexpectedEof => RecordsError::Torn,
@@ -217,21 +219,21 @@ fn refused(error: io::Error) -> RecordsError {
     }
 }
 
-/// What stands before the records of a chunk.
+/// The head of a chunk, before its records.
 struct ChunkHead {
-    /// Bytes of its records, unpacked.
+    /// The number of bytes of its decompressed records.
     size: u64,
-    /// The checksum of its records, unpacked.
+    /// The checksum of its decompressed records.
     checksum: u32,
-    /// How they are packed; empty where they are not.
+    /// The name of the compression; empty if there is none.
     compression: String,
-    /// Bytes that they take in the file.
+    /// The number of bytes that the records take in the file.
     length: u64,
 }
 
 impl ChunkHead {
     fn read(input: &mut dyn Read) -> Result<Self, RecordsError> {
-        // Start, end, size, checksum, length of the name.
+        // Start, end, size, checksum, length of the compression's name.
         let mut head = [0; 32];
         whole(input, &mut head)?;
         let size = head[16..24].try_into().map_or(0, u64::from_le_bytes);
@@ -254,7 +256,8 @@ impl ChunkHead {
     }
 }
 
-/// Refuses a name that is too long: packed, thousands of them of many megabytes each take little of a file.
+/// Refuses a name that is too long: compressed, thousands of names of many megabytes each take little space in a
+/// file.
 fn check_name(name: &str) -> Result<(), RecordingError> {
     if name.len() > LONGEST_NAME {
         let message = format!(
@@ -266,7 +269,7 @@ fn check_name(name: &str) -> Result<(), RecordingError> {
     Ok(())
 }
 
-/// A text behind its length, and what follows it.
+/// Splits off a text that follows its length; returns it and the rest.
 fn text(bytes: &[u8]) -> Option<(&str, &[u8])> {
     let (length, rest) = bytes.split_first_chunk::<4>()?;
     let length = usize::try_from(u32::from_le_bytes(*length)).ok()?;
@@ -274,10 +277,10 @@ fn text(bytes: &[u8]) -> Option<(&str, &[u8])> {
     Some((str::from_utf8(text).ok()?, rest))
 }
 
-/// Compares a checksum with that of the bytes it is for.
+/// Compares the stated checksum of some bytes with the one found.
 ///
 /// # Errors
-/// If it is another one. Nothing is wrong with 0: it was not computed.
+/// Returns an error if they differ. A stated checksum of 0 was not computed, so it is not an error.
 fn check_sum(stated: u32, found: u32, of: &str) -> Result<(), RecordsError> {
     if stated == 0 || stated == found {
         return Ok(());
@@ -286,7 +289,7 @@ fn check_sum(stated: u32, found: u32, of: &str) -> Result<(), RecordsError> {
     Err(RecordsError::damaged(message))
 }
 
-/// Passes over `length` bytes.
+/// Skips `length` bytes.
 fn pass_over(input: &mut dyn Read, length: u64) -> Result<(), RecordsError> {
     let passed = io::copy(&mut Read::take(input, length), &mut io::sink()).map_err(refused)?;
     if passed < length {
@@ -357,10 +360,10 @@ impl McapState<'_, '_> {
         }
     }
 
-    /// Passes over a message that is too large to be read, unless it is one of frames. No image of that size is one.
+    /// Skips a message that is too large to be read, unless it has frames. An image of that size is not a frame.
     ///
     /// # Errors
-    /// If it is a message of frames.
+    /// Returns an error if the message has frames.
     fn pass_large(&mut self, input: &mut dyn Read, length: u64) -> Result<(), RecordsError> {
         let mut id = [0; 2];
         whole(input, &mut id)?;
@@ -372,7 +375,7 @@ impl McapState<'_, '_> {
         }
     }
 
-    /// Reads the records of a chunk, unpacked as they come.
+    /// Reads the records of a chunk, decompressing them on the way.
     fn chunk(&mut self, input: &mut dyn Read) -> Result<Ended, RecordsError> {
         let head = ChunkHead::read(input)?;
         let mut packed = Read::take(&mut *input, head.length);
@@ -405,7 +408,7 @@ impl McapState<'_, '_> {
         Ok(ended)
     }
 
-    /// Reads the records of a chunk from what unpacks it, which gives as many bytes as the chunk states.
+    /// Reads the records of a chunk from its decoder, which gives as many bytes as the chunk states.
     fn unpacked(
         &mut self,
         head: &ChunkHead,
@@ -417,18 +420,18 @@ impl McapState<'_, '_> {
         let found = summed.crc().sum();
         let is_whole = unpacked.get_ref().limit() == 0;
         let ended = ended.map_err(|error| error.within_chunk(is_whole))?;
-        // A chunk that lacks bytes is torn; what follows says so.
+        // A chunk that lacks bytes is torn; the next read reports that.
         if ended == Ended::OfChunk && is_whole {
             check_sum(head.checksum, found, "a chunk")?;
         }
         Ok(ended)
     }
 
-    /// Takes a record; true if no more is wanted.
-    /// A number that was named before keeps its meaning: the summary at the end repeats schemas and channels.
+    /// Reads a record; returns true if the sink wants no more. A number that was named before keeps its meaning: the
+    /// summary at the end repeats schemas and channels.
     ///
     /// # Errors
-    /// If the record is shorter than its fields.
+    /// Returns an error if the record is shorter than its fields.
     fn record(&mut self, kind: u8, record: &[u8]) -> Result<bool, RecordingError> {
         let broken = || RecordingError::damaged("a record is broken");
         let (id, rest) = record.split_first_chunk::<2>().ok_or_else(broken)?;
@@ -472,7 +475,7 @@ impl McapState<'_, '_> {
         Ok(false)
     }
 
-    /// Takes a message; None if it is broken.
+    /// Reads a message; None if it is broken.
     fn message(
         &mut self,
         topic: &str,
@@ -509,15 +512,15 @@ impl McapState<'_, '_> {
         }
     }
 
-    /// Gives the values as a frame of a channel; true if no more is wanted.
+    /// Reports the values as a frame of a channel; returns true if the sink wants no more.
     ///
     /// # Errors
-    /// If there are too many channels, if a message of a channel has another number of values than its layout, another size
-    /// than those before it, or an infinite value.
+    /// Returns an error if there are too many channels, if a message has another number of values than its layout or
+    /// another size than earlier ones of its channel, or if a value is infinite.
     fn give(&mut self, name: &str, shape: Option<(u16, u16)>) -> Result<bool, RecordingError> {
         let found = self.values.len();
         let cells = |(rows, columns): (u16, u16)| usize::from(rows) * usize::from(columns);
-        // What is named for one channel need not fit the others.
+        // Rows and columns that are given for one channel need not fit the others.
         let named = self.options.shape.filter(|&asked| cells(asked) == found);
         let shape = shape.or(named);
         let channel = match self.given.iter().position(|own| own.name == name) {
@@ -561,10 +564,10 @@ impl McapState<'_, '_> {
         Ok((self.sink)(RecordingEvent::Frame(&self.frame)).is_break())
     }
 
-    /// Fills the frame with the values; `before` is the size of the first frame of the channel.
+    /// Fills the frame with the values; `before` is the size of the channel's first frame.
     ///
     /// # Errors
-    /// If they are of another number than the layout states, or of another size.
+    /// Returns an error if the number of values differs from the layout, or the size from `before`.
     fn fill(
         &mut self,
         name: &str,
@@ -590,7 +593,7 @@ impl McapState<'_, '_> {
                 );
                 return Err(RecordingError::damaged(message));
             }
-            // Counted only: rows and columns have to be named.
+            // The values can only be counted: rows and columns must be given.
             None => self.frame.reset(1, 1),
         }
         Ok(())

@@ -1,9 +1,9 @@
-//! Recordings of real tactile and pressure sensors: files of any length in, frames out, one after the other.
+//! Reads recordings of real tactile and pressure sensors: files of any length in, frames out, one after the other.
 //!
-//! What format a file has is found by its content. Nothing is cut or padded: where the number of values does not fit the
-//! rows and columns, that is an error, and where a file does not say how many there are, they are asked for. Every
-//! whole frame before a damage is given, then the error with line and column. Memory does not grow with the length of a
-//! recording.
+//! The content of a file decides its format. Nothing is cut or padded: if the number of values does not fit the rows
+//! and columns, that is an error, and if a file does not say how many there are, the caller must. If a file is
+//! damaged, every whole frame before the damage is given, then the error with line and column. Memory does not grow
+//! with the length of a recording.
 //!
 //! ```
 //! use std::io::Cursor;

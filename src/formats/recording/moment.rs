@@ -1,9 +1,9 @@
-//! Timestamps as tables write them: an ISO 8601 date and a time of day, or a time of day alone.
+//! Reads timestamps as tables contain them: an ISO 8601 date and a time of day, or a time of day alone.
 //! ```text
 //! 2024-05-01T12:00:00.125Z      2024-05-01 12:00:00,125      12:00:00.125
 //! 2024/05/01 12:00:00+02:00     20:00:00                    8:00:00 PM
 //! ```
-//! Also durations as pandas writes them: `0 days 00:00:00.050000`.
+//! Durations are read as well, as pandas writes them: `0 days 00:00:00.050000`.
 //!
 //! Dates that begin with the day or the month are not read, because 01.02. and 02/01 may be the same day.
 
@@ -13,13 +13,14 @@ use crate::formats::recording::text_row::Field;
 /// A timestamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Moment {
-    /// The seconds from 1970; of a clock alone, from midnight.
+    /// The seconds since 1970, or since midnight if there is no date.
     pub(crate) seconds: f64,
-    /// Whether it has a date, or is a duration: otherwise it begins anew at midnight.
+    /// Whether the timestamp has a date or is a duration; otherwise it starts again at midnight.
     pub(crate) is_dated: bool,
 }
 
-/// Reads a timestamp; None for anything else. Second 60, a leap second, counts as the first of the next minute.
+/// Reads a timestamp; None for anything else. Second 60, a leap second, counts as the first second of the next
+/// minute.
 pub(super) fn read(field: &[u8]) -> Option<Moment> {
     let text = str::from_utf8(field).ok()?.trim();
     if let Some(seconds) = duration(text) {
@@ -49,7 +50,7 @@ pub(super) fn read(field: &[u8]) -> Option<Moment> {
     })
 }
 
-/// Hours, minutes and seconds of `12:00:00.125`.
+/// Reads hours, minutes and seconds: `12:00:00.125`.
 fn clock_parts(clock: &str) -> Option<(i32, i32, f64)> {
     let mut parts = clock.splitn(3, ':');
     let hours = two_digits(parts.next()?, 23)?;
@@ -62,12 +63,12 @@ fn clock_parts(clock: &str) -> Option<(i32, i32, f64)> {
     (is_number && seconds < 61.0).then_some((hours, minutes, seconds))
 }
 
-/// Whether a timestamp is a duration, which says nothing of when it began.
+/// Returns true if a timestamp is a duration, which does not say when it began.
 pub(super) fn is_duration(field: &[u8]) -> bool {
     str::from_utf8(field).is_ok_and(|text| duration(text.trim()).is_some())
 }
 
-/// The seconds of a duration: `1 days 02:00:00.5`, and of a negative one `-1 days +23:59:59`.
+/// Reads a duration in seconds: `1 days 02:00:00.5`, or a negative one, `-1 days +23:59:59`.
 fn duration(text: &str) -> Option<f64> {
     let (days, clock) = text.split_once(" day")?;
     let clock = clock.strip_prefix('s').unwrap_or(clock).trim_start();
@@ -77,17 +78,17 @@ fn duration(text: &str) -> Option<f64> {
     Some(60.0 * minutes + seconds)
 }
 
-/// Half a day of a clock with twelve hours.
+/// A half of the day on a twelve-hour clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum HalfDay {
-    /// AM
+    /// Before noon, AM.
     First,
-    /// PM
+    /// After noon, PM.
     Second,
 }
 
 impl HalfDay {
-    /// The hours since midnight, if a clock shows these hours from 1 to 12.
+    /// Returns the hours since midnight for an hour on the clock, from 1 to 12.
     pub(super) fn hours(self, shown: i32) -> Option<i32> {
         let begun = match self {
             Self::First => 0,
@@ -97,7 +98,7 @@ impl HalfDay {
     }
 }
 
-/// A clock without `AM` or `PM` behind it, and which of them that is.
+/// Splits `AM` or `PM` off the end of a time; returns the time and the half of the day.
 pub(super) fn half_day(clock: &str) -> (&str, Option<HalfDay>) {
     let clock = clock.trim_end();
     let split = clock.len().checked_sub(2);
@@ -112,9 +113,9 @@ pub(super) fn half_day(clock: &str) -> (&str, Option<HalfDay>) {
     (before.trim_end(), Some(half))
 }
 
-/// The timestamp at the beginning of a line of numbers, and the numbers after it; None without a timestamp or without a
-/// number. A comma may separate cells or begin the fraction of a second. Where both are possible, as in `12:00:00,125 7
-/// 3`, there is no timestamp.
+/// Splits a line into the timestamp at its beginning and the numbers after it; None if either is missing. A comma may
+/// separate cells or begin the fraction of a second. If both are possible, as in `12:00:00,125 7 3`, there is no
+/// timestamp.
 pub(crate) fn leading(line: &[u8]) -> Option<(Moment, &[u8])> {
     let mark = if line.contains(&b';') { b';' } else { b',' };
     let line = line.trim_ascii_start();
@@ -128,7 +129,7 @@ pub(crate) fn leading(line: &[u8]) -> Option<(Moment, &[u8])> {
     if !is_clock && !line[..first].contains(&b'-') && !line[..first].contains(&b'/') {
         return None;
     }
-    // A date, a blank and a clock.
+    // The timestamp may be a date, a blank and a time.
     let end = if is_clock { first } else { end_of(first + 1)? };
     let moment = read(&line[..end])?;
     let rest = line[end..].trim_ascii_start();
@@ -143,7 +144,7 @@ pub(crate) fn leading(line: &[u8]) -> Option<(Moment, &[u8])> {
     (!may_be_fraction && !cells.trim_ascii().is_empty()).then_some((moment, cells))
 }
 
-/// Counts midnights of clocks without a date: a clock that falls by more than half a day has passed one.
+/// Counts the midnights that clocks without a date pass: when the time falls by more than half a day.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Midnights {
     days: u32,
@@ -151,7 +152,7 @@ pub(crate) struct Midnights {
 }
 
 impl Midnights {
-    /// The seconds of the next moment.
+    /// Returns the seconds of the next timestamp.
     pub(crate) fn seconds(&mut self, moment: Moment) -> f64 {
         const DAY: f64 = 86_400.0;
         if moment.is_dated {
@@ -163,9 +164,10 @@ impl Midnights {
     }
 }
 
-/// The number of a day of the Gregorian calendar, from 1970 on; earlier ones are negative. The month counts from 1.
+/// Returns the number of a day of the Gregorian calendar since 1970; earlier days are negative. The month counts from
+/// 1.
 pub(super) fn day(year: i32, month: i32, day: i32) -> i32 {
-    // Years that begin in March have the leap day at their end.
+    // If years begin in March, the leap day is their last day.
     let (year, month) = if month < 3 {
         (year - 1, month + 9)
     } else {
@@ -175,7 +177,7 @@ pub(super) fn day(year: i32, month: i32, day: i32) -> i32 {
     days - 719_469
 }
 
-/// The day of `2024-05-01` or `2024/05/01`.
+/// Returns the day of `2024-05-01` or `2024/05/01`.
 fn iso_day(date: &str) -> Option<i32> {
     let mut parts = date.splitn(3, ['-', '/']);
     let year = parts.next().filter(|year| year.len() == 4)?;
@@ -186,7 +188,7 @@ fn iso_day(date: &str) -> Option<i32> {
     let month = two_digits(parts.next()?, 12).filter(|&month| month > 0)?;
     let of_month = two_digits(parts.next()?, 31).filter(|&day| day > 0)?;
     let year = year.parse().ok()?;
-    // Day 0 of a month is the last one of the month before.
+    // Day 0 of a month is the last day of the month before.
     let last = match month {
         12 => 31,
         _ => day(year, month + 1, 0) - day(year, month, 0),
@@ -194,7 +196,7 @@ fn iso_day(date: &str) -> Option<i32> {
     (of_month <= last).then(|| day(year, month, of_month))
 }
 
-/// The offset from UTC in minutes: `+02:00`, `-0330`, `+02`.
+/// Reads the offset from UTC in minutes: `+02:00`, `-0330`, `+02`.
 fn offset(text: &str) -> Option<i32> {
     let (sign, digits) = text.split_at_checked(1)?;
     let (hours, minutes) = match digits.split_at_checked(2)? {
@@ -205,7 +207,7 @@ fn offset(text: &str) -> Option<i32> {
     Some(if sign == "-" { -minutes } else { minutes })
 }
 
-/// A number of one or two digits, up to a largest one.
+/// Reads a number of one or two digits that is not above `most`.
 fn two_digits(text: &str, most: i32) -> Option<i32> {
     let is_number = matches!(text.len(), 1 | 2) && text.bytes().all(|digit| digit.is_ascii_digit());
     let number = is_number.then(|| text.parse().ok()).flatten()?;
@@ -276,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn what_may_be_something_else_is_not_read() {
+    fn other_dates_times_and_numbers_are_not_read() {
         for text in [
             "",
             "12",

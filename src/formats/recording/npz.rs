@@ -1,13 +1,13 @@
-//! Frames as an archive of numpy arrays: each array of two or three axes is a channel, and a list named `t…` or `time…`
-//! gives the times of channels of its length.
+//! Frames as an archive of numpy arrays: each array of two or three axes is a channel, and an array of one axis named
+//! `t…` or `time…` gives the times of the channels with as many frames.
 //!
-//! Its channels are named as the arrays, without `.npy`. Times may be in s, ms, µs or ns, which their name tells
-//! (`time_ms`), their type (datetime64 and timedelta64 of numpy) or their size ([`TimeUnit::by_size`]), and count from the
-//! first one. Whole nanoseconds since 1970 keep all their digits: the difference is taken before they become floats. What
-//! `numpy.savez` and `numpy.savez_compressed` write is read.
+//! Channels have the names of their arrays, without `.npy`. Times may be in s, ms, µs or ns, according to their name
+//! (`time_ms`), their type (datetime64 and timedelta64 of numpy) or their size ([`TimeUnit::by_size`]), and count
+//! from the first one. Whole nanoseconds since 1970 keep all their digits: the difference is taken before they become
+//! floats. Archives of `numpy.savez` and `numpy.savez_compressed` are read.
 //!
-//! The checksum of an array says only that some of its bytes are wrong, and only at its end. Its frames are given as they
-//! are read, then the error: to check it first would take twice the time and give none of the frames that are right.
+//! The checksum of an array only says that some of its bytes are wrong, and only at its end. Its frames are reported
+//! as they are read, then the error: to check it first would take twice the time and lose all frames that are right.
 
 use std::io::{ErrorKind, Read, Seek};
 use std::ops::ControlFlow;
@@ -25,13 +25,13 @@ use crate::formats::recording::frame_time::TimeUnit;
 use crate::formats::recording::numpy::{self, ArrayLayout};
 use crate::formats::seconds::{since, to_nanoseconds};
 
-/// Times of more frames than these are not read: 128 MiB of them.
+/// The most frames of which times are read: 128 MiB of them.
 const MOST_TIMES: u64 = 1 << 24;
 
-/// No archive has more arrays.
+/// The most arrays in an archive.
 const MOST_ARRAYS: usize = 256;
 
-/// What is wrong with an archive, in words that do not suppose that one knows its layout.
+/// Returns the error for an archive, in words that require no knowledge of its layout.
 fn damaged(error: ZipError) -> RecordingError {
     match error {
         ZipError::Io(error) => RecordingError::Io(error),
@@ -42,8 +42,8 @@ fn damaged(error: ZipError) -> RecordingError {
     }
 }
 
-/// What is wrong with the array of that name: bytes that cannot be unpacked or whose checksum does not hold are a damage of
-/// the array, not of the disk.
+/// Returns the error for the array of that name: bytes that cannot be decompressed or that have a wrong checksum are
+/// damage to the array, not to the disk.
 fn in_array(name: &str, error: RecordingError) -> RecordingError {
     let message = match error {
         RecordingError::Damaged { message, .. } => message,
@@ -62,18 +62,18 @@ fn in_array(name: &str, error: RecordingError) -> RecordingError {
 
 /// An array of the archive.
 struct ArchiveArray {
-    /// Its place in the archive.
+    /// The index in the archive.
     index: usize,
-    /// Its name without `.npy`.
+    /// The name without `.npy`.
     name: String,
-    /// Its type and shape.
+    /// The type and the shape.
     header: Header,
 }
 
 /// Reads a recording.
 ///
 /// # Errors
-/// If there is no array that may be frames; those of each array, with its name.
+/// Returns an error if no array can be frames, and the errors of each array, with its name.
 pub(super) fn read(
     input: impl Read + Seek,
     options: ReadOptions,
@@ -116,7 +116,7 @@ pub(super) fn read(
     let mut noted_unit = None;
     for (channel, (array, layout)) in channels.iter().enumerate() {
         let (times, assumed) = times(&mut archive, &arrays, layout.frames())?;
-        // Channels of as many frames have the same times.
+        // Channels with as many frames have the same times.
         let news = assumed.filter(|_| assumed != noted_unit);
         noted_unit = news.or(noted_unit);
         let note = news.map(|unit| RecordingNote::TimeUnit { unit: unit.name() });
@@ -134,7 +134,7 @@ pub(super) fn read(
     Ok(())
 }
 
-/// Whether it is an office document: a spreadsheet is an archive, too.
+/// Returns true if the archive is an office document: a spreadsheet is a zip archive, too.
 fn is_office_document(archive: &ZipArchive<impl Read + Seek>) -> bool {
     let is_office = |name: &str| matches!(name, "[Content_Types].xml" | "content.xml");
     let mut names = archive.file_names();
@@ -148,7 +148,7 @@ fn noted(note: Option<&RecordingNote>, sink: &mut Sink<'_>) -> ControlFlow<()> {
     })
 }
 
-/// All arrays with their headers.
+/// Returns all arrays with their headers.
 fn arrays(archive: &mut ZipArchive<impl Read + Seek>) -> Result<Vec<ArchiveArray>, RecordingError> {
     if archive.len() > MOST_ARRAYS {
         let message = format!("more than {MOST_ARRAYS} files in the archive");
@@ -171,10 +171,11 @@ fn arrays(archive: &mut ZipArchive<impl Read + Seek>) -> Result<Vec<ArchiveArray
     Ok(arrays)
 }
 
-/// The arrays whose numbers can be frames, and how. Others, such as a list of poses, may lie beside them.
+/// Returns the arrays whose numbers can be frames, with their layouts. Others, such as a list of poses, may lie
+/// beside them.
 ///
 /// # Errors
-/// What is wrong with the first, if none can.
+/// Returns the error of the first array, if no array can be frames.
 fn with_layouts(
     arrays: Vec<&ArchiveArray>,
     options: ReadOptions,
@@ -182,7 +183,7 @@ fn with_layouts(
     let alone = arrays.len() == 1;
     let (mut found, mut first_error) = (Vec::new(), None);
     for array in arrays {
-        // What is meant for one of several arrays need not fit the others.
+        // Rows and columns that are meant for one of several arrays need not fit the others.
         let layout = match ArrayLayout::of(&array.header, options) {
             Err(_) if !alone && options.shape.is_some() => {
                 ArrayLayout::of(&array.header, ReadOptions::default())
@@ -202,20 +203,20 @@ fn with_layouts(
     }
 }
 
-/// A list of times.
+/// An array of times.
 struct TimeArray<'a> {
     array: &'a ArchiveArray,
-    /// Its type.
+    /// The type of the times.
     number: NumberType,
-    /// Its unit, if its name or its type has one.
+    /// The unit, if the name or the type has one.
     unit: Option<TimeUnit>,
-    /// Whether its smallest number stands for no time, as in those of numpy.
+    /// Whether the smallest number means a missing time, as in numpy's own types for times.
     has_none: bool,
 }
 
 impl<'a> TimeArray<'a> {
-    /// That of an array whose name may have a unit; None if its numbers are no times. A type such as `<M8[ns]` or `<m8[ms]`,
-    /// numpy's own for moments and for durations, says its unit.
+    /// Makes the times of an array whose name may have a unit; None if its numbers cannot be times. A type such as
+    /// `<M8[ns]` or `<m8[ms]`, numpy's types for points in time and for durations, includes its unit.
     fn new(array: &'a ArchiveArray, unit: Option<TimeUnit>) -> Option<Self> {
         let code = &array.header.code;
         let own = code.strip_suffix(']').and_then(|code| code.split_once('['));
@@ -246,8 +247,8 @@ impl<'a> TimeArray<'a> {
         })
     }
 
-    /// The one for arrays of that many frames. An array that only begins with `t` counts where no other is called a time:
-    /// `temperature` is none.
+    /// Returns the times for arrays with that many frames. An array whose name merely begins with `t` counts only if
+    /// no other is named as a time: `temperature` is not one.
     fn of_frames(arrays: &'a [ArchiveArray], frames: u64) -> Option<Self> {
         let mut fitting = arrays.iter().filter(|own| own.header.shape == [frames]);
         let timed = |array: &'a ArchiveArray| match role(&array.name) {
@@ -259,10 +260,11 @@ impl<'a> TimeArray<'a> {
         found.or_else(|| Self::new(other?, None))
     }
 
-    /// The times in seconds since the first, and the unit that their size alone tells, if it is not seconds.
+    /// Returns the times in seconds since the first one, and their unit if it was derived from their size and is not
+    /// seconds.
     ///
     /// # Errors
-    /// If the array is damaged.
+    /// Returns an error if the array is damaged.
     fn seconds(
         &self,
         file: &mut impl Read,
@@ -295,18 +297,18 @@ impl<'a> TimeArray<'a> {
             let unit = unit.get_or_insert_with(|| TimeUnit::by_size(value));
             times.push(to_nanoseconds(unit.seconds(time)));
         }
-        // Wrong times are worse than none, and the end of the list tells whether its checksum holds.
+        // Wrong times are worse than none, so read up to the end of the array, where its checksum is verified.
         numpy::fill(file, &mut [0])?;
         let assumed = unit.filter(|&unit| self.unit.is_none() && unit != TimeUnit::Seconds);
         Ok((times, assumed))
     }
 }
 
-/// The times of all `frames`, in seconds since the first; empty where there are none. Also the unit that their size alone
-/// tells, if it is not seconds.
+/// Returns the times of all `frames`, in seconds since the first one; empty if there are none. Returns their unit,
+/// too, if it was derived from their size and is not seconds.
 ///
 /// # Errors
-/// If their array is damaged.
+/// Returns an error if the array of times is damaged.
 fn times(
     archive: &mut ZipArchive<impl Read + Seek>,
     arrays: &[ArchiveArray],
@@ -329,7 +331,8 @@ mod tests {
 
     use super::*;
 
-    /// Times and notes of two frames of two cells, of each of two sensors, beside a list `time` of such a type and such numbers.
+    /// Returns times and notes of two frames of two cells from each of two sensors, beside an array `time` of that
+    /// type with those numbers.
     fn times_of(name: &str, code: &str, times: [i64; 2]) -> (Vec<Option<f64>>, Vec<String>) {
         let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
         let options = SimpleFileOptions::default();
@@ -398,7 +401,7 @@ mod tests {
             times_of("time", "<i8", since_1970),
             (both(0.001_000_001), noted)
         );
-        // numpy's word for no time.
+        // NaT, numpy's missing time.
         let without = (vec![None; 2], vec![]);
         assert_eq!(
             times_of("time", "<M8[ns]", [since_1970[0], i64::MIN]),

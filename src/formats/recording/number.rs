@@ -1,6 +1,6 @@
 //! Numbers in texts, read fast: most are whole and short.
 //!
-//! The bits are those that the standard library reads: a test compares them.
+//! The results are bit for bit those of the standard library: a test compares them.
 
 /// Powers of ten that are exact in f64.
 const POWERS: [f64; 23] = [
@@ -8,13 +8,13 @@ const POWERS: [f64; 23] = [
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
-/// More digits than these do not fit into the 53 bits of a float.
+/// The most decimal digits of which every number fits into the 53 bits of a float.
 const EXACT_DIGITS: usize = 15;
 
-/// Reads a finite decimal, without blanks around it: `12`, `-0.5`, `+1e-3`. None of anything else.
+/// Reads a finite decimal without blanks around it, such as `12`, `-0.5` or `+1e-3`; None for anything else.
 ///
-/// A number of at most 15 digits is the quotient of two exact floats, and so rounded correctly; others are left to the
-/// standard library.
+/// A number of at most 15 digits is the quotient of two exact floats, and thus rounded correctly; other numbers are
+/// left to the standard library.
 pub(crate) fn read(text: &[u8]) -> Option<f64> {
     let (negative, digits) = match text {
         [b'-', rest @ ..] => (true, rest),
@@ -44,9 +44,9 @@ pub(crate) fn read(text: &[u8]) -> Option<f64> {
     Some(if negative { -value } else { value })
 }
 
-/// By the standard library, which rounds any number of digits correctly.
+/// Reads a number with the standard library, which rounds any number of digits correctly.
 fn slow(text: &[u8]) -> Option<f64> {
-    // The standard library also takes words: inf, nan, infinity.
+    // The standard library also accepts words: inf, nan, infinity.
     let is_number = text
         .iter()
         .all(|byte| matches!(byte, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E'));

@@ -1,7 +1,7 @@
-//! Frames as an array of numpy: frames × rows × columns, rows × columns, frames × cells, or records of taxel itself.
+//! Frames as a numpy array: frames × rows × columns, rows × columns, frames × cells, or taxel's own records.
 //!
-//! Any type of real number in either byte order, C or Fortran order. NaN stands for no cell. Source: that of
-//! [`crate::formats::npy`].
+//! The type may be any real number in either byte order, the order that of C or Fortran. NaN means that there is no
+//! cell. For the source, see [`crate::formats::npy`].
 //!
 //! | shape | means |
 //! |---|---|
@@ -10,8 +10,9 @@
 //! | (cells) | one frame, if rows and columns are known beforehand |
 //! | (records) of `time`, `number`, `values` | what `taxel watch --write` writes |
 //!
-//! Records end anywhere, since the file of a program that was killed is not complete: whole ones count, and a note says
-//! if the header counts more. A file of any other array must have exactly the bytes that its header names.
+//! An array of records may end anywhere, since the file of a killed program is not complete: whole records count, and
+//! a note reports when the header counts more. A file of any other array must have exactly the bytes that its header
+//! requires.
 
 use std::io::{ErrorKind, Read};
 
@@ -29,16 +30,17 @@ use crate::parameter::number::counted;
 use crate::quote::shortened;
 use crate::sensor::MAX_SIDE;
 
-/// A longer header is none.
+/// The most bytes of a header.
 const LONGEST_HEADER: usize = 1 << 20;
 
-/// An array in Fortran order has the values of a frame all over the file: it is read as a whole, up to 256 MiB.
+/// The size limit of an array in Fortran order, 256 MiB: it is read as a whole, since the values of a frame are
+/// spread over the file.
 const LARGEST_FORTRAN: u64 = 1 << 28;
 
-/// Reads what stands before the numbers.
+/// Reads the header before the numbers.
 ///
 /// # Errors
-/// If it is none of version 1 to 3, or longer than 1 MiB.
+/// Returns an error if the header is not of version 1 to 3, or is longer than 1 MiB.
 pub(super) fn header(input: &mut impl Read) -> Result<Header, RecordingError> {
     let wrong = || RecordingError::damaged("no header of a numpy array, version 1 to 3");
     let mut start = [0; 8];
@@ -66,32 +68,32 @@ pub(super) fn header(input: &mut impl Read) -> Result<Header, RecordingError> {
         .ok_or_else(wrong)
 }
 
-/// How the numbers of an array become frames.
+/// The arrangement of frames in an array.
 #[derive(Debug)]
 pub(super) struct ArrayLayout {
     /// The type of a value.
     number: NumberType,
-    /// How many frames the header names.
+    /// The number of frames according to the header.
     frames: u64,
-    /// Rows of a frame.
+    /// The number of rows in a frame.
     rows: u16,
-    /// Columns of a frame.
+    /// The number of columns in a frame.
     columns: u16,
-    /// Whether the first axis is the fastest.
+    /// Whether the first axis varies fastest, as in Fortran.
     fortran: bool,
-    /// Whether rows and columns of a frame are one axis.
+    /// Whether the rows and columns of a frame form a single axis.
     is_flat: bool,
-    /// Where the fields are, in an array of records.
+    /// The offsets of the fields, in an array of records.
     record: Option<RecordLayout>,
-    /// What was assumed, if anything.
+    /// The assumption that was made, if any.
     note: Option<RecordingNote>,
 }
 
 impl ArrayLayout {
-    /// That of a header.
+    /// Finds the layout of an array by its header.
     ///
     /// # Errors
-    /// If its numbers are not real, or its shape does not fit the rows and columns that are asked for.
+    /// Returns an error if the numbers are not real, or if the shape does not fit the given rows and columns.
     pub(super) fn of(header: &Header, options: ReadOptions) -> Result<Self, RecordingError> {
         if header.code.starts_with('[') {
             return Self::of_records(header);
@@ -117,10 +119,10 @@ impl ArrayLayout {
         })
     }
 
-    /// The layout of an array of records.
+    /// Finds the layout of an array of records.
     ///
     /// # Errors
-    /// If they have no field `values` of two axes.
+    /// Returns an error if the records are not as taxel writes them, with a field `values` of two axes.
     fn of_records(header: &Header) -> Result<Self, RecordingError> {
         let (Some(mut record), &[counted]) = (RecordLayout::of(&header.code), &header.shape[..])
         else {
@@ -141,31 +143,32 @@ impl ArrayLayout {
         })
     }
 
-    /// What was assumed of the array, if anything.
+    /// Returns the assumption that was made about the array, if any.
     pub(super) fn note(&self) -> Option<&RecordingNote> {
         self.note.as_ref()
     }
 
-    /// Number of frames, where the header says it.
+    /// Returns the number of frames according to the header.
     pub(super) fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// Rows and columns of a frame.
+    /// Returns the rows and columns of a frame.
     pub(super) fn shape(&self) -> (u16, u16) {
         (self.rows, self.columns)
     }
 }
 
-/// Frames, rows and columns of an array of that shape.
+/// Returns the number of frames, rows and columns in an array of that shape.
 ///
 /// # Errors
-/// [`RecordingError::Shape`] if rows and columns have to be named; a damage if they contradict those that are.
+/// Returns [`RecordingError::Shape`] if rows and columns must be given, and a damage error if the shape contradicts
+/// the given ones.
 fn axes_shape(axes: &[u64], options: ReadOptions) -> Result<(u64, u16, u16), RecordingError> {
     let asked = options.shape;
     let cells = asked.map(|(rows, columns)| u64::from(rows) * u64::from(columns));
     let found = match *axes {
-        // One channel, as frameworks for images and learning have it.
+        // An axis of one channel, as frameworks for images and machine learning have it.
         [frames, rows, columns] | [frames, rows, columns, 1] | [frames, 1, rows, columns] => {
             shape(rows, columns).map(|(r, c)| (frames, r, c))
         }
@@ -193,29 +196,29 @@ fn axes_shape(axes: &[u64], options: ReadOptions) -> Result<(u64, u16, u16), Rec
     })
 }
 
-/// Where the fields of a record of taxel's own recordings are.
+/// The layout of a record in taxel's own recordings.
 #[derive(Debug)]
 struct RecordLayout {
-    /// How many the header counts. The file of a program that was killed may have more.
+    /// The number of records according to the header. The file of a killed program may have more.
     counted: u64,
-    /// Bytes of a record.
+    /// The number of bytes in a record.
     size: usize,
-    /// Where in it the time is, in seconds, and its type.
+    /// The offset and the type of the time, which is in seconds.
     time: Option<(usize, NumberType)>,
-    /// The same of the number.
+    /// The offset and the type of the frame's number.
     label: Option<(usize, NumberType)>,
-    /// Where the values begin.
+    /// The offset of the values.
     values: usize,
-    /// Their type.
+    /// The type of the values.
     number: NumberType,
-    /// Rows of a frame.
+    /// The number of rows in a frame.
     rows: u16,
-    /// Columns of a frame.
+    /// The number of columns in a frame.
     columns: u16,
 }
 
 impl RecordLayout {
-    /// That of `[('time', '<f8'), ('number', '<u8'), ('values', '<f8', (28, 28))]`.
+    /// Parses a type such as `[('time', '<f8'), ('number', '<u8'), ('values', '<f8', (28, 28))]`.
     fn of(code: &str) -> Option<Self> {
         let mut rest = code.strip_prefix('[')?.strip_suffix(']')?.trim();
         let (mut size, mut time, mut label, mut values) = (0_usize, None, None, None);
@@ -272,7 +275,7 @@ impl RecordLayout {
 /// Reads a recording.
 ///
 /// # Errors
-/// If there are fewer or more bytes than the header says; those of the header.
+/// Returns an error if there are fewer or more bytes than the header says, and the errors of the header.
 pub(super) fn read(
     input: &mut impl Read,
     options: ReadOptions,
@@ -298,10 +301,10 @@ pub(super) fn read(
     Ok(())
 }
 
-/// Reads the end of an array behind its frames. An entry of an archive tells only there whether its checksum holds.
+/// Reads the end of an array after its frames. For an entry of an archive, only this verifies the checksum.
 ///
 /// # Errors
-/// If there are more bytes than the header says; what the reader says of the end.
+/// Returns an error if there are more bytes than the header says, or if the end cannot be read.
 pub(super) fn end(input: &mut impl Read, layout: &ArrayLayout) -> Result<(), RecordingError> {
     if fill(input, &mut [0])? > 0 {
         let frames = counted(layout.frames, "frame");
@@ -311,7 +314,8 @@ pub(super) fn end(input: &mut impl Read, layout: &ArrayLayout) -> Result<(), Rec
     Ok(())
 }
 
-/// Reads all frames of an array; true if no more is wanted. The times are in seconds, one a frame, or none.
+/// Reads all frames of an array; returns true if the sink wants no more. `times` are in seconds, one per frame, or
+/// empty.
 pub(super) fn frames(
     input: &mut impl Read,
     layout: &ArrayLayout,
@@ -334,7 +338,7 @@ pub(super) fn frames(
             let Some(record) = &layout.record else {
                 return Err(short(frame.number, layout.frames));
             };
-            // A recording that is being written, or was cut off, ends anywhere.
+            // A recording that is being written, or that was cut off, may end anywhere.
             let (records, counted) = (frame.number, record.counted);
             let note = RecordingNote::Cut { records, counted };
             return Ok(records < counted && sink(RecordingEvent::Note(&note)).is_break());
@@ -364,7 +368,7 @@ pub(super) fn frames(
     Ok(false)
 }
 
-/// Time, in seconds since the first record, and label of a record.
+/// Returns the time of a record, in seconds since the first record, and its label.
 fn moment(
     record: &RecordLayout,
     bytes: &[u8],
@@ -381,7 +385,7 @@ fn moment(
     (time, label.and_then(|label| i64::try_from(label).ok()))
 }
 
-/// The error of an array that is shorter than its header says.
+/// Returns the error for an array that is shorter than its header says.
 fn short(frame: u64, frames: u64) -> RecordingError {
     let frames = counted(frames, "frame");
     RecordingError::damaged(format!(
@@ -389,10 +393,10 @@ fn short(frame: u64, frames: u64) -> RecordingError {
     ))
 }
 
-/// Gives a frame whose values are finite or none; true if no more is wanted.
+/// Reports a frame if all its values are finite or NaN; returns true if the sink wants no more.
 ///
 /// # Errors
-/// If a value is infinite or too large, with its row and column.
+/// Returns an error with row and column if a value is infinite or too large.
 fn give(frame: &Frame, sink: &mut Sink<'_>) -> Result<bool, RecordingError> {
     let wrong = frame
         .values()
@@ -409,7 +413,7 @@ fn give(frame: &Frame, sink: &mut Sink<'_>) -> Result<bool, RecordingError> {
     Ok(sink(RecordingEvent::Frame(frame)).is_break())
 }
 
-/// Fills as much as there is.
+/// Fills the bytes as far as the input reaches; returns the number of bytes read.
 pub(super) fn fill(input: &mut impl Read, bytes: &mut [u8]) -> Result<usize, RecordingError> {
     let mut length = 0;
     while length < bytes.len() {
@@ -423,7 +427,7 @@ pub(super) fn fill(input: &mut impl Read, bytes: &mut [u8]) -> Result<usize, Rec
     Ok(length)
 }
 
-/// The same for an array whose first axis is the fastest.
+/// Reads all frames of an array whose first axis varies fastest, like [`frames`].
 fn fortran(
     input: &mut impl Read,
     layout: &ArrayLayout,

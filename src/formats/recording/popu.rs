@@ -1,12 +1,12 @@
-//! JSON of the `PoPu` data set: one object with the size of the matrix and its snapshots, each a list of cells.
+//! The JSON of the `PoPu` data set: one object with the size of the matrix and its snapshots, each a list of cells.
 //! ```text
 //! {"volunteer_id":"4",…,"tactilus_columns":27,"tactilus_rows":64,
 //!  "snapshots":{"0":{"id":"200410292003","tactilus_readings":[1,0,0,…]},"1":{…}}}
 //! ```
-//! Rows and columns, whose keys end in `_rows` and `_columns`, come before the snapshots. What stands before that names the
-//! sheet, a file may have two (`tactilus`, `sensomatt`): each is a channel then. A key of a snapshot is its label, if it is
-//! a number. Cells stand row by row. Snapshots are reported while the text is read: a file may have thousands. Source: the
-//! data set itself (MDPI Data 2023, 8(7), 120).
+//! The keys of rows and columns, which end in `_rows` and `_columns`, come before the snapshots. The start of such a
+//! key names the sheet; a file may have two (`tactilus`, `sensomatt`), and each is a channel. The key of a snapshot
+//! is its label, if it is a number. Cells are listed row by row. Snapshots are reported while the text is read: a
+//! file may have thousands. Source: the data set itself (MDPI Data 2023, 8(7), 120).
 
 use std::borrow::Cow;
 use std::fmt;
@@ -22,13 +22,14 @@ use crate::formats::recording::side::side;
 use crate::frame::{Frame, MAX_FRAME_SIDE};
 use crate::parameter::number::counted;
 
-/// Stands in an error of serde's for a sink that wants no more.
+/// The message of the serde error that stops the parser when the sink wants no more.
 const ENOUGH: &str = "no more is wanted";
 
 /// Reads a recording.
 ///
 /// # Errors
-/// With line and column: of what is no JSON, of a snapshot of another size, and of one before its rows and columns.
+/// Returns an error with line and column for text that is not JSON, for a snapshot of another size, and for a
+/// snapshot before its rows and columns.
 pub(super) fn read(mut input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
     let mark = b"\xef\xbb\xbf";
     if input.fill_buf()?.starts_with(mark) {
@@ -64,39 +65,39 @@ pub(super) fn read(mut input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), R
     }
 }
 
-/// No file has more sheets.
+/// The most sheets in a file.
 const MOST_SHEETS: usize = 16;
 
 /// A sheet of cells.
 struct PopuSheet {
-    /// What its keys begin with.
+    /// The name, with which its keys begin.
     name: String,
-    /// The key that ends in `_rows`.
+    /// The value of the key that ends in `_rows`.
     rows: Option<u16>,
-    /// The key that ends in `_columns`.
+    /// The value of the key that ends in `_columns`.
     columns: Option<u16>,
     /// The frame that is being filled.
     frame: Frame,
 }
 
-/// What is known so far, and where frames go.
+/// The state of the reader.
 struct PopuState<'a, 'b> {
-    /// The sheets in the order in which they are named; each is a channel.
+    /// The sheets in the order in which they occur; each is a channel.
     sheets: Vec<PopuSheet>,
-    /// Whether the channels were reported.
+    /// Whether the channels have been reported.
     begun: bool,
-    /// Whether the sink wants no more, so that the error that stops the parser is none.
+    /// Whether the sink wants no more, so that the error that stops the parser is not reported.
     enough: bool,
     /// The key of a snapshot, if it is a number.
     label: Option<i64>,
-    /// The cells of a snapshot, in memory that is used again.
+    /// The cells of a snapshot, in memory that is reused.
     values: Vec<f64>,
-    /// Takes channels and frames.
+    /// The receiver of channels and frames.
     sink: &'a mut Sink<'b>,
 }
 
 impl PopuState<'_, '_> {
-    /// The sheet of that name, which may be a new one.
+    /// Returns the sheet of that name, adding it if it is new.
     fn sheet<E: Error>(&mut self, name: &str) -> Result<&mut PopuSheet, E> {
         let known = self.sheets.iter().position(|own| own.name == name);
         if known.is_none() {
@@ -114,7 +115,7 @@ impl PopuState<'_, '_> {
         Ok(&mut self.sheets[index])
     }
 
-    /// Reports an event; an error if no more is wanted.
+    /// Reports an event; returns an error if the sink wants no more.
     fn report<E: Error>(&mut self, event: RecordingEvent<'_>) -> Result<(), E> {
         if (self.sink)(event).is_break() {
             self.enough = true;
@@ -148,7 +149,7 @@ impl PopuState<'_, '_> {
         Ok(())
     }
 
-    /// Gives the values as a frame of the sheet with that index.
+    /// Reports the values as a frame of the sheet with that index.
     fn give<E: Error>(&mut self, sheet: usize) -> Result<(), E> {
         let mut frame = std::mem::replace(&mut self.sheets[sheet].frame, Frame::new(1, 1));
         let (found, expected) = (self.values.len(), frame.values().len());
@@ -165,13 +166,13 @@ impl PopuState<'_, '_> {
     }
 }
 
-/// The whole object.
+/// Reads the whole object.
 struct PopuSeed<'s, 'a, 'b>(&'s mut PopuState<'a, 'b>);
 
-/// All snapshots.
+/// Reads all snapshots.
 struct SnapshotsSeed<'s, 'a, 'b>(&'s mut PopuState<'a, 'b>);
 
-/// One of them.
+/// Reads a single snapshot.
 struct SnapshotSeed<'s, 'a, 'b>(&'s mut PopuState<'a, 'b>);
 
 macro_rules! map_seed {

@@ -15,16 +15,16 @@ use crate::formats::recording::side::shape;
 /// A kind of message that has frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum MessageKind {
-    /// A `MultiArray` of numbers: their kind, as of numpy, and bytes.
+    /// A `MultiArray` of numbers: their kind, as in numpy, and their size in bytes.
     Array(u8, usize),
-    /// Grey pixels, a row after the other, which may be padded.
+    /// Grey pixels, row by row; rows may be padded.
     Image,
     /// Lists of values, each with the name of its sensor.
     TactileState,
 }
 
 impl MessageKind {
-    /// That of a schema such as `std_msgs/msg/UInt16MultiArray`.
+    /// Returns the kind of a schema such as `std_msgs/msg/UInt16MultiArray`; None if its messages have no frames.
     pub(super) fn of(schema: &str) -> Option<Self> {
         let (package, name) = (schema.split('/').next()?, schema.rsplit('/').next()?);
         match (package, name) {
@@ -51,7 +51,7 @@ impl MessageKind {
     }
 }
 
-/// Reads an array. Returns the sizes of its layout; None if it is broken.
+/// Reads an array into `values`. Returns the sizes of its layout; None if it is broken.
 pub(super) fn multi_array(
     cdr: &mut CdrReader<'_>,
     kind: u8,
@@ -71,7 +71,7 @@ pub(super) fn multi_array(
     Some(sizes)
 }
 
-/// Rows and columns of an array with these sizes, if they are those of a matrix.
+/// Returns the rows and columns of an array with these sizes, if they are those of a matrix.
 pub(super) fn matrix_shape(sizes: &[u32]) -> Option<(u16, u16)> {
     match *sizes {
         [rows, columns] | [rows, columns, 1] => shape(rows, columns),
@@ -79,23 +79,22 @@ pub(super) fn matrix_shape(sizes: &[u32]) -> Option<(u16, u16)> {
     }
 }
 
-/// Passes over a `std_msgs/Header`.
+/// Skips a `std_msgs/Header`.
 pub(super) fn header(cdr: &mut CdrReader<'_>) -> Option<()> {
     cdr.word()?;
     cdr.word()?;
     cdr.text().map(drop)
 }
 
-/// What an image is.
+/// The content of an image.
 pub(super) enum ImageFrame {
-    /// A frame of so many rows and columns.
+    /// A frame with that many rows and columns.
     Values(u16, u16),
-    /// No frame: in another encoding than one value a pixel, or too large.
+    /// Not a frame: an encoding with other than one value per pixel, or an image that is too large.
     OfCamera,
 }
 
-/// Reads an image.
-/// `step` is the number of bytes from a row to the next. None if it is broken.
+/// Reads an image into `values`; None if it is broken. `step` is the number of bytes from one row to the next.
 pub(super) fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<ImageFrame> {
     header(cdr)?;
     let (height, width) = (cdr.word()?, cdr.word()?);
@@ -130,7 +129,7 @@ pub(super) fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<Im
 mod tests {
     use super::*;
 
-    /// Two pixels in an image of that encoding; None if it is not a frame.
+    /// Returns two pixels of an image in that encoding; None if it is not a frame.
     fn pixels(encoding: &str, data: &[u8]) -> Option<Vec<f64>> {
         let mut message = vec![0, 1, 0, 0];
         let word = |message: &mut Vec<u8>, number: usize| {

@@ -1,7 +1,7 @@
-//! What `ros2 topic echo` prints of a message with an array: with `--csv`, as `array('H', [0, 1])`, or as YAML.
+//! The output of `ros2 topic echo` for a message with an array: with `--csv`, as `array('H', [0, 1])`, or as YAML.
 //!
-//! Messages are parted by `---`. An echo without `--full-length` leaves out what is beyond 128 elements, and is
-//! refused.
+//! Messages are separated by `---`. Without `--full-length`, an echo leaves out all elements beyond the first 128,
+//! and is refused.
 //! ```text
 //! ,2,4,,2,2,0,0,12,7,3                --csv: label, size and stride of each dimension, the offset, the values
 //!
@@ -14,9 +14,9 @@
 //! - 12
 //! ---
 //! ```
-//! What `ros2 topic echo` prints beside messages, such as that one was lost, is passed over. Values before the offset of a
-//! layout (`data_offset`) are none of its cells. Rows and columns are the first two sizes of the layout, if all others are 1; otherwise they have to be known
-//! beforehand. Source: what the program prints.
+//! Notices of `ros2 topic echo` between messages, for example about a lost message, are skipped. Values before the
+//! offset of a layout (`data_offset`) are not cells. Rows and columns are the first two sizes of the layout, if all
+//! others are 1; otherwise they must be given. Source: the output of the program.
 
 use std::io::BufRead;
 
@@ -27,42 +27,43 @@ use crate::formats::recording::side::{arranged, changed, shape};
 use crate::formats::recording::text_row::{self, Field};
 use crate::frame::Frame;
 
-/// The values of a message, and the sizes of its layout, in memory that is used again.
+/// The values of a message, and the sizes of its layout, in memory that is reused.
 #[derive(Debug, Default)]
 pub(crate) struct RosMessage {
     /// The size of each dimension of the layout.
     pub(crate) sizes: Vec<u32>,
-    /// The elements, at most [`MOST_VALUES`] of them.
+    /// The elements, at most [`MOST_VALUES`].
     values: Vec<f64>,
-    /// How many of them come before the cells.
+    /// The number of elements before the cells.
     offset: usize,
-    /// Inside of the list of a YAML text, or of an array that goes on in the next line.
+    /// Whether the last line was inside the list of a YAML text, or inside an array that continues in the next line.
     open: bool,
-    /// Whether it has begun.
+    /// Whether a line of the message has been read.
     any: bool,
 }
 
-/// What a line makes of a message.
+/// The state of a message after a line.
 #[derive(Debug, PartialEq)]
 pub(crate) enum RosLine {
-    /// It goes on.
+    /// It continues.
     More,
-    /// It is whole.
+    /// It is complete.
     Whole,
-    /// It was cut off by `ros2 topic echo`.
+    /// It was shortened by `ros2 topic echo`.
     Cut,
-    /// This field, counted from 1, is not a number.
+    /// The field with this number, from 1, is not a number.
     Wrong(usize),
 }
 
-/// The most values that are kept of a message; one more than any frame has.
+/// The most values of a message that are kept, one more than any frame has.
 const MOST_VALUES: usize = 512 * 512 + 1;
 
-/// Sizes of a layout that are kept: more than any message has, and input without an end takes no memory.
+/// The most sizes of a layout that are kept: more than any message has, so that endless input does not fill the
+/// memory.
 const MOST_SIZES: usize = 64;
 
 impl RosMessage {
-    /// Makes ready for the next message.
+    /// Prepares for the next message.
     pub(crate) fn clear(&mut self) {
         self.sizes.clear();
         self.values.clear();
@@ -70,17 +71,17 @@ impl RosMessage {
         (self.open, self.any) = (false, false);
     }
 
-    /// Whether a line of this message was read.
+    /// Returns true if a line of this message has been read.
     pub(crate) fn begun(&self) -> bool {
         self.any
     }
 
-    /// Its cells.
+    /// Returns the cells of the message.
     pub(crate) fn cells(&self) -> &[f64] {
         &self.values[self.offset.min(self.values.len())..]
     }
 
-    /// Takes the offset of the layout; what is no number says nothing.
+    /// Reads the offset of the layout; a field that is not a number is ignored.
     fn offset_of(&mut self, field: &[u8]) {
         let offset = str::from_utf8(field.trim_ascii()).ok();
         if let Some(offset) = offset.and_then(|offset| offset.parse().ok()) {
@@ -88,12 +89,12 @@ impl RosMessage {
         }
     }
 
-    /// Whether it ends inside of an array.
+    /// Returns true if the message ends inside an array.
     pub(crate) fn is_open(&self) -> bool {
         self.open && !self.values.is_empty()
     }
 
-    /// Adds a value; false if the field is not a number. YAML writes `.nan`, arrays `nan`.
+    /// Adds a value; returns false if the field is not a number. YAML writes `.nan`, arrays `nan`.
     fn push(&mut self, field: &[u8]) -> bool {
         let field = field.trim_ascii();
         let value = match text_row::value(field) {
@@ -155,7 +156,7 @@ impl RosMessage {
         }
     }
 
-    /// Numbers up to a bracket.
+    /// Reads numbers up to a bracket.
     fn list(&mut self, line: &[u8]) -> RosLine {
         let end = line.iter().position(|&byte| byte == b']');
         self.open = end.is_none();
@@ -165,8 +166,8 @@ impl RosMessage {
         self.fields(fields.enumerate(), RosLine::More)
     }
 
-    /// Adds the values of a list. Dots in place of values mean that it was cut only where all others are numbers: noise has
-    /// dots, too.
+    /// Adds the values of a list. Dots in place of values mean that it was shortened, but only if all other fields
+    /// are numbers: noise has dots, too.
     fn fields<'a>(
         &mut self,
         fields: impl Iterator<Item = (usize, &'a [u8])>,
@@ -183,7 +184,8 @@ impl RosMessage {
         state
     }
 
-    /// A line of `--csv`: label, size and stride of each dimension, the offset, the values. It is a whole message.
+    /// Reads a line of `--csv`: label, size and stride of each dimension, the offset, the values. It is a whole
+    /// message.
     fn csv(&mut self, line: &[u8]) -> RosLine {
         let mut fields = line.split(|&byte| byte == b',').enumerate().peekable();
         while fields.next_if(|(_, field)| is_label(field)).is_some() {
@@ -200,7 +202,7 @@ impl RosMessage {
         self.fields(fields, RosLine::Whole)
     }
 
-    /// Rows and columns of the layout, where it has these two.
+    /// Returns the rows and columns of the layout, if it has these two dimensions.
     pub(crate) fn shape(&self) -> Option<(u16, u16)> {
         let &[rows, columns, ref rest @ ..] = &self.sizes[..] else {
             return None;
@@ -211,14 +213,14 @@ impl RosMessage {
     }
 }
 
-/// Whether a line is a notice of `ros2 topic echo` itself.
+/// Returns true if a line is a notice of `ros2 topic echo` itself.
 pub(crate) fn is_notice(line: &[u8]) -> bool {
     let notices = [&b"A message was lost"[..], b"total count", b"WARNING: "];
     let line = line.trim_ascii_start();
     notices.iter().any(|notice| line.starts_with(notice))
 }
 
-/// A text without the notices and empty lines that stand before its first message.
+/// Removes the notices and empty lines before the first message of a text.
 pub(super) fn without_notices(mut text: &[u8]) -> &[u8] {
     loop {
         let end = text.iter().position(|&byte| byte == b'\n');
@@ -230,24 +232,24 @@ pub(super) fn without_notices(mut text: &[u8]) -> &[u8] {
     }
 }
 
-/// A whole number from 0 up.
+/// Reads a whole number, 0 or more.
 fn whole(field: &[u8]) -> Option<u32> {
     str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
 }
 
-/// Whether dots stand in place of the values that an echo leaves out, in quotes or without.
+/// Returns true if a field is the dots for values that an echo leaves out, with or without quotes.
 fn is_cut(field: &[u8]) -> bool {
     let is_quote = |byte: &u8| matches!(byte, b'\'' | b'"');
     let mut bytes = field.trim_ascii().iter().filter(|byte| !is_quote(byte));
     bytes.by_ref().take(3).eq(b"...") && bytes.next().is_none()
 }
 
-/// Whether a field is a dimension's label, which may be empty: whatever is not a number.
+/// Returns true if a field is the label of a dimension: anything that is not a number, even an empty field.
 fn is_label(field: &[u8]) -> bool {
     matches!(text_row::value(field.trim_ascii()), Field::Wrong)
 }
 
-/// Whether a line begins with the layout of an array: a label, then how many there are and how many values they take.
+/// Returns true if a line begins with the layout of an array: for each dimension a label, a size and a stride.
 pub(crate) fn is_layout(line: &[u8]) -> bool {
     let mut fields = line.split(|&byte| byte == b',');
     let (mut strides, mut dimensions) = (Vec::new(), 0);
@@ -275,40 +277,40 @@ pub(crate) fn is_layout(line: &[u8]) -> bool {
     !strides.is_empty() && fits
 }
 
-/// Whether only `ros2 topic echo` prints such a first line of a message.
+/// Returns true if only `ros2 topic echo` prints such a first line of a message.
 pub(crate) fn begins_message(line: &[u8]) -> bool {
     let starts = [&b"array("[..], b"layout:", b"data:"];
     starts.iter().any(|start| line.starts_with(start)) || is_csv(line)
 }
 
-/// Whether only `--csv` prints such a line: it begins with a layout, or was cut off. A whole line without dimensions is a
-/// line of numbers like any other.
+/// Returns true if only `--csv` prints such a line: it begins with a layout, or was shortened. A complete line
+/// without dimensions is a line of numbers like any other.
 pub(crate) fn is_csv(line: &[u8]) -> bool {
     is_layout(line) || is_cut_csv(line)
 }
 
-/// Whether a line is an offset and values. Its layout has no dimensions, as most publishers leave it. Only where the text is
-/// known to be an echo, such a line is more than numbers.
+/// Returns true if a line is an offset and values. Its layout has no dimensions, as with most publishers. Such a line
+/// is distinguished from other numbers only if the text is known to be an echo.
 pub(crate) fn is_csv_without_dimensions(line: &[u8]) -> bool {
     line.contains(&b',') && line.split(|&byte| byte == b',').all(is_number)
 }
 
-/// The same of a line, the last values of which are left out.
+/// Returns true if a line is an offset and values, of which the last ones are left out.
 fn is_cut_csv(line: &[u8]) -> bool {
     let mut fields = line.rsplit(|&byte| byte == b',');
     fields.next().is_some_and(is_cut) && fields.clone().count() > 1 && fields.all(is_number)
 }
 
-/// Whether a field is a value.
+/// Returns true if a field is a value.
 fn is_number(field: &[u8]) -> bool {
     let field = field.trim_ascii();
     matches!(text_row::value(field), Field::Value(_)) || field.eq_ignore_ascii_case(b"nan")
 }
 
-/// Rows and columns of a message that ends in this line.
+/// Returns the rows and columns of a message that ends in this line.
 ///
 /// # Errors
-/// If neither the message states them nor they were named, or if it has another number of values.
+/// Returns an error if rows and columns are neither in the message nor given, or if it has another number of values.
 fn size(
     message: &RosMessage,
     named: Option<(u16, u16)>,

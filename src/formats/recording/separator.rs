@@ -1,4 +1,4 @@
-//! What parts the fields of a table, and what a field says.
+//! The separator of a table's fields, and the content of its fields.
 //!
 //! ```text
 //! 0;1,5;;3      semicolons: a comma is the decimal sign, and an empty field is no cell
@@ -10,16 +10,16 @@
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::table::named_separator;
 
-/// The words for a cell without a value: of C, Python, R and databases, of spreadsheets and of pandas.
+/// The words for a cell without a value: those of C, Python, R and databases, of spreadsheets and of pandas.
 const NONE: [&[u8]; 8] = [
     b"nan", b"-nan", b"null", b"none", b"na", b"n/a", b"#n/a", b"<na>",
 ];
 
-/// Whether a field says that there is no value. A dash does not: lines of lists begin with it.
+/// Returns true if a field says that there is no value. A dash does not: lines of lists begin with one.
 pub(super) fn is_none(field: &[u8]) -> bool {
     match field.first() {
         None => true,
-        // Most are numbers.
+        // Most fields are numbers.
         Some(first) if first.is_ascii_digit() => false,
         Some(_) => NONE.iter().any(|none| field.eq_ignore_ascii_case(none)),
     }
@@ -52,17 +52,18 @@ pub(crate) fn unquoted(field: &[u8]) -> &[u8] {
     inner.map_or(field, <[u8]>::trim_ascii)
 }
 
-/// What parts the fields of a line.
+/// The separator between the fields of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Separator {
-    /// This byte; between two of them is an empty field.
+    /// A byte; two in succession have an empty field between them.
     Byte(u8),
     /// Any number of blanks; there are no empty fields.
     Spaces,
 }
 
 impl Separator {
-    /// That of a line: the first of semicolon, comma and tab which it has outside of quotes, otherwise blanks.
+    /// Returns the separator of a line: the first of semicolon, comma and tab that occurs outside quotes, otherwise
+    /// blanks.
     pub(super) fn of(line: &[u8]) -> Self {
         let marks = *b";,\t";
         let found = marks
@@ -71,8 +72,8 @@ impl Separator {
         found.map_or(Self::Spaces, Self::Byte)
     }
 
-    /// What stands between the separators of a line, without blanks and quotes around it. A separator in quotes is part of
-    /// its field; where a quote is not closed, quotes are letters like others, as in `width in "`.
+    /// Splits a line at its separators, and removes blanks and quotes around each part. A separator in quotes is part
+    /// of its field; if a quote is not closed, quotes are characters like any other, as in `width in "`.
     pub(super) fn split(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
         let quotes: usize = line.iter().map(|byte| usize::from(*byte == b'"')).sum();
         let (has_quotes, mut is_quoted) = (quotes > 0 && quotes.is_multiple_of(2), false);
@@ -87,8 +88,8 @@ impl Separator {
         line.split(is_end).map(unquoted)
     }
 
-    /// The fields of a line, as [`Self::fields`]; but where one is missing to `expected`, a separator at the end of the line
-    /// is followed by an empty field.
+    /// Returns the fields of a line like [`Self::fields`]; but if one is missing to the `expected` number, a
+    /// separator at the end of the line is followed by an empty field.
     pub(super) fn fields_of(self, line: &[u8], expected: usize) -> impl Iterator<Item = &[u8]> {
         let is_short = match self {
             Self::Byte(_) => self.fields(line).count() + 1 == expected,
@@ -99,7 +100,7 @@ impl Separator {
         self.fields(line).chain(has_empty.then_some(&line[..0]))
     }
 
-    /// The fields of a line without blanks and quotes around them; an empty one at the end is none.
+    /// Returns the fields of a line, without blanks and quotes around them; an empty field at the end is left out.
     pub(super) fn fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
         let line = line.trim_ascii();
         let line = match self {
@@ -110,7 +111,7 @@ impl Separator {
         fields.filter(move |field| self != Self::Spaces || !field.is_empty())
     }
 
-    /// What a field says of its cell. With semicolons, a comma is the decimal sign.
+    /// Reads the content of a field. With semicolons as separators, a comma is the decimal sign.
     pub(crate) fn value(self, field: &[u8]) -> Field {
         if is_none(field) {
             return Field::NoCell;
@@ -121,12 +122,12 @@ impl Separator {
         }
     }
 
-    /// Whether a field may be a cell's: a number, or a word for none.
+    /// Returns true if a field can be that of a cell: a number, or a word for a missing value.
     pub(super) fn is_numeric(self, field: &[u8]) -> bool {
         !matches!(self.value(field), Field::Wrong)
     }
 
-    /// The first numbers of a line, `most` of them; NaN for fields that are none.
+    /// Returns the first `most` fields of a line as numbers; NaN for fields that are not numbers.
     pub(super) fn numbers(self, line: &[u8], most: usize) -> Vec<f64> {
         let value = |field| match self.value(field) {
             Field::Value(value) => value,
@@ -136,7 +137,7 @@ impl Separator {
     }
 }
 
-/// A number whose decimal sign may be a comma; of up to 32 characters, if it is.
+/// Reads a number whose decimal sign may be a comma; with a comma, it has at most 32 characters.
 pub(super) fn decimal(field: &[u8]) -> Field {
     if !field.contains(&b',') {
         return text_row::value(field);

@@ -1,9 +1,9 @@
-//! How a table of numbers is arranged: where its cells are, and what else stands in its lines.
+//! Finds how a table of numbers is arranged: which fields are cells, and what the other fields are.
 //!
-//! A header names the cells, see [`cell_names`](super::cell_names). Without one, rows and columns have to be known
-//! beforehand, unless the table is in blocks of a row a line; numbers beside the cells are then recognised by how they grow
-//! from line to line, see [`unnamed_fields`](super::unnamed_fields). A timestamp is the time of its frame unless a column of
-//! numbers gives the time; other texts are ignored.
+//! A header names the cells, see [`cell_names`](super::cell_names). Without a header, the rows and columns must be
+//! given, unless the table consists of blocks with one row per line; numbers beside the cells are then recognised by
+//! how they grow from line to line, see [`unnamed_fields`](super::unnamed_fields). A timestamp is the time of its
+//! frame, unless a column of numbers gives the time; other texts are ignored.
 
 use std::io::{BufRead, Seek};
 
@@ -28,34 +28,34 @@ use crate::parameter::number::{counted, grouped};
 /// The most cells of a frame.
 const MOST_CELLS: usize = MAX_FRAME_SIDE as usize * MAX_FRAME_SIDE as usize;
 
-/// The most fields that may stand beside them. A line of more is refused before its fields take memory.
+/// The most fields beside the cells. A line with more is refused before its fields take memory.
 const MOST_BESIDE: usize = 16;
 
-/// How a table is arranged.
+/// The arrangement of a table.
 #[derive(Debug)]
 pub(super) struct TableLayout {
-    /// What parts fields, in all lines.
+    /// The separator between fields, in all lines.
     pub(super) separator: Separator,
-    /// Rows and columns of a frame.
+    /// The rows and columns of a frame.
     pub(super) shape: (u16, u16),
-    /// What a line holds.
+    /// The content of a line.
     pub(super) lines: LineLayout,
-    /// What was assumed, if anything.
+    /// The assumption that was made, if any.
     pub(super) note: Option<RecordingNote>,
-    /// The unit of the cells, if a line below their names says it.
+    /// The unit of the cells, if a line below their names gives it.
     pub(super) unit: Option<String>,
-    /// The timestamp of the first frame as it is written, if lines have one.
+    /// The timestamp of the first frame as it is written, if lines have a timestamp.
     pub(super) start: Option<String>,
 }
 
-/// What a line of a table holds.
+/// The content of a line of a table.
 #[derive(Debug)]
 pub(super) enum LineLayout {
     /// A frame.
     Frame(FrameFields),
-    /// A row; whether an empty line ends a frame.
+    /// A row of a frame.
     Row {
-        /// If not, the next frame begins after as many rows as a frame has.
+        /// Whether an empty line ends a frame; if not, the next frame begins after the number of rows in a frame.
         parted: bool,
     },
 }
@@ -63,23 +63,23 @@ pub(super) enum LineLayout {
 /// The fields of a line that is a frame.
 #[derive(Debug)]
 pub(super) struct FrameFields {
-    /// How many fields a line has.
+    /// The number of fields in a line.
     pub(super) count: usize,
     /// The last line of the header, if there is one.
     pub(super) header: Option<u64>,
     /// The field of each cell, row by row.
     pub(super) cells: Vec<usize>,
-    /// The field with what the recording calls the frame.
+    /// The field with the frame's label.
     pub(super) label: Option<usize>,
     /// The fields with the time.
     pub(super) time: Option<TimeFields>,
 }
 
-/// Finds out how the table is arranged, from its first lines.
+/// Finds the arrangement of a table from its first lines.
 ///
 /// # Errors
-/// [`RecordingError::Unknown`] of what is not a table; [`RecordingError::Shape`] or [`RecordingError::Columns`] if rows and
-/// columns have to be named.
+/// Returns [`RecordingError::Unknown`] if it is not a table, and [`RecordingError::Shape`] or
+/// [`RecordingError::Columns`] if rows and columns must be given.
 pub(super) fn layout(
     input: &mut (impl BufRead + Seek),
     options: ReadOptions,
@@ -104,7 +104,7 @@ pub(super) fn layout(
     let has_words = names
         .iter()
         .any(|name| !separator.is_numeric(name.as_bytes()));
-    // Of an echo of ROS, a line of small values begins so, too, behind its offset.
+    // In ROS echo output, a line of small values can begin like this, too, after its offset.
     let cells = options
         .shape
         .map(|(rows, columns)| usize::from(rows) * usize::from(columns));
@@ -115,7 +115,7 @@ pub(super) fn layout(
     } else {
         counted.is_some() && !is_ramp(&mut lines, separator, &first)?
     };
-    // Lines have been read beyond the first one.
+    // The test for a ramp has read beyond the first line.
     if counted.is_some() {
         input.rewind()?;
         lines = TextLines::new(input);
@@ -125,7 +125,7 @@ pub(super) fn layout(
         return of_numbers(&mut lines, separator, (number, &[&first]), options);
     }
     let units = units_below(&mut lines, &names, separator)?;
-    // Words above words are not a table.
+    // If words stand below words, it is not a table.
     if !is_mostly_numeric(separator, lines.line()) {
         return Err(RecordingError::Unknown);
     }
@@ -141,35 +141,35 @@ pub(super) fn layout(
     with_header(header, separator, lines.line(), options)
 }
 
-/// The lines above the values of a table.
+/// The header of a table: the lines above its values.
 #[derive(Clone, Copy)]
 struct TableHeader<'a> {
     /// The names of the fields.
     names: &'a [&'a str],
-    /// Their line.
+    /// The line number of the names.
     number: u64,
-    /// The line with the units of the fields, and these.
+    /// The line number of the units, and the unit of each field.
     units: Option<&'a (u64, Vec<String>)>,
 }
 
 impl TableHeader<'_> {
-    /// The unit of a field; None if it has none.
+    /// Returns the unit of a field; None if it has none.
     fn unit(&self, field: usize) -> Option<&str> {
         let unit = self.units?.1.get(field)?;
         let inner = unit.trim_matches(['[', ']', '(', ')']).trim();
-        // A dash stands for no unit, and so do the words for a missing value.
+        // A dash means that there is no unit, as do the words for a missing value.
         let is_none = inner == "-" || is_none(inner.as_bytes());
         (!is_none).then_some(inner)
     }
 
-    /// The unit that all of these fields have.
+    /// Returns the unit of these fields; None if they do not all have the same.
     fn unit_of_all(&self, fields: &[usize]) -> Option<&str> {
         let units = fields.iter().map(|&field| self.unit(field));
         let same = units.reduce(|one, other| one.filter(|_| one == other));
         same.flatten()
     }
 
-    /// The first of these fields that is a time; with its other field if the time is in two.
+    /// Returns the first of these fields that is a time, together with its other field if the time is split into two.
     fn time<'r>(
         &self,
         fields: impl Iterator<Item = (usize, &'r Option<FieldRole>)>,
@@ -185,9 +185,9 @@ impl TableHeader<'_> {
             }
             _ => None,
         });
-        // More than these are hardly times, and each is compared with all names.
+        // More fields than these are hardly times, and each is compared with all names.
         let times: Vec<TimeFields> = times.take(MOST_BESIDE).collect();
-        // What has only a unit may be a duration, such as `latency_ms`.
+        // A field that has only the unit of a time may be a duration, such as `latency_ms`.
         let is_named = |time: &&TimeFields| is_named_time(self.names[time.field]);
         let first = times.iter().find(is_named).or(times.first())?;
         let has_first = |time: &&TimeFields| time.rest.is_some_and(|(rest, _)| rest == first.field);
@@ -195,8 +195,8 @@ impl TableHeader<'_> {
     }
 }
 
-/// Reads up to the first line of values below the names of cells. Returns the line between them and its fields, if there are
-/// words in it, one for each name: they are units.
+/// Reads up to the first line of values below the names of cells. If the line between them holds words, one field for
+/// each name, they are units: returns the line's number and its fields.
 fn units_below(
     lines: &mut TextLines<impl BufRead>,
     names: &[&str],
@@ -205,7 +205,7 @@ fn units_below(
     while lines.advance_to_content()? && is_comment(lines.line()) {}
     let fields = separator.fields_of(lines.line(), names.len());
     let fields: Vec<String> = fields.take(names.len() + 1).map(text).collect();
-    // A timestamp or the word of a label may stand in a line of values, of which all may be missing.
+    // A line of values may contain a timestamp or a label of letters, and all its values may be missing.
     let is_value = |field: &String| {
         matches!(separator.value(field.as_bytes()), Field::Value(_))
             || moment::read(field.as_bytes()).is_some()
@@ -222,10 +222,11 @@ fn units_below(
     Ok(Some(units))
 }
 
-/// The arrangement of a table without names, whose first lines are `read`, the first of them in line `number` of the file.
+/// Finds the arrangement of a table without names. Its first lines are in `read`, which begins in line `number` of
+/// the file.
 ///
-/// A line is a row if it has as many fields as a frame has columns, or if nothing is known beforehand and an empty line
-/// ends the first block. Otherwise, and if there are texts in it, it is a frame.
+/// A line is a row if it has as many fields as a frame has columns; or, if no shape is given, if an empty line ends
+/// the first block. Otherwise, or if it contains texts, it is a frame.
 fn of_numbers(
     lines: &mut TextLines<impl BufRead>,
     separator: Separator,
@@ -256,7 +257,7 @@ fn of_numbers(
             (shape, LineLayout::Row { parted })
         }
         (Some(shape), _) => {
-            // Numbers before a timestamp are no cells.
+            // Numbers before a timestamp are not cells.
             let moment = (0..fields.len()).find(|&field| moment::read(fields[field]).is_some());
             let before = |&&field: &&usize| moment.is_some_and(|moment| field < moment);
             let before = numeric.iter().filter(before).count();
@@ -287,8 +288,9 @@ fn of_numbers(
     })
 }
 
-/// Reads on in the first block, of which some lines have been read, until there are enough lines or an empty one ends it.
-/// Those that are compared are taken. Returns the number of lines, and whether the block was ended.
+/// Continues the first block, of which `read` lines have been read, until there are enough lines or an empty line
+/// ends it. Passes the first lines to `take`, for comparison. Returns the number of lines, and whether an empty line
+/// ended the block.
 fn first_block(
     lines: &mut TextLines<impl BufRead>,
     (read, enough): (usize, u16),
@@ -310,8 +312,8 @@ fn first_block(
     Ok((block, false))
 }
 
-/// How many lines are needed to decide how a table without names is arranged, given its rows and columns, the width of a row
-/// and the numbers in its first line. A growing file is read no further than that.
+/// Returns the number of lines that decide how a table without names is arranged, given its rows and columns, the
+/// width of a row and the count of numbers in its first line. A growing file is read no further than that.
 fn lines_needed(shape: Option<(u16, u16)>, width: Option<u16>, values: usize) -> u16 {
     let cells = |(rows, columns)| usize::from(rows) * usize::from(columns);
     match (shape, width) {
@@ -325,7 +327,7 @@ fn lines_needed(shape: Option<(u16, u16)>, width: Option<u16>, values: usize) ->
 }
 
 impl LineLayout {
-    /// The moment in the fields of the first frame, as it is written.
+    /// Returns the timestamp in the fields of the first frame, as it is written.
     fn start(&self, fields: &[&[u8]]) -> Option<String> {
         let Self::Frame(FrameFields { time, .. }) = self else {
             return None;
@@ -337,11 +339,11 @@ impl LineLayout {
 }
 
 impl FrameFields {
-    /// The fields of lines of numbers without names, the first of them in line `number`. The first `before` numbers of a line
-    /// are no cells if other numbers follow.
+    /// Finds the fields of lines of numbers without names, the first of them in line `number`. The first `before`
+    /// numbers of a line are not cells if other numbers follow.
     ///
     /// # Errors
-    /// If the lines do not tell which fields are cells.
+    /// Returns an error if the lines do not show which fields are cells.
     fn unnamed(
         (rows, columns): (u16, u16),
         number: u64,
@@ -358,8 +360,8 @@ impl FrameFields {
         })
     }
 
-    /// These fields, whose first line has such `fields`, with a timestamp beside the cells as the time, unless a number
-    /// gives the time.
+    /// Adds a timestamp beside the cells as the time, unless a number gives the time; `fields` are those of the first
+    /// line.
     fn with_moment(mut self, separator: Separator, fields: &[&[u8]]) -> Self {
         let is_moment =
             |&field: &usize| fields.get(field).copied().and_then(moment::read).is_some();
@@ -367,10 +369,10 @@ impl FrameFields {
             let own = fields.get(field);
             own.is_some_and(|own| separator.is_numeric(own)) || is_moment(&field)
         };
-        // A column of that name may hold anything, such as a date without a clock.
+        // A column with the name of a time may hold anything, such as a date without a time of day.
         if !self.time.is_some_and(|time| is_time(time.field)) {
             let moment = (0..fields.len()).find(is_moment);
-            // An index of timestamps, as pandas writes it without a name, is no label.
+            // An index of timestamps, which pandas writes without a name, is not a label.
             self.label = self.label.filter(|&label| moment != Some(label));
             let moment = moment.map(|field| TimeFields::new(field, None));
             self.time = moment.or(self.time);
@@ -378,11 +380,11 @@ impl FrameFields {
         self
     }
 
-    /// These fields of numbers alone, as fields of lines that have texts, too: the numbers of line `number` are in those of
-    /// its `fields` that `numeric` names.
+    /// Converts fields that were found among numbers alone to those of lines that also contain texts: `fields` are
+    /// those of line `number`, and `numeric` are the indices of the numbers among them.
     ///
     /// # Errors
-    /// If there is a text among the cells: it is none of them, and none of what stands beside them.
+    /// Returns an error if there is a text between two cells: it belongs neither to them nor beside them.
     fn among(
         self,
         numeric: &[usize],
@@ -407,10 +409,10 @@ impl FrameFields {
     }
 }
 
-/// The arrangement that a header describes, above the first line of values.
+/// Finds the arrangement that a header describes; `first` is the first line of values.
 ///
 /// # Errors
-/// If the names are those of another number of rows and columns than was asked for.
+/// Returns an error if the names are those of another number of rows and columns than the given one.
 fn with_header(
     header: TableHeader<'_>,
     separator: Separator,
@@ -424,7 +426,7 @@ fn with_header(
     if cells.len() != expected {
         return Err(text_row::count(number, cells.len(), expected));
     }
-    // A line may have a quarter of a million names.
+    // A line may have a quarter of a million names, so cells are looked up by index.
     let mut is_cell = vec![false; names.len()];
     for &cell in &cells {
         is_cell[cell] = true;
@@ -456,14 +458,14 @@ fn with_header(
     })
 }
 
-/// Rows and columns, the field of each cell, and what was assumed to find them.
+/// The rows and columns, the field of each cell, and the assumption that was made.
 type CellFields = ((u16, u16), Vec<usize>, Option<RecordingNote>);
 
-/// The cells that names describe.
+/// Returns the cells that names describe.
 ///
-/// - Names of rows and columns say all. Rows and columns that are asked for must be the same.
-/// - Names that only count are taken as the rows and columns that are asked for, else as a square, which is noted.
-/// - Other names: all fields between those at the beginning and at the end which have a known role.
+/// - Names with rows and columns say everything. Given rows and columns must be the same.
+/// - Names that only count are arranged in the given rows and columns, otherwise in a square, which is noted.
+/// - With other names, all fields are cells except those at the beginning and the end that have a known role.
 fn named_cells(
     names: &[&str],
     roles: &[Option<FieldRole>],

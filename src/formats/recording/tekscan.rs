@@ -1,9 +1,9 @@
 //! Tekscan's ASCII export (I-Scan, F-Scan): a header of keys, then the frames, row by row.
 //!
-//! `COMMENTS` may run over several lines that look like keys or frames. What stands above them counts as it stands there
-//! first, so of `ROWS`, `COLS` and others the first line; `UNITS` stands below them, so its last line counts. Frames begin
-//! only after `ASCII_DATA @@`. Spreadsheet programs add a byte order mark and pad lines with commas. `B`
-//! stands where the sensor has no cell.
+//! `COMMENTS` may run over several lines that look like keys or frames. Keys above the comments count where they
+//! first occur, so `ROWS`, `COLS` and others are taken from their first line; `UNITS` is below the comments, so its
+//! last line counts. Frames begin only after `ASCII_DATA @@`. Spreadsheet programs add a byte order mark and pad
+//! lines with commas. `B` means that the sensor has no cell there.
 //! ```text
 //! DATA_TYPE MOVIE
 //! ROWS 28
@@ -18,10 +18,10 @@
 //!
 //! @@
 //! ```
-//! A frame's title may have more: `Frame 2, 0.1,, date time,,,Raw Sum=,,307` names its time in seconds and the sum of
-//! its raw values, which is checked where the values are raw. Keys that are not named here are passed over;
-//! `NOISE_THRESHOLD` is one of them, since it says what was cut off while recording, not what counts as touched.
-//! Source: exports of I-Scan and F-Scan.
+//! The title of a frame may have more fields: `Frame 2, 0.1,, date time,,,Raw Sum=,,307` gives its time in seconds
+//! and the sum of its raw values, which is checked if the values are raw. Other keys are ignored; `NOISE_THRESHOLD`
+//! is one of them, since it says what was cut off while recording, not what counts as touched. Source: exports of
+//! I-Scan and F-Scan.
 
 use std::io::BufRead;
 
@@ -37,10 +37,10 @@ use crate::frame::Frame;
 use crate::parameter::number::{counted, to_decimals};
 use crate::quote::shortened;
 
-/// The largest difference of a sum that is not an error.
+/// The largest difference between two sums that is not an error.
 const ROUNDING: f64 = 0.5;
 
-/// What the header says; of each key the first value counts, but of `UNITS` the last.
+/// The content of the header; of each key the first value counts, except that the last `UNITS` counts.
 #[derive(Default)]
 struct TekscanHeader {
     /// `ROWS`.
@@ -51,16 +51,15 @@ struct TekscanHeader {
     row_spacing: Option<f64>,
     /// `COL_SPACING` in mm: the distance along x.
     column_spacing: Option<f64>,
-    /// Unit, beginning and step.
+    /// The unit, the start and the time step of the channel.
     info: ChannelInfo,
 }
 
 impl TekscanHeader {
-    /// Reads a line `KEY value`.
-    /// The key ends at a blank or at a comma, which spreadsheet programs put there.
+    /// Reads a line `KEY value`. The key ends at a blank, or at a comma that a spreadsheet program put there.
     ///
     /// # Errors
-    /// If a frame cannot have these rows or columns.
+    /// Returns an error if a frame cannot have these rows or columns.
     fn line(&mut self, line: &[u8], number: u64) -> Result<(), RecordingError> {
         let is_end = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
         let end = line.iter().position(is_end);
@@ -87,11 +86,11 @@ impl TekscanHeader {
     }
 }
 
-/// A length with its unit, in mm; none without a unit.
-/// `1.27 mm`, `0.5 centimeters`, `1.27e-003 meters` or `0.05 in.`. Without a unit it may be any, so the pitch stays unknown.
+/// Reads a length with its unit, in mm: `1.27 mm`, `0.5 centimeters`, `1.27e-003 meters` or `0.05 in.`. None without
+/// a unit, since it may be any, so the pitch stays unknown.
 fn spacing(value: &[u8]) -> Option<f64> {
     let value = text(value).trim().to_lowercase();
-    // The unit begins with a letter that is not that of an exponent.
+    // The unit begins with the first letter that is not part of an exponent.
     let is_exponent = |at: usize| {
         value[at..].starts_with('e') && value[at + 1..].starts_with(['+', '-', '0', '1', '2', '3'])
     };
@@ -105,7 +104,7 @@ fn spacing(value: &[u8]) -> Option<f64> {
         "mm" | "millimeters" | "millimetres" => Some(length),
         "cm" | "centimeters" | "centimetres" => Some(length * 10.0),
         "m" | "meters" | "metres" => Some(to_decimals(length * 1000.0, 9)),
-        // With the micro sign or the Greek letter.
+        // Micrometres, with the micro sign or the Greek letter.
         "um" | "\u{b5}m" | "\u{3bc}m" | "micrometers" | "micrometres" | "microns" => {
             Some(to_decimals(length / 1000.0, 9))
         }
@@ -117,7 +116,7 @@ fn spacing(value: &[u8]) -> Option<f64> {
 /// Reads a recording.
 ///
 /// # Errors
-/// If the header does not end, or has no rows or columns; those of the frames.
+/// Returns an error if the header does not end, or has no rows or columns, and the errors of the frames.
 pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(input);
     let mut header = TekscanHeader::default();
@@ -155,7 +154,8 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
 /// Reads the frames below the header, up to `@@`.
 ///
 /// # Errors
-/// If the file ends before that, or a frame before its last row: Tekscan's programs always write the `@@`.
+/// Returns an error if the file ends before `@@`, or a frame before its last row: Tekscan's programs always write the
+/// `@@`.
 fn frames(
     lines: &mut TextLines<impl BufRead>,
     (rows, columns): (u16, u16),
@@ -197,10 +197,10 @@ fn frames(
     Ok(())
 }
 
-/// Reads the rows of a frame, which follow its title without an empty line. `B` and `b` stand for no cell.
+/// Reads the rows of a frame, which follow its title without an empty line. `B` and `b` mean that there is no cell.
 ///
 /// # Errors
-/// If there are fewer rows, or one has another number of fields than `COLS`.
+/// Returns an error if there are fewer rows, or if a row has another number of fields than `COLS`.
 fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), RecordingError> {
     let (rows, columns) = (frame.rows(), frame.columns());
     for row in frame.values_mut().chunks_mut(columns.into()) {
@@ -220,8 +220,8 @@ fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), 
     Ok(())
 }
 
-/// What is odd about a frame whose title states another sum than that of its values. Only raw values can be compared:
-/// the sum is that of the sensor's own numbers, whatever the unit of the export is.
+/// Returns a note if the title of a frame states another sum than that of its values. Only raw values can be
+/// compared: the sum is that of the sensor's own numbers, whatever the unit of the export.
 fn odd_sum(frame: &Frame, stated: f64) -> Option<RecordingNote> {
     let values = frame.values().iter().filter(|value| !value.is_nan());
     let found: f64 = values.sum();
@@ -234,11 +234,11 @@ fn odd_sum(frame: &Frame, stated: f64) -> Option<RecordingNote> {
     })
 }
 
-/// The first line of a frame.
+/// The title of a frame, its first line.
 struct FrameTitle {
-    /// The number behind `Frame`, from 1.
+    /// The number after `Frame`, from 1.
     label: i64,
-    /// In seconds from the beginning, if it is there; otherwise it follows from the step of the header.
+    /// The time in seconds since the start, if it is given; otherwise it follows from the time step in the header.
     time: Option<f64>,
     /// `Raw Sum`: the sum of the sensor's own numbers.
     sum: Option<f64>,
@@ -247,7 +247,7 @@ struct FrameTitle {
 /// Reads `Frame 2` or `Frame 2, 0.1,, date time,,,Raw Sum=,,307`.
 ///
 /// # Errors
-/// If it is not a title; the message names `@@`, which may be what is missing.
+/// Returns an error if the line is not a title; the message names `@@`, which may be what is missing.
 fn title(line: &[u8], number: u64) -> Result<FrameTitle, RecordingError> {
     let line = unpadded(line);
     let mut fields = line.split(|&byte| byte == b',').map(<[u8]>::trim_ascii);

@@ -1,7 +1,7 @@
 //! A row of values in a line of text.
 //!
-//! Whether a field is a value is the reader's to say ([`Field`]): what stands for a cell without a value differs from
-//! format to format. The messages are the same in all: `line 7, column 3: found "x", expected a number`.
+//! The reader decides whether a field is a value ([`Field`]): formats differ in how they write a cell without a
+//! value. The messages are the same in all formats: `line 7, column 3: found "x", expected a number`.
 
 use crate::formats::framed::too_large;
 use crate::formats::recording::error::RecordingError;
@@ -11,17 +11,17 @@ use crate::frame::LARGEST_VALUE;
 use crate::parameter::number::counted;
 use crate::quote::shortened;
 
-/// What a field says of its cell.
+/// The content of a field.
 pub(crate) enum Field {
-    /// Its value.
+    /// A value.
     Value(f64),
-    /// That there is none.
+    /// No value: the cell does not exist.
     NoCell,
-    /// Nothing that can be understood.
+    /// Anything else.
     Wrong,
 }
 
-/// A number, which may be a cell's value.
+/// Reads a number that may be the value of a cell.
 pub(crate) fn value(field: &[u8]) -> Field {
     match number::read(field) {
         Some(value) if value.abs() <= LARGEST_VALUE => Field::Value(value),
@@ -32,7 +32,7 @@ pub(crate) fn value(field: &[u8]) -> Field {
 /// Fills a row of values from the fields of a line. Fields beyond the values must be empty.
 ///
 /// # Errors
-/// If a field is wrong, or there are more or fewer than values.
+/// Returns an error if a field is wrong, or if there are more or fewer fields than values.
 pub(crate) fn fill<'a>(
     values: &mut [f64],
     fields: impl Iterator<Item = &'a [u8]>,
@@ -58,13 +58,13 @@ pub(crate) fn fill<'a>(
     }
 }
 
-/// A line with another number of values.
+/// Returns the error for a line with another number of values.
 pub(crate) fn count(line: u64, found: usize, expected: usize) -> RecordingError {
     let found = counted(found as u64, "value");
     RecordingError::in_line(line, format!("found {found}, expected {expected}"))
 }
 
-/// A field that is not a value.
+/// Returns the error for a field that is not a value.
 pub(crate) fn wrong(line: u64, column: usize, field: &[u8]) -> RecordingError {
     if let Some(value) = number::read(field).filter(|value| value.abs() > LARGEST_VALUE) {
         return RecordingError::in_field(line, column, too_large(value));
@@ -73,7 +73,7 @@ pub(crate) fn wrong(line: u64, column: usize, field: &[u8]) -> RecordingError {
     RecordingError::in_field(line, column, format!("found {found:?}, expected a number"))
 }
 
-/// Whether the lines of a text end in CR alone, as on the first Macintosh computers.
+/// Returns true if the lines of a text end in CR alone, as on the first Macintosh computers.
 pub(crate) fn is_parted_by_cr(text: &[u8]) -> bool {
     let ends_before = text.iter().rev().skip(1).any(|&byte| byte == b'\r');
     ends_before && !text.contains(&b'\n') && !text.contains(&0)

@@ -1,4 +1,4 @@
-//! What stands beside the cells in lines that no header names: the frame's number, its time or both.
+//! Finds the fields beside the cells in lines without a header: the frame's number, its time or both.
 //! ```text
 //! 0,0.00,1,2,3,4      number and time before the cells
 //! 0.00,1,2,3,4        one of them before the cells
@@ -6,35 +6,35 @@
 //! 0,1,2,3,4,0.00      the number before, the time behind
 //! 1,2,3,4,0,50        number and milliseconds behind the cells
 //! ```
-//! Numbers count up by 1 from line to line and times do not fall, while cells do both. Where cells happen to grow, too, the
-//! better evidence decides (see [`FieldEvidence`]); where that is equal, the lines are refused, since a wrong guess would
-//! shift all cells by one.
+//! Numbers count up by 1 from line to line and times never fall; cells rise and fall. If cells happen to rise, too,
+//! the better evidence decides (see [`FieldEvidence`]); if it is equal, the lines are refused, since a wrong guess
+//! would shift all cells by one.
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::frame_time::{TimeFields, TimeUnit};
 use crate::formats::recording::text_row;
 use crate::parameter::number::counted;
 
-/// Steps of a clock differ from their mean by no more than this part of it.
+/// The largest deviation of a clock's steps from their mean, as a share of the mean.
 const UNEVEN: f64 = 0.1;
 
-/// How a field grows from line to line.
+/// The growth of a field from line to line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FieldGrowth {
-    /// It stays the same.
+    /// The field stays the same.
     Constant,
-    /// It stays the same or rises; or it is 0, as the offset of a message of ROS.
+    /// The field stays the same or rises; or it is 0, like the offset of a ROS message.
     NotFalling,
-    /// It rises with each line.
+    /// The field rises with each line.
     Rising,
-    /// It rises by about the same with each line, and there are at least three.
+    /// The field rises by about the same amount with each line, in at least three lines.
     Steady,
-    /// It rises by 1 with each line.
+    /// The field rises by 1 with each line.
     Counting,
 }
 
 impl FieldGrowth {
-    /// How much it says: cells may happen to rise for a few lines, but seldom evenly.
+    /// Returns the strength as evidence: cells may happen to rise for a few lines, but rarely evenly.
     fn strength(self) -> u8 {
         match self {
             Self::Constant => 0,
@@ -43,14 +43,15 @@ impl FieldGrowth {
         }
     }
 
-    /// That of a field; None if it falls or is no number somewhere. A single line has constant fields only.
+    /// Returns the growth of a field; None if it falls or is not a number somewhere. In a single line, all fields are
+    /// constant.
     fn of(lines: &[Vec<f64>], field: usize) -> Option<Self> {
         let value = |line: &Vec<f64>| line.get(field).copied().unwrap_or(f64::NAN);
         let pairs = lines.windows(2);
         let steps: Vec<f64> = pairs
             .map(|pair| value(&pair[1]) - value(&pair[0]))
             .collect();
-        // NaN is neither.
+        // A step of NaN fails this test, too.
         if !steps.iter().all(|step| *step >= 0.0) {
             return None;
         }
@@ -74,33 +75,33 @@ impl FieldGrowth {
     }
 }
 
-/// Cells do not reach this number; a clock that counts from 1970 does.
+/// The least number that only clocks reach: one that counts seconds since 1970 does, cells do not.
 const CLOCK: f64 = 1e9;
 
-/// What speaks for such fields; the greater evidence decides.
+/// The evidence for an assumed arrangement; the greatest decides.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 struct FieldEvidence {
-    /// Whether none of the cells is as large as a clock.
+    /// Whether all cells are below [`CLOCK`].
     has_small_cells: bool,
-    /// Whether the time has decimals and no cell has.
+    /// Whether the time has decimals and no cell does.
     is_only_decimal: bool,
-    /// How much the growth of the time says, or that of the number where there is no time.
+    /// The strength of the growth of the time, or of the number if there is no time.
     strength: u8,
 }
 
-/// Where cells, number and time of a frame are, or may be.
+/// The fields of a frame's cells, number and time, as found or assumed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct UnnamedFields {
     /// The first cell.
     pub(super) start: usize,
-    /// The field of the number.
+    /// The field of the frame's number.
     pub(super) label: Option<usize>,
-    /// The field of the time, with its unit where its place tells it.
+    /// The field of the time, with its unit if its place determines it.
     pub(super) time: Option<TimeFields>,
 }
 
 impl UnnamedFields {
-    /// All that have one or two fields beside the cells; none of any other number of fields.
+    /// Returns all arrangements with one or two fields beside the cells; none for any other number of fields.
     fn all(cells: usize, beside: usize) -> Vec<Self> {
         let with = |start, label, time| Self { start, label, time };
         let time = |field| Some(TimeFields::new(field, None));
@@ -109,7 +110,7 @@ impl UnnamedFields {
             1 => vec![
                 with(1, Some(0), None),
                 with(1, None, time(0)),
-                // The offset of a message of ROS.
+                // The first field is the offset of a ROS message.
                 with(1, None, None),
                 with(0, Some(cells), None),
                 with(0, None, time(cells)),
@@ -124,7 +125,7 @@ impl UnnamedFields {
         }
     }
 
-    /// What lines of so many cells say for it; None if they rule it out.
+    /// Returns the evidence of the lines for this arrangement; None if they rule it out.
     fn evidence(self, lines: &[Vec<f64>], cells: usize) -> Option<FieldEvidence> {
         let growth_of = |field| FieldGrowth::of(lines, field);
         if let Some(label) = self.label {
@@ -138,7 +139,8 @@ impl UnnamedFields {
         let growth = match (self.label, self.time) {
             (Some(_), None) => FieldGrowth::Counting,
             (Some(_), Some(time)) => growth_of(time.field)?,
-            // A time that does not change is none, unless there is a number beside it. What counts up by 1 is a number.
+            // A constant field is not a time, unless there is a number beside it. A field that counts up by 1 is a
+            // number.
             (None, Some(time)) => growth_of(time.field).filter(|growth| {
                 !matches!(growth, FieldGrowth::Constant | FieldGrowth::Counting)
             })?,
@@ -162,11 +164,12 @@ impl UnnamedFields {
     }
 }
 
-/// Where the cells, the number and the time are in lines of so many cells without names, of which the first `before` numbers
-/// are no cells. The first line is line `number` of the file.
+/// Finds the cells, the number and the time in lines without names. The first `before` numbers of a line are not
+/// cells. The first line is line `number` of the file.
 ///
 /// # Errors
-/// If the line has fewer fields than a frame has cells, or if other fields are not cells or may be.
+/// Returns an error if a line has fewer fields than a frame has cells, or if it is not clear which other fields there
+/// are.
 pub(super) fn unnamed_fields(
     (cells, before): (usize, usize),
     number: u64,
@@ -189,11 +192,12 @@ pub(super) fn unnamed_fields(
     found.ok_or_else(|| text_row::count(number, count, cells))
 }
 
-/// The fields with the greatest evidence; None if all are ruled out. The last line may be torn: where all lines rule
-/// out everything, those before it decide. With two numbers beside the cells, two lines are enough.
+/// Returns the arrangement with the greatest evidence; None if all are ruled out. The last line may be torn: if all
+/// lines together rule out everything, those before it decide. With two numbers beside the cells, two lines are
+/// enough.
 ///
 /// # Errors
-/// If other fields may be the cells by the same evidence.
+/// Returns an error if there is equal evidence for different cells.
 fn most_evident(
     all: &[UnnamedFields],
     lines: &[Vec<f64>],
@@ -234,7 +238,7 @@ fn most_evident(
     Ok(None)
 }
 
-/// The error of lines that do not tell which fields are cells.
+/// Returns the error for lines that do not show which fields are cells.
 fn unclear(number: u64, cells: usize, beside: usize) -> RecordingError {
     let beside = counted(beside as u64, "number");
     let message = format!(
@@ -243,7 +247,8 @@ fn unclear(number: u64, cells: usize, beside: usize) -> RecordingError {
     RecordingError::in_line(number, message)
 }
 
-/// A number without a fraction, as labels are; None of any other, and beyond what a float counts exactly.
+/// Converts a number without a fraction, as labels are; None for any other, and beyond the whole numbers that a float
+/// holds exactly.
 #[expect(clippy::cast_possible_truncation, reason = "checked")]
 pub(super) fn whole(value: f64) -> Option<i64> {
     (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64)

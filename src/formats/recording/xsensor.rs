@@ -1,7 +1,7 @@
-//! XSENSOR's CSV export: frames of one or several sensors, each a block of its own; groups of cells are passed over.
+//! XSENSOR's CSV export: frames of one or several sensors, each in a block of its own; groups of cells are skipped.
 //!
-//! Lines may be padded with commas, and every second one may have nothing else. A sensor's name is its channel. `GROUP`
-//! blocks list the cells of a part of a sensor, which are in the sensor's matrix already.
+//! Lines may be padded with commas, and every second line may consist of nothing else. The name of a sensor is that
+//! of its channel. `GROUP` blocks list the cells of a part of a sensor, which are also in the sensor's matrix.
 //! ```text
 //! Units:,mmHg,,,,
 //! ,,,,,
@@ -18,9 +18,9 @@
 //! 0,0,57.9,…
 //! ```
 //! Versions of the software differ in how they write a key (`FRAME`, `Frame:`), in quotes around fields, and in units
-//! (`Sensel Width (mm)`); a comma within a field may be the decimal sign. Time is the difference of the clocks in seconds,
-//! also past midnight, or of seconds. `Threshold` is the value from which on
-//! XSENSOR's own software counts a cell as touched, so it is that of the recording. Averages and areas are passed over:
+//! (`Sensel Width (mm)`); a comma within a field may be the decimal sign. The time of a frame is the difference
+//! between clock times, even past midnight, or between times in seconds. `Threshold` is the least value that
+//! XSENSOR's own software counts as touched, so it is the threshold of the recording. Averages and areas are ignored:
 //! they follow from the values. Source: an export of XSENSOR's software of 2022.
 
 use std::io::BufRead;
@@ -38,62 +38,62 @@ use crate::formats::seconds::since;
 use crate::frame::Frame;
 use crate::parameter::number::{counted, to_decimals};
 
-/// No file has more sensors: each has a name of its own.
+/// The most sensors in a file; each has a name of its own.
 const MOST_CHANNELS: usize = 64;
 
-/// No line with a key is longer.
+/// The most bytes of a line with a key.
 const LONGEST_KEY: usize = 1 << 12;
 
-/// A sensor's frames so far.
+/// A sensor and the number of its frames so far.
 struct XsensorChannel {
-    /// What `SENSOR` names; None where there is no such line.
+    /// The name from `SENSOR`; None if there is no such line.
     name: Option<String>,
-    /// How many there are; the number of the next one.
+    /// The number of frames so far, which is the number of the next one.
     frames: u64,
 }
 
-/// What is described by the lines that are being read.
+/// The block of lines that is being read.
 #[derive(Default)]
 enum XsensorBlock {
     /// The file or a frame.
     #[default]
     Other,
-    /// A sensor of that name.
+    /// A sensor, with its name.
     Sensor(Option<String>),
     /// A part of a sensor.
     Group,
 }
 
-/// What is known of the frame and of the sensor that are being read.
+/// The state of the reader: the values of the current frame and sensor.
 #[derive(Default)]
 struct XsensorState {
-    /// `Units`, of all sensors.
+    /// `Units`, for all sensors.
     unit: Option<String>,
     /// `Threshold`, in that unit.
     threshold: Option<f64>,
-    /// `FRAME`: what the recording calls the frame.
+    /// `FRAME`: the frame's label in the recording.
     label: Option<i64>,
-    /// Sensors of the frame that have been read.
+    /// The number of sensors read in the current frame.
     sensors: usize,
-    /// Sensors of the frame before it.
+    /// The number of sensors in the previous frame.
     expected: usize,
     /// `Date` of the frame, such as `2022 Aug 16`.
     date: Option<String>,
     /// `Time` of the frame, such as `08:21:17.982`, or `1.25` in seconds.
     clock: Option<String>,
-    /// The first moment: day, and seconds of the day.
+    /// The time of the first frame: the day, and the seconds of the day.
     start: Option<(i32, f64)>,
-    /// What the lines describe.
+    /// The block that is being read.
     block: XsensorBlock,
-    /// `Rows` of this sensor.
+    /// `Rows` of the current sensor.
     rows: Option<u16>,
-    /// `Columns` of this sensor.
+    /// `Columns` of the current sensor.
     columns: Option<u16>,
     /// `Sensel Width`: the pitch along x.
     width_mm: Option<f64>,
     /// `Sensel Height`: the pitch along y.
     height_mm: Option<f64>,
-    /// The sensors in the order in which they first came.
+    /// The sensors in the order of their first frames.
     channels: Vec<XsensorChannel>,
 }
 
@@ -117,7 +117,7 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
             _ => state.line(&key, &value, lines.number())?,
         }
     }
-    // Only the cells end the block, so a sensor that is still open has lost them.
+    // Only the cells end the block, so if a sensor is still open, its cells are missing.
     let message = match state.block {
         XsensorBlock::Sensor(_) => "ends inside a SENSOR block, expected SENSELS",
         _ if state.sensors < state.expected => "ends inside a FRAME, expected SENSOR",
@@ -126,7 +126,7 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
     Err(RecordingError::in_line(lines.number() + 1, message))
 }
 
-/// The key of a line in capital letters, without the colon behind it, and its value.
+/// Returns the key of a line in capital letters, without the colon after it, and its value.
 fn pair(line: &[u8]) -> (String, String) {
     let mut fields = Separator::Byte(b',').split(line);
     let mut next = || fields.next().map_or_else(String::new, text);
@@ -135,14 +135,15 @@ fn pair(line: &[u8]) -> (String, String) {
     (key, next())
 }
 
-/// Whether the first lines of a text are those of an export: they name a frame, and then the cells of a sensor.
+/// Returns true if the first lines of a text are those of an export: they name a frame, and then the cells of a
+/// sensor.
 pub(super) fn is_export(start: &[u8]) -> bool {
     let mut lines = start.split(|&byte| byte == b'\n');
     let mut has = |key: &str| lines.any(|line| line.len() < LONGEST_KEY && pair(line).0 == key);
     has("FRAME") && has("SENSELS")
 }
 
-/// The millimetres of a unit behind a key, as of `SENSEL WIDTH (CM)`; None of one that is not known.
+/// Returns the millimetres in the unit after a key, as in `SENSEL WIDTH (CM)`; None for an unknown unit.
 fn millimetres(key: &str) -> Option<f64> {
     match key.split_once('(')?.1.trim_end_matches(')') {
         "MM" => Some(1.0),
@@ -153,10 +154,10 @@ fn millimetres(key: &str) -> Option<f64> {
 }
 
 impl XsensorState {
-    /// Takes what a line `key,value` says.
+    /// Reads a line `key,value`.
     ///
     /// # Errors
-    /// If a frame cannot have these rows or columns.
+    /// Returns an error if a frame cannot have these rows or columns.
     fn line(&mut self, key: &str, value: &str, number: u64) -> Result<(), RecordingError> {
         let number_of = || match decimal(value.as_bytes()) {
             Field::Value(value) => Some(value),
@@ -205,7 +206,8 @@ impl XsensorState {
     /// Reads the rows below `SENSELS`.
     ///
     /// # Errors
-    /// If rows or columns were not named before, or the rows end too early or have another length.
+    /// Returns an error if rows or columns were not given before, or if the rows end too early or have another
+    /// length.
     fn matrix(
         &self,
         lines: &mut TextLines<impl BufRead>,
@@ -227,10 +229,11 @@ impl XsensorState {
         Ok(())
     }
 
-    /// Gives the frame, and its channel before the first one; true if no more is wanted.
+    /// Reports the frame, and before its first one the channel; returns true if the sink wants no more.
     ///
     /// # Errors
-    /// If there are more sensors than any file has: names that change from frame to frame would fill the memory.
+    /// Returns an error if there are more sensors than any file has: names that change with every frame would fill
+    /// the memory.
     fn give(
         &mut self,
         name: Option<String>,
@@ -281,7 +284,7 @@ impl XsensorState {
         Ok(sink(RecordingEvent::Frame(frame)).is_break())
     }
 
-    /// When the frame was measured, as it is written; of a time in seconds, only the day.
+    /// Returns the time of the frame as it is written; only the day, if the time is in seconds.
     fn beginning(&self) -> Option<String> {
         let (date, clock) = self.date.as_ref().zip(self.clock.as_ref())?;
         Some(if clock.contains(':') {
@@ -291,9 +294,8 @@ impl XsensorState {
         })
     }
 
-    /// The moment of the frame: day, and seconds of the day.
-    /// None if the clock is not three numbers, nor a single one, of seconds, or if they are too large; a date that cannot
-    /// be read counts as the same day.
+    /// Returns the time of the frame: the day, and the seconds of the day. None if the clock is neither three numbers
+    /// nor a number of seconds, or if they are too large; a date that cannot be read counts as the same day.
     fn moment(&self) -> Option<(i32, f64)> {
         let (clock, half) = moment::half_day(self.clock.as_ref()?);
         let parts = clock.split(':');
@@ -310,7 +312,7 @@ impl XsensorState {
                 };
                 (day, hours * 3600.0 + minutes * 60.0 + seconds)
             }
-            // They count from the beginning, not from midnight.
+            // Seconds count from the start of the recording, not from midnight.
             [seconds] => (1, seconds),
             _ => return None,
         };
@@ -318,9 +320,9 @@ impl XsensorState {
     }
 }
 
-/// The number of a day such as `2022 Aug 16`.
+/// Returns the number of a day such as `2022 Aug 16`.
 fn days(date: &str) -> Option<i32> {
-    /// The first three letters, so that full names do, too.
+    /// The first three letters of each month, so that full names match, too.
     const MONTHS: [&str; 12] = [
         "jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec",
     ];

@@ -1,6 +1,8 @@
-//! A zebris `.apd` file: INI sections, then a picture or several, parted by tabs; -1 where nothing was recorded.
+//! The zebris `.apd` format: INI sections, then one or more pictures with fields separated by tabs; -1 where nothing
+//! was recorded.
 //!
-//! `SensCountX` counts the lines and `SensCountY` the values of a line, so the file's x is down and its y to the right.
+//! `SensCountX` counts the lines and `SensCountY` the values of a line, so the file's x points down and its y to the
+//! right.
 //! ```text
 //! [General]
 //! Date=25/04/2017
@@ -14,9 +16,10 @@
 //! [Data]
 //! -1    -1    1.0    3.0    …
 //! ```
-//! Of a step, pictures are numbered (`[Data12]`, `[Data13]`, …), `TimeDiff` in `UnitTime` apart; `[Data]` is then their
-//! maximum, which is no frame and is left out. A file with `[Data]` alone is one picture. The names of
-//! other sections do not matter, since all keys differ. A value below 0 other than -1 is a value. Source: pedcad import files of zebris.
+//! The pictures of a step are numbered (`[Data12]`, `[Data13]`, …) and lie `TimeDiff` apart, in `UnitTime`. `[Data]`
+//! is then their maximum, which is not a frame and is left out; a file with `[Data]` alone is a single picture. The
+//! names of other sections do not matter, since all keys differ. A value below 0 other than -1 is a value. Source:
+//! pedcad import files of zebris.
 
 use std::io::BufRead;
 
@@ -31,18 +34,18 @@ use crate::formats::seconds::to_nanoseconds;
 use crate::frame::Frame;
 use crate::parameter::number::counted;
 
-/// What stands above the values.
+/// The header above the values.
 #[derive(Default)]
 struct ZebrisHeader {
     /// `SensCountX`.
     rows: Option<u16>,
     /// `SensCountY`.
     columns: Option<u16>,
-    /// `LDistX`: from a line to the next.
+    /// `LDistX`: the distance between lines.
     row_distance: Option<f64>,
-    /// `LDistY`: from a value of a line to the next.
+    /// `LDistY`: the distance between the values of a line.
     column_distance: Option<f64>,
-    /// Millimetres a unit of distance.
+    /// `UnitDistance`, in millimetres.
     factor: Option<f64>,
     /// `UnitPressure`.
     unit: Option<String>,
@@ -50,9 +53,9 @@ struct ZebrisHeader {
     date: Option<String>,
     /// `Time`, as it is written.
     time: Option<String>,
-    /// `TimeDiff`: from a picture to the next.
+    /// `TimeDiff`: the time from one picture to the next.
     time_difference: Option<f64>,
-    /// Seconds a unit of time.
+    /// `UnitTime`, in seconds.
     seconds: Option<f64>,
     /// `MinIdx`: the number of the first picture.
     first: Option<i64>,
@@ -61,10 +64,10 @@ struct ZebrisHeader {
 }
 
 impl ZebrisHeader {
-    /// Takes what a line `key=value` says; other lines say nothing.
+    /// Reads a line `key=value`; other lines are ignored.
     ///
     /// # Errors
-    /// If a frame cannot have this count.
+    /// Returns an error if a frame cannot have this number of rows or columns.
     fn line(&mut self, line: &str, number: u64) -> Result<(), RecordingError> {
         let Some((key, value)) = line.split_once('=') else {
             return Ok(());
@@ -102,7 +105,7 @@ impl ZebrisHeader {
         Ok(())
     }
 
-    /// What the header says of the channel; without a unit of length there is no pitch.
+    /// Returns the channel that the header describes; without a unit of length it has no pitch.
     fn info(&self) -> ChannelInfo {
         let distances = self.column_distance.zip(self.row_distance);
         ChannelInfo {
@@ -123,7 +126,7 @@ impl ZebrisHeader {
         }
     }
 
-    /// That pictures are missing which `MinIdx` and `MaxIdx` count.
+    /// Returns a note if there are fewer pictures than `MinIdx` and `MaxIdx` count.
     fn cut(&self, frames: u64) -> Option<RecordingNote> {
         let counted = self.last?.checked_sub(self.first?)?.checked_add(1)?;
         let counted = u64::try_from(counted).ok()?;
@@ -135,14 +138,14 @@ impl ZebrisHeader {
 /// A section of values.
 #[derive(Clone, Copy)]
 enum ZebrisSection {
-    /// `[Data]`: the only picture, or the maximum of those with a number.
+    /// `[Data]`: the only picture, or the maximum of the numbered ones.
     Data,
     /// `[Data12]`: the picture of that number.
     Picture(i64),
 }
 
 impl ZebrisSection {
-    /// That which a line begins; None of any other line.
+    /// Returns the section that a line begins; None for any other line.
     fn of(line: &str) -> Option<Self> {
         let name = line.trim().strip_prefix('[')?.strip_suffix(']')?;
         match name.to_ascii_lowercase().strip_prefix("data")? {
@@ -155,7 +158,8 @@ impl ZebrisSection {
 /// Reads a recording.
 ///
 /// # Errors
-/// If a picture has fewer or more lines of values than `SensCountX` says; it is reported before the second of these.
+/// Returns an error if a picture has fewer or more lines of values than `SensCountX` says; if it has more, the
+/// picture is reported before the error.
 pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(input);
     let mut header = ZebrisHeader::default();
@@ -218,7 +222,7 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
 /// Reads the values of a picture.
 ///
 /// # Errors
-/// If there are fewer lines than the frame has rows, or one has another number of values.
+/// Returns an error if there are fewer lines than the frame has rows, or if a line has another number of values.
 fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), RecordingError> {
     let (rows, columns) = (frame.rows(), frame.columns());
     for row in frame.values_mut().chunks_mut(columns.into()) {
@@ -238,10 +242,10 @@ fn values(lines: &mut TextLines<impl BufRead>, frame: &mut Frame) -> Result<(), 
     Ok(())
 }
 
-/// Goes to the next section of values; None at the end of the file.
+/// Moves to the next section of values; None at the end of the file.
 ///
 /// # Errors
-/// If there are more lines of values in this one.
+/// Returns an error if there are more lines of values in the current section.
 fn next_section(
     lines: &mut TextLines<impl BufRead>,
     rows: u16,
