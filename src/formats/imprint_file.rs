@@ -23,7 +23,7 @@ use crate::formats::{array, foreign, pbm, table, text};
 use crate::imprint::Imprint;
 use crate::parameter::named;
 
-/// No file of an imprint is larger; a larger one is refused unread. 1 MiB.
+/// The size limit of an imprint's file in bytes, 1 MiB; a larger file is refused unread.
 pub const MAX_BYTES: usize = 1 << 20;
 
 /// A format in which an imprint is written.

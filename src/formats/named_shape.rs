@@ -170,7 +170,7 @@ pub fn named_shape_of_words(
     Ok(NamedShape::new(name.trim(), source(record, lookup)?))
 }
 
-/// The shape of a record without a pose, at the origin.
+/// Makes the shape of a record, which must have no pose, at the origin.
 fn source(mut record: Record<'_>, lookup: &ShapeLookup<'_>) -> Result<Source, NamedShapeError> {
     let mut posed = Axis::ALL.map(Axis::parameter).into_iter();
     let given = posed.find(|&parameter| record.values.get(parameter).is_some());
@@ -199,12 +199,12 @@ fn source(mut record: Record<'_>, lookup: &ShapeLookup<'_>) -> Result<Source, Na
     Ok(record.source(&Sensor::LARGEST, lookup)?)
 }
 
-/// A line with its name.
+/// A line of a set.
 #[derive(Default)]
 struct Line<'a> {
-    /// Its name, which the set needs.
+    /// The name, which the set needs.
     name: Option<String>,
-    /// How often it is expected; 1 if not given.
+    /// The weight: how often the shape is expected; 1 if not given.
     weight: Option<u32>,
     /// The shape itself.
     record: Record<'a>,

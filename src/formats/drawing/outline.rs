@@ -52,7 +52,7 @@ impl Pen<f64> for Tracer {
         }
     }
 
-    /// As a single cubic curve, a quarter of an ellipse would be off by 0.03 %; an eighth is off by far less than a
+    /// Adds the curves of an ellipse. As a single cubic curve, a quarter of an ellipse would be off by 0.03 %; an eighth is off by far less than a
     /// printer can show.
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
         let pair = |point: Point<f64>| (point.x, point.y);

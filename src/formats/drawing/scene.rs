@@ -83,7 +83,7 @@ pub(super) struct Stroke {
 }
 
 impl Stroke {
-    /// An unbroken black line.
+    /// Returns the stroke of an unbroken black line.
     pub(super) const fn black(width: f64) -> Self {
         Self {
             width,

@@ -1,10 +1,10 @@
-//! A decoder of any stream; which format it has, it finds from the first bytes.
+//! A decoder for any stream; it detects the format from the first bytes.
 //! ```text
 //! bytes -> State::Looking until the format is certain -> the decoder of that format -> frames
 //! ```
-//! Formats of text are decoded line by line, and a line that is not ended is never read. Bytes come in pieces of any
-//! size: the frames are the same however the stream is cut. What is dropped is counted in [`StreamCounts`], with a
-//! sample of it.
+//! Formats of text are decoded line by line, and a line is never read before its end has arrived. Bytes come in
+//! pieces of any size: the frames are the same however the stream is cut. Dropped frames are counted in
+//! [`StreamCounts`], with a sample.
 
 use std::mem::take;
 
@@ -17,48 +17,49 @@ use crate::formats::stream::lines::LinesDecoder;
 use crate::formats::stream::matsense::MatsenseDecoder;
 use crate::formats::stream::source_clock::SourceClock;
 
-/// A line of 512 × 512 values is shorter.
+/// The size limit of a line in bytes, more than 512 × 512 values take.
 const LONGEST_LINE: usize = 8 << 20;
 
 /// Decodes a stream, piece by piece.
 #[derive(Debug)]
 pub struct StreamDecoder {
-    /// What is known of the stream.
+    /// The options of the stream.
     options: StreamOptions,
-    /// What has come so far.
+    /// The counts so far.
     counts: StreamCounts,
-    /// The decoder in use.
+    /// The state of the decoding, with the decoder in use.
     state: State,
-    /// What is not decoded yet: the beginning, until the format is known, and then the line that is not ended.
+    /// The bytes that are not decoded yet: at first the beginning of the stream, and once the format is known, the
+    /// unfinished line.
     bytes: Vec<u8>,
-    /// Inside of a line that is too long.
+    /// Whether the rest of a line that is too long is being skipped.
     skipping: bool,
     /// Whether the next line is the first one.
     first: bool,
     /// Whether the first line may lack its beginning.
     torn: bool,
-    /// The clock of the source, from the last decoder.
+    /// The clock of the source, kept from the last decoder.
     clock: SourceClock,
-    /// The channels of the source, from the last decoder.
+    /// The channels of the source, kept from the last decoder.
     channels: JsonChannels,
 }
 
-/// What decodes the next bytes.
+/// The decoder of the next bytes.
 #[derive(Debug)]
 enum State {
-    /// Nothing yet: the format is not certain.
+    /// No decoder: the format is not certain yet.
     Looking(FormatSearch),
-    /// Numbers in lines.
+    /// A decoder of numbers in lines.
     Lines(LinesDecoder),
-    /// JSON lines.
+    /// A decoder of JSON lines.
     Json(JsonDecoder),
-    /// What `ros2 topic echo` prints.
+    /// A decoder of `ros2 topic echo` output.
     Ros(RosDecoder),
-    /// Bytes behind markers.
+    /// A decoder of bytes after markers.
     Flexitac(FlexitacDecoder),
-    /// Bytes with an end.
+    /// A decoder of bytes with an end.
     Matsense(MatsenseDecoder),
-    /// Bytes without rows and columns, which cannot be decoded.
+    /// No decoder: bytes cannot be decoded without rows and columns.
     Unshaped,
 }
 
@@ -82,7 +83,7 @@ impl StreamDecoder {
         decoder
     }
 
-    /// The format of the stream; None as long as it is not known.
+    /// Returns the format of the stream; None while it is not known.
     pub fn format(&self) -> Option<StreamFormat> {
         match self.state {
             State::Looking(_) | State::Unshaped => self.options.format,
@@ -94,21 +95,22 @@ impl StreamDecoder {
         }
     }
 
-    /// What has come so far.
+    /// Returns the counts so far.
     pub fn counts(&self) -> &StreamCounts {
         &self.counts
     }
 
-    /// Ends what came before as [`Self::finish`] does and begins anew in the middle of the stream, as after a line was
-    /// unplugged. Frames are counted on, and times count from the first frame of all.
+    /// Ends the stream so far like [`Self::finish`], and starts again in the middle of it, as after a cable was
+    /// unplugged. Frames are counted on, and times count from the very first frame.
     pub fn restart(&mut self, sink: &mut StreamSink<'_>) {
-        // A format that `finish` has to guess from a few bytes does not hold for what comes next.
+        // `finish` may guess the format from a few bytes, so it is not kept for the bytes to come.
         let format = self.format();
         self.finish(sink);
         self.reset(format, false);
     }
 
-    /// Begins anew with the first byte of another stream, whose format may be another one; frames and times are counted on.
+    /// Starts again with the first byte of another stream, possibly of another format; frames and times are counted
+    /// on.
     pub fn begin_anew(&mut self) {
         self.reset(self.options.format, true);
     }
@@ -130,7 +132,7 @@ impl StreamDecoder {
         }
     }
 
-    /// Starts the decoder of a format. `from_start`: whether the first byte to come begins a frame.
+    /// Starts the decoder of a format. `from_start` says whether the next byte begins a frame.
     fn begin(&mut self, format: StreamFormat, from_start: bool) {
         let (shape, clock) = (self.options.shape, self.clock);
         self.state = match (format, shape) {
@@ -167,7 +169,7 @@ impl StreamDecoder {
         }
     }
 
-    /// The end of the input: what is whole is given, what is not is counted.
+    /// Ends the input: reports the frames that are whole, and counts those that are not.
     pub fn finish(&mut self, sink: &mut StreamSink<'_>) {
         self.look(true, sink);
         let torn = take(&mut self.bytes);
@@ -191,7 +193,7 @@ impl StreamDecoder {
         }
     }
 
-    /// Decodes the lines that are ended.
+    /// Decodes all finished lines.
     fn text(&mut self, bytes: &[u8], sink: &mut StreamSink<'_>) {
         let mut rest = bytes;
         while let Some(end) = rest.iter().position(|&byte| byte == b'\n') {
@@ -223,7 +225,7 @@ impl StreamDecoder {
         }
     }
 
-    /// Decodes a line without its end; the first one of a stream that was joined late is passed over.
+    /// Decodes a line without its end; skips the first one if the stream was joined in the middle.
     fn line(&mut self, line: &[u8], sink: &mut StreamSink<'_>) {
         let line = self.without_mark(line);
         if take(&mut self.torn) {
@@ -237,13 +239,13 @@ impl StreamDecoder {
         }
     }
 
-    /// A line without the mark that may stand before the first one.
+    /// Removes the byte order mark that may precede the first line.
     fn without_mark<'a>(&mut self, line: &'a [u8]) -> &'a [u8] {
         let first = take(&mut self.first);
         line.strip_prefix(MARK).filter(|_| first).unwrap_or(line)
     }
 
-    /// Finds the format if it is not known, and decodes what has come so far.
+    /// Detects the format if it is not known, and then decodes the bytes so far.
     fn look(&mut self, ended: bool, sink: &mut StreamSink<'_>) {
         let State::Looking(search) = &mut self.state else {
             return;
@@ -257,7 +259,7 @@ impl StreamDecoder {
             && !lines.any(|line| is_numbers(line.trim_ascii()));
         self.begin(format, self.options.from_start);
         let bytes = take(&mut self.bytes);
-        // Counted already.
+        // These bytes have been counted already.
         self.counts.bytes -= bytes.len() as u64;
         self.push(&bytes, sink);
     }
@@ -268,7 +270,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn large_frames_behind_markers_are_found_wherever_they_are_joined() {
+    fn large_frames_after_markers_are_found_wherever_the_stream_is_joined() {
         let side = 200_u16;
         let cells = usize::from(side) * usize::from(side);
         let frame = [vec![0xaa, 0x55], vec![7; cells]].concat();

@@ -1,7 +1,7 @@
-//! Messages in text: a JSON object a line, and what `ros2 topic echo` prints.
+//! Decodes messages in text: JSON lines, and the output of `ros2 topic echo`.
 //!
-//! Unlike a recording, a stream goes on after a line or a message that is wrong, or of another size than those before: it is
-//! dropped and counted.
+//! Unlike a recording, a stream continues after a line or a message that is wrong, or of another size than earlier
+//! ones: it is dropped and counted.
 
 use crate::formats::recording::ChannelInfo;
 use crate::formats::recording::json_lines::{FrameLine, MOST_CHANNELS};
@@ -17,25 +17,25 @@ use crate::frame::Frame;
 #[derive(Debug, Default)]
 pub(super) struct JsonChannels {
     channels: Vec<JsonChannel>,
-    /// Reads the times of their lines.
+    /// The clock that reads the times of lines.
     clock: JsonClock,
-    /// Whether they were reported: as soon as one has a name.
+    /// Whether the channels have been reported, which happens as soon as one has a name.
     reported: bool,
 }
 
 /// One of several sensors.
 #[derive(Debug)]
 struct JsonChannel {
-    /// What it was when its first frame came.
+    /// The channel as its first frame described it.
     info: ChannelInfo,
-    /// Rows and columns of its frames.
+    /// The rows and columns of its frames.
     size: FrameSize,
-    /// How many there are.
+    /// The number of its frames.
     frames: u64,
 }
 
 impl JsonChannels {
-    /// The index of the channel of a line; None if there are too many.
+    /// Returns the index of a line's channel, adding and reporting it if it is new; None if there are too many.
     fn of(
         &mut self,
         line: &FrameLine,
@@ -72,24 +72,24 @@ impl JsonChannels {
 pub(super) struct JsonDecoder {
     /// The line that was read last.
     line: FrameLine,
-    /// Rows and columns of all frames, if they were named.
+    /// The given rows and columns of all frames, if any.
     shape: Option<(u16, u16)>,
     /// The channels so far.
     pub(super) channels: JsonChannels,
-    /// Turns times into seconds since the first frame.
+    /// The clock that turns times into seconds since the first frame.
     pub(super) clock: SourceClock,
-    /// The frame made of it.
+    /// The frame made of the line.
     frame: Frame,
 }
 
 impl JsonDecoder {
-    /// `shape` is for lists of cells without rows.
+    /// Prepares for a stream; `shape` is for lists of cells without rows.
     pub(super) fn new(
         shape: Option<(u16, u16)>,
         mut channels: JsonChannels,
         clock: SourceClock,
     ) -> Self {
-        // The sensors may have been set up anew.
+        // The sensors may have been reconfigured.
         for channel in &mut channels.channels {
             channel.size = FrameSize::new(shape);
         }
@@ -145,22 +145,22 @@ impl JsonDecoder {
     }
 }
 
-/// A decoder of what `ros2 topic echo` prints.
+/// A decoder of `ros2 topic echo` output.
 #[derive(Debug)]
 pub(super) struct RosDecoder {
-    /// Rows and columns of messages that do not say them.
+    /// The given rows and columns, for messages that do not have them.
     shape: Option<(u16, u16)>,
-    /// Rows and columns of all frames.
+    /// The rows and columns of all frames.
     size: FrameSize,
     /// The message so far.
     message: RosMessage,
-    /// Whether its beginning was seen; a stream may be joined in the middle of one.
+    /// Whether the start of the message was seen; a stream may be joined in the middle of one.
     begun: bool,
-    /// Whether something in it is wrong.
+    /// Whether anything in the message is wrong.
     broken: bool,
-    /// Whether values are left out.
+    /// Whether values are left out of the message.
     cut: bool,
-    /// The frame made of it.
+    /// The frame made of the message.
     frame: Frame,
 }
 
@@ -168,7 +168,7 @@ impl RosDecoder {
     pub(super) fn new(shape: Option<(u16, u16)>, from_start: bool) -> Self {
         Self {
             shape,
-            // Messages that say their size may have another one than was named.
+            // Messages that give their size may have another one than the given size.
             size: FrameSize::new(None),
             message: RosMessage::default(),
             begun: from_start,
@@ -185,7 +185,7 @@ impl RosDecoder {
         counts: &mut StreamCounts,
         sink: &mut StreamSink<'_>,
     ) {
-        // A boundary, or a line that has a whole array.
+        // A boundary, or a line with a whole array, begins a message.
         let trimmed = line.trim_ascii();
         let begins = trimmed.starts_with(b"array(")
             || ros_text::is_csv(trimmed)
@@ -195,7 +195,7 @@ impl RosDecoder {
             RosLine::More => {}
             RosLine::Cut => {
                 self.cut = true;
-                // A line that is a message has no other end.
+                // A message of a single line has no other end.
                 if ros_text::is_csv(trimmed) {
                     self.end(line, counts, sink);
                 }
@@ -206,7 +206,7 @@ impl RosDecoder {
         self.begun |= trimmed == b"---";
     }
 
-    /// The end of a message.
+    /// Ends a message: reports it as a frame, or drops it.
     fn end(&mut self, line: &[u8], counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let values = self.message.cells().len();
         let shape = arranged(values, self.message.shape(), self.shape).or(self.shape);
@@ -243,7 +243,7 @@ impl RosDecoder {
         self.message.clear();
     }
 
-    /// The end of the input: an array that is closed is whole.
+    /// Ends the input: a message whose array is closed is whole.
     pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         if self.message.begun() {
             self.broken |= self.message.is_open() && !self.cut;

@@ -1,28 +1,29 @@
-//! What a stream may be, what is known of it beforehand, and what its decoder reports.
+//! The formats and options of streams, and the events and counts that a decoder reports.
 
 use crate::formats::recording::{ChannelInfo, RecordingError};
 use crate::formats::value::grouped;
 use crate::frame::Frame;
 use crate::parameter::named;
 
-/// The formats of streams.
+/// A format of streams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum StreamFormat {
-    /// Numbers parted by spaces, tabs, commas or semicolons: a frame a line, or a row a line and an empty line between frames.
+    /// Numbers separated by spaces, tabs, commas or semicolons: one frame per line, or one row per line and an empty
+    /// line between frames.
     Lines,
-    /// A JSON object a line, as of recordings.
+    /// JSON lines: one object per line, as in recordings.
     JsonLines,
-    /// What `ros2 topic echo` prints.
+    /// The output of `ros2 topic echo`.
     Ros2,
-    /// `AA 55`, then a byte a cell.
+    /// `AA 55`, then a byte per cell.
     Flexitac,
-    /// A byte a cell, then `FF`; or `5B`, the bytes with escapes, `5D`.
+    /// A byte per cell, then `FF`; or `5B`, the bytes with escapes, `5D`.
     Matsense,
 }
 
 impl StreamFormat {
-    /// All of them by their names in flags and files.
+    /// All formats by their names in flags and files.
     pub const NAMES: [(&'static str, Self); 5] = [
         ("lines", Self::Lines),
         ("jsonl", Self::JsonLines),
@@ -31,13 +32,13 @@ impl StreamFormat {
         ("matsense", Self::Matsense),
     ];
 
-    /// Its name.
+    /// Returns the name of the format.
     pub fn name(self) -> &'static str {
         let found = Self::NAMES.iter().find(|(_, own)| *own == self);
         found.map_or("unknown", |(name, _)| name)
     }
 
-    /// The one of that name.
+    /// Returns the format of that name; None for an unknown name.
     pub fn from_name(name: &str) -> Option<Self> {
         let found = Self::NAMES.iter().find(|(own, _)| *own == name);
         found.map(|(_, format)| *format)
@@ -50,34 +51,34 @@ named!(
     &StreamFormat::NAMES.map(|(_, format)| format)
 );
 
-/// What is known of a stream beforehand.
+/// Options for decoding a stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct StreamOptions {
-    /// Its format; found by looking where there is none.
+    /// The format; detected from the bytes if it is None.
     pub format: Option<StreamFormat>,
-    /// Rows and columns; bytes and frames of a line each do not say them.
+    /// The rows and columns of a frame; bytes, and frames of one line each, do not give them.
     pub shape: Option<(u16, u16)>,
-    /// Whether the first byte begins a frame: of a file, but not of a line that was plugged in somewhere.
+    /// Whether the first byte begins a frame: true for a file, false for a serial line that was joined somewhere.
     pub from_start: bool,
 }
 
 impl StreamOptions {
-    /// With a format.
+    /// Sets the format.
     #[must_use]
     pub fn with_format(mut self, format: StreamFormat) -> Self {
         self.format = Some(format);
         self
     }
 
-    /// With rows and columns.
+    /// Sets the rows and columns of a frame.
     #[must_use]
     pub fn with_shape(mut self, rows: u16, columns: u16) -> Self {
         self.shape = Some((rows, columns));
         self
     }
 
-    /// With a first byte that begins a frame.
+    /// Says that the first byte begins a frame.
     #[must_use]
     pub fn from_start(mut self) -> Self {
         self.from_start = true;
@@ -85,47 +86,49 @@ impl StreamOptions {
     }
 }
 
-/// What a decoder reports.
+/// An event that a decoder reports.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum StreamEvent<'a> {
     /// A channel, before its first frame; only if the stream names channels.
     Channel(&'a ChannelInfo),
-    /// A whole frame, confirmed by what follows it where its format needs that.
+    /// A whole frame; if its format needs it, confirmed by the bytes after it.
     Frame(&'a Frame),
-    /// A frame whose last byte is here, though what follows it is not: to be shown, not to be kept.
+    /// A frame whose last byte has arrived, but not the bytes that confirm it: to be shown, not to be kept.
     Provisional(&'a Frame),
-    /// The provisional frame was invalid.
+    /// The provisional frame has turned out to be invalid.
     Withdrawn,
 }
 
-/// What has come so far.
+/// Counts of what has arrived so far.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct StreamCounts {
-    /// Bytes.
+    /// The number of bytes.
     pub bytes: u64,
-    /// Whole frames.
+    /// The number of whole frames.
     pub frames: u64,
-    /// Torn, short, long and garbled ones.
+    /// The number of torn, short, long and garbled frames.
     pub dropped: u64,
-    /// What the last of these looked like, up to 40 characters; None if nothing of it came.
+    /// The beginning of the last dropped frame, up to 40 characters; None if none of its bytes are known.
     pub sample: Option<String>,
-    /// Why the last of these is not a frame, where the format can tell: JSON lines, and numbers if rows and columns were named.
+    /// The reason why the last dropped frame is invalid, if the format shows it: JSON lines do, and numbers if rows
+    /// and columns were given.
     pub reason: Option<String>,
-    /// What is missing to decode the stream at all: how many values a frame seems to have, without rows and columns.
+    /// If rows and columns are missing, the number of values that a frame seems to have; 0 if not even that is known.
     pub unshaped: Option<u64>,
-    /// Whether messages were cut by `ros2 topic echo` without `--full-length`.
+    /// Whether `ros2 topic echo` without `--full-length` shortened messages.
     pub cut: bool,
-    /// Whether nothing at its beginning tells its format: text without a line of numbers.
+    /// Whether the beginning of the stream does not show its format: text without a line of numbers.
     pub unknown: bool,
 }
 
-/// The most bytes of a sample.
+/// The most characters of a sample.
 const SAMPLE: usize = 40;
 
 impl StreamCounts {
-    /// What has to be stated, or asked for, before any frame can be decoded. None where frames have come, or may come.
+    /// Returns what must be given or changed before any frame can be decoded. None if frames have arrived, or may
+    /// still arrive.
     pub fn refusal(&self) -> Option<StreamRefusal> {
         if self.frames > 0 {
             return None;
@@ -138,7 +141,7 @@ impl StreamCounts {
         }
     }
 
-    /// Why no frame may have come for some time, given the bytes a second that came meanwhile.
+    /// Returns the reason why no frame has arrived for some time, given the bytes per second in that time.
     pub fn silence(&self, bytes_per_second: f64) -> String {
         if let Some(refusal) = self.refusal() {
             return refusal.to_string();
@@ -148,7 +151,7 @@ impl StreamCounts {
             clippy::cast_sign_loss,
             reason = "a rate for a message"
         )]
-        // A byte now and then is not none.
+        // Round up, so that a byte now and then is not shown as 0.
         let rate = grouped(bytes_per_second.ceil() as u64);
         match (self.bytes, bytes_per_second > 0.0) {
             (_, true) => format!("{rate} B/s, none of it a frame; baud, rows, columns or format?"),
@@ -177,7 +180,7 @@ impl StreamCounts {
     }
 }
 
-/// Why a stream cannot be decoded as it comes.
+/// The reason why a stream cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StreamRefusal {
@@ -195,31 +198,31 @@ pub enum StreamRefusal {
     /// Lists of values, in rows of any length.
     #[error("{}", RecordingError::Shape { values: *values })]
     Shape {
-        /// How many values a frame has.
+        /// The number of values in a frame.
         values: u64,
     },
-    /// `ros2 topic echo` leaves out values.
+    /// Messages of `ros2 topic echo` that leave out values.
     #[error("the echo leaves out values ('...'): run ros2 topic echo with --full-length")]
     Cut,
 }
 
 impl StreamRefusal {
-    /// Whether rows and columns would help.
+    /// Returns true if giving rows and columns would help.
     pub fn is_of_size(self) -> bool {
         matches!(self, Self::Size | Self::Shape { .. })
     }
 }
 
-/// Takes what a decoder reports.
+/// A function that takes the events of a decoder.
 pub type StreamSink<'a> = dyn FnMut(StreamEvent<'_>) + 'a;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// An echo that left out values once may have been started anew since.
+    /// An echo that left out values may have been restarted with all of them.
     #[test]
-    fn what_was_missing_matters_only_until_a_frame_comes() {
+    fn a_refusal_holds_only_until_the_first_frame() {
         let mut counts = StreamCounts {
             bytes: 9,
             cut: true,

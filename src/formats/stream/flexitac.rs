@@ -1,53 +1,53 @@
-//! `AA 55`, then a byte a cell, without a checksum: the two bytes also occur inside of frames.
+//! Decodes frames of `AA 55` and then a byte per cell, without a checksum: these two bytes also occur inside frames.
 //!
-//! So a frame counts once the marker behind it has arrived, or if the input ends exactly at its last byte. Where a
-//! marker is not where it was due, the one is taken that is nearest to that place among those that the next marker
-//! confirms. Taking the first one instead would read frames from their middle. A stream that is joined late may have two
-//! neighbouring cells that are `AA 55` in each frame: these are taken for the marker at worst until one of them changes.
+//! So a frame counts only once the marker after it has arrived, or if the input ends exactly with its last byte. If a
+//! marker is not in its expected place, the nearest marker that the next one confirms is used. Using the first such
+//! marker instead would read frames from their middle. If a stream is joined late, two neighbouring cells may be `AA
+//! 55` in every frame: at worst they are taken for the marker until one of them changes.
 //! ```text
 //! AA 55  00 0C 07 03  AA 55  00 0D …        2 rows of 2 columns, 0 to 255
 //! ```
-//! Frames have no number and no time; rows and columns have to be known. A frame is shown as provisional as soon as its
-//! last byte is there, so that the live page does not lag a frame behind, and is confirmed or withdrawn by what
-//! follows.
+//! Frames have no number and no time; rows and columns must be known. A frame is shown as provisional as soon as its
+//! last byte has arrived, so that the live page does not lag a frame behind; it is confirmed or withdrawn by the
+//! bytes after it.
 
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::frame::Frame;
 
-/// What stands before each frame.
+/// The bytes before each frame.
 pub(super) const MARKER: [u8; 2] = [0xaa, 0x55];
 
-/// A decoder of frames behind markers.
+/// A decoder of frames after markers.
 #[derive(Debug)]
 pub(super) struct FlexitacDecoder {
-    /// Rows of a frame.
+    /// The number of rows in a frame.
     rows: u16,
-    /// Columns of a frame.
+    /// The number of columns in a frame.
     columns: u16,
-    /// What has come and is not decided: at most a few frames.
+    /// The bytes that are not decoded yet: at most a few frames.
     bytes: Vec<u8>,
-    /// Where they begin.
+    /// The place in the stream where these bytes begin.
     start: Start,
-    /// The frame that is given.
+    /// The frame that is reported.
     frame: Frame,
 }
 
-/// Where the bytes that are not decoded yet begin.
+/// The place where the bytes that are not decoded yet begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Start {
-    /// Anywhere in a frame.
+    /// Somewhere in a frame.
     Anywhere,
-    /// At the first byte of the stream. If a marker is there, it is not the content of cells.
+    /// The first byte of the stream. A marker there cannot be the content of cells.
     Stream,
-    /// At a marker.
+    /// A marker.
     Marker {
-        /// Whether the frame behind it was shown already.
+        /// Whether the frame after it has been shown already.
         shown: bool,
     },
 }
 
 impl FlexitacDecoder {
-    /// For frames of these rows and columns. `from_start`: whether the first byte begins a frame.
+    /// Prepares for frames of these rows and columns. `from_start` says whether the first byte begins a frame.
     pub(super) fn new((rows, columns): (u16, u16), from_start: bool) -> Self {
         Self {
             rows,
@@ -62,12 +62,12 @@ impl FlexitacDecoder {
         }
     }
 
-    /// Bytes from a marker to the next.
+    /// Returns the number of bytes from one marker to the next.
     fn period(&self) -> usize {
         MARKER.len() + usize::from(self.rows) * usize::from(self.columns)
     }
 
-    /// Whether the two bytes from here on are those of a marker.
+    /// Returns true if there is a marker at this position.
     fn has_marker(&self, at: usize) -> bool {
         self.bytes.get(at..at + MARKER.len()) == Some(&MARKER[..])
     }
@@ -79,14 +79,14 @@ impl FlexitacDecoder {
         counts: &mut StreamCounts,
         sink: &mut StreamSink<'_>,
     ) {
-        // A piece at a time, so that the buffer stays small however much comes at once.
+        // Take one piece at a time, so that the buffer stays small however many bytes arrive at once.
         for piece in bytes.chunks(self.period()) {
             self.bytes.extend_from_slice(piece);
             while self.step(false, counts, sink) {}
         }
     }
 
-    /// The end of the input.
+    /// Ends the input.
     pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         while self.step(true, counts, sink) {}
         if !self.bytes.is_empty() {
@@ -98,7 +98,7 @@ impl FlexitacDecoder {
         }
     }
 
-    /// Takes one frame off, or drops invalid bytes; false if more bytes are needed.
+    /// Takes one frame, or drops invalid bytes; returns false if more bytes are needed.
     fn step(&mut self, ended: bool, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) -> bool {
         let period = self.period();
         if self.start == Start::Stream && self.bytes.len() >= MARKER.len() {
@@ -138,7 +138,7 @@ impl FlexitacDecoder {
         self.search(ended, counts)
     }
 
-    /// Withdraws a frame that was shown and has proved invalid.
+    /// Withdraws a frame that was shown and is invalid.
     fn withdraw(&mut self, sink: &mut StreamSink<'_>) {
         if let Start::Marker { shown } = &mut self.start
             && std::mem::take(shown)
@@ -147,16 +147,16 @@ impl FlexitacDecoder {
         }
     }
 
-    /// Looks for the marker that is nearest to where it was due and confirmed by the next; false if more bytes are
-    /// needed.
+    /// Searches for the marker nearest to its expected place that the next one confirms; returns false if more bytes
+    /// are needed.
     fn search(&mut self, ended: bool, counts: &mut StreamCounts) -> bool {
         let period = self.period();
         let in_step = matches!(self.start, Start::Marker { .. });
         let due = if in_step { period } else { 0 };
         let reach = due + period;
-        // The last one looked at is confirmed within these.
+        // The last position examined is confirmed within these bytes.
         let needed = reach + period + MARKER.len();
-        // Nothing is nearer than the place itself.
+        // No marker is nearer than one in the expected place.
         let in_place = self.has_marker(due) && self.has_marker(due + period);
         if self.bytes.len() < needed && !ended && !in_place {
             return false;
@@ -168,7 +168,7 @@ impl FlexitacDecoder {
             self.has_marker(at) && (self.has_marker(next) || ended && next == length)
         });
         let mut nearest = confirmed.min_by_key(|at| at.abs_diff(due));
-        // If a frame lacks more than half, the marker behind the next one is nearer.
+        // If a frame lacks more than half of its bytes, the marker after the next frame is nearer.
         while let Some(at) = nearest
             && at >= first + period
             && self.has_marker(at - period)
@@ -178,7 +178,7 @@ impl FlexitacDecoder {
         let (gone, found) = match nearest {
             Some(at) => (at, true),
             None if ended => return false,
-            // Without a marker there is nothing to be nearest to.
+            // Without a marker, drop everything that was examined.
             None => (reach.min(length), false),
         };
         if in_step {
@@ -196,7 +196,7 @@ impl FlexitacDecoder {
         true
     }
 
-    /// Copies the cells behind the marker into the frame.
+    /// Copies the cells after the marker into the frame.
     fn fill(&mut self) {
         let values = &self.bytes[MARKER.len()..];
         for (slot, &byte) in self.frame.values_mut().iter_mut().zip(values) {

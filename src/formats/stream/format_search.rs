@@ -1,14 +1,15 @@
-//! The search for the format of a stream, byte by byte, so that the answer does not depend on the pieces in which they
-//! arrive.
+//! Searches for the format of a stream, byte by byte, so that the result does not depend on the pieces in which the
+//! bytes arrive.
 //!
-//! - Text has the format of the first line that only one format can have: an object, what `ros2 topic echo` prints, or
-//!   numbers. The first line may be the end of another one, so numbers in it decide nothing.
-//! - Bytes that are not text may be noise before it, such as what a board sends while it starts, or a greeting in UTF-8. So
-//!   they have a format only once frames of it are found: `FlexiTac` if two markers are a frame apart, `MatSense` if frames
-//!   of the right length end as they should. Until then, two lines of one format in a row make them text.
+//! - Text has the format of the first line that only one format can have: an object, the output of `ros2 topic echo`,
+//!   or numbers. The first line may be the end of another one, so numbers in it decide nothing.
+//! - Bytes that are not text may be noise before a text, such as what a board sends while it starts, or a greeting in
+//!   UTF-8. So they have a format only once frames are found in them: `FlexiTac` if two markers are a frame apart,
+//!   `MatSense` if frames of the right length end as they should. Until then, two successive lines of one format make
+//!   the stream text.
 //!
-//! What shows none of this is taken for numbers, if it is text, and otherwise for `MatSense`: its decoder counts what it
-//! drops.
+//! A stream that shows none of this is taken for numbers if it is text, and otherwise for `MatSense`, whose decoder
+//! counts what it drops.
 
 use crate::formats::recording::{moment, ros_text};
 use crate::formats::stream::event::{StreamCounts, StreamFormat};
@@ -16,37 +17,37 @@ use crate::formats::stream::flexitac::MARKER;
 use crate::formats::stream::matsense::MatsenseDecoder;
 use crate::formats::stream::numbers;
 
-/// Bytes of text in which a line must end, otherwise it is not a known stream.
+/// The number of bytes of text within which a line must end; otherwise it is not a known stream.
 const LOOKED_AT: usize = 1 << 16;
 
-/// Bytes after which what is still not text is no noise before it.
+/// The number of bytes after which anything but text is no longer taken for noise before a text.
 const NOISE: usize = 1 << 12;
 
-/// Bytes in which two markers of the largest frames are found.
+/// The number of bytes within which two markers of the largest frames are found.
 const MARKERS_IN: usize = 3 * (512 * 512 + 2) + 3;
 
-/// What some programs put before a text.
+/// The byte order mark, with which some programs begin a text.
 pub(super) const MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// The search for the format of a stream. It goes on where it was when more bytes come.
+/// The search for the format of a stream. When more bytes arrive, it continues where it was.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FormatSearch {
-    /// Up to where the bytes have been looked at.
+    /// The number of bytes that have been examined.
     seen: usize,
-    /// Where the line begins that is not ended there.
+    /// The start of the unfinished line.
     line: usize,
-    /// Whether another line was before it.
+    /// Whether another line came before it.
     after_first: bool,
-    /// Behind the last byte that is not of text; 0 where all are.
+    /// The end of the last byte that is not text; 0 if all are text.
     text_from: usize,
-    /// The format that the last line shows, among bytes that are not all text.
+    /// The format of the last line, if not all bytes are text.
     shown: Option<StreamFormat>,
     /// A decoder that is tried on bytes that are not all text, if rows and columns are known.
     trial: Option<MatsenseDecoder>,
 }
 
 impl FormatSearch {
-    /// The format of what begins with these bytes; None if more are needed.
+    /// Returns the format of a stream that begins with these bytes; None if more are needed.
     pub(super) fn format(
         &mut self,
         bytes: &[u8],
@@ -69,7 +70,7 @@ impl FormatSearch {
         ended.then(|| self.at_end(bytes, shape))
     }
 
-    /// The format once the last of these bytes is known.
+    /// Returns the format once the last of these bytes is known.
     fn after_byte(&mut self, bytes: &[u8], shape: Option<(u16, u16)>) -> Option<StreamFormat> {
         let &byte = bytes.last()?;
         let was_text = self.text_from == 0;
@@ -94,7 +95,7 @@ impl FormatSearch {
         is_long.then(|| self.of_open_line(bytes).unwrap_or(StreamFormat::Lines))
     }
 
-    /// The format once the line is known that these bytes end with.
+    /// Returns the format once the line is known that ends these bytes.
     fn after_line(&mut self, bytes: &[u8]) -> Option<StreamFormat> {
         let line = bytes[self.line..].trim_ascii();
         let form = form_of_line(line, self.after_first).filter(|_| self.is_text(line));
@@ -108,14 +109,14 @@ impl FormatSearch {
         None
     }
 
-    /// Whether the last line is text: in ASCII, or in UTF-8, as names of channels may be.
+    /// Returns true if the last line is text: in ASCII, or in UTF-8, since names of channels may be.
     fn is_text(&self, line: &[u8]) -> bool {
         let is_control = |sign: char| sign.is_control() && !matches!(sign, '\t' | '\x0c');
         self.text_from <= self.line
             || str::from_utf8(line).is_ok_and(|text| !text.contains(is_control))
     }
 
-    /// The format of bytes that are not all text, of which the last ones are new.
+    /// Returns the format of bytes that are not all text; `new` are the last ones, which are new.
     fn in_bytes(
         &mut self,
         bytes: &[u8],
@@ -137,7 +138,7 @@ impl FormatSearch {
                     .trial
                     .get_or_insert_with(|| MatsenseDecoder::new(shape, false));
                 trial.push(new, &mut StreamCounts::default(), &mut |_| ());
-                // Until then, bytes behind markers could still show that.
+                // With fewer bytes, markers could still show another format.
                 if bytes.len() >= enough && trial.is_sure() {
                     return Some(StreamFormat::Matsense);
                 }
@@ -146,13 +147,13 @@ impl FormatSearch {
         (self.text_from >= NOISE.max(enough)).then_some(StreamFormat::Matsense)
     }
 
-    /// The format of a line that is not ended.
+    /// Returns the format of an unfinished line.
     fn of_open_line(&self, bytes: &[u8]) -> Option<StreamFormat> {
         let line = bytes[self.line..].trim_ascii();
         form_of_line(line, self.after_first).filter(|_| self.is_text(line))
     }
 
-    /// The format of an input that has ended.
+    /// Returns the format of an input that has ended.
     fn at_end(&self, bytes: &[u8], shape: Option<(u16, u16)>) -> StreamFormat {
         let text = self.of_open_line(bytes).or(self.shown);
         if self.text_from == 0 {
@@ -168,20 +169,20 @@ impl FormatSearch {
     }
 }
 
-/// Bytes from a marker to the next.
+/// Returns the number of bytes from one marker to the next.
 fn period((rows, columns): (u16, u16)) -> usize {
     MARKER.len() + usize::from(rows) * usize::from(columns)
 }
 
-/// Bytes in which a marker and the next would have been found: two frames and a half.
+/// Returns the number of bytes within which a marker and the next one would have been found: three frames.
 fn bytes_enough(shape: (u16, u16)) -> usize {
     (3 * period(shape) + 3).min(MARKERS_IN)
 }
 
-/// The format of text that has such a line; None if others may have it, too.
+/// Returns the format of text with such a line; None if other formats may have it, too.
 fn form_of_line(line: &[u8], after_first: bool) -> Option<StreamFormat> {
     match line.trim_ascii() {
-        // Bare rows, without an object: the decoder of JSON lines says what is missing.
+        // For rows without an object, the decoder of JSON lines says what is missing.
         [b'{', ..] | [b'[', b'[', ..] => Some(StreamFormat::JsonLines),
         line if line == b"---" || ros_text::begins_message(line) => Some(StreamFormat::Ros2),
         line if after_first && is_numbers(line) => Some(StreamFormat::Lines),
@@ -189,7 +190,7 @@ fn form_of_line(line: &[u8], after_first: bool) -> Option<StreamFormat> {
     }
 }
 
-/// Whether a line holds numbers only, at least one; a moment may stand before them.
+/// Returns true if a line holds at least one number and nothing else; a timestamp may precede the numbers.
 pub(super) fn is_numbers(line: &[u8]) -> bool {
     let line = moment::leading(line).map_or(line, |(_, numbers)| numbers);
     let mut values = Vec::new();
@@ -200,13 +201,13 @@ pub(super) fn is_numbers(line: &[u8]) -> bool {
 mod tests {
     use super::*;
 
-    /// The format of a whole input.
+    /// Returns the format of a whole input.
     fn found(bytes: &[u8], shape: Option<(u16, u16)>) -> Option<StreamFormat> {
         FormatSearch::default().format(bytes, shape, true)
     }
 
     #[test]
-    fn bytes_before_a_text_do_not_make_it_bytes() {
+    fn a_text_after_noise_has_its_format() {
         for noise in [
             &b"\xf8\x80 3\r\n"[..],
             b"\x82l\xeel\x8c\x1c\x8c\xfc\x00\x8e\x8e rl\r\nready\r\n\r\n",
@@ -237,7 +238,7 @@ mod tests {
         let mut search = FormatSearch::default();
         let found = search.format(line.as_bytes(), None, false);
         assert_eq!(found, Some(StreamFormat::JsonLines));
-        // The rest of a message that began before.
+        // The rest of a message that began earlier.
         let echo = b"- 3\n- 4\n- 5\n---\ndata:\n- 1\n";
         assert_eq!(
             FormatSearch::default().format(echo, None, false),
@@ -263,7 +264,7 @@ mod tests {
                 assert_eq!(found, Some(format), "{stream:?}");
             }
         }
-        // Without rows and columns, what goes on not to be text is not text.
+        // Without rows and columns, a stream that remains something other than text is not text.
         let mut search = FormatSearch::default();
         assert_eq!(search.format(&[0xff; NOISE - 1], None, false), None);
         let found = search.format(&[0xff; NOISE], None, false);
@@ -271,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_without_a_marker_are_judged_at_last() {
+    fn bytes_without_a_marker_are_matsense_after_enough_of_them() {
         let shape = Some((512, 512));
         let bytes = vec![7; MARKERS_IN];
         let mut search = FormatSearch::default();
@@ -280,9 +281,9 @@ mod tests {
         assert_eq!(found, Some(StreamFormat::Matsense));
     }
 
-    /// A search that went on piece by piece, and one that begins anew, give the same answer after each byte.
+    /// A search that continues piece by piece, and one that starts again, give the same result after each byte.
     #[test]
-    fn the_form_does_not_depend_on_the_pieces() {
+    fn the_format_does_not_depend_on_the_pieces() {
         let markers = [&b"\x01\x02\xaa\x55"[..], &[9; 6], b"\xaa\x55", &[9; 9]].concat();
         let streams: [&[u8]; 10] = [
             b"",

@@ -1,6 +1,6 @@
-//! Lines of numbers: a frame a line, or a row a line with an empty line between frames.
+//! Decodes lines of numbers: one frame per line, or one row per line with an empty line between frames.
 //!
-//! A line that is not ended is never read: its last number may be torn.
+//! A line is never read before its end has arrived: its last number may be torn.
 //! ```text
 //! 0 12 7 3        a frame a line, if rows and columns are known
 //!
@@ -10,11 +10,12 @@
 //! 2024-05-01 12:00:00.25,0,12,7,3     a moment at the beginning of a frame's first line is its time
 //! # frame 7       a comment, or sep=;, wherever it stands
 //! ```
-//! Of a stream from its beginning, such as a file, the first block may be a frame, or the end of one: its rows and columns
-//! are those of all frames unless the next two blocks agree on more rows. It is provisional until then.
+//! If a stream is read from its beginning, such as a file, the first block may be a frame, or the end of one: its
+//! rows and columns are those of all frames, unless the next two blocks agree on more rows. Until then it is
+//! provisional.
 //!
-//! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are never
-//! joined. Where frames are known to be a line each, each line that is none is a frame that is lost.
+//! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are
+//! never joined. If frames are known to be single lines, each line that is not a frame counts as a lost one.
 
 use crate::formats::recording::moment;
 use crate::formats::recording::separator::is_comment;
@@ -28,66 +29,68 @@ use crate::parameter::number::counted;
 /// The most values of a frame.
 const MOST: usize = 512 * 512;
 
-/// What a line is taken for.
+/// The assumed content of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LineKind {
     /// A row of a frame, unless it has all cells.
     Row,
-    /// A frame, since the last frame was a line: a wrong one is a frame that is lost.
+    /// A frame, since the last frame was a line: an invalid line is a lost frame.
     Frame,
 }
 
 /// A decoder of lines of numbers.
 #[derive(Debug)]
 pub(super) struct LinesDecoder {
-    /// Rows and columns.
+    /// The rows and columns of frames.
     size: FrameSize,
     /// Whether a boundary was seen, so that a frame may begin.
     begun: bool,
-    /// The rows of the frame so far.
+    /// The values of the current frame so far.
     values: Vec<f64>,
-    /// How many rows that is.
+    /// The number of its rows so far.
     rows: u16,
-    /// The moment at the beginning of its first line, in seconds.
+    /// The timestamp at the beginning of its first line, in seconds.
     time: Option<f64>,
-    /// Turns timestamps into seconds since the first frame.
+    /// The clock that turns timestamps into seconds since the first frame.
     pub(super) clock: SourceClock,
-    /// Whether a row of it is wrong.
+    /// Whether a row of the frame is invalid.
     broken: bool,
-    /// What that row looks like.
+    /// The beginning of that row, or of the first row if none is invalid.
     broken_row: Vec<u8>,
-    /// How many numbers it has; None if there is anything else in it, or nothing is wrong with it.
+    /// The number of numbers in that row; None if it has anything else, or is not invalid.
     broken_count: Option<usize>,
     /// Whether there was an empty line.
     parted: bool,
-    /// What the lines are, as far as is known.
+    /// The content of lines, as far as it is known.
     kind: LineKind,
-    /// The first blocks of a stream that is read from its beginning, until it is known whether the first one is a frame.
+    /// The first blocks of a stream that is read from its beginning, until it is known whether the first one is a
+    /// frame.
     held: Option<Vec<HeldBlock>>,
-    /// The frame that is given.
+    /// The frame that is reported.
     frame: Frame,
 }
 
 /// A block of rows that an empty line has ended.
 #[derive(Debug)]
 struct HeldBlock {
-    /// Rows and columns.
+    /// The rows and columns.
     size: (u16, u16),
-    /// Its values, row by row.
+    /// The values, row by row.
     values: Vec<f64>,
-    /// Its moment.
+    /// The timestamp of the block, in seconds.
     time: Option<f64>,
-    /// What it looks like.
+    /// The beginning of its first row.
     sample: Vec<u8>,
 }
 
-/// Whether the first of two blocks may be the end of one like the second: the last rows, or the end of the last one.
+/// Returns true if the first of two blocks may be the end of one like the second: its last rows, or the end of its
+/// last row.
 fn may_be_end((rows, columns): (u16, u16), next: (u16, u16)) -> bool {
     rows < next.0 && (columns == next.1 || rows == 1 && columns < next.1)
 }
 
 impl LinesDecoder {
-    /// Where the stream is joined in the middle, nothing counts before the first boundary.
+    /// Prepares for a stream. If it is joined in the middle, everything before the first boundary is ignored.
     pub(super) fn new(shape: Option<(u16, u16)>, from_start: bool, clock: SourceClock) -> Self {
         Self {
             size: FrameSize::new(shape),
@@ -131,7 +134,7 @@ impl LinesDecoder {
         self.numbers(moment, line, counts, sink);
     }
 
-    /// Decodes a line that is not empty, without its moment.
+    /// Decodes the numbers of a line that is not empty, after its timestamp.
     fn numbers(
         &mut self,
         moment: Option<f64>,
@@ -143,8 +146,8 @@ impl LinesDecoder {
         let room = MOST.saturating_sub(before);
         let read = numbers::read(line, &mut self.values, room);
         let count = self.values.len() - before;
-        // A line of all cells is a boundary itself. Frames of one row have to be named as such: one line before the frames,
-        // such as the numbers of their columns, would make each of their rows a frame.
+        // A line with all cells is a boundary itself. Frames of one row must be given as such: otherwise a line
+        // before the frames, such as the numbers of their columns, would make each of their rows a frame.
         let is_frame = |(rows, columns): (u16, u16)| {
             rows > 1 && count == usize::from(rows) * usize::from(columns)
         };
@@ -182,7 +185,7 @@ impl LinesDecoder {
                 self.note_row(line, read.and(Some(count)));
             }
             self.broken = true;
-            // None of a size that has been met is as high.
+            // No frame of a known size has that many rows.
             if self.size.present().is_none() && self.rows > MAX_FRAME_SIDE {
                 counts.unshaped = Some(count as u64);
             }
@@ -192,36 +195,36 @@ impl LinesDecoder {
         }
     }
 
-    /// Gives the values of a line as a frame. What came before it is none.
+    /// Reports the values of a line as a frame. The rows before it do not belong to a frame.
     fn give_line(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         if self.rows > 0 && self.begun {
-            // Without an empty line so far, those before it were frames, too.
+            // If there was no empty line so far, those rows were frames, too.
             let lost = if self.parted { 1 } else { self.rows };
             self.lose(lost.into(), &self.broken_row, counts);
         }
         self.kind = LineKind::Frame;
         self.size.pass_torn();
-        // The line before it was ended.
+        // The line before this one was complete.
         self.begun = true;
         self.give(counts, sink);
         self.clear();
     }
 
-    /// Whether a line of so many numbers may begin a frame in rows, which an empty line ends.
+    /// Returns true if a line with that many numbers may begin a frame of several rows, which an empty line ends.
     fn may_be_row(&self, count: Option<usize>) -> bool {
         let columns = self.size.present().map(|(_, columns)| columns.into());
         self.parted && count.is_some() && count == columns
     }
 
-    /// Keeps what a row looks like, and how many numbers it has if that is wrong.
+    /// Keeps the beginning of a row, and the number of its numbers if that is wrong.
     fn note_row(&mut self, line: &[u8], wrong: Option<usize>) {
         self.broken_row.clear();
         self.broken_row.extend(line.iter().take(64));
         self.broken_count = wrong;
     }
 
-    /// Counts frames that are dropped, with a sample, and why if rows and columns were named and a line has another number of
-    /// numbers.
+    /// Counts dropped frames, with a sample; and with the reason, if rows and columns were given and a line has
+    /// another number of numbers.
     fn lose(&self, frames: u64, sample: &[u8], counts: &mut StreamCounts) {
         counts.drop_frames(frames, sample);
         let named = self.size.named().zip(self.broken_count);
@@ -237,7 +240,7 @@ impl LinesDecoder {
         });
     }
 
-    /// Counts a broken line at once where no empty line parts frames, as far as is known.
+    /// Counts an invalid line at once if, as far as is known, no empty line separates frames.
     fn give_up(&mut self, line: &[u8], counts: &mut StreamCounts) {
         let is_full = |(rows, _)| self.rows > rows;
         if self.size.named().is_some_and(is_full) || self.rows > MAX_FRAME_SIDE {
@@ -249,7 +252,7 @@ impl LinesDecoder {
         }
     }
 
-    /// An empty line.
+    /// Ends a frame at an empty line.
     fn boundary(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         self.parted = true;
         if !std::mem::replace(&mut self.begun, true) || self.rows == 0 {
@@ -282,8 +285,8 @@ impl LinesDecoder {
         }
     }
 
-    /// Holds a block until it is known whether the first one is a frame: if the second is not larger, or the third is not
-    /// like the second, which may have lost the empty line between two frames.
+    /// Holds a block until it is known whether the first one is a frame. It is, if the second is not larger, or if
+    /// the third differs from the second, which may be two frames that lost the empty line between them.
     fn hold(&mut self, own: (u16, u16), counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let held = self.held.get_or_insert_default();
         held.push(HeldBlock {
@@ -304,7 +307,7 @@ impl LinesDecoder {
         }
     }
 
-    /// Takes the blocks that were held, of which those of that size are frames.
+    /// Takes the held blocks; those of the given size are frames.
     fn release(&mut self, size: (u16, u16), counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let Some(held) = self.held.take() else {
             return;
@@ -322,7 +325,7 @@ impl LinesDecoder {
         }
     }
 
-    /// Gives a frame of the shape.
+    /// Reports the values as a frame of the current size.
     fn give(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let Some(size) = self.size.present() else {
             return;
@@ -332,7 +335,7 @@ impl LinesDecoder {
         sink(StreamEvent::Frame(&self.frame));
     }
 
-    /// Makes a frame of that size of the values.
+    /// Copies the values into the frame, which gets that size.
     fn fill(&mut self, (rows, columns): (u16, u16), counts: &StreamCounts) {
         self.frame.reset(columns, rows);
         self.frame.number = counts.frames;
@@ -341,14 +344,14 @@ impl LinesDecoder {
         self.frame.values_mut().copy_from_slice(&self.values);
     }
 
-    /// Forgets the frame so far.
+    /// Forgets the current frame.
     fn clear(&mut self) {
         self.values.clear();
         self.rows = 0;
         self.broken = false;
     }
 
-    /// The end of the input: a frame may lack its empty line. A frame that is not complete is dropped.
+    /// Ends the input: the last frame may lack its empty line. An incomplete frame is dropped.
     pub(super) fn finish(
         &mut self,
         torn: &[u8],
@@ -361,7 +364,7 @@ impl LinesDecoder {
             self.broken_count = None;
             self.broken_row = torn.iter().take(64).copied().collect();
         }
-        // Lines and nothing else: of frames, or rows of a single one.
+        // Only lines and no empty one: they are frames, or the rows of a single frame.
         if self.size.present().is_none() && !self.parted && self.rows > 0 {
             counts.unshaped = Some(self.values.len() as u64 / u64::from(self.rows));
             self.clear();
@@ -375,9 +378,9 @@ impl LinesDecoder {
     }
 }
 
-/// A number of columns; one too many for any frame where there are more than fit.
+/// Returns a number of columns; one too many for any frame if the count does not fit.
 fn width(count: usize) -> u16 {
-    // A frame of more is refused.
+    // A frame with more columns is refused.
     u16::try_from(count).unwrap_or(MAX_FRAME_SIDE + 1)
 }
 
@@ -385,7 +388,7 @@ fn width(count: usize) -> u16 {
 mod tests {
     use super::*;
 
-    /// The frames of lines as rows, columns and first value, and how many were dropped.
+    /// Returns the frames in lines, as rows, columns and first value, and the number of dropped frames.
     fn decoded(text: &str, shape: Option<(u16, u16)>) -> (Vec<(u16, u16, f64)>, u64) {
         let mut decoder = LinesDecoder::new(shape, true, SourceClock::default());
         let (mut frames, mut counts) = (Vec::new(), StreamCounts::default());
@@ -407,21 +410,21 @@ mod tests {
         let stream = format!("1.2\n\n{frames}");
         let whole: Vec<_> = (1..=5).map(|n| (2, 2, f64::from(n))).collect();
         assert_eq!(decoded(&stream, None), (whole.clone(), 1));
-        // A shape that was named stays.
+        // A given shape stays.
         assert_eq!(decoded(&stream, Some((1, 1))).0, [(1, 1, 1.2)]);
         // As many numbers as the frames have columns.
         assert_eq!(decoded(&format!("0 1\n\n{frames}"), None), (whole, 1));
-        // More numbers than the frames have columns: three of them in a row are needed.
+        // More numbers than the frames have columns: three frames in succession are needed.
         let found = vec![(1, 3, 0.0), (2, 2, 3.0), (2, 2, 4.0), (2, 2, 5.0)];
         assert_eq!(decoded(&format!("0 1 2\n\n{frames}"), None), (found, 2));
-        // Frames of one row are each ended by an empty line, or named.
+        // Frames of one row each end in an empty line, or their size is given.
         let rows = vec![(1, 2, 1.0), (1, 2, 3.0)];
         assert_eq!(decoded("1 2\n\n3 4\n\n", None), (rows.clone(), 0));
         assert_eq!(decoded("1 2\n3 4\n", Some((1, 2))), (rows, 0));
     }
 
     #[test]
-    fn the_end_of_a_frame_is_not_the_first_one() {
+    fn the_end_of_a_frame_is_not_taken_for_the_first_frame() {
         let whole = "1 2 3\n4 5 6\n7 8 9\n\n";
         for torn in ["9\n\n", "8 9\n\n", "7 8 9\n\n", "4 5 6\n7 8 9\n\n"] {
             let stream = format!("{torn}{}", whole.repeat(3));
@@ -438,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_block_is_shown_at_once_and_withdrawn_if_it_is_no_frame() {
+    fn the_first_block_is_shown_at_once_and_withdrawn_if_it_is_not_a_frame() {
         let mut decoder = LinesDecoder::new(None, true, SourceClock::default());
         let (mut events, mut counts) = (String::new(), StreamCounts::default());
         for line in ["3 4", "", "1 2", "3 4", "", "1 2", "3 4", ""] {
@@ -455,12 +458,12 @@ mod tests {
     }
 
     #[test]
-    fn of_frames_of_a_line_each_every_wrong_line_is_counted() {
+    fn if_frames_are_single_lines_every_wrong_line_is_counted() {
         let shape = Some((2, 3));
         let (whole, torn) = ("1,2,3,4,5,6\n", "1,2,3,4,5\n1,2,3,4\n1,2,3,4,5,9,9\n");
         let stream = [whole, whole, torn, whole, whole];
         assert_eq!(decoded(&stream.concat(), shape), (vec![(2, 3, 1.0); 4], 3));
-        // As long as a row, at the beginning, at the end, with words, and behind an empty line.
+        // As long as a row, at the beginning, at the end, with words, and after an empty line.
         let stream = ["1,2\n", "1,2,3,4\n", whole, "1,2,3\n", "x\n", whole, torn];
         assert_eq!(decoded(&stream.concat(), shape), (vec![(2, 3, 1.0); 2], 7));
         let stream = ["version 1\n\n", whole, torn, whole, "\n", torn, whole];
@@ -468,7 +471,7 @@ mod tests {
         let stream = "1,2\n1\n1,2,3\nx\n3,4\n";
         let found = vec![(1, 2, 1.0), (1, 2, 3.0)];
         assert_eq!(decoded(stream, Some((1, 2))), (found, 3));
-        // A frame in rows is lost once, also behind one that has lost the end of a line.
+        // A frame of several rows is lost once, also after a frame that has lost the end of a line.
         let (rows, torn) = ("1 2 3\n4 5 6\n\n", "1 2 3\n4 5\n4\n\n");
         let stream = [rows, torn, rows, "1 2 3 4 5 6\n\n", torn, rows, torn];
         assert_eq!(decoded(&stream.concat(), shape), (vec![(2, 3, 1.0); 4], 3));
@@ -493,7 +496,7 @@ mod tests {
         let lines = "2024-05-01 23:59:59.75,1,2,3,4\n5,6,7,8\n2024-05-02T00:00:00.5,9,1,1,1\n";
         let found = vec![(Some(0.0), 1.0), (None, 5.0), (Some(0.75), 9.0)];
         assert_eq!(times(lines, Some((2, 2))), (found, 0));
-        // Rows, each with its moment: the first one counts. Midnight passes.
+        // Rows with a timestamp each: the first one counts. Midnight passes.
         let rows = "23:59:59 1 2\n23:59:59.1 3 4\n\n00:00:00 5 6\n00:00:00.1 7 8\n\n";
         let found = vec![(Some(0.0), 1.0), (Some(1.0), 5.0)];
         assert_eq!(times(rows, None), (found, 0));
@@ -515,7 +518,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_of_another_length_is_said_to_be_one_where_rows_and_columns_were_named() {
+    fn the_reason_gives_a_wrong_line_length_if_rows_and_columns_were_given() {
         let reason = |text: &str, shape| {
             let mut decoder = LinesDecoder::new(shape, true, SourceClock::default());
             let mut counts = StreamCounts::default();
@@ -537,7 +540,7 @@ mod tests {
     #[test]
     fn torn_frames_do_not_change_the_shape() {
         let (whole, torn) = ("1 2\n3 4\n\n", "1 2\n\n");
-        // Two in a row, and then again two; frames of other shapes in between.
+        // Two in succession, and then two more, with frames of other shapes in between.
         let stream = [
             whole,
             "9\n\n",
@@ -554,7 +557,7 @@ mod tests {
     }
 
     #[test]
-    fn two_frames_alike_are_given_before_a_third_comes() {
+    fn two_frames_of_one_size_are_reported_before_a_third_arrives() {
         let mut decoder = LinesDecoder::new(None, true, SourceClock::default());
         let (mut given, mut counts) = (0, StreamCounts::default());
         for line in ["1 2", "3 4", "", "5 6", "7 8", ""] {

@@ -1,8 +1,8 @@
-//! Bytes with an end: a byte a cell, then `FF`; or `5B`, the cells with escapes, `5D`.
+//! Decodes frames with an end: a byte per cell, then `FF`; or `5B`, the cells with escapes, `5D`.
 //!
-//! The first two frames of the right length decide which of the two it is. Frames of another length are dropped. Bytes
-//! between two `FF` that are cells of a bracketed stream may have the right length, too: where there are signs of that,
-//! more frames are waited for.
+//! The first two frames of the right length decide which of the two it is. Frames of another length are dropped. In a
+//! bracketed stream, the bytes between two cells of `FF` may have the right length, too: if there are signs of that,
+//! more frames are needed to decide.
 //! ```text
 //! 00 0C 07 03 FF          cells are 0 to 254; FF ends the frame
 //! 5B 00 0C 07 03 5D       cells are 0 to 255; 5B, 5C and 5D among them are 5C 01, 5C 00 and 5C 02
@@ -11,61 +11,62 @@
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::frame::Frame;
 
-/// Ends a frame of the first format; no cell has this value there.
+/// The byte that ends a frame of the first kind, in which no cell has this value.
 const END: u8 = 0xff;
-/// Begins a frame of the second format.
+/// The byte that begins a frame of the second kind.
 const OPEN: u8 = 0x5b;
-/// Ends it.
+/// The byte that ends a frame of the second kind.
 const CLOSE: u8 = 0x5d;
-/// Stands before the number of a byte that would otherwise begin, end or escape.
+/// The byte before the number of a cell that would otherwise begin, end or escape.
 const ESCAPE: u8 = 0x5c;
 
-/// Frames of the right length that decide the format.
+/// The number of frames of the right length that decide the kind.
 const SURE: usize = 2;
-/// Frames between `FF` that decide it against signs of brackets, beyond those between brackets.
+/// If there are signs of brackets, the number of frames between `FF` that decide against them, in addition to the
+/// number of frames between brackets.
 const SURE_IN_DOUBT: usize = 4;
 
-/// How frames are parted.
+/// A way to separate frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Framing {
-    /// By [`END`].
+    /// Each frame ends in [`END`].
     Ended,
-    /// By [`OPEN`] and [`CLOSE`].
+    /// Each frame is between [`OPEN`] and [`CLOSE`].
     Bracketed,
 }
 
-/// Parts bytes into frames of one format.
+/// A splitter of bytes into frames of one kind.
 #[derive(Clone, Debug)]
 struct Parts {
-    /// The format.
+    /// The kind of frames.
     framing: Framing,
-    /// How many cells a frame has.
+    /// The number of cells in a frame.
     cells: usize,
-    /// The cells so far.
+    /// The cells of the current frame so far.
     values: Vec<u8>,
-    /// Inside of a frame.
+    /// Whether the last byte was inside a frame.
     inside: bool,
-    /// Behind an [`ESCAPE`].
+    /// Whether the last byte was an [`ESCAPE`].
     escaped: bool,
-    /// Whether the frame has more cells or an unknown escape.
+    /// Whether the frame has too many cells or an unknown escape.
     broken: bool,
-    /// Frames of another length, counted as soon as the format is known.
+    /// The number of frames of another length, reported once the kind is decided.
     dropped: u64,
 }
 
-/// What a byte makes of a frame.
+/// The state of a frame after a byte.
 #[derive(PartialEq)]
 enum Part {
-    /// It goes on, or has not begun.
+    /// The frame continues, or has not begun.
     More,
-    /// It has all of its cells.
+    /// The frame has ended with all its cells.
     Whole,
-    /// It ended with another number of cells, or broken.
+    /// The frame has ended with another number of cells, or broken.
     Dropped,
 }
 
 impl Parts {
-    /// `from_start`: whether the first byte begins a frame. A bracketed one says so itself.
+    /// Prepares for the first byte. `from_start` says whether it begins a frame; a bracketed frame shows this itself.
     fn new(framing: Framing, cells: usize, from_start: bool) -> Self {
         Self {
             framing,
@@ -90,11 +91,11 @@ impl Parts {
         }
     }
 
-    /// The same for a frame between brackets. One that is opened again before it was closed is torn.
+    /// Takes the next byte of a bracketed stream. A frame is torn if another one opens before it is closed.
     fn bracketed(&mut self, byte: u8) -> Part {
         match byte {
             OPEN => {
-                // A frame that was not closed.
+                // The frame before it was not closed.
                 let torn = self.inside && !self.values.is_empty();
                 self.values.clear();
                 (self.inside, self.escaped, self.broken) = (true, false, false);
@@ -122,7 +123,7 @@ impl Parts {
         }
     }
 
-    /// Adds a cell, if the beginning of the frame was seen.
+    /// Adds a cell, if the start of the frame was seen.
     fn value(&mut self, byte: u8) -> Part {
         if self.inside {
             if self.values.len() < self.cells {
@@ -134,14 +135,14 @@ impl Parts {
         Part::More
     }
 
-    /// Whether a frame between [`END`] looks as if the stream had brackets: it has another length, or the end of a
-    /// bracketed frame and the beginning of the next inside.
+    /// Returns true if a frame that ended in [`END`] is a sign of brackets: it has another length, or contains the
+    /// end of a bracketed frame and the start of the next one.
     fn is_doubtful(&self, part: &Part) -> bool {
         let brackets = || self.values.windows(2).any(|pair| pair == [CLOSE, OPEN]);
         self.framing == Framing::Ended && (*part == Part::Dropped || brackets())
     }
 
-    /// The values stay until the next byte.
+    /// Ends a frame. Its values stay until the next byte.
     fn end(&mut self, inside: bool) -> Part {
         let whole = !std::mem::take(&mut self.broken) && self.values.len() == self.cells;
         let is_empty = self.values.is_empty();
@@ -156,16 +157,16 @@ impl Parts {
 /// A decoder of frames with an end.
 #[derive(Clone, Debug)]
 pub(super) struct MatsenseDecoder {
-    /// Those that it may still be.
+    /// The kinds that are still possible, each with its frames so far.
     candidates: Vec<(Parts, Vec<Vec<u8>>)>,
-    /// Whether a frame of the first format looked like parts of bracketed ones.
+    /// Whether a frame of the first kind looked like parts of bracketed ones.
     doubted: bool,
-    /// The frame that is given.
+    /// The frame that is reported.
     frame: Frame,
 }
 
 impl MatsenseDecoder {
-    /// Either format is still possible.
+    /// Prepares for frames of either kind.
     pub(super) fn new((rows, columns): (u16, u16), from_start: bool) -> Self {
         let cells = usize::from(rows) * usize::from(columns);
         let of = |framing| (Parts::new(framing, cells, from_start), Vec::new());
@@ -208,18 +209,18 @@ impl MatsenseDecoder {
         }
     }
 
-    /// Whether frames of the right length have decided which format it is.
+    /// Returns true if the kind has been decided by frames of the right length.
     pub(super) fn is_sure(&self) -> bool {
         self.candidates.len() == 1
     }
 
-    /// Whether there was a frame of the right length.
+    /// Returns true if there was a frame of the right length.
     pub(super) fn has_frames(&self) -> bool {
         let waiting = |(_, frames): &(Parts, Vec<Vec<u8>>)| !frames.is_empty();
         self.is_sure() || self.candidates.iter().any(waiting)
     }
 
-    /// The candidate that has frames enough; None before, and once it is decided.
+    /// Returns the candidate that has enough frames; None before, and once the kind is decided.
     fn sure(&self) -> Option<usize> {
         let [(_, ended), (_, bracketed)] = self.candidates.as_slice() else {
             return None;
@@ -235,7 +236,7 @@ impl MatsenseDecoder {
         (ended.len() >= enough).then_some(0)
     }
 
-    /// Gives the frames that were waiting for the decision, and forgets the other format.
+    /// Reports the frames that waited for the decision, and forgets the other kind.
     fn decide(&mut self, index: usize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let (parts, waiting) = self.candidates.swap_remove(index);
         if parts.dropped > 0 {
@@ -247,7 +248,7 @@ impl MatsenseDecoder {
         self.candidates = vec![(parts, Vec::new())];
     }
 
-    /// The end of the input: of a single frame the format is that in which it has the right length.
+    /// Ends the input. If the kind is undecided, it is the one in which frames have the right length.
     pub(super) fn finish(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         if let [(_, ended), (_, bracketed)] = self.candidates.as_slice() {
             let brackets = !bracketed.is_empty() && (self.doubted || ended.is_empty());
@@ -262,7 +263,7 @@ impl MatsenseDecoder {
     }
 }
 
-/// Gives the values as the next frame.
+/// Reports the values as the next frame.
 fn give(frame: &mut Frame, values: &[u8], counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
     for (slot, &value) in frame.values_mut().iter_mut().zip(values) {
         *slot = f64::from(value);
@@ -276,7 +277,7 @@ fn give(frame: &mut Frame, values: &[u8], counts: &mut StreamCounts, sink: &mut 
 mod tests {
     use super::*;
 
-    /// The frames of bytes, and how many were dropped.
+    /// Returns the frames in some bytes, and the number of dropped ones.
     fn decoded(bytes: &[u8], shape: (u16, u16), from_start: bool) -> (Vec<Vec<f64>>, u64) {
         let mut decoder = MatsenseDecoder::new(shape, from_start);
         let (mut frames, mut counts) = (Vec::new(), StreamCounts::default());
@@ -291,8 +292,8 @@ mod tests {
     }
 
     #[test]
-    fn bright_cells_between_brackets_end_no_frame() {
-        // Two neighbours of 255; and two of 255 that are a frame apart by their escapes.
+    fn cells_of_255_between_brackets_do_not_end_a_frame() {
+        // Two neighbouring cells of 255; and two cells of 255 that, with the escapes, are a frame apart.
         let neighbours: &[u8] = b"\x5b\x01\x02\x03\x04\xff\xff\x05\x06\x07\x5d";
         let escapes: &[u8] = b"\x5b\xff\x02\x5c\x00\x04\x05\x5c\x01\x06\x07\xff\x5d";
         let wanted = [
@@ -311,8 +312,8 @@ mod tests {
     }
 
     #[test]
-    fn cells_that_look_like_brackets_are_cells_of_ended_frames() {
-        // The same in all frames, and in one of them only.
+    fn in_frames_that_end_in_ff_brackets_are_cells() {
+        // In all frames, and in one frame only.
         let always = b"\x01\x5d\x5b\x04\xff".repeat(9);
         assert_eq!(decoded(&always, (2, 2), true).0.len(), 9);
         let once = b"\x01\x5b\x03\x04\xff\x01\x5d\x03\x04\xff";
@@ -330,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn an_escape_of_nothing_damages_its_frame() {
+    fn an_unfinished_escape_damages_its_frame() {
         let (whole, damaged) = (b"\x5b\x01\x02\x03\x04\x5d", b"\x5b\x01\x02\x03\x04\x5c\x5d");
         let stream = [&whole[..], damaged, whole, whole, whole].concat();
         let wanted = vec![vec![1.0, 2.0, 3.0, 4.0]; 4];

@@ -1,7 +1,7 @@
-//! Live streams of frames: bytes in, whole frames out, and what was broken counted, with a sample.
+//! Decodes live streams of frames: bytes in, whole frames out. Broken frames are counted, with a sample.
 //!
-//! A decoder takes any bytes in pieces of any size, waits for nothing and keeps at most a few frames. What precedes the
-//! first boundary between frames is dropped, unless the stream is known to begin with one. Torn, short, long and
+//! A decoder takes bytes in pieces of any size, never waits, and keeps at most a few frames. Everything before the
+//! first boundary between frames is dropped, unless the stream is known to begin with a frame. Torn, short, long and
 //! garbled frames are dropped and counted; they are never joined or padded.
 //!
 //! ```

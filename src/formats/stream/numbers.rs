@@ -1,9 +1,9 @@
-//! The numbers of a line, read as fast as a sensor may send them.
+//! Reads the numbers of a line, fast enough for any sensor.
 
 use crate::formats::recording::separator::{Separator, unquoted};
 use crate::formats::recording::text_row::Field;
 
-/// More digits than these are left to the general reader.
+/// The most digits of a number that is read here; longer ones are left to the general reader.
 const FAST_DIGITS: usize = 9;
 
 /// Adds the numbers of a line. They are parted as in a table: by the first of semicolons, commas and tabs that the line has,
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn a_comma_beside_semicolons_is_a_decimal_sign_and_an_empty_field_is_no_cell() {
+    fn with_semicolons_a_comma_is_the_decimal_sign_and_an_empty_field_is_not_a_cell() {
         for (line, expected) in [
             ("0,5;1,5", "[0.5, 1.5]"),
             ("1;2;", "[1.0, 2.0]"),
@@ -109,7 +109,7 @@ mod tests {
             assert_eq!(read(line.as_bytes(), &mut values, 5), Some(()), "{line}");
             assert_eq!(format!("{values:?}"), expected, "{line}");
         }
-        // The item of a list.
+        // An item of a list.
         assert_eq!(read(b"- 12", &mut Vec::new(), 5), None);
         let mut values = vec![7.0];
         assert_eq!(read(b"1,,2", &mut values, 2), None);

@@ -1,25 +1,26 @@
-//! The rows and columns of a stream of text: those that were named, or those of its first frame.
+//! The rows and columns of a stream of text: the given ones, or those of its first frame.
 //!
-//! A frame of another size is dropped and counted, like one that is torn. The first frame may have been something else,
-//! such as the number of a version, or the sensor may have been set up anew: where no size was named, one that comes
-//! three times in a row becomes the size.
+//! A frame of another size is dropped and counted, like a torn one. However, the first frame may have been something
+//! else, such as a version number, or the sensor may have been reconfigured: if no size was given, a size that
+//! arrives three times in succession becomes the size.
 
-/// Frames in a row that another size needs to become the size, where none was named.
+/// The number of successive frames after which another size becomes the size, if none was given.
 const AGAIN: u8 = 3;
 
 /// The size of the frames of a stream.
 #[derive(Clone, Debug)]
 pub(super) struct FrameSize {
-    /// Rows and columns: as named, else those of the first whole frame, until other ones come again and again.
+    /// The current rows and columns: the given ones, otherwise those of the first whole frame, until others arrive
+    /// repeatedly.
     present: Option<(u16, u16)>,
-    /// Whether they were named.
+    /// Whether rows and columns were given.
     is_named: bool,
-    /// Another size, and how many frames in a row have had it.
+    /// Another size, and the number of successive frames that have had it.
     other: Option<((u16, u16), u8)>,
 }
 
 impl FrameSize {
-    /// The rows and columns that were named, if any.
+    /// Starts with the given rows and columns, if any.
     pub(super) fn new(named: Option<(u16, u16)>) -> Self {
         Self {
             present: named,
@@ -28,22 +29,22 @@ impl FrameSize {
         }
     }
 
-    /// Begins with these rows and columns, where none are known yet.
+    /// Sets the rows and columns, if none are known yet.
     pub(super) fn begin(&mut self, own: (u16, u16)) {
         self.present.get_or_insert(own);
     }
 
-    /// Rows and columns; None before the first frame where none were named.
+    /// Returns the current rows and columns; None before the first frame if none were given.
     pub(super) fn present(&self) -> Option<(u16, u16)> {
         self.present
     }
 
-    /// Rows and columns, if they were named.
+    /// Returns the rows and columns if they were given.
     pub(super) fn named(&self) -> Option<(u16, u16)> {
         self.present.filter(|_| self.is_named)
     }
 
-    /// Whether a whole frame of these rows and columns is one of the stream.
+    /// Notes a whole frame of these rows and columns, and returns true if they are those of the stream.
     pub(super) fn admits(&mut self, own: (u16, u16)) -> bool {
         let size = *self.present.get_or_insert(own);
         if own == size || self.is_named {
@@ -62,7 +63,7 @@ impl FrameSize {
         true
     }
 
-    /// Notes a frame that is not whole, which ends a row of those of another size.
+    /// Notes a frame that is not whole, which interrupts a succession of frames of another size.
     pub(super) fn pass_torn(&mut self) {
         self.other = None;
     }

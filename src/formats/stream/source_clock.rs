@@ -3,8 +3,8 @@
 use crate::formats::recording::moment::{Midnights, Moment};
 use crate::formats::seconds::since;
 
-/// Turns the times that frames carry into seconds since the first frame. After a gap it passes to the next decoder, so that
-/// times continue from the same frame.
+/// A clock that turns the times of frames into seconds since the first frame. After a gap it passes to the next
+/// decoder, so that times continue from the same frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SourceClock {
     /// The time of the first frame.
@@ -14,12 +14,12 @@ pub(super) struct SourceClock {
 }
 
 impl SourceClock {
-    /// A timestamp in seconds. Called once for each timestamp, in the order of the stream.
+    /// Returns a timestamp in seconds. Must be called once for each timestamp, in the order of the stream.
     pub(super) fn read(&mut self, moment: Moment) -> f64 {
         self.midnights.seconds(moment)
     }
 
-    /// The seconds from the first frame to a frame with this time.
+    /// Returns the seconds from the first frame to a frame with this time.
     pub(super) fn since_first(&mut self, time: f64) -> f64 {
         since(*self.start.get_or_insert(time), time)
     }
