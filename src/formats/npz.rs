@@ -310,7 +310,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_error_says_a_thing_once() {
+    fn the_error_of_a_broken_zip_has_no_source() {
         let broken = ArrayReader::new(io::Cursor::new(b"PK")).err();
         let broken = broken.expect("two bytes are no archive");
         assert_eq!(
@@ -322,7 +322,7 @@ mod tests {
 
     #[cfg(feature = "recognition")]
     #[test]
-    fn an_error_of_a_model_is_that_error() {
+    fn the_error_of_a_model_keeps_its_message() {
         let shards = crate::recognition::ModelError::NoShards;
         let wrapped = ArchiveError::from(shards.clone());
         assert_eq!(wrapped.to_string(), shards.to_string());

@@ -23,7 +23,7 @@ mod tests {
     use super::escaped;
 
     #[test]
-    fn nothing_of_a_text_is_markup() {
+    fn text_does_not_become_markup() {
         let text = "a<b> & \"c\" \u{1b}\u{ffff}é";
         assert_eq!(
             escaped(text),

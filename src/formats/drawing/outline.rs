@@ -52,8 +52,8 @@ impl Pen<f64> for Tracer {
         }
     }
 
-    /// Adds the curves of an ellipse. As a single cubic curve, a quarter of an ellipse would be off by 0.03 %; an eighth is off by far less than a
-    /// printer can show.
+    /// Adds the curves of an ellipse. As a single cubic curve, a quarter of an ellipse would be off by 0.03 %; an
+    /// eighth is off by far less than a printer can show.
     fn ellipse(&mut self, ellipse: &Ellipse<f64>, _material: Side) {
         let pair = |point: Point<f64>| (point.x, point.y);
         self.end(false);
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn an_ellipse_keeps_its_distance() {
+    fn the_curves_of_an_ellipse_stay_close_to_it() {
         let circle = scene::ellipse((1.0, 2.0), (3.0, 0.0), (0.0, 3.0));
         let mut from = (4.0, 2.0);
         for step in circle {

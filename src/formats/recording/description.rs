@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn other_files_are_none_and_wrong_ones_are_refused() {
+    fn other_files_are_ignored_and_wrong_descriptions_are_refused() {
         for other in ["", "[1]", "{\"format\":\"taxel-shape/1\"", "{}"] {
             assert_eq!(RecordingMetadata::read(other.as_bytes()), None, "{other}");
         }
