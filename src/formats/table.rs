@@ -337,8 +337,8 @@ impl<'a> Table<'a> {
     }
 }
 
-/// The separator that a line `sep=;` names, as spreadsheet programs write it, also in quotes, or with the separators of
-/// empty fields behind it. None of any other line.
+/// Returns the separator that a line `sep=;` names, as spreadsheet programs write it, also in quotes, or with the
+/// separators of empty fields behind it. None for any other line.
 pub(crate) fn named_separator(line: &[u8]) -> Option<u8> {
     let line = line.trim_ascii();
     let quoted = line.strip_prefix(b"\"").unwrap_or(line);
@@ -347,7 +347,7 @@ pub(crate) fn named_separator(line: &[u8]) -> Option<u8> {
         return None;
     }
     let marks = marks.strip_suffix(b"\"").unwrap_or(marks);
-    // A tab at the end of the line is a blank, and gone.
+    // A tab at the end of the line was trimmed as a blank.
     let mark = marks.first().copied().unwrap_or(b'\t');
     let is_usual = matches!(mark, b',' | b';' | b'\t' | b'|');
     (is_usual && marks.iter().all(|&byte| byte == mark)).then_some(mark)

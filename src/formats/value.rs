@@ -91,7 +91,7 @@ pub fn measured(number: f64, width: usize) -> String {
         .unwrap_or_else(|| fitting(number, width))
 }
 
-/// A share in percent, with one decimal. One that is not quite 0 or 1 does not look so.
+/// Formats a share as percent, with one decimal. A share that is not exactly 0 or 1 is not shown as 0 or 100 %.
 ///
 /// ```
 /// use taxel::formats::value::percent;

@@ -140,10 +140,10 @@ pub struct FinishedFile {
 }
 
 impl FinishedFile {
-    /// Writes a file's content, and not its name yet.
+    /// Writes the content of a file, which does not have its name yet.
     ///
     /// # Errors
-    /// As for [`UnfinishedFile::new`] and [`UnfinishedFile::finish`].
+    /// Returns the errors of [`UnfinishedFile::new`] and [`UnfinishedFile::finish`].
     pub fn new(path: &Path, content: &[u8], existing: Existing) -> Result<Self, FileError> {
         let mut file = UnfinishedFile::new(path, existing)?;
         file.write(content)?;

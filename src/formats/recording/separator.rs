@@ -25,9 +25,9 @@ pub(super) fn is_none(field: &[u8]) -> bool {
     }
 }
 
-/// Whether a line is skipped, wherever it stands: a comment, or the line in which spreadsheet programs name their
-/// separator, `sep=;`. A comment begins with `#`, with `//`, or with `%` and a blank; a `%` alone may belong to a name, as
-/// in `%time` of ROS, and `#N/A` is a cell.
+/// Returns true if a line is skipped wherever it is: a comment, or the line in which spreadsheet programs name the
+/// separator, `sep=;`. A comment begins with `#`, with `//`, or with `%` before a blank or another `%`. Otherwise a `%`
+/// may belong to a name, as in `%time` of ROS; and `#N/A` is a cell.
 pub(crate) fn is_comment(line: &[u8]) -> bool {
     let line = line.trim_ascii();
     let begins = |word: &[u8]| {
@@ -43,7 +43,7 @@ pub(crate) fn is_comment(line: &[u8]) -> bool {
     }
 }
 
-/// A field without the blanks and quotes around it.
+/// Removes the blanks and quotes around a field.
 pub(crate) fn unquoted(field: &[u8]) -> &[u8] {
     let field = field.trim_ascii();
     let inner = field

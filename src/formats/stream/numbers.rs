@@ -6,10 +6,11 @@ use crate::formats::recording::text_row::Field;
 /// The most digits of a number that is read here; longer ones are left to the general reader.
 const FAST_DIGITS: usize = 9;
 
-/// Adds the numbers of a line. They are parted as in a table: by the first of semicolons, commas and tabs that the line has,
-/// with or without blanks, otherwise by blanks; quotes around a number are ignored. With semicolons, a comma is the decimal sign. An empty field and words such as
-/// `nan` stand for no cell; a separator at the end of the line counts for nothing, nor do tabs at both ends. None if there is
-/// anything else, or more than `most`.
+/// Appends the numbers of a line to `values`. They are separated as in a table: by the first of semicolons, commas
+/// and tabs that the line contains, with or without blanks, otherwise by blanks. With semicolons, a comma is the
+/// decimal sign. Quotes around a number are ignored. An empty field and words such as `nan` mean that there is no
+/// cell; a separator at the end of the line is ignored, as are tabs at both ends. Returns None if there is anything
+/// else, or more than `most` numbers.
 pub(super) fn read(line: &[u8], values: &mut Vec<f64>, most: usize) -> Option<()> {
     let (mark, line) = if line.contains(&b';') {
         (b';', line)
