@@ -1,9 +1,9 @@
 //! The seven figures of the paper, each solid or with one concentric hole of the same kind.
 //!
-//! A figure is given by its sizes, by the top left corner (`x0`, `y0`) of its bounding rectangle before rotation, by a
-//! clockwise angle about its centre, and by the thickness of its wall. Polygons stand on a horizontal side before
-//! rotation; their centre is that of the circumscribed circle.
-//! Source: Purcaru and Niculescu; the sense of rotation and the form of the hole are conventions of this project.
+//! A figure is given by its sizes, by the top left corner (`x0`, `y0`) of its bounding rectangle before rotation, by
+//! a clockwise angle about its centre, and by the thickness of its wall. Regular polygons stand on a horizontal side
+//! before rotation; their centre is that of the circumscribed circle. Source: Purcaru and Niculescu; the sense of
+//! rotation and the form of the hole are conventions of this project.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ use crate::geometry::{Ellipse, Extent, Pen, Point, Real, Side, Solid, Turn};
 use crate::parameter::{Parameter, ParameterError, named};
 use crate::sensor::Sensor;
 
-/// The note shown for a thickness that leaves no room for a hole.
+/// The note that is shown if a thickness leaves no room for a hole.
 pub const NO_ROOM: &str = "no room for a hole: solid";
 
 /// The kinds of figure.
@@ -73,8 +73,8 @@ impl FigureKind {
         }
     }
 
-    /// Returns its parameters in the order of forms: its sizes, then position, angle and thickness. The thickness may
-    /// be absent.
+    /// Returns the parameters of the kind in the order of forms: sizes, position, angle, thickness. A figure may lack
+    /// the thickness.
     pub fn parameters(self) -> &'static [Parameter] {
         use Parameter::{Angle, Length, RadiusX, RadiusY, Side, Thickness, Width, X0, Y0};
         match self {
@@ -84,7 +84,7 @@ impl FigureKind {
         }
     }
 
-    /// Returns the parameters that give its size.
+    /// Returns the parameters that give the figure's size.
     pub fn sizes(self) -> &'static [Parameter] {
         let own = self.parameters();
         &own[..own.len() - 4]
@@ -105,7 +105,7 @@ impl FigureKind {
 
 named!(FigureKind, "figure", &FigureKind::ALL);
 
-/// A figure on the sensory plane. Its values are always finite, its sizes and its thickness above 0.
+/// A figure on the sensory plane. Its values are always finite, and its sizes and its thickness are above 0.
 ///
 /// A constructor for each kind starts a [`FigureBuilder`]; the sensor that the figure is placed on checks its values.
 ///
@@ -152,12 +152,12 @@ impl FigureBuilder {
         })
     }
 
-    /// Places the top left corner of the bounding rectangle before rotation; cell sides.
+    /// Places the top left corner of the bounding rectangle before rotation; in cell sides.
     pub fn at(self, x0: f64, y0: f64) -> Self {
         Self(Figure { x0, y0, ..self.0 })
     }
 
-    /// Turns the figure clockwise as seen about its centre; degrees, 0 to below 360.
+    /// Turns the figure about its centre, clockwise as seen; in degrees, from 0 to below 360.
     pub fn angle(self, degrees: f64) -> Self {
         Self(Figure {
             angle: degrees,
@@ -165,8 +165,8 @@ impl FigureBuilder {
         })
     }
 
-    /// Gives the figure a wall of this thickness around one concentric hole; cell sides. It stays solid if there is no
-    /// room for a hole.
+    /// Gives the figure a wall of this thickness around one concentric hole; in cell sides. The figure stays solid if
+    /// there is no room for a hole.
     pub fn thickness(self, wall: f64) -> Self {
         Self(Figure {
             thickness: Some(wall),
@@ -174,7 +174,7 @@ impl FigureBuilder {
         })
     }
 
-    /// Returns the figure if its values are in range on a sensor.
+    /// Returns the figure, after checking its values against the ranges of a sensor.
     ///
     /// # Errors
     /// Returns the error of the first value that is out of range; values are checked in the order of
@@ -229,7 +229,8 @@ impl Figure {
 }
 
 impl Figure {
-    /// Creates a figure from the values that `value` returns for the parameters of its kind, in range on a sensor.
+    /// Creates a figure from the values that `value` returns for the parameters of its kind, each in range on the
+    /// sensor.
     ///
     /// # Errors
     /// Returns the error of the first value that is out of range or missing; only the thickness may be missing.
@@ -275,7 +276,7 @@ impl Figure {
         }
     }
 
-    /// Returns the same figure with one value changed; `value` in the parameter's unit.
+    /// Returns the same figure with one parameter changed to `value`, in the parameter's unit.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -334,7 +335,7 @@ impl Figure {
         Ok(())
     }
 
-    /// Returns its kind.
+    /// Returns the kind of the figure.
     pub fn kind(&self) -> FigureKind {
         self.kind
     }
@@ -466,7 +467,7 @@ impl Solid for Figure {
     }
 }
 
-/// Records whether a hole is drawn, so that [`Figure::has_hole`] follows the rule of drawing.
+/// A pen that only notes whether a hole is drawn, so that [`Figure::has_hole`] agrees with the drawing.
 struct HolePen(bool);
 
 impl Pen<f64> for HolePen {
@@ -541,7 +542,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_zero_has_one_sign() {
+    fn a_negative_zero_becomes_zero() {
         let disc = Figure::ellipse(1.0, 1.0).at(-0.0, 2.0);
         let disc = disc.on(&Sensor::default()).expect("in range");
         assert_eq!(disc.get(Parameter::X0).map(f64::to_bits), Some(0));

@@ -1,7 +1,8 @@
-//! The imprint: which taxels are active, one `u64` per row.
+//! The imprint: which taxels are active, stored as one `u64` per row.
 //!
 //! Bit `i` of a row is the taxel in column `i`. Bits beyond the last column and rows beyond the last one are always
-//! 0, so counting is `count_ones`, neighbours are shifts, and two imprints are equal when their words are.
+//! zero. So active taxels are counted with `count_ones`, neighbours are shifts, and imprints with equal words are
+//! equal.
 
 use std::fmt;
 use std::ops::Range;
@@ -371,16 +372,16 @@ pub enum ImprintError {
     Columns {
         /// The row, from 1.
         row: usize,
-        /// Its length.
+        /// The number of its characters.
         found: usize,
     },
     /// A row is not as long as the first.
     Ragged {
         /// The row, from 1.
         row: usize,
-        /// Its length.
+        /// The number of its characters.
         found: usize,
-        /// The length of the first row.
+        /// The number of characters in the first row.
         expected: u8,
     },
     /// A row has a character other than `#` or `.`.

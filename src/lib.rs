@@ -1,9 +1,13 @@
 //! Which shapes can a robot recognise by touching them once?
 //!
-//! A tactile matrix sensor touches a flat shape, and a taxel is active when the shape covers at least half of its cell.
-//! This crate computes that binary imprint exactly, for any position, rotation and size; describes it by the geometric
-//! parameters of D. Purcaru and E. Niculescu, *Experimental Results in Shape Description*; and keeps shapes in a
-//! library of files. The program of the same name puts a screen and a command line on top of it.
+//! A tactile sensor is a matrix of square cells. When it touches a flat shape, a cell (a *taxel*) becomes active if
+//! the shape covers at least half of it, or another share that you set as the threshold. The pattern of active taxels
+//! is the *imprint*.
+//!
+//! This crate computes imprints exactly, for any position, rotation and size. It describes them by the geometric
+//! parameters (*descriptors*) of D. Purcaru and E. Niculescu, *Experimental Results in Shape Description*; finds
+//! every imprint that a shape can leave; recognises shapes by their imprints; and keeps shapes in a library of files.
+//! The program of the same name puts a screen and a command line on top of it.
 //!
 //! ```
 //! use taxel::prelude::*;
@@ -22,9 +26,9 @@
 //! # Ok::<(), ParameterError>(())
 //! ```
 //!
-//! # Frame and units
+//! # Coordinates and units
 //!
-//! There is one coordinate frame for everything, and its unit is the side of a sensory cell:
+//! All coordinates belong to one frame, whose unit is the side of a sensory cell:
 //! ```text
 //!   0   1   2   3 → x        The taxel in column i, row j (both from 0) covers
 //! 0 +---+---+---+            [i, i+1] × [j, j+1]; its coordinates are those of its
@@ -37,43 +41,43 @@
 //!
 //! # Map
 //!
-//! The rooms (top-level modules) in reading order. Each uses only rooms above it, and inside a room there are no
-//! cycles. A test reads the `use` lines and enforces this.
+//! The *rooms* (top-level modules) in reading order. Each uses only the rooms above it, and the modules inside a room
+//! do not depend on each other in cycles. A test reads the `use` lines and enforces both.
 //! ```text
-//!  quote        untrusted text, cut short for messages, and names that are nearly right
-//!  index        whole numbers as indices, checked
+//!  quote        shortens untrusted text for messages, and suggests names that are nearly right
+//!  index        checked conversions between whole numbers and indices
 //!  geometry     the area of polygons and ellipses in each cell of a grid           plane, f64
-//!  parameter    what can be set: one table of keys, units, ranges, defaults
+//!  parameter    the quantities that can be set: one table of keys, units, ranges, defaults
 //!  sensor       columns, rows, threshold, pitch
-//!  imprint      the matrix: a u64 a row
-//!  matrix       a value a taxel
-//!  figure  picture  source        what touches: seven figures, a stored imprint
+//!  imprint      the binary matrix: one u64 per row
+//!  matrix       one value per taxel
+//!  figure  picture  source        the shapes that touch: seven figures, a stored imprint
 //!  touch        shape + sensor -> coverage of each taxel -> imprint
 //!  description  imprint -> regions -> DESCRIPTORS
-//!  frame        what a real sensor measures: crop, tare, gain, threshold -> imprint
-//!  pose         exact ranges, the grid of poses and the index of each
+//!  frame        the measurements of a real sensor: crop, tare, gain, threshold -> imprint
+//!  pose         exact ranges, and the numbered poses of a grid
 //!  atlas        the distinct imprints of a grid, counted; statistics
 //!  sweep        every pose of a grid at once -> its atlas
-//!  recognition  models of shapes: the posterior of a touch, the limit of any method
-//!  prelude      what a program that uses the crate imports
-//!  ───────────  above: no input or output, no panic except on an index that the caller made up; below: the world
+//!  recognition  models of shapes: how probable each is after a touch, and the limit of any method
+//!  prelude      the names that most programs import
+//!  ───────────  above: no input or output, and no panic except on an index that the caller made up; below: the world
 //!  formats      text, PBM, CSV, NPY, JSON, atlases, models; recordings and streams of
 //!               sensors; drawings as SVG and PNG
 //!  storage      files: atomic writes, the folder of stored shapes, journal, trash
 //!  acquire      where frames come from: serial, pipes, tcp, files; recording them
-//!  memory       a bound on the memory of sweeps and trainings
+//!  memory       a limit on the memory of sweeps and trainings
 //!  tui          the screen                                                         ratatui, crossterm
 //!  cli          the command line over all of it                                    clap
 //! ```
 //! Only `storage`, `acquire`, `memory`, `cli`, `tui::runtime`, `tui::terminal` and `main` open files and streams;
-//! `formats` reads and writes those that it is given.
+//! `formats` only reads and writes streams that its callers have opened.
 //!
-//! What happens to a pose:
+//! The steps from a pose to its descriptors:
 //! ```text
 //! form, flag or JSON line -> parameter (range) -> figure or picture -> outlines, placed
 //!   -> coverage -> imprint -> regions -> descriptors -> panel, table, JSON, drawing, sweep
 //! ```
-//! What happens to a frame:
+//! The steps from a frame to its descriptors:
 //! ```text
 //! file -> formats::recording, or acquire -> bytes -> formats::stream
 //!   -> frame (crop, tare, gain, threshold) -> imprint -> regions -> descriptors, recognition
@@ -82,8 +86,8 @@
 //! # Features
 //!
 //! ```text
-//!                     brings                                           on top of
-//! (none)              all but what stands below; glam, libm and serde only
+//!                     adds                                             requires
+//! (none)              everything except the items below; the only dependencies are glam, libm and serde
 //! json                formats::StoredShape, Job
 //! sweep               pose, atlas, sweep; formats::atlas, archive;     json
 //!                     storage::AtlasFile, PoseFile, UnfinishedFile
@@ -97,7 +101,7 @@
 //! cli (by default)    cli, and the program                             tui
 //! ```
 //!
-//! A controller that only needs touches and descriptors uses `default-features = false`.
+//! If you need only touches and descriptors, as on the controller of a robot, use `default-features = false`.
 //!
 //! # Stability
 //!
@@ -106,28 +110,28 @@
 //!
 //! # Invariants
 //!
-//! - A taxel is active if its coverage in real arithmetic is exactly the threshold, or falls short of it by less than
-//!   1e-20 ([`touch`]).
-//! - Every [`figure::Figure`], [`picture::Picture`] and [`sensor::Sensor`] is in range for the sensor that it is made
-//!   for; a picture that was not moved lies where its imprint does.
-//! - What follows from a document (coverage, imprint, regions, descriptors) is computed, never stored beside it.
-//! - Infinity is never shown or written. A value that does not exist is None; arrays (`.npz`, recordings) cannot
-//!   express that otherwise and use NaN.
+//! - A taxel is active if its coverage, in real arithmetic, is at least the threshold or falls short of it by less
+//!   than 1e-20 ([`touch`]).
+//! - Every [`sensor::Sensor`] is in range, and so is every [`figure::Figure`] and [`picture::Picture`] on the sensor
+//!   that it is made for. A picture that was not moved lies where its imprint does, on a sensor of any size.
+//! - Coverage, imprint, regions and descriptors are computed from a document, never stored beside it.
+//! - Infinity is never shown or written. A value that does not exist is None; arrays (`.npz`, recordings) use NaN
+//!   instead, because they have no None.
 
-// Says at each item which feature it needs. It is not stable yet, so only docs.rs sets this.
+// Shows at each item which feature it needs. `doc_cfg` is not stable yet, so only docs.rs enables it.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-// The examples of the README are compiled and run with those of the documentation.
+// Compiles and runs the examples of the README as tests of the documentation.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-// So are those of the guide to the library, which need its rooms.
+// Does the same for the guide to the library, whose examples need the feature `recognition`.
 #[cfg(all(doctest, feature = "recognition"))]
 #[doc = include_str!("../docs/library.md")]
 struct LibraryGuide;
 
-/// The version of glam whose points are in the interface: CG, CD and [`description::Value::Point`].
+/// The version of glam whose points are part of the interface: CG, CD and [`description::Value::Point`].
 pub use glam;
 
 mod quote;

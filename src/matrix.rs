@@ -128,18 +128,18 @@ impl<T: Copy> Matrix<T> {
 pub enum MatrixError {
     /// A side that is not 1 to 64.
     Sides {
-        /// Number of columns.
+        /// The number of columns.
         columns: u8,
-        /// Number of rows.
+        /// The number of rows.
         rows: u8,
     },
     /// The number of values differs from the number of cells.
     Values {
-        /// Number of columns.
+        /// The number of columns.
         columns: u8,
-        /// Number of rows.
+        /// The number of rows.
         rows: u8,
-        /// Number of values.
+        /// The number of values.
         found: usize,
     },
 }
@@ -174,7 +174,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_matrix_has_as_many_values_as_cells() {
+    fn a_matrix_needs_valid_sides_and_one_value_per_cell() {
         for (columns, rows) in [(0, 1), (1, 65), (255, 255)] {
             let error = MatrixError::Sides { columns, rows };
             assert_eq!(Matrix::from_values(columns, rows, vec![0]), Err(error));

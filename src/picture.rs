@@ -1,10 +1,10 @@
 //! A picture: a stored imprint used as a shape, which can be moved, zoomed and turned.
 //!
-//! Its active taxels are unit squares, and their union is the shape. First, the top left corner of its bounding
-//! rectangle goes to (`x0`, `y0`). Then everything, including that position, is scaled about the origin of the plane.
-//! Then the picture is turned **counter-clockwise** as seen about the centre of its scaled bounding rectangle. Angle 0
-//! and zoom 1 at its own corner give the same imprint again. Source: the paper's option Picture; the order is a
-//! convention of this project.
+//! The union of its active taxels, each a unit square, is the shape. It is placed in three steps. First, the top left
+//! corner of its bounding rectangle goes to (`x0`, `y0`). Then everything, including that position, is scaled about
+//! the origin of the plane. Last, the picture is turned **counter-clockwise** as seen, about the centre of its scaled
+//! bounding rectangle. With angle 0, zoom 1 and its own corner it leaves its own imprint again. Source: the paper's
+//! option Picture; the order of the steps is a convention of this project.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::imprint::Imprint;
 use crate::parameter::{Parameter, ParameterError};
 use crate::sensor::Sensor;
 
-/// The parameters of a picture, in the order of forms.
+/// The parameters of a picture, in the order in which forms show them.
 pub const PICTURE_PARAMETERS: [Parameter; 5] = [
     Parameter::X0,
     Parameter::Y0,
@@ -41,7 +41,7 @@ pub struct Picture {
     imprint: Imprint,
     /// The values of [`PICTURE_PARAMETERS`].
     values: [f64; PICTURE_PARAMETERS.len()],
-    /// Shared, so that moving a picture does not allocate.
+    /// The name of the stored imprint; shared, so that moving a picture does not allocate.
     name: Option<Arc<str>>,
 }
 
@@ -59,13 +59,13 @@ impl PartialEq for Picture {
 pub struct PictureBuilder(Picture);
 
 impl PictureBuilder {
-    /// Places the top left corner of the imprint's bounding rectangle, before zoom and rotation; cell sides.
+    /// Places the top left corner of the imprint's bounding rectangle, before zoom and rotation; in cell sides.
     pub fn at(mut self, x0: f64, y0: f64) -> Self {
         [self.0.values[0], self.0.values[1]] = [x0, y0];
         self
     }
 
-    /// Turns the picture counter-clockwise as seen about its centre; degrees, 0 to below 360.
+    /// Turns the picture about its centre, counter-clockwise as seen; in degrees, from 0 to below 360.
     pub fn angle(mut self, degrees: f64) -> Self {
         self.0.values[2] = degrees;
         self
@@ -77,7 +77,7 @@ impl PictureBuilder {
         self
     }
 
-    /// Returns the picture if its values are in range on a sensor.
+    /// Returns the picture, after checking its values against the ranges of a sensor.
     ///
     /// # Errors
     /// Returns the error of the first value that is out of range; values are checked in the order of
@@ -108,7 +108,7 @@ impl Picture {
         }
     }
 
-    /// Returns the same picture with the name that its imprint is stored under.
+    /// Returns the same picture with the name under which its imprint is stored.
     #[must_use]
     pub fn named(self, name: &str) -> Self {
         Self {
@@ -117,7 +117,8 @@ impl Picture {
         }
     }
 
-    /// Creates a picture from the values that `value` returns for [`PICTURE_PARAMETERS`], in range on a sensor.
+    /// Creates a picture from the values that `value` returns for [`PICTURE_PARAMETERS`], each in range on the
+    /// sensor.
     ///
     /// # Errors
     /// Returns the error of the first value that is missing or out of range.
@@ -137,7 +138,7 @@ impl Picture {
         Ok(picture)
     }
 
-    /// Returns the same picture with one value changed; `value` in the parameter's unit.
+    /// Returns the same picture with one parameter changed to `value`, in the parameter's unit.
     ///
     /// # Errors
     /// Returns an error if the value is out of range on the sensor, or the parameter is not one of

@@ -1,8 +1,8 @@
 //! The tactile matrix sensor: its columns and rows of square cells, its threshold, its pitch, and the ranges of the
 //! values it allows.
 //!
-//! The ranges of a figure's lengths and positions scale with the larger side of the sensor, so the sensor checks,
-//! parses and steps values: `sensor.check(Parameter::X0, 1.99)`.
+//! The ranges of a figure's lengths and positions scale with the larger side of the sensor. So it is the sensor that
+//! checks, parses and steps values: `sensor.check(Parameter::X0, 1.99)`.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ use crate::quote::shortened;
 /// The largest number of columns or rows.
 pub const MAX_SIDE: u8 = 64;
 
-/// The parameters of a sensor, in the order of forms.
+/// The parameters of a sensor, in the order in which forms show them.
 pub const SENSOR_PARAMETERS: [Parameter; 4] = [
     Parameter::Columns,
     Parameter::Rows,
@@ -96,7 +96,7 @@ impl Sensor {
         }
     }
 
-    /// Returns the same sensor with one of [`SENSOR_PARAMETERS`] changed; `value` in the parameter's unit.
+    /// Returns the same sensor with one of [`SENSOR_PARAMETERS`] changed to `value`, in the parameter's unit.
     ///
     /// # Errors
     /// Returns an error if the value is out of range, or the parameter is not one of [`SENSOR_PARAMETERS`].
@@ -140,7 +140,7 @@ impl Sensor {
         self.with(Parameter::Threshold, threshold)
     }
 
-    /// Returns the same sensor with another pitch: the side of a cell, in mm.
+    /// Returns the same sensor with another pitch: the side of a cell in mm.
     ///
     /// # Errors
     /// Returns an error if the pitch is not above 0 and up to 1000.
@@ -267,7 +267,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_lead_to_the_next_number_of_the_paper_s_decimals() {
+    fn steps_go_to_the_next_value_with_the_papers_decimals() {
         let sensor = Sensor::default();
         for (parameter, value, up, down) in [
             (Parameter::X0, 1.236, 1.24, 1.23),
@@ -303,13 +303,13 @@ mod tests {
     }
 
     #[test]
-    fn zero_has_one_sign() {
+    fn a_negative_zero_is_read_as_zero() {
         let read = Sensor::default().read(Parameter::X0, "-0.0");
         assert!(read.is_ok_and(f64::is_sign_positive));
     }
 
     #[test]
-    fn a_parameter_of_something_else_is_an_error() {
+    fn a_sensor_refuses_a_parameter_that_it_does_not_have() {
         let error = Sensor::default()
             .with(Parameter::X0, 1.0)
             .expect_err("x0 is not a sensor parameter");

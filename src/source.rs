@@ -1,4 +1,4 @@
-//! The source of an imprint: a figure or a picture. An imprint drawn by hand has none.
+//! The source of an imprint: a figure or a picture. An imprint drawn by hand has no source.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use crate::parameter::{Parameter, ParameterError};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::Sensor;
 
-/// A figure or a picture, in its pose.
+/// A figure or a picture, including its position, angle and zoom.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 #[expect(
@@ -31,7 +31,7 @@ impl Source {
         }
     }
 
-    /// Returns its parameters, in the order of forms.
+    /// Returns the parameters of the shape, in the order of forms.
     pub fn parameters(&self) -> &'static [Parameter] {
         match self {
             Self::Figure(figure) => figure.kind().parameters(),
@@ -47,7 +47,7 @@ impl Source {
         }
     }
 
-    /// Returns the same shape with one value changed; `value` in the parameter's unit.
+    /// Returns the same shape with one parameter changed to `value`, in the parameter's unit.
     ///
     /// # Errors
     /// Returns an error if the value is out of range on the sensor, or the shape does not have the parameter.
@@ -82,7 +82,7 @@ impl Source {
         }
     }
 
-    /// Returns the name of its kind of figure; "picture" for a picture.
+    /// Returns the name of the kind of figure, or "picture".
     pub fn kind_name(&self) -> &'static str {
         self.kind().map_or("picture", FigureKind::name)
     }

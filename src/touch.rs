@@ -3,16 +3,17 @@
 //! **The rule** (the paper's "50 %"): a taxel is active if the shape covers at least the threshold share of its cell.
 //! Parts of the shape beyond the sensor are cut off.
 //!
-//! **Exactly the threshold is active**, in real arithmetic, for the decimals that the user wrote. Coverages are first
-//! computed in `f64`, with an error below 1e-11 ([`crate::geometry::cell_area`]). If one lies within 1e-10 of the
-//! threshold, it is computed again with 32 digits ([`Double`]), and the taxel is active unless it falls short by more
-//! than 1e-20 ([`Real::TIE`]). For ellipses at a threshold of one half, hardly any coverage needs to be computed at
-//! all: the positions of the cells' centres decide.
+//! **A coverage of exactly the threshold is active**, in real arithmetic, for the decimals that the user wrote.
+//! Coverages are first computed in `f64`, with an error below 1e-11 ([`crate::geometry::cell_area`]). If one lies
+//! within 1e-10 of the threshold, it is computed again with 32 digits ([`Double`]), and the taxel is active unless
+//! the coverage falls short of the threshold by more than 1e-20 ([`Real::TIE`]). For ellipses at a threshold of one
+//! half, hardly any coverage needs to be computed at all: the positions of the cells' centres decide.
 //!
-//! No number of digits can decide whether two algebraic expressions of the input are *equal*, so a coverage that falls
-//! short by less than 1e-20 counts as a tie. This is exact for an upright rectangle whose numbers have at most nine
-//! decimals, since its coverages are multiples of 1e-18. With more decimals, a coverage can come nearer than 1e-20
-//! (0.9999999999 × 0.50000000005). Turned figures given in hundredths come within 3e-11.
+//! No number of digits can decide whether two algebraic expressions of the input are *equal*, so a coverage that
+//! falls short by less than 1e-20 counts as a tie. This is exact for an upright rectangle whose numbers have at most
+//! nine decimals, since its coverages are multiples of 1e-18. With more decimals, a coverage can come nearer than
+//! 1e-20 without a tie (0.9999999999 × 0.50000000005). Coverages of turned figures given in hundredths come within
+//! 3e-11 of the threshold.
 
 use std::ops::Range;
 
@@ -136,8 +137,8 @@ impl Plane {
             return;
         }
         for pair in rows.start / 2..rows.end.div_ceil(2) {
-            // The sign of a cell's excess becomes its bit. Bits are shifted in from the left, so after the last one
-            // they are `unused` places too high.
+            // The sign of a cell's excess becomes its bit. Bits are shifted in from the left, so after the last
+            // column they are `unused` places too high.
             let (mut short, mut nearest) = ([0_u64; 2], [f64::MAX; 2]);
             for excess in areas.pair(pair, &columns, threshold) {
                 for lane in 0..2 {
