@@ -1,9 +1,10 @@
 //! The paper's descriptors of a region, in one table.
 //!
-//! The panel, tables, JSON and statistics iterate over [`DESCRIPTORS`]; nothing else in the program lists them.
-//! Coordinates and units are those of the sensory plane: a taxel has the coordinates of its centre, lengths are in cell
-//! sides, areas in cells, and directions in degrees counter-clockwise from +x as seen on the screen. A value that does
-//! not exist is [`Value::None`], never a number that is not finite. Points are [`glam`]'s.
+//! The panel, tables, JSON and statistics iterate over [`DESCRIPTORS`]; no other part of the program lists the
+//! descriptors. Coordinates and units are those of the sensory plane: a taxel has the coordinates of its centre,
+//! lengths are in cell sides, areas in cells, and directions in degrees counter-clockwise from +x as seen on the
+//! screen. A value that does not exist is [`Value::None`], never a number that is not finite. Points are those of
+//! [`glam`].
 
 use std::f64::consts::PI;
 
@@ -13,9 +14,9 @@ use crate::description::chain::{ChainSteps, OutlineCounts};
 use crate::description::region::{Region, RegionKind};
 use crate::imprint::{Bounds, Imprint};
 
-/// The counts and sums of one region, from which every descriptor follows. Coordinates and lengths are in cell sides,
-/// directions in degrees counter-clockwise from +x as seen on the screen. If its fields are changed to numbers that no region
-/// has, descriptors may be of no use, or NaN, but nothing panics.
+/// The counts and sums of one region, from which all descriptors are computed. Coordinates and lengths are in cell
+/// sides, directions in degrees counter-clockwise from +x as seen on the screen. If the fields are changed to numbers
+/// that no region has, descriptors may be meaningless or NaN, but nothing panics.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -29,26 +30,26 @@ use crate::imprint::{Bounds, Imprint};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Description {
-    /// Whether a piece or a hole is described.
+    /// The kind of the region: a piece or a hole.
     pub kind: RegionKind,
-    /// Taxels of the region.
+    /// NA: the number of taxels of the region.
     pub na: u32,
-    /// Taxels of the region with everything it encloses.
+    /// NAE: the number of taxels of the region and everything that it encloses.
     pub nae: u32,
-    /// Outline taxels of the filled region.
+    /// CE: the number of outline taxels of the filled region.
     pub ce: u32,
-    /// Sum of the taxels' x coordinates.
+    /// NumX: the sum of the taxels' x coordinates.
     pub num_x: f64,
-    /// Sum of their y coordinates.
+    /// NumY: the sum of the taxels' y coordinates.
     pub num_y: f64,
-    /// The steps around the filled region.
+    /// The steps of the chain around the filled region.
     pub steps: ChainSteps,
-    /// The circumscribed rectangle.
+    /// The upright rectangle around the region.
     pub rect: Bounds,
 }
 
 impl Description {
-    /// Counts and sums of a region.
+    /// Computes the counts and sums of a region.
     pub fn of(region: &Region) -> Self {
         let (filled, rect) = (region.filled(), region.bounds());
         let (na, columns, rows) = sums(region.taxels(), rect);
@@ -66,12 +67,12 @@ impl Description {
         }
     }
 
-    /// Centre of gravity of the region's taxels.
+    /// Returns CG, the centre of gravity of the region's taxels.
     pub fn cg(&self) -> DVec2 {
         DVec2::new(self.num_x, self.num_y) / f64::from(self.na)
     }
 
-    /// Centre of the circumscribed rectangle.
+    /// Returns CD, the centre of the upright rectangle.
     pub fn cd(&self) -> DVec2 {
         let middle = |low: u8, high: u8| f64::from(u16::from(low) + u16::from(high)) / 2.0;
         DVec2::new(
@@ -87,52 +88,52 @@ impl Description {
         )
     }
 
-    /// P, the length of the outline.
+    /// Returns P, the length of the outline.
     pub fn p(&self) -> f64 {
         self.steps.length()
     }
 
-    /// F = P²/NAE.
+    /// Returns F = P²/NAE.
     pub fn f(&self) -> f64 {
         self.p() * self.p() / f64::from(self.nae)
     }
 
-    /// The number of taxels of the circumscribed rectangle.
+    /// Returns the number of taxels in the upright rectangle.
     pub fn area(&self) -> u32 {
         self.rect.area()
     }
 
-    /// The longer side of the rectangle divided by the shorter one.
+    /// Returns the longer side of the upright rectangle divided by the shorter one.
     pub fn side_ratio(&self) -> f64 {
         let sides = self.sides();
         sides.max_element() / sides.min_element()
     }
 
-    /// NA divided by the area of the rectangle, above 0 up to 1.
+    /// Returns NA divided by the area of the upright rectangle: above 0, up to 1.
     pub fn filling(&self) -> f64 {
         f64::from(self.na) / f64::from(self.area())
     }
 
-    /// The distance of CG and CD.
+    /// Returns the distance between CG and CD.
     pub fn cg_cd(&self) -> f64 {
         self.cg().distance(self.cd())
     }
 
-    /// The directions of the rectangle's two diagonals, 0 to below 180 degrees.
+    /// Returns the directions of the two diagonals of the upright rectangle, from 0 to below 180 degrees.
     pub fn diagonals(&self) -> [f64; 2] {
         let sides = self.sides();
         let rising = libm::atan2(sides.y, sides.x).to_degrees();
         [rising, 180.0 - rising]
     }
 
-    /// The width and height of the rectangle.
+    /// Returns the width and the height of the upright rectangle.
     fn whole_sides(&self) -> [i64; 2] {
         let rect = self.rect;
         [(rect.left, rect.right), (rect.top, rect.bottom)]
             .map(|(low, high)| i64::from(high) - i64::from(low))
     }
 
-    /// Twice the sums of the coordinates, which are whole.
+    /// Returns NumX and NumY, doubled so that they are whole.
     fn doubled_sums(&self) -> [i64; 2] {
         #[expect(
             clippy::cast_possible_truncation,
@@ -141,20 +142,20 @@ impl Description {
         [self.num_x, self.num_y].map(|sum| (2.0 * sum) as i64)
     }
 
-    /// Twice the coordinates of the rectangle's centre, which are whole.
+    /// Returns the coordinates of CD, doubled so that they are whole.
     fn doubled_centre(&self) -> [i64; 2] {
         let rect = self.rect;
         [(rect.left, rect.right), (rect.top, rect.bottom)]
             .map(|(low, high)| i64::from(low) + i64::from(high))
     }
 
-    /// The vector from the centre of gravity to the rectangle's centre, in units of 1/(2 NA).
+    /// Returns the vector from CG to CD, in units of 1/(2 NA).
     fn exact_cg_to_cd(&self) -> [i64; 2] {
         let (sums, centre) = (self.doubled_sums(), self.doubled_centre());
         [0, 1].map(|axis| (i64::from(self.na) * centre[axis]).saturating_sub(sums[axis]))
     }
 
-    /// P²/NAE as a + b√2.
+    /// Returns P²/NAE exactly, as the ratios a and b of a + b√2.
     fn exact_compactness(&self) -> [i64; 4] {
         let [straight, diagonal] = [self.steps.straight, self.steps.diagonal].map(i64::from);
         let times = |one: i64, other: i64| one.saturating_mul(other);
@@ -167,27 +168,27 @@ impl Description {
         )
     }
 
-    /// 4π·NAE/P²; None of a single taxel, whose P is 0.
+    /// Returns 4π·NAE/P²; None for a single taxel, whose P is 0.
     pub fn roundness(&self) -> Option<f64> {
         let length = self.p();
         (length > 0.0).then(|| 4.0 * PI * f64::from(self.nae) / (length * length))
     }
 
-    /// The direction from CG to CD, above −180 up to 180 degrees; None if they are less than 1e-9 apart.
+    /// Returns the direction from CG to CD, above −180 and up to 180 degrees; None if they are less than 1e-9 apart.
     pub fn cg_cd_direction(&self) -> Option<f64> {
         let way = self.cd() - self.cg();
-        // Upwards is counter-clockwise; 0 − y rather than −y, whose zero would be negative and point to −180.
+        // Upwards is counter-clockwise. 0 − y, not −y: that would make a zero negative, and atan2 return −180.
         (way.length() >= 1e-9).then(|| libm::atan2(0.0 - way.y, way.x).to_degrees())
     }
 }
 
-/// Taxels, sum of their columns and sum of their rows.
+/// Returns the number of taxels, the sum of their columns and the sum of their rows.
 fn sums(taxels: &Imprint, bounds: Bounds) -> (u32, u32, u32) {
     let (mut count, mut columns, mut rows) = (0, 0, 0);
     for row in bounds.rows() {
         let mut word = taxels.words()[usize::from(row)];
         let mut in_row = 0;
-        // Run by run: the columns of a run add up to its length times their mean.
+        // Works run by run: the columns of a run add up to its length times their mean.
         while word != 0 {
             let first = word.trailing_zeros();
             let length = (word >> first).trailing_ones();
@@ -201,11 +202,11 @@ fn sums(taxels: &Imprint, bounds: Bounds) -> (u32, u32, u32) {
     (count, columns, rows)
 }
 
-/// A descriptor's value.
+/// The value of a descriptor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Value {
-    /// Does not exist for this region.
+    /// The descriptor does not exist for this region.
     None,
     /// A whole number.
     Count(u32),
@@ -235,17 +236,17 @@ impl Value {
     }
 }
 
-/// What a descriptor's number measures, and so how it converts to millimetres.
+/// The quantity that a descriptor measures. It decides how a value is converted to millimetres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Dimension {
-    /// Taxels, or another pure count.
+    /// A number of taxels, or another pure count.
     Count,
-    /// Cell sides; times the pitch in mm.
+    /// A length in cell sides; times the pitch, in mm.
     Length,
-    /// Cells; times the square of the pitch in mm².
+    /// An area in cells; times the square of the pitch, in mm².
     Area,
-    /// Degrees, counter-clockwise from +x as seen on the screen.
+    /// A direction in degrees, counter-clockwise from +x as seen on the screen.
     Direction,
     /// A pure number.
     Ratio,
@@ -253,26 +254,26 @@ pub enum Dimension {
     Share,
 }
 
-/// Whether a descriptor changes when the whole imprint is moved, turned or mirrored on its matrix.
+/// The changes of a whole imprint on its matrix under which a descriptor changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct ChangesUnder {
-    /// Moved by whole taxels.
+    /// Whether a shift by whole taxels changes it.
     pub shift: bool,
-    /// Turned by 90°.
+    /// Whether a rotation by 90° changes it.
     pub quarter_turn: bool,
-    /// Mirrored left to right.
+    /// Whether mirroring left to right changes it.
     pub mirror: bool,
 }
 
 impl ChangesUnder {
-    /// The same for every position and orientation of the imprint.
+    /// For a descriptor that is the same for every position and orientation of the imprint.
     const NOTHING: Self = Self {
         shift: false,
         quarter_turn: false,
         mirror: false,
     };
-    /// Depends on where the imprint lies.
+    /// For a descriptor that depends on the position of the imprint.
     const SHIFTS: Self = Self {
         shift: true,
         quarter_turn: true,
@@ -280,28 +281,29 @@ impl ChangesUnder {
     };
 }
 
-/// A descriptor's value as whole numbers, so that equal values are equal exactly: ratios in lowest terms, lengths as
-/// numbers of steps. None where the value does not exist.
+/// The value of a descriptor as whole numbers, so that equal values compare as equal: ratios in lowest terms, lengths
+/// as numbers of steps. None if the value does not exist.
 pub type ExactValue = Option<[i64; 4]>;
 
 /// A row of [`DESCRIPTORS`].
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Descriptor {
-    /// Its name in JSON and CSV.
+    /// The name in JSON and CSV.
     pub key: &'static str,
-    /// Its name on the screen: that of the paper, if it has one.
+    /// The symbol on the screen: that of the paper, if there is one.
     pub symbol: &'static str,
     /// A description in a few words.
     pub name: &'static str,
-    /// What it counts.
+    /// The quantity that it measures.
     pub dimension: Dimension,
-    /// Whether the JSON answers contain it. Their form is fixed; the other descriptors can be computed from those in
-    /// it.
+    /// Whether it is part of the JSON answers. Their form is fixed; the other descriptors can be computed from those in
+    /// them.
     pub in_answer: bool,
-    /// What changes it. One that changes with shifts alone says nothing about the shape.
+    /// The changes of the imprint that change its value. A descriptor that changes under shifts says where an imprint
+    /// lies, not which shape it has.
     pub changes_under: ChangesUnder,
-    /// Its value if there is nothing to describe: 0 for counts and sums of taxels; the others do not exist.
+    /// The value if there is no region: 0 for counts and sums of taxels, and [`Value::None`] for the others.
     ///
     /// ```
     /// use taxel::description::{DESCRIPTORS, Value};
@@ -310,9 +312,10 @@ pub struct Descriptor {
     /// assert_eq!(zeros, ["na", "nae", "ce", "num_x", "num_y", "area"]);
     /// ```
     pub of_nothing: Value,
-    /// How it follows from the counts and sums.
+    /// Computes the value from the counts and sums.
     pub measure: fn(&Description) -> Value,
-    /// Two imprints have the same value exactly if this is the same. Unlike [`Self::measure`], it does not round.
+    /// Computes the exact value. Two imprints have the same value if and only if this is the same; unlike
+    /// [`Self::measure`], it does not round.
     pub exact: fn(&Description) -> ExactValue,
 }
 
@@ -338,7 +341,7 @@ impl Descriptor {
         }
     }
 
-    /// One that says where the imprint lies.
+    /// Marks a descriptor of the imprint's position.
     const fn of_place(self) -> Self {
         Self {
             changes_under: ChangesUnder::SHIFTS,
@@ -346,7 +349,7 @@ impl Descriptor {
         }
     }
 
-    /// One that counts or sums up taxels, and so is 0 without any.
+    /// Marks a count or sum of taxels, whose value is `zero` without a region.
     const fn zero_of_nothing(self, zero: Value) -> Self {
         Self {
             of_nothing: zero,
@@ -354,7 +357,7 @@ impl Descriptor {
         }
     }
 
-    /// One that changes with quarter turns, and perhaps with mirror images.
+    /// Marks a descriptor that changes under quarter turns, and under mirroring if `mirror` is true.
     const fn of_orientation(self, mirror: bool) -> Self {
         let changes_under = ChangesUnder {
             shift: false,
@@ -367,7 +370,7 @@ impl Descriptor {
         }
     }
 
-    /// One that the answers leave out.
+    /// Marks a descriptor that JSON answers leave out.
     const fn not_in_answers(self) -> Self {
         Self {
             in_answer: false,
@@ -375,7 +378,7 @@ impl Descriptor {
         }
     }
 
-    /// Returns its description for a region of that kind, in a few words. The taxels of a hole are inactive.
+    /// Returns the description for a region of a kind, in a few words. It differs for holes, whose taxels are inactive.
     ///
     /// ```
     /// use taxel::description::{Descriptor, RegionKind};
@@ -390,7 +393,7 @@ impl Descriptor {
         }
     }
 
-    /// Returns the descriptor with that key, such as `"na"`.
+    /// Returns the descriptor with a key, such as `"na"`; None if there is none.
     ///
     /// ```
     /// use taxel::description::Descriptor;
@@ -403,7 +406,7 @@ impl Descriptor {
     }
 }
 
-/// Counts, exactly.
+/// Returns counts as an exact value.
 fn whole<const N: usize>(numbers: [u32; N]) -> [i64; 4] {
     let mut exact = [0; 4];
     for (slot, number) in exact.iter_mut().zip(numbers) {
@@ -412,23 +415,23 @@ fn whole<const N: usize>(numbers: [u32; N]) -> [i64; 4] {
     exact
 }
 
-/// Two ratios with one positive denominator, each in lowest terms.
+/// Returns two ratios with the same positive denominator, each in lowest terms.
 fn ratios(numerators: [i64; 2], denominator: i64) -> [i64; 4] {
     let [one, other] = numerators.map(|numerator| {
-        // 0 only for a description whose fields were changed.
+        // The divisor is 0 only if fields of the description were changed.
         let common = gcd(numerator.unsigned_abs(), denominator.unsigned_abs()).max(1);
         [numerator / common, denominator / common]
     });
     [one[0], one[1], other[0], other[1]]
 }
 
-/// The direction of a vector; None if its length is 0.
+/// Returns the direction of a vector in lowest terms; None if its length is 0.
 fn direction([x, y]: [i64; 2]) -> ExactValue {
     let common = gcd(x.unsigned_abs(), y.unsigned_abs());
     (common > 0).then(|| [x / common, y / common, 0, 0])
 }
 
-/// The greatest common divisor of numbers far below 2⁶³; 0 for two zeros.
+/// Returns the greatest common divisor of numbers far below 2⁶³; 0 for two zeros.
 fn gcd(one: u64, other: u64) -> i64 {
     let (mut one, mut other) = (one, other);
     while other > 0 {
@@ -437,7 +440,7 @@ fn gcd(one: u64, other: u64) -> i64 {
     one.cast_signed()
 }
 
-/// The table, in the paper's order; `roundness` is what image analysis uses instead of F.
+/// The table of descriptors, in the paper's order; `roundness` is the measure that image analysis uses instead of F.
 pub const DESCRIPTORS: &[Descriptor] = &[
     Descriptor::new(
         "na",
@@ -608,7 +611,7 @@ mod tests {
     use crate::description::regions;
 
     #[test]
-    fn fields_that_no_region_has_are_no_panic() {
+    fn fields_that_no_region_has_do_not_panic() {
         let imprint: Imprint = ".##.\n####".parse().expect("an imprint");
         let own = Description::of(&regions(&imprint)[0]);
         let (bounds, steps) = (own.rect, own.steps);

@@ -1,7 +1,8 @@
-//! The description of an imprint: its regions, and the paper's descriptors of each.
+//! The description of an imprint: its regions, and the paper's descriptors of each region.
 //!
-//! The object is 8-connected and the background 4-connected, so that a diagonal line of taxels is one piece and
-//! encloses what is behind it. All counting is integer arithmetic on the rows' words; only the last step divides.
+//! The object is 8-connected and the background 4-connected. So a diagonal line of taxels is one piece, and it
+//! separates the background on its two sides. All counting is integer arithmetic on the rows' words; only the last step
+//! divides.
 
 mod region;
 

@@ -1,29 +1,29 @@
-//! The regions of an imprint: its pieces, and its holes.
+//! The regions of an imprint: its pieces and its holes.
 //!
 //! An **exterior** is an 8-connected component of the active taxels. A **hole** is a 4-connected component of the
-//! inactive ones that does not reach the outside; an inactive taxel on the rim of the matrix belongs to the outside.
+//! inactive taxels that does not reach the outside; an inactive taxel on the rim of the matrix belongs to the outside.
 //! Exteriors come first, then holes, each in reading order of their first taxel. Each region is described separately:
-//! `filled` is the region with everything that its outer outline encloses.
+//! `filled` is the region together with everything that its outer outline encloses.
 //!
-//! Each piece is flooded and filled separately. Floods work on whole rows: if a flood enters a run of taxels anywhere,
-//! the carry of an addition fills the whole run at once.
+//! Each region is found by a flood fill. Floods work on whole rows: if a flood enters a run of taxels anywhere, the
+//! carry of an addition fills the whole run at once.
 
 use std::borrow::Cow;
 
 use crate::imprint::{Bounds, Imprint};
 use crate::parameter::named;
 
-/// What a region is.
+/// The kind of a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RegionKind {
     /// A piece of the object.
     Exterior,
-    /// A hole in it.
+    /// A hole in the object.
     Hole,
 }
 
 impl RegionKind {
-    /// Its name, in JSON and on the screen.
+    /// Returns the name of the kind, as in JSON and on the screen.
     pub fn name(self) -> &'static str {
         match self {
             Self::Exterior => "exterior",
@@ -38,12 +38,12 @@ named!(
     &[RegionKind::Exterior, RegionKind::Hole]
 );
 
-/// A piece or a hole; never empty. Its taxels may be borrowed: an imprint is half a kilobyte.
+/// A piece or a hole; never empty. The region may borrow its taxels, because an imprint takes half a kilobyte.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Region<'a> {
     kind: RegionKind,
     taxels: Cow<'a, Imprint>,
-    /// None if it encloses nothing: then `taxels` are all.
+    /// The taxels and everything they enclose; None if they enclose nothing, so that `taxels` are all.
     filled: Option<Cow<'a, Imprint>>,
     bounds: Bounds,
 }
@@ -63,7 +63,7 @@ impl<'a> Region<'a> {
         }
     }
 
-    /// The same with taxels of its own.
+    /// Returns the same region with its own copy of the taxels.
     pub fn into_owned(self) -> Region<'static> {
         Region {
             kind: self.kind,
@@ -73,34 +73,34 @@ impl<'a> Region<'a> {
         }
     }
 
-    /// Whether it is a piece or a hole.
+    /// Returns whether the region is a piece or a hole.
     pub fn kind(&self) -> RegionKind {
         self.kind
     }
 
-    /// Its taxels, on a matrix of the imprint's size.
+    /// Returns the taxels of the region, on a matrix of the imprint's size.
     pub fn taxels(&self) -> &Imprint {
         &self.taxels
     }
 
-    /// Its taxels and everything that its exterior outline encloses.
+    /// Returns the taxels of the region and everything that its outer outline encloses.
     pub fn filled(&self) -> &Imprint {
         self.filled.as_deref().unwrap_or(&self.taxels)
     }
 
-    /// The number of taxels of [`Self::filled`].
+    /// Returns the number of taxels of [`Self::filled`].
     pub(crate) fn area(&self) -> u32 {
         let words = rows(self.filled(), self.bounds).iter();
         words.map(|word| word.count_ones()).sum()
     }
 
-    /// The smallest rectangle of whole taxels around it.
+    /// Returns the smallest rectangle of whole taxels around the region.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 }
 
-/// All regions of an imprint, exteriors first. Empty for an empty imprint.
+/// Returns all regions of an imprint, exteriors first; empty for an empty imprint.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -118,7 +118,7 @@ pub fn regions(imprint: &Imprint) -> Vec<Region<'static>> {
     found
 }
 
-/// Passes all regions of an imprint to `visit`, in the order of [`regions`], without allocating.
+/// Calls `visit` with each region of an imprint, in the order of [`regions`], without allocating.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -131,7 +131,7 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
     let Some(bounds) = imprint.bounds() else {
         return;
     };
-    // The taxels around a hole are 8-connected, so there is one piece that encloses it.
+    // The taxels around a hole are 8-connected, so a single piece encloses it.
     let mut holes: Option<Imprint> = None;
     components(imprint, bounds, RegionKind::Exterior, |piece| {
         if let Some(filled) = &piece.filled {
@@ -153,8 +153,8 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
     }
 }
 
-/// The index of the main region, which is selected at the start and described by sweeps: the exterior with the largest
-/// filled area, or the first of them if several are equal. None if there are no exteriors.
+/// Returns the index of the main region, the one that is selected first and that sweeps describe: the exterior with the
+/// largest filled area, or the first of several equal ones. None if there are no exteriors.
 pub fn main_region(regions: &[Region]) -> Option<usize> {
     let exteriors = regions
         .iter()
@@ -171,23 +171,23 @@ pub fn main_region(regions: &[Region]) -> Option<usize> {
     exteriors.fold(None, largest).map(|(index, _)| index)
 }
 
-/// The rule of the main region, applied to one exterior after another: whether one with this filled area replaces the
-/// best so far. Among equals, the first stays.
+/// Returns true if an exterior with this filled area becomes the main region in place of the best one so far. The first
+/// of equal ones stays.
 pub(crate) fn is_main(area: u32, best: Option<u32>) -> bool {
     best.is_none_or(|best| area > best)
 }
 
-/// The rows within the bounds.
+/// Returns the rows within the bounds.
 fn rows(matrix: &Imprint, bounds: Bounds) -> &[u64] {
     &matrix.words()[usize::from(bounds.top)..usize::from(bounds.bottom)]
 }
 
-/// The rows within the bounds, mutable.
+/// Returns the rows within the bounds for writing.
 fn rows_mut(matrix: &mut Imprint, bounds: Bounds) -> &mut [u64] {
     &mut matrix.words_mut()[usize::from(bounds.top)..usize::from(bounds.bottom)]
 }
 
-/// Passes on the connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected.
+/// Calls `visit` with the connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected.
 fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: impl FnMut(&Region)) {
     let diagonal = kind == RegionKind::Exterior;
     let none = || Imprint::empty(matrix.columns(), matrix.rows());
@@ -199,7 +199,7 @@ fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: imp
         }
         return;
     }
-    // All pieces use the same memory, of which only the rows that were written are cleared.
+    // All pieces use the same memory. Only the rows that were written are cleared.
     let (mut rest, mut piece, mut filled) = (*matrix, none(), none());
     let bottom = usize::from(bounds.bottom);
     for top in usize::from(bounds.top)..bottom {
@@ -208,8 +208,8 @@ fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: imp
             let seeds = &mut piece.words_mut()[top..bottom];
             seeds[0] = spread(open[0] & open[0].wrapping_neg(), open[0]);
             let end = flood(seeds, open, 1, diagonal);
-            // One pass computes all that is needed of the piece: a processor predicts the number of its rows badly, so
-            // several passes would cost more.
+            // A single pass computes everything that is needed of the piece. A processor predicts the number of rows
+            // badly, so several passes would cost more.
             let (mut across, mut runs) = (0, true);
             for (open, &taxels) in open.iter_mut().zip(&*seeds).take(end) {
                 *open &= !taxels;
@@ -229,7 +229,8 @@ fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: imp
     }
 }
 
-/// Passes a component that has rows which are not runs to `visit`, with its filled region. `filled` must be empty.
+/// Calls `visit` with a component of which some rows are not single runs, and with its filled region. `filled` must be
+/// empty.
 fn show_filled(
     kind: RegionKind,
     piece: &Imprint,
@@ -246,7 +247,7 @@ fn show_filled(
     ));
 }
 
-/// Whether the first row is one run, and every run of another row meets the row above: then everything is one
+/// Returns true if the first row is one run, and every run of another row meets the row above: then all taxels are one
 /// component. This holds for nearly every imprint of one figure, and for most holes.
 fn hangs_together(rows: &[u64], diagonal: bool) -> bool {
     let Some(first) = rows.first() else {
@@ -260,7 +261,7 @@ fn hangs_together(rows: &[u64], diagonal: bool) -> bool {
     })
 }
 
-/// The columns of the next row that a row's taxels reach.
+/// Returns the columns of the next row that are neighbours of a row's taxels.
 fn near(word: u64, diagonal: bool) -> u64 {
     if diagonal {
         word | word << 1 | word >> 1
@@ -269,12 +270,12 @@ fn near(word: u64, diagonal: bool) -> u64 {
     }
 }
 
-/// Whether the set bits are next to each other: adding the lowest then carries out of all of them.
+/// Returns true if the set bits are next to each other: adding the lowest one then carries out of all of them.
 fn is_run(word: u64) -> bool {
     word & word.wrapping_add(word & word.wrapping_neg()) == 0
 }
 
-/// Whether each run of `open` holds a bit of `seeds`, which lies inside of `open`.
+/// Returns true if each run of `open` contains a bit of `seeds`; all seeds are in `open`.
 fn meets_all(seeds: u64, open: u64) -> bool {
     // Adding a seed to its run carries up to the run's end and flips the bits on the way, including the last one unless
     // it is another seed.
@@ -283,10 +284,10 @@ fn meets_all(seeds: u64, open: u64) -> bool {
     reached & last == last
 }
 
-/// All runs of `open` that hold a bit of `seeds`, which lies inside of `open`.
+/// Returns all runs of `open` that contain a bit of `seeds`; all seeds are in `open`.
 fn spread(mut seeds: u64, open: u64) -> u64 {
     let mut all = 0;
-    // A run for each turn: from the last gap below its lowest seed to where the carry of this seed ends.
+    // Each pass adds one run, from the last gap below its lowest seed to the end of the carry of this seed.
     while seeds != 0 {
         let seed = seeds & seeds.wrapping_neg();
         let gaps = !open & (seed - 1);
@@ -298,10 +299,10 @@ fn spread(mut seeds: u64, open: u64) -> u64 {
     all
 }
 
-/// Grows the seeds through the open taxels as far as they reach, given row by row; the seeds are whole runs. From row
-/// `end` on there are none at first; the result is the row from which on there are none at last.
+/// Grows the seeds through the open taxels as far as they reach, row by row. The seeds are whole runs, and none are in
+/// row `end` or below. Returns the first row from which on there are none after growing.
 fn flood(seeds: &mut [u64], open: &[u64], mut end: usize, diagonal: bool) -> usize {
-    // Down through the rows, then up, and so on, until nothing is left behind.
+    // Passes down through the rows, then up, and so on, until no taxel is left to reach.
     loop {
         let mut wave = Wave::new(diagonal);
         for (row, (seeds, &open)) in seeds.iter_mut().zip(open).enumerate() {
@@ -326,14 +327,15 @@ fn flood(seeds: &mut [u64], open: &[u64], mut end: usize, diagonal: bool) -> usi
     }
 }
 
-/// A flood on its way through the rows in one direction.
+/// A flood that moves through the rows in one direction.
 struct Wave {
     diagonal: bool,
-    /// The seeds of the row before.
+    /// The seeds of the previous row.
     seeds: u64,
-    /// The open taxels of the row before that are not seeds.
+    /// The open taxels of the previous row that are not seeds.
     dry: u64,
-    /// Set where seeds would go back to dry taxels: only a wave in the other direction gets there.
+    /// The columns of open taxels in earlier rows that now have a seed next to them. Only a wave in the other direction
+    /// reaches them.
     left: u64,
 }
 
@@ -347,7 +349,7 @@ impl Wave {
         }
     }
 
-    /// Goes on to the next row.
+    /// Continues with the next row.
     fn enter(&mut self, seeds: &mut u64, open: u64) {
         let entered = (*seeds | near(self.seeds, self.diagonal)) & open;
         if entered != *seeds {
@@ -362,13 +364,13 @@ impl Wave {
     }
 }
 
-/// Puts a component and the background it encloses (background that does not reach the rim) into `filled`, which is
-/// empty and has the same size. Returns whether it encloses anything.
+/// Writes a component and the background that it encloses (background that does not reach the rim) into `filled`, which
+/// is empty and has the same size. Returns true if the component encloses anything.
 fn fill(piece: &Imprint, bounds: Bounds, filled: &mut Imprint) -> bool {
     let words = rows(piece, bounds);
     let filled = rows_mut(filled, bounds);
-    // What lies left of a row's first taxel or right of its last one is outside. Of the rest, what is next to the
-    // outside is outside as well, and so on; above the first row and below the last one everything is.
+    // Everything left of a row's first taxel or right of its last one is outside. Other inactive taxels are outside if
+    // they are next to the outside, and so on. Everything above the first row and below the last one is outside.
     let (mut met, mut span_above, mut inner_above) = (0, 0, 0);
     for (filled, &word) in filled.iter_mut().zip(words) {
         *filled = span(word);
@@ -397,7 +399,7 @@ fn fill(piece: &Imprint, bounds: Bounds, filled: &mut Imprint) -> bool {
     enclosed != 0
 }
 
-/// From the first set bit to the last, all set.
+/// Returns the bits from the first set bit to the last one, all set.
 fn span(word: u64) -> u64 {
     if word == 0 {
         return 0;
