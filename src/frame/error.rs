@@ -1,80 +1,80 @@
-//! Why a frame, or the way to process it, is refused.
+//! The error for a frame that cannot be processed, or for settings that do not fit it.
 
 use std::fmt;
 
 use crate::matrix::Matrix;
 use crate::parameter::number::counted;
 
-/// What is wrong with a frame or with the way to process it.
+/// The error for a frame that cannot be processed, or for settings that do not fit it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum FrameError {
     /// More cells are left than an imprint can have.
     Large {
-        /// Columns that are left.
+        /// The number of columns that are left.
         columns: u16,
-        /// Rows that are left.
+        /// The number of rows that are left.
         rows: u16,
     },
     /// A side of a frame that is not 1 to 512.
     Sides {
-        /// Its columns.
+        /// The number of columns.
         columns: u16,
-        /// Its rows.
+        /// The number of rows.
         rows: u16,
     },
-    /// Another number of values than a frame has cells.
+    /// The number of values differs from the number of cells.
     Values {
-        /// The frame's columns.
+        /// The number of the frame's columns.
         columns: u16,
-        /// The frame's rows.
+        /// The number of the frame's rows.
         rows: u16,
-        /// Number of values.
+        /// The number of values.
         found: usize,
     },
     /// The crop reaches beyond the frame.
     Crop {
-        /// The frame's columns.
+        /// The number of the frame's columns.
         columns: u16,
-        /// The frame's rows.
+        /// The number of the frame's rows.
         rows: u16,
     },
-    /// A mask, a gain or a tare whose size differs from that of the visible part of the frame.
+    /// A mask, a gain or a tare differs in size from the visible part of the frame.
     Size {
-        /// Which of these.
+        /// "mask", "gain" or "tare".
         what: &'static str,
-        /// Its columns and rows.
+        /// The columns and rows of the mask, gain or tare.
         found: (u16, u16),
-        /// Those of the frame.
+        /// The columns and rows of the visible part of the frame.
         expected: (u16, u16),
     },
-    /// A threshold that is not a number, or out of range.
+    /// A threshold is not a number, or out of range.
     Rule {
-        /// Which value: its key in JSON.
+        /// The name of the value: its key in JSON.
         what: &'static str,
-        /// The number.
+        /// The value.
         found: f64,
-        /// What is allowed.
+        /// The allowed range.
         allowed: &'static str,
     },
-    /// A tare of more frames than there are.
+    /// There are fewer frames than a tare needs.
     Tare {
-        /// How many there are.
+        /// The number of frames that there are.
         frames: u64,
-        /// How many are needed.
+        /// The number of frames that the tare needs.
         wanted: u64,
     },
-    /// A tare whose frames, by their number and size, take too much memory.
+    /// The frames of a tare would take too much memory, by their number and size.
     TareSize {
-        /// How many frames are possible.
+        /// The largest possible number of frames of this size.
         most: u64,
     },
-    /// The noise rule without a tare that measures the noise.
+    /// The noise rule is used without a tare that measures the noise.
     NoTare,
 }
 
 impl FrameError {
-    /// Whether a frame of another size would be processed.
+    /// Returns true if a frame of another size could be processed.
     #[cfg(feature = "cli")]
     pub(crate) fn is_of_size(&self) -> bool {
         matches!(
@@ -147,7 +147,7 @@ fn wrong_values((columns, rows): (u16, u16), found: usize) -> String {
     format!("found {found}, expected {expected} for a frame of {columns} × {rows}")
 }
 
-/// Refuses a matrix whose size differs from that of the values.
+/// Returns an error if a matrix differs in size from the values.
 pub(super) fn check_size(
     what: &'static str,
     found: &Matrix<f64>,

@@ -1,73 +1,74 @@
-//! How often taxels flip, and which are dead or stuck, estimated from a recording.
+//! Estimates from a recording how often taxels flip, and which taxels are dead or stuck.
 //!
-//! If a taxel has the same state in the first and the last of three consecutive frames, it is assumed to have had this
+//! If a taxel has the same state in the first and the last of three consecutive frames, it is assumed to have had that
 //! state all the time: if it differs in the middle frame, it has flipped. If every taxel flips with probability e, a
-//! share e(1−e) / (1 − 2e(1−e)) of these taxels differs, which gives e. A moving contact also changes taxels, but
-//! rarely for one frame only. Frames of a contact at rest or of an empty sensor give the best estimate.
+//! share e(1−e) / (1 − 2e(1−e)) of these taxels differs; from this share follows e. A moving contact also changes
+//! taxels, but rarely for one frame only. Frames of a contact at rest or of an empty sensor give the best estimate.
 //!
-//! A taxel is stuck on if it is active whenever none of its neighbours is, and stuck off or dead if it is never active
-//! when three quarters of its neighbours are, in ten frames or more each. A hole of one taxel that never moves looks
-//! the same.
+//! A taxel is stuck on if it is active whenever none of its neighbours is. It is stuck off, or dead, if it is never
+//! active when three quarters of its neighbours are. There must be at least ten such frames, and one in a hundred may
+//! be an exception. A hole of one taxel that never moves looks like a dead taxel.
 
 use crate::imprint::Imprint;
 
-/// How many frames it takes to call a taxel stuck.
+/// The number of frames that it takes to call a taxel stuck.
 const ENOUGH: u32 = 10;
 
-/// What was seen of a taxel.
+/// The counts of a taxel's states.
 #[derive(Clone, Copy, Debug, Default)]
 struct TaxelCounts {
-    /// Frames in which no neighbour was active, and in how many of these the taxel was.
+    /// The number of frames in which no neighbour was active, and in how many of them the taxel was active.
     alone: (u32, u32),
-    /// Frames in which three quarters of the neighbours were active, and in how many of these the taxel was.
+    /// The number of frames in which three quarters of the neighbours were active, and in how many of them the taxel
+    /// was active.
     amid: (u32, u32),
 }
 
-/// Gathers the frames of a recording.
+/// Counts flips in the frames of a recording.
 #[derive(Clone, Debug)]
 pub struct FlipCounter {
     /// The taxels that exist.
     cells: Imprint,
     frames: u64,
-    /// The last two imprints, the last one first.
+    /// The last two imprints, the latest first.
     before: [Option<Imprint>; 2],
     repeated: u64,
     flips: u64,
     taxels: Vec<TaxelCounts>,
 }
 
-/// What a recording shows about its taxels.
+/// The estimates from a recording.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FlipReport {
-    /// Number of frames.
+    /// The number of frames.
     pub frames: u64,
-    /// Number of taxels.
+    /// The number of taxels.
     pub cells: u32,
-    /// How often a taxel was the same in the frame before and the frame after.
+    /// The number of cases in which a taxel had the same state in the previous and in the next frame.
     pub repeated: u64,
-    /// In how many of these cases it differed in between.
+    /// The number of these cases in which it had another state in between.
     pub flips: u64,
-    /// The probability that a taxel flips. None if [`Self::repeated`] is 0, as without three frames, or if the probability
-    /// seems to be ½ or more.
+    /// The probability that a taxel flips. None if it cannot be estimated: [`Self::repeated`] is 0, as with fewer than
+    /// three frames, or the probability seems to be ½ or more.
     pub noise: Option<f64>,
-    /// The standard error of that, if flips are independent of each other.
+    /// The standard error of [`Self::noise`], if flips are independent of each other.
     pub standard_error: Option<f64>,
-    /// Taxels that are stuck on.
+    /// The taxels that are stuck on.
     pub stuck_on: Imprint,
-    /// Taxels that are stuck off, or dead.
+    /// The taxels that are stuck off, or dead.
     pub stuck_off: Imprint,
 }
 
 impl FlipReport {
-    /// The taxels that carry no information: stuck on or off.
+    /// Returns the taxels that carry no information: those that are stuck on or off.
     pub fn mask(&self) -> Imprint {
         self.stuck_on.union(&self.stuck_off)
     }
 }
 
 impl FlipCounter {
-    /// Prepares for imprints of these taxels.
+    /// Creates a counter for imprints in which these taxels exist.
     pub fn new(cells: Imprint) -> Self {
         let count = usize::from(cells.columns()) * usize::from(cells.rows());
         Self {
@@ -80,7 +81,7 @@ impl FlipCounter {
         }
     }
 
-    /// Adds an imprint; one of another size is ignored.
+    /// Adds an imprint; an imprint of another size is ignored.
     pub fn add(&mut self, imprint: &Imprint) {
         if (imprint.columns(), imprint.rows()) != (self.cells.columns(), self.cells.rows()) {
             return;
@@ -130,7 +131,7 @@ impl FlipCounter {
         }
     }
 
-    /// What the frames show.
+    /// Returns the estimates from the frames so far.
     pub fn finish(&self) -> FlipReport {
         let (columns, rows) = (self.cells.columns(), self.cells.rows());
         let mut stuck_on = Imprint::empty(columns, rows);
@@ -139,7 +140,7 @@ impl FlipCounter {
             for column in 0..columns {
                 let index = usize::from(row) * usize::from(columns) + usize::from(column);
                 let counts = self.taxels[index];
-                // One frame in a hundred may be a flip.
+                // One frame in a hundred may show a flip.
                 let (alone, on) = counts.alone;
                 if alone >= ENOUGH && alone - on <= alone / 100 {
                     stuck_on.set(column, row, true);
@@ -164,15 +165,15 @@ impl FlipCounter {
     }
 }
 
-/// The flip probability e at which the given share of repeated states differs, and its standard error: that of the
-/// share, times the slope of e as a function of the share.
+/// Returns the flip probability e at which the given share of repeated states differs, and its standard error: the
+/// standard error of the share, times the slope of e as a function of the share.
 ///
-/// A share p of `repeated` independent states would have the variance p (1 − p) / repeated. But each frame is the first, the
-/// middle and the last of three, so states that are one or two frames apart are correlated. Let z be 1 − p where a state is
-/// repeated and differs, −p where it is repeated and does not, and 0 elsewhere. With a = e (1 − e) = p / (1 + 2p), which is
-/// the probability of the first, z has the variance a (1 − p), and its covariances with the next z and the one after that
-/// are a² (3 − 4p) and a p² (1 − 4a). These count twice. `related` is the sum over a; the variance of the share is p / repeated
-/// times that.
+/// A share p of `repeated` independent states would have the variance p (1 − p) / repeated. But each frame is the
+/// first, the middle and the last of three, so states that are one or two frames apart are correlated. Let z be 1 − p
+/// where a state is repeated and differs, −p where it is repeated and does not differ, and 0 elsewhere. The first case
+/// has the probability a = e (1 − e) = p / (1 + 2p). Then z has the variance a (1 − p), and its covariances with the
+/// next z and the one after that are a² (3 − 4p) and a p² (1 − 4a); these count twice. `related` is the sum divided by
+/// a; the variance of the share is p / repeated times `related`.
 #[expect(clippy::cast_precision_loss, reason = "an estimate")]
 fn noise(flips: u64, repeated: u64) -> Option<(f64, f64)> {
     if repeated == 0 {
@@ -206,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn the_error_of_the_noise_is_how_far_recordings_differ() {
+    fn the_standard_error_matches_the_spread_between_recordings() {
         let mut state = 3;
         let cells = Imprint::from_rows(["########"; 8].iter().copied()).expect("rows");
         for percent in [2, 10, 20, 30] {
@@ -239,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn the_noise_that_was_put_in_is_found_and_so_are_stuck_taxels() {
+    fn noise_and_stuck_taxels_are_found() {
         let rows = [
             "........", "..####..", "..####..", "..####..", "..####..", "........", "........",
             "........",
@@ -275,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn a_few_frames_tell_nothing() {
+    fn fewer_than_three_frames_give_no_estimate() {
         let cells = Imprint::from_rows(["##", "##"].iter().copied()).expect("rows");
         let mut counter = FlipCounter::new(cells);
         counter.add(&cells);
@@ -325,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_flip_the_noise_is_as_uncertain_as_with_one() {
+    fn the_standard_error_without_flips_is_that_with_one_flip() {
         let report = shown([(["###"; 3], 12)]);
         assert_eq!((report.noise, report.repeated), (Some(0.0), 90));
         assert_eq!(report.standard_error, Some(1.0 / 90.0));

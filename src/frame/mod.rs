@@ -1,12 +1,12 @@
-//! Frames of real sensors: what each cell measures, and how that becomes an imprint.
+//! Frames of real sensors: the values that cells measure, and how they become an imprint.
 //!
-//! A [`Frame`] holds up to 512 × 512 values as the sensor or a recording gives them. [`Processing`] does the rest, in
-//! this order, without allocating anything per frame:
+//! A [`Frame`] holds up to 512 × 512 values as the sensor or a recording gives them. [`Processing`] then does the
+//! following, in this order, without allocating anything per frame:
 //!
-//! 1. [`View`]: crop, flip, turn by quarters, and the mask of dead cells; at most 64 × 64 cells may be left.
-//! 2. [`Tare`]: the median of each cell over the first frames is subtracted.
-//! 3. Gain: each cell is multiplied by its own factor, if there are factors.
-//! 4. [`Rule`]: which values make a taxel active; then pieces that are too small are dropped.
+//! 1. [`View`]: crop, flip, turn by quarters, and mask dead cells. At most 64 × 64 cells may be left.
+//! 2. [`Tare`]: subtract the median of each cell over the first frames.
+//! 3. Gain: multiply each cell by its own factor, if there are factors.
+//! 4. [`Rule`]: decide which values make a taxel active, then drop pieces that are too small.
 //!
 //! Nothing is interpolated, smoothed or normalised. A cell without a value is NaN in memory and never active.
 //!

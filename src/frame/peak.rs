@@ -1,13 +1,13 @@
-//! The frame with the greatest pressure.
+//! The peak of a recording: the frame with the greatest pressure.
 
-/// The frame with the greatest sum of values so far; the first one if several are equal.
+/// The frame with the greatest sum of values so far; the first of several equal ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peak {
     best: Option<(u64, f64)>,
 }
 
 impl Peak {
-    /// Compares the sum of another frame; true if it is the new peak. A sum that is NaN never is.
+    /// Compares the sum of another frame. Returns true if it is the new peak; a sum that is NaN never is.
     pub fn add(&mut self, number: u64, sum: f64) -> bool {
         let is_peak = !sum.is_nan() && self.best.is_none_or(|(_, best)| sum > best);
         if is_peak {
@@ -16,7 +16,7 @@ impl Peak {
         is_peak
     }
 
-    /// Returns the number of the frame; None before the first one with a sum.
+    /// Returns the number of the peak frame; None before the first frame with a sum.
     pub fn number(&self) -> Option<u64> {
         self.best.map(|(number, _)| number)
     }

@@ -1,4 +1,4 @@
-//! From the values that a sensor sends to the imprint, without allocating anything per frame.
+//! The processing of frames: from the values that a sensor sends to the imprint, without allocating anything per frame.
 
 use crate::frame::error::{FrameError, check_size};
 use crate::frame::recorded::{Frame, LARGEST_VALUE};
@@ -8,25 +8,25 @@ use crate::frame::view::View;
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 
-/// Everything that is done with a frame, in the order of the fields.
+/// The settings by which frames are processed, in the order in which they are applied.
 #[derive(Clone, Debug)]
 pub struct Processing {
-    /// Crop, flip, turn, mask.
+    /// The crop, flips, turns and mask.
     pub view: View,
-    /// What is subtracted from each cell.
+    /// The values that are subtracted from the cells.
     pub tare: Option<Tare>,
-    /// What each cell is multiplied by.
+    /// The factor of each cell.
     pub gain: Option<Matrix<f64>>,
-    /// Which values are active; without one there is no imprint.
+    /// The rule that decides which taxels are active; None makes no imprint.
     pub rule: Option<Rule>,
-    /// 8-connected pieces of fewer taxels than this are dropped.
+    /// The smallest number of taxels of an 8-connected piece; smaller pieces are dropped.
     pub least: u32,
     raw: Matrix<f64>,
     tared: Matrix<f64>,
 }
 
 impl Default for Processing {
-    /// Changes nothing and makes no imprint.
+    /// Returns settings that change nothing and make no imprint.
     fn default() -> Self {
         Self {
             view: View::default(),
@@ -46,26 +46,26 @@ impl Default for Processing {
 pub struct Processed<'a> {
     /// The values after crop, flip, turn and mask, in the sensor's unit; NaN where there is no cell.
     pub raw: &'a Matrix<f64>,
-    /// The same after tare and gain.
+    /// The same values after tare and gain.
     pub tared: &'a Matrix<f64>,
-    /// The sum of the raw values; 0 without cells.
+    /// The sum of the raw values; 0 if there are none.
     pub sum: f64,
-    /// The largest raw value; None without cells.
+    /// The largest raw value; None if there are none.
     pub max: Option<f64>,
-    /// Number of cells that have a value.
+    /// The number of cells that have a value.
     pub cells: u32,
     /// The sum of the values after tare and gain, by which peaks are compared.
     pub tared_sum: f64,
-    /// The imprint; None without a rule.
+    /// The imprint; None if there is no rule.
     pub imprint: Option<Imprint>,
 }
 
 impl Processing {
-    /// The values of a frame after crop, flip, turn and mask, in the sensor's unit, and the same after tare and gain; NaN
-    /// where there is no cell.
+    /// Returns the values of a frame in the sensor's unit, first after crop, flip, turn and mask, then also after tare
+    /// and gain; NaN where there is no cell.
     ///
     /// # Errors
-    /// If the view, the tare or the gain does not fit the frame.
+    /// Returns an error if the view, the tare or the gain does not fit the frame.
     pub fn values(&mut self, frame: &Frame) -> Result<[&Matrix<f64>; 2], FrameError> {
         self.view.of(frame, &mut self.raw)?;
         self.tared.reset(self.raw.columns(), self.raw.rows(), 0.0);
@@ -82,7 +82,7 @@ impl Processing {
     /// Processes a frame.
     ///
     /// # Errors
-    /// If the view, the tare, the gain or the rule does not fit the frame.
+    /// Returns an error if the view, the tare, the gain or the rule does not fit the frame.
     pub fn run(&mut self, frame: &Frame) -> Result<Processed<'_>, FrameError> {
         self.values(frame)?;
         let (sum, max, cells) = summary(self.raw.values());
@@ -113,7 +113,7 @@ impl Processing {
     }
 }
 
-/// The sum, the maximum and the number of the values that exist.
+/// Returns the sum, the maximum and the number of the values that are not NaN.
 fn summary(values: &[f64]) -> (f64, Option<f64>, u32) {
     let (mut sum, mut max, mut cells) = (0.0, f64::NEG_INFINITY, 0);
     for &value in values {
@@ -126,7 +126,7 @@ fn summary(values: &[f64]) -> (f64, Option<f64>, u32) {
     (sum, (cells > 0).then_some(max), cells)
 }
 
-/// Multiplies each value by the gain of its cell; a product that is too large counts as no value.
+/// Multiplies each value by the gain of its cell. A product that is too large becomes NaN.
 fn multiply(values: &mut Matrix<f64>, gain: &Matrix<f64>) -> Result<(), FrameError> {
     check_size("gain", gain, values)?;
     for (value, gain) in values.values_mut().iter_mut().zip(gain.values()) {
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn the_noise_of_a_cell_is_multiplied_as_its_values_are() {
+    fn the_gain_applies_to_the_noise_of_a_cell_too() {
         let mut tare = TareFrames::new(3);
         for value in [10.0, 11.0, 12.0] {
             tare.add(&Matrix::filled(1, 1, value)).expect("it fits");
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn a_product_that_is_too_large_for_a_sum_is_no_value() {
+    fn a_product_that_is_too_large_for_a_sum_counts_as_no_value() {
         let mut frame = Frame::new(3, 1);
         frame.values_mut().copy_from_slice(&[1e299, -1e299, 2.0]);
         let mut gain = Matrix::filled(3, 1, 100.0);

@@ -2,27 +2,27 @@
 
 use crate::frame::error::FrameError;
 
-/// The largest number of columns, and of rows, of a frame before it is cropped.
+/// The largest number of columns, and of rows, that a frame may have before it is cropped.
 pub const MAX_FRAME_SIDE: u16 = 512;
 
-/// The largest value that a cell may have; the smallest is minus that. So sums of a frame are always finite.
+/// The largest value that a cell may have; the smallest is its negative. So the sum of a frame is always finite.
 pub const LARGEST_VALUE: f64 = 1e300;
 
 /// The values of a sensor's cells at one moment, in the sensor's unit.
 ///
-/// Readers and decoders reuse the same frame, so nothing is allocated per frame.
+/// Readers and decoders reuse one frame, so nothing is allocated per frame.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Its number in its channel, from 0.
+    /// The number of the frame in its channel, from 0.
     pub number: u64,
-    /// The number of its channel (one of several sensors), from 0.
+    /// The number of the channel, from 0; each of several sensors has one.
     pub channel: usize,
-    /// The recording's own label for it, if it has one.
+    /// The label that the recording gives the frame, if any.
     pub label: Option<i64>,
-    /// Seconds since the start of the recording, if known. Times may repeat and go back.
+    /// The time in seconds since the start of the recording, if known. Times may repeat and go back.
     pub time: Option<f64>,
-    /// The row and column of the whole sensor at which the frame begins, as the recording counts them, if it states
-    /// them.
+    /// The row and column of the whole sensor at which the frame begins, counted as in the recording; None if the
+    /// recording does not state them.
     pub first: Option<(u32, u32)>,
     columns: u16,
     rows: u16,
@@ -30,7 +30,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Creates a frame of cells without values. Sides are clamped to 1 to 512.
+    /// Creates a frame whose cells have no values. Sides are clamped to 1 to 512.
     pub fn new(columns: u16, rows: u16) -> Self {
         let mut frame = Self {
             number: 0,
@@ -46,8 +46,8 @@ impl Frame {
         frame
     }
 
-    /// Creates a frame from the values of its cells, row by row; NaN where the sensor has no cell. A value that is infinite or
-    /// beyond [`LARGEST_VALUE`] counts as none.
+    /// Creates a frame from the values of its cells, row by row; NaN stands for no cell. A value that is infinite or
+    /// beyond ±[`LARGEST_VALUE`] counts as no value.
     ///
     /// ```
     /// use taxel::frame::Frame;
@@ -60,7 +60,7 @@ impl Frame {
     /// ```
     ///
     /// # Errors
-    /// If a side is not 1 to 512, or the number of values is not that of the cells.
+    /// Returns an error if a side is not 1 to 512, or the number of values differs from the number of cells.
     pub fn from_values(columns: u16, rows: u16, values: &[f64]) -> Result<Self, FrameError> {
         let mut frame = Self::new(columns, rows);
         if (frame.columns, frame.rows) != (columns, rows) {
@@ -70,10 +70,10 @@ impl Frame {
         Ok(frame)
     }
 
-    /// Changes the values of all cells, row by row; number, channel, label and time stay. It does not allocate.
+    /// Sets the values of all cells, row by row; everything else stays. Does not allocate.
     ///
     /// # Errors
-    /// If the number of values is not that of the cells; then nothing is changed.
+    /// Returns an error if the number of values differs from the number of cells; then nothing is changed.
     pub fn set_values(&mut self, values: &[f64]) -> Result<(), FrameError> {
         if values.len() != self.values.len() {
             return Err(FrameError::Values {
@@ -86,8 +86,8 @@ impl Frame {
         Ok(())
     }
 
-    /// Changes the size and empties all cells; number, channel, label and time stay. It allocates only if there are
-    /// more cells than ever before.
+    /// Changes the size, clamped to 1 to 512 on each side, and removes all values; everything else stays. Allocates
+    /// only if there are more cells than ever before.
     pub fn reset(&mut self, columns: u16, rows: u16) {
         self.columns = columns.clamp(1, MAX_FRAME_SIDE);
         self.rows = rows.clamp(1, MAX_FRAME_SIDE);
@@ -96,7 +96,7 @@ impl Frame {
         self.values.resize(cells, f64::NAN);
     }
 
-    /// Makes this frame a copy of another one, reusing its memory.
+    /// Copies another frame into this one, reusing its memory.
     pub fn copy_from(&mut self, other: &Self) {
         let values = std::mem::take(&mut self.values);
         *self = Self {
@@ -113,27 +113,27 @@ impl Frame {
         self.values.extend_from_slice(&other.values);
     }
 
-    /// Number of columns.
+    /// Returns the number of columns.
     pub fn columns(&self) -> u16 {
         self.columns
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn rows(&self) -> u16 {
         self.rows
     }
 
-    /// The values row by row; NaN where the sensor has no cell.
+    /// Returns the values row by row; NaN where the sensor has no cell.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// The same, mutable. A value that is infinite or beyond [`LARGEST_VALUE`] counts as none.
+    /// Returns the values for writing. A value that is infinite or beyond ±[`LARGEST_VALUE`] counts as no value.
     pub fn values_mut(&mut self) -> &mut [f64] {
         &mut self.values
     }
 
-    /// Number of cells that have a value.
+    /// Returns the number of cells that have a value.
     pub fn cells(&self) -> usize {
         let is_value = |value: &&f64| value.abs() <= LARGEST_VALUE;
         self.values.iter().filter(is_value).count()
@@ -145,7 +145,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_copy_has_all_that_the_frame_has() {
+    fn a_copy_equals_the_frame() {
         let mut frame = Frame::new(2, 1);
         frame.values_mut().copy_from_slice(&[1.0, 2.0]);
         (frame.number, frame.channel, frame.label) = (3, 4, Some(5));

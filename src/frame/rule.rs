@@ -1,4 +1,4 @@
-//! Which values make a taxel active.
+//! The rules that decide which values make a taxel active.
 
 use crate::description::{RegionKind, each_region};
 use crate::frame::error::{FrameError, check_size};
@@ -7,20 +7,23 @@ use crate::frame::tare::Tare;
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 
-/// How a threshold is set. Comparisons include the threshold itself; a cell without a value is never active.
+/// The rule that decides which values make a taxel active. A value equal to a threshold is active; a cell without a
+/// value never is.
 ///
-/// Only its functions make one, since they check the numbers. To read one, match with `..`, as in `Rule::AtLeast(value, ..)`.
+/// Rules are created only by the functions below, which check the numbers. To read a rule, match with `..`, as in
+/// `Rule::AtLeast(value, ..)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Rule {
-    /// Active at this value or more, in the sensor's unit.
+    /// A taxel is active at this value or more, in the sensor's unit.
     #[non_exhaustive]
     AtLeast(f64),
-    /// Active at this percentage of the frame's largest value or more; no taxel is active if that value is 0 or less.
+    /// A taxel is active at this percentage of the frame's largest value or more. No taxel is active if that value is 0
+    /// or less.
     #[non_exhaustive]
     Percent(f64),
-    /// Active at `high` or more. A cell of at least `low` is active if an 8-connected path of such cells joins it to
-    /// one of at least `high`.
+    /// A taxel is active at `high` or more. A cell of at least `low` is active too if an 8-connected path of such cells
+    /// joins it to a cell of at least `high`.
     #[non_exhaustive]
     Hysteresis {
         /// The lower threshold.
@@ -28,7 +31,8 @@ pub enum Rule {
         /// The upper threshold.
         high: f64,
     },
-    /// Active at this many standard deviations of the cell's own noise above its tare, or more.
+    /// A taxel is active if its value exceeds the tare by this number of standard deviations of the cell's own noise,
+    /// or more.
     #[non_exhaustive]
     Noise(f64),
 }
@@ -48,34 +52,35 @@ fn checked(
 }
 
 impl Rule {
-    /// A percentage of a value. It multiplies before it divides: 7 % of 100 is 7, but 7 / 100 · 100 is more in f64.
+    /// Returns a percentage of a value. It multiplies before it divides: 7 % of 100 is 7, but 7 / 100 · 100 is more in
+    /// f64.
     pub(crate) fn share(percent: f64, value: f64) -> f64 {
         percent * value / 100.0
     }
 
-    /// A fixed threshold, in the sensor's unit.
+    /// Creates a rule with a fixed threshold, in the sensor's unit.
     ///
     /// # Errors
-    /// If it is not finite, or beyond ±1e300.
+    /// Returns an error if the threshold is not finite, or beyond ±1e300.
     pub fn at_least(threshold: f64) -> Result<Self, FrameError> {
         let value = checked("at_least", threshold, true, "-1e300 to 1e300")?;
         Ok(Self::AtLeast(value))
     }
 
-    /// A share of the largest value, in percent.
+    /// Creates a rule with a threshold in percent of the largest value.
     ///
     /// # Errors
-    /// If it is not above 0 and at most 100.
+    /// Returns an error if the percentage is not above 0 and at most 100.
     pub fn percent(percent: f64) -> Result<Self, FrameError> {
         let fits = percent > 0.0 && percent <= 100.0;
         let allowed = "above 0, up to 100";
         Ok(Self::Percent(checked("percent", percent, fits, allowed)?))
     }
 
-    /// Two thresholds, in the sensor's unit.
+    /// Creates a rule with two thresholds, in the sensor's unit.
     ///
     /// # Errors
-    /// If one is not finite, or `low` is above `high`.
+    /// Returns an error if a threshold is not finite or beyond ±1e300, or `low` is above `high`.
     pub fn hysteresis(low: f64, high: f64) -> Result<Self, FrameError> {
         let high = checked("high", high, true, "-1e300 to 1e300")?;
         let allowed = "at most high";
@@ -83,22 +88,22 @@ impl Rule {
         Ok(Self::Hysteresis { low, high })
     }
 
-    /// Standard deviations of noise; needs a tare.
+    /// Creates a rule with a threshold in standard deviations of the noise. The rule needs a tare.
     ///
     /// # Errors
-    /// If the number is not above 0 and at most 1000.
+    /// Returns an error if the number is not above 0 and at most 1000.
     pub fn noise(deviations: f64) -> Result<Self, FrameError> {
         let fits = deviations > 0.0 && deviations <= 1000.0;
         let allowed = "above 0, up to 1000";
         Ok(Self::Noise(checked("noise", deviations, fits, allowed)?))
     }
 
-    /// The imprint of values after tare and gain. A margin of noise is measured before the gain, so it is multiplied by
-    /// the gain as well.
+    /// Returns the imprint of values after tare and gain. The noise of a cell is measured before the gain, so its
+    /// margin is multiplied by the gain too.
     ///
     /// # Errors
-    /// If the rule needs noise and there is no tare of two frames or more, or if the size of the tare or the gain
-    /// differs.
+    /// For the noise rule, returns an error if there is no tare of two or more frames, or if the tare or the gain
+    /// differs in size from the values.
     pub fn imprint(
         &self,
         values: &Matrix<f64>,
@@ -110,7 +115,7 @@ impl Rule {
             Self::Percent(percent) => {
                 let max = values.values().iter().copied().fold(f64::NAN, f64::max);
                 if max > 0.0 {
-                    // 100 % of the largest value may be rounded above that value.
+                    // 100 % of the largest value may be rounded to more than that value.
                     from(values, Self::share(percent, max).min(max))
                 } else {
                     Imprint::empty(values.columns(), values.rows())
@@ -149,7 +154,7 @@ impl Rule {
     }
 }
 
-/// The cells at a threshold or above.
+/// Returns the cells at a threshold or above.
 fn from(values: &Matrix<f64>, threshold: f64) -> Imprint {
     active(values, |_, value| value >= threshold)
 }
@@ -167,7 +172,7 @@ fn active(values: &Matrix<f64>, is_active: impl Fn(usize, f64) -> bool) -> Impri
     imprint
 }
 
-/// The same imprint without its 8-connected pieces of fewer than `least` taxels.
+/// Returns the imprint without its 8-connected pieces of fewer than `least` taxels.
 pub(crate) fn without_small(imprint: &Imprint, least: u32) -> Imprint {
     let mut rest = Imprint::empty(imprint.columns(), imprint.rows());
     each_region(imprint, |region| {
@@ -197,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn thresholds_include_themselves_and_no_cell_is_never_active() {
+    fn values_at_a_threshold_are_active_and_missing_cells_never_are() {
         let values = matrix(&[&[9.999, 10.0, f64::NAN, 40.0]]);
         assert_eq!(imprint(Rule::at_least(10.0), &values), ".#.#");
         assert_eq!(imprint(Rule::percent(25.0), &values), ".#.#");
@@ -221,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn percent_of_nothing_is_nothing() {
+    fn no_taxel_is_active_at_a_percentage_of_no_pressure() {
         for nothing in [0.0, -3.0, f64::NAN] {
             assert_eq!(
                 imprint(Rule::percent(50.0), &matrix(&[&[nothing; 2]])),
@@ -264,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_is_each_cells_own() {
+    fn each_cell_has_its_own_noise() {
         let mut tare = TareFrames::new(3);
         for frame in [[0.0, 0.0], [1.0, 10.0], [2.0, 20.0]] {
             tare.add(&matrix(&[&frame])).expect("of one size");
@@ -286,7 +291,7 @@ mod tests {
             tare.add(&matrix(&[&cells])).expect("of one size");
         }
         let tare = tare.finish().expect("three frames");
-        // A deviation of 1.4826 above the median of 11; of the last cell the sign is turned.
+        // The deviation is 1.4826 above the median of 11. The gain of the last cell is negative, so its sign is turned.
         let (quiet, loud) = (11.0 + 4.4, 11.0 + 4.5);
         let gain = matrix(&[&[1.0, 10.0, 0.01, 0.0, -10.0]]);
         let rule = Rule::noise(3.0).expect("in range");
@@ -302,7 +307,7 @@ mod tests {
         let below = |value: f64| 22.0 - value;
         assert_eq!(imprint([quiet, quiet, quiet, quiet, below(quiet)]), ".....");
         assert_eq!(imprint([loud, loud, loud, loud, below(loud)]), "###.#");
-        // One step counts as much, where deviations are smaller.
+        // If deviations are smaller than one step, the margin is one step.
         let rule = Rule::noise(0.1).expect("in range");
         let values = matrix(&[&[0.9, 9.0, 0.009, 0.0, 9.0]]);
         let imprint = rule.imprint(&values, Some(&tare), Some(&gain));
@@ -333,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn one_frame_of_tare_tells_nothing_of_noise() {
+    fn a_tare_of_one_frame_does_not_measure_noise() {
         let rule = Rule::noise(3.0).expect("in range");
         let of_frames = |count: u64| {
             let mut tare = TareFrames::new(count);

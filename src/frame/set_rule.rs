@@ -1,36 +1,36 @@
-//! A rule, and who set it: an argument, the settings, the recording or a key.
+//! A rule together with its origin: an argument, the settings, the recording or a key.
 
 use crate::frame::processing::Processing;
 use crate::frame::rule::Rule;
 
-/// A rule and who set it.
+/// A rule and its origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetRule {
     /// The rule.
     pub rule: Rule,
-    /// Pieces of fewer taxels are dropped; 0 or 1 drops none.
+    /// The smallest number of taxels of a piece; smaller pieces are dropped. 0 or 1 drops none.
     pub least: u32,
-    /// Where it is from.
+    /// The origin of the rule.
     pub from: RuleOrigin,
 }
 
-/// Where a rule is from.
+/// The origin of a rule.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum RuleOrigin {
-    /// An argument of the command.
+    /// An argument on the command line.
     #[default]
     Flag,
     /// The recording, or the description beside it.
     File,
     /// The user's settings.
     Settings,
-    /// A key of the live page.
+    /// A key on the live page.
     Key,
 }
 
 impl RuleOrigin {
-    /// Its name in answers and descriptions.
+    /// Returns the name of the origin, as in answers and descriptions.
     pub fn name(self) -> &'static str {
         match self {
             Self::Flag => "flag",
@@ -42,8 +42,8 @@ impl RuleOrigin {
 }
 
 impl SetRule {
-    /// Sets the rule by which frames are processed, or removes it. After a removal, the smallest size of a piece is
-    /// kept for the next rule.
+    /// Sets or removes the rule by which frames are processed. If it is removed, the smallest size of a piece is kept
+    /// for the next rule.
     pub fn apply(rule: Option<Self>, processing: &mut Processing) {
         processing.rule = rule.map(|set| set.rule);
         if let Some(set) = rule {
@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_rule_is_applied_with_its_least_and_taken_away_without() {
+    fn a_removed_rule_leaves_the_smallest_size_of_a_piece() {
         let mut processing = Processing::default();
         let rule = SetRule {
             rule: Rule::AtLeast(2.0),

@@ -1,26 +1,26 @@
-//! The values of the cells when nothing touches them: the median of each over some frames, and how much it varies.
+//! The tare: the value of each cell when nothing touches it (the median over some frames), and how much it varies.
 
 use crate::frame::error::{FrameError, check_size};
 use crate::matrix::Matrix;
 
-/// The most values that a tare keeps until it is finished: 256 MiB.
+/// The largest number of values that a tare stores until it is finished: 256 MiB.
 const MAX_VALUES: u64 = 1 << 25;
 
-/// The normal distribution's standard deviation is this times its median absolute deviation.
+/// The standard deviation of the normal distribution divided by its median absolute deviation.
 const MAD_TO_DEVIATION: f64 = 1.4826;
 
-/// Gathers the frames of a tare.
+/// The frames from which a tare is made.
 #[derive(Clone, Debug)]
 pub struct TareFrames {
     wanted: u64,
     size: Option<(u8, u8)>,
-    /// Frame by frame.
+    /// All values, frame by frame.
     values: Vec<f64>,
     frames: u64,
 }
 
 impl TareFrames {
-    /// Prepares for `wanted` frames, at least one.
+    /// Creates an empty set that needs `wanted` frames, at least one.
     pub fn new(wanted: u64) -> Self {
         Self {
             wanted: wanted.max(1),
@@ -30,20 +30,20 @@ impl TareFrames {
         }
     }
 
-    /// The number of frames that it needs.
+    /// Returns the number of frames that the tare needs.
     pub fn wanted(&self) -> u64 {
         self.wanted
     }
 
-    /// Number of frames that are still missing.
+    /// Returns the number of frames that are still missing.
     pub fn missing(&self) -> u64 {
         self.wanted - self.frames
     }
 
-    /// Whether as many frames as it needs can be kept if each has this many values.
+    /// Checks that the needed number of frames fits into memory if each has this number of values.
     ///
     /// # Errors
-    /// If that takes too much memory.
+    /// Returns [`FrameError::TareSize`] if they take too much memory.
     pub fn check_memory(&self, values: usize) -> Result<(), FrameError> {
         let values = values as u64;
         if self.wanted.saturating_mul(values) > MAX_VALUES {
@@ -53,10 +53,11 @@ impl TareFrames {
         Ok(())
     }
 
-    /// Adds a frame; does nothing once there are enough.
+    /// Adds a frame; does nothing if there are enough.
     ///
     /// # Errors
-    /// If it differs in size from the first one, or if the wanted number of frames of this size takes too much memory.
+    /// Returns an error if the frame differs in size from the first one, or if the needed number of frames of this size
+    /// takes too much memory.
     pub fn add(&mut self, frame: &Matrix<f64>) -> Result<(), FrameError> {
         if self.missing() == 0 {
             return Ok(());
@@ -76,10 +77,10 @@ impl TareFrames {
         Ok(())
     }
 
-    /// Returns the tare.
+    /// Computes the tare.
     ///
     /// # Errors
-    /// If frames are missing.
+    /// Returns an error if frames are missing.
     pub fn finish(self) -> Result<Tare, FrameError> {
         let (frames, wanted) = (self.frames, self.wanted);
         let (Some((columns, rows)), true) = (self.size, frames == wanted) else {
@@ -109,7 +110,8 @@ impl TareFrames {
     }
 }
 
-/// The median: the middle value, or the mean of the two middle values of an even number; NaN without values.
+/// Returns the median: the middle value, or the mean of the two middle ones if their number is even; NaN without
+/// values.
 fn median(values: &mut [f64]) -> f64 {
     values.sort_unstable_by(f64::total_cmp);
     let middle = values.len() / 2;
@@ -120,7 +122,7 @@ fn median(values: &mut [f64]) -> f64 {
     }
 }
 
-/// The smallest difference between two values; 1 if all are equal.
+/// Returns the smallest difference between two values that are not equal; 1 if all are equal.
 fn step(mut values: Vec<f64>) -> f64 {
     values.retain(|value| !value.is_nan());
     values.sort_unstable_by(f64::total_cmp);
@@ -131,28 +133,28 @@ fn step(mut values: Vec<f64>) -> f64 {
     if least.is_finite() { least } else { 1.0 }
 }
 
-/// What is subtracted from each cell.
+/// The values that are subtracted from the cells, and their noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tare {
     baseline: Matrix<f64>,
     /// The median absolute deviation of each cell.
     deviation: Matrix<f64>,
-    /// One step of the values.
+    /// The smallest difference between two values.
     step: f64,
     frames: u64,
 }
 
 impl Tare {
-    /// The median of each cell, in the sensor's unit; NaN where a cell never had a value.
+    /// Returns the median of each cell, in the sensor's unit; NaN where a cell never had a value.
     pub fn baseline(&self) -> &Matrix<f64> {
         &self.baseline
     }
 
-    /// Rebuilds a tare from the median of each cell, its median absolute deviation, and one step of the values. The
-    /// deviation defaults to 0 and the step to 1.
+    /// Rebuilds a tare from the median of each cell, the median absolute deviation of each cell, and the step of the
+    /// values. The deviation defaults to 0 and the step to 1.
     ///
     /// # Errors
-    /// If the sizes differ.
+    /// Returns an error if the sizes differ.
     pub fn from_parts(
         baseline: Matrix<f64>,
         deviation: Option<Matrix<f64>>,
@@ -170,23 +172,23 @@ impl Tare {
         })
     }
 
-    /// The median absolute deviation of each cell.
+    /// Returns the median absolute deviation of each cell.
     pub fn median_absolute_deviation(&self) -> &Matrix<f64> {
         &self.deviation
     }
 
-    /// The smallest difference between two of its values.
+    /// Returns the step of the values: the smallest difference between two of them.
     pub fn step(&self) -> f64 {
         self.step
     }
 
-    /// The number of frames it was made from.
+    /// Returns the number of frames from which the tare was made.
     pub fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// How far a tared value of each cell must exceed 0 to stand out from the noise: `k` standard deviations, estimated
-    /// from the median absolute deviation, but at least one step of the values.
+    /// Returns how far the tared value of a cell must exceed 0 to stand out from the noise: `k` standard deviations,
+    /// estimated from the median absolute deviation, but at least one step of the values.
     pub(crate) fn margin(&self, index: usize, k: f64) -> f64 {
         let deviation = self.deviation.values()[index];
         (k * MAD_TO_DEVIATION * deviation).max(self.step)
@@ -195,7 +197,7 @@ impl Tare {
     /// Subtracts the tare from the values.
     ///
     /// # Errors
-    /// If the values are of another size.
+    /// Returns an error if the values are of another size.
     pub fn take_off(&self, values: &mut Matrix<f64>) -> Result<(), FrameError> {
         check_size("tare", &self.baseline, values)?;
         for (value, baseline) in values.values_mut().iter_mut().zip(self.baseline.values()) {
@@ -220,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn the_median_is_of_the_values_present() {
+    fn the_median_ignores_missing_values() {
         let tare = tare(&[[1.0, f64::NAN], [4.0, 7.0], [3.0, 9.0], [10.0, f64::NAN]]);
         let tare = tare.expect("four frames");
         assert_eq!(tare.baseline().values(), [3.5, 8.0]);
@@ -233,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tare_needs_all_its_frames_and_some_memory() {
+    fn a_tare_needs_all_its_frames_and_enough_memory() {
         let few = TareFrames::new(3).finish();
         assert_eq!(
             few.map_err(|error| error.to_string()),
@@ -244,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tare_may_be_as_long_as_its_refusal_says() {
+    fn a_tare_may_have_the_largest_number_of_frames_that_the_error_names() {
         assert_eq!(TareFrames::new(8192).check_memory(64 * 64), Ok(()));
         let longer = TareFrames::new(8193).check_memory(64 * 64);
         assert_eq!(longer, Err(FrameError::TareSize { most: 8192 }));

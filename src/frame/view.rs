@@ -1,4 +1,4 @@
-//! Which part of a frame is used, and how it is oriented: crop, flip, turn, mask.
+//! The view of a frame: which part is used, and how it is oriented (crop, flip, turn, mask).
 
 use crate::frame::error::FrameError;
 use crate::frame::recorded::{Frame, LARGEST_VALUE};
@@ -9,37 +9,39 @@ use crate::sensor::MAX_SIDE;
 /// A rectangle of whole cells of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Crop {
-    /// Its first column, from 0.
+    /// The first column, from 0.
     pub left: u16,
-    /// Its first row, from 0.
+    /// The first row, from 0.
     pub top: u16,
-    /// Number of its columns.
+    /// The number of columns.
     pub columns: u16,
-    /// Number of its rows.
+    /// The number of rows.
     pub rows: u16,
 }
 
-/// Crop, flip, turn and mask, done in this order.
+/// The crop, flips, turns and mask of a frame, applied in this order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct View {
-    /// The part that is kept; None keeps the whole frame.
+    /// The part to keep; None keeps the whole frame.
     pub crop: Option<Crop>,
-    /// Whether columns are reversed: the left one becomes the right one.
+    /// Whether the columns are reversed: the left one becomes the right one.
     pub flip_x: bool,
-    /// Whether rows are reversed.
+    /// Whether the rows are reversed.
     pub flip_y: bool,
-    /// Quarter turns clockwise as seen; four are the same as none.
+    /// The number of quarter turns clockwise as seen. Four are the same as none.
     pub quarter_turns: u8,
-    /// Dead cells: cells that are active here have no value. The mask has the size of the cropped and turned frame.
+    /// The mask of dead cells: a cell that is active in it has no value. It has the size of the cropped and turned
+    /// frame.
     pub mask: Option<Imprint>,
 }
 
 impl View {
-    /// Writes the visible part of a frame into a matrix of its size. Values that are infinite, or too large for a sum,
-    /// become NaN.
+    /// Writes the visible part of a frame into a matrix, which takes its size. Values that are infinite or beyond
+    /// ±[`LARGEST_VALUE`] become NaN.
     ///
     /// # Errors
-    /// If the crop reaches beyond the frame, more than 64 × 64 cells are left, or the mask is of another size.
+    /// Returns an error if the crop reaches beyond the frame, more than 64 × 64 cells are left, or the mask is of
+    /// another size.
     pub fn of(&self, frame: &Frame, seen: &mut Matrix<f64>) -> Result<(), FrameError> {
         let whole = Crop {
             left: 0,
@@ -71,7 +73,7 @@ impl View {
         self.hide(seen)
     }
 
-    /// Columns and rows of the visible part of a frame of that size; they may exceed the allowed size.
+    /// Returns the columns and rows of the visible part of a frame of the given size. They may exceed 64.
     pub fn size(&self, columns: u16, rows: u16) -> (u16, u16) {
         let (columns, rows) = self
             .crop
@@ -111,9 +113,9 @@ impl View {
         }
     }
 
-    /// The cell of the visible part to which a cell of the cropped frame goes.
+    /// Returns the cell of the visible part that a cell of the cropped frame becomes.
     fn position(&self, column: u8, row: u8, columns: u8, rows: u16) -> (u8, u8) {
-        // At most 64: checked before.
+        // At most 64 rows, as `of` has checked.
         let last_row = u8::try_from(rows.saturating_sub(1)).unwrap_or(MAX_SIDE - 1);
         let last_column = columns.saturating_sub(1);
         let x = if self.flip_x {
@@ -154,7 +156,7 @@ impl View {
 mod tests {
     use super::*;
 
-    /// `1 2 3 / 4 5 6` as it is seen, with rows separated by `/`.
+    /// Returns the view of the frame `1 2 3 / 4 5 6`, with rows separated by `/`.
     fn seen(view: &View) -> Result<String, FrameError> {
         let mut frame = Frame::new(3, 2);
         frame
@@ -201,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mask_is_laid_on_last_and_must_fit() {
+    fn a_mask_is_applied_last_and_must_fit() {
         let mask = |rows: &str| View {
             quarter_turns: 1,
             mask: rows.parse().ok(),
@@ -216,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_has_at_most_64_a_side() {
+    fn a_crop_leaves_at_most_64_cells_a_side() {
         let mut matrix = Matrix::filled(1, 1, 0.0);
         let frame = Frame::new(65, 2);
         let large = View::default().of(&frame, &mut matrix);

@@ -1,4 +1,4 @@
-//! Why a value is not allowed: one message for forms, flags and files.
+//! The error for a value that is not allowed, with one message for forms, flags and files.
 
 use std::fmt;
 
@@ -6,40 +6,40 @@ use crate::parameter::number::{complaint, short};
 use crate::parameter::range::Range;
 use crate::parameter::table::{Parameter, Unit};
 
-/// Why a value is not allowed. The message names the parameter, the value, and what is expected.
+/// The error for a value that is not allowed. The message names the parameter, the value, and what is expected.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ParameterError {
     /// The text is not a number.
     Number {
-        /// Which parameter.
+        /// The parameter.
         parameter: Parameter,
-        /// The text, or its beginning.
+        /// The text, shortened.
         text: String,
     },
     /// The number is out of range.
     Range {
-        /// Which parameter.
+        /// The parameter.
         parameter: Parameter,
         /// The number.
         value: f64,
-        /// What is allowed.
+        /// The allowed range.
         range: Range,
     },
     /// A required value is missing.
     Missing {
-        /// Which parameter.
+        /// The parameter.
         parameter: Parameter,
-        /// What is allowed.
+        /// The allowed range.
         range: Range,
     },
-    /// The shape, or the sensor, has no such parameter.
+    /// The shape, or the sensor, does not have the parameter.
     Foreign {
-        /// Which parameter.
+        /// The parameter.
         parameter: Parameter,
-        /// "hexagon", "picture" or the like.
+        /// The name of the shape or sensor, such as "hexagon" or "picture".
         owner: &'static str,
-        /// The parameters that it has.
+        /// The parameters that the shape or sensor has.
         expected: &'static [Parameter],
     },
 }
@@ -54,7 +54,7 @@ impl fmt::Display for ParameterError {
 }
 
 impl ParameterError {
-    /// Returns the parameter that was to be set.
+    /// Returns the parameter whose value is not allowed.
     pub fn parameter(&self) -> Parameter {
         match self {
             Self::Number { parameter, .. }
@@ -90,7 +90,7 @@ impl ParameterError {
         }
     }
 
-    /// Returns what is wrong with the value, to be put after it.
+    /// Returns the part of the message that says what is wrong with the value, to be put after the value.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -104,7 +104,7 @@ impl ParameterError {
             Self::Number { text, .. } => format!("is {}", complaint(text)),
             Self::Range { value, range, .. } => {
                 let missed = range.missed_by(*value);
-                // The only other reason why a number is refused.
+                // If the number is in range, it was refused because it is not whole.
                 let missed = missed.unwrap_or_else(|| "is not a whole number".to_owned());
                 format!("{missed} (allowed: {range})")
             }
@@ -113,7 +113,7 @@ impl ParameterError {
         }
     }
 
-    /// Returns what is expected, for a place that shows the field beside it.
+    /// Returns the part of the message that says what is expected, for a place that shows the field beside it.
     pub fn expected(&self) -> String {
         match self {
             Self::Number { text, .. } => complaint(text),

@@ -1,6 +1,6 @@
-//! Numbers as text: one way to read them and one to write them, for forms, flags, files and messages.
+//! Numbers as text: functions that read and write them in the same way in forms, flags, files and messages.
 
-/// Reads a decimal number, ignoring spaces around it. None if the text is not one, or if it is not finite.
+/// Reads a decimal number, ignoring spaces around it. None if the text is not a number, or the number is not finite.
 ///
 /// ```
 /// use taxel::parameter::number;
@@ -12,8 +12,8 @@ pub fn read(text: &str) -> Option<f64> {
     number.filter(|number| number.is_finite())
 }
 
-/// Formats a number with the fewest digits that read back as the same number, in scientific notation where it would
-/// have many zeros.
+/// Formats a number with the fewest digits that read back as the same number. Numbers with many zeros are written in
+/// scientific notation.
 ///
 /// ```
 /// use taxel::parameter::number;
@@ -28,7 +28,7 @@ pub fn short(number: f64) -> String {
     }
 }
 
-/// A part divided by the whole; 0 if the whole is 0, as in a shard without poses.
+/// Returns a part divided by the whole; 0 if the whole is 0, as in a shard without poses.
 #[expect(clippy::cast_precision_loss, reason = "a share has no more digits")]
 pub(crate) fn share(part: u128, whole: u128) -> f64 {
     if whole == 0 {
@@ -37,8 +37,8 @@ pub(crate) fn share(part: u128, whole: u128) -> f64 {
     part as f64 / whole as f64
 }
 
-/// Rounds to some decimals, so that what computing adds to the last digits neither shows nor drifts: 0.1 + 0.2 is 0.3.
-/// Never a negative zero. A number so large that it has no such decimals remains as it is.
+/// Rounds a number to some decimals, so that rounding errors in the last digits neither show nor add up: 0.1 + 0.2
+/// becomes 0.3. The result is never a negative zero. A number that is too large to have such decimals stays as it is.
 ///
 /// ```
 /// use taxel::parameter::number;
@@ -50,7 +50,8 @@ pub fn to_decimals(value: f64, decimals: i32) -> f64 {
     if rounded.is_finite() { rounded } else { value }
 }
 
-/// Returns the message for a text that is not a number; if a decimal point would make it one, with the right spelling.
+/// Returns the message for text that is not a number. If a decimal comma is the reason, the message shows the right
+/// spelling.
 ///
 /// ```
 /// use taxel::parameter::number;
@@ -65,7 +66,7 @@ pub fn complaint(text: &str) -> String {
     }
 }
 
-/// A large count, its digits in groups of three.
+/// Formats a count with its digits in groups of three.
 ///
 /// ```
 /// use taxel::parameter::number::grouped;
@@ -83,7 +84,7 @@ pub fn grouped(count: impl Into<u128>) -> String {
     text
 }
 
-/// A count with its noun, in the singular or the plural.
+/// Formats a count and its noun, in the singular or the plural.
 ///
 /// ```
 /// use taxel::parameter::number::counted;

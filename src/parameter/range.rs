@@ -1,19 +1,19 @@
-//! Ranges of numbers. Their bounds may be included or not, and may grow with the sensor.
+//! Ranges of numbers. A bound may or may not belong to the range, and may grow with the sensor.
 
 use std::fmt;
 
 /// One bound of a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Bound {
-    /// This number is allowed.
+    /// The bound itself is allowed.
     At(f64),
-    /// Only numbers beyond this one are allowed.
+    /// Only numbers beyond the bound are allowed.
     Beyond(f64),
-    /// The larger side of the sensor times this factor is allowed.
+    /// The bound is this factor times the larger side of the sensor, and is allowed.
     Side(f64),
 }
 
-/// The numbers that a parameter allows. Displayed as "above 0, up to 16".
+/// The numbers that a parameter allows. Written as "above 0, up to 16".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     low: Bound,
@@ -27,7 +27,7 @@ impl Range {
         Self { low, high, side }
     }
 
-    /// Returns a bound's number, and whether that number is allowed itself.
+    /// Returns the number of a bound, and whether that number itself is allowed.
     fn bound(&self, bound: Bound) -> (f64, bool) {
         match bound {
             Bound::At(value) => (value, true),
@@ -36,13 +36,14 @@ impl Range {
         }
     }
 
-    /// Whether a number is allowed. NaN and the infinities never are.
+    /// Returns true if a number is allowed. NaN and the infinities never are.
     pub fn contains(&self, value: f64) -> bool {
         let ((low, with_low), (high, with_high)) = (self.bound(self.low), self.bound(self.high));
         (value > low || with_low && value == low) && (value < high || with_high && value == high)
     }
 
-    /// Says which bound keeps a number out: "is below -16", "is not above 0". None for one that is allowed.
+    /// Returns the message that names the bound that excludes a number: "is below -16", "is not above 0". None if the
+    /// number is allowed.
     pub(super) fn missed_by(&self, value: f64) -> Option<String> {
         let ((low, with_low), (high, with_high)) = (self.bound(self.low), self.bound(self.high));
         if value.is_nan() {
@@ -60,7 +61,7 @@ impl Range {
         }
     }
 
-    /// Returns the allowed number nearest to `value`; at a bound that is not allowed itself, one `step` inside.
+    /// Returns the allowed number nearest to `value`. At a bound that is not allowed itself, that is one `step` inside.
     pub(crate) fn nearest(&self, value: f64, step: f64) -> f64 {
         let ((low, with_low), (high, with_high)) = (self.bound(self.low), self.bound(self.high));
         let low = if with_low { low } else { low + step };

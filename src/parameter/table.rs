@@ -18,46 +18,46 @@ pub enum Parameter {
     Width,
     /// The side of a triangle, pentagon, hexagon, heptagon or octagon.
     Side,
-    /// Smallest x of the bounding rectangle before rotation.
+    /// The smallest x of the bounding rectangle before rotation.
     X0,
-    /// Smallest y of the bounding rectangle before rotation.
+    /// The smallest y of the bounding rectangle before rotation.
     Y0,
-    /// Degrees: a figure's clockwise as seen, a picture's counter-clockwise.
+    /// The rotation in degrees, as seen: clockwise for a figure, counter-clockwise for a picture.
     Angle,
-    /// Distance from the outer outline to that of the hole.
+    /// The distance from the outer outline to the outline of the hole.
     Thickness,
-    /// Scale along x, of a picture and its position.
+    /// The scale along x, of a picture and its position.
     ZoomX,
-    /// Scale along y, of a picture and its position.
+    /// The scale along y, of a picture and its position.
     ZoomY,
-    /// Columns of the sensor.
+    /// The number of columns of the sensor.
     Columns,
-    /// Rows of the sensor.
+    /// The number of rows of the sensor.
     Rows,
-    /// Share of a cell that must be covered for its taxel to be active.
+    /// The share of a cell that must be covered for its taxel to be active.
     Threshold,
-    /// Side of a sensory cell in mm.
+    /// The side of a sensory cell in mm.
     Pitch,
 }
 
 impl Parameter {
-    /// Its name: its key, as in files.
+    /// Returns the name: the key, as in files.
     fn name(self) -> &'static str {
         self.row().key
     }
 
-    /// Returns its row of [`PARAMETERS`].
+    /// Returns the row of the parameter in [`PARAMETERS`].
     pub fn row(self) -> &'static ParameterRow {
         &PARAMETERS[self as usize]
     }
 
-    /// Returns the name of its flag, without the dashes: its key with `-` for `_` and without a unit.
+    /// Returns the name of the parameter's flag, without dashes in front: the key with `-` for `_` and without a unit.
     pub fn flag(self) -> String {
         let key = self.row().key;
         key.strip_suffix("_mm").unwrap_or(key).replace('_', "-")
     }
 
-    /// Returns the parameter with this flag, given without the dashes.
+    /// Returns the parameter with a flag, given without dashes in front; None if there is none.
     ///
     /// ```
     /// use taxel::parameter::Parameter;
@@ -69,7 +69,7 @@ impl Parameter {
         parameters.find(|own| own.flag() == flag)
     }
 
-    /// Formats a value as a form shows it: with the form's decimals, or with all of its own where it has more.
+    /// Formats a value as a form shows it: with the form's decimals, or with all of its own if it has more.
     ///
     /// ```
     /// use taxel::parameter::Parameter;
@@ -83,7 +83,7 @@ impl Parameter {
         if exact { usual } else { number::short(value) }
     }
 
-    /// Returns how many decimals a form shows of such a value, if these are enough, and steps by.
+    /// Returns the number of decimals that a form shows of a value like this one, and steps by.
     pub(crate) fn decimals_at(self, value: f64) -> u8 {
         match self.row().decimals {
             Decimals::Paper if value.abs() < 10.0 => 2,
@@ -103,14 +103,14 @@ pub enum Unit {
     Degrees,
     /// A pure number.
     Ratio,
-    /// Taxels.
+    /// A number of taxels.
     Taxels,
     /// Millimetres.
     Millimetres,
 }
 
 impl Unit {
-    /// Its name; empty for a pure number.
+    /// Returns the name of the unit; empty for a pure number.
     pub fn name(self) -> &'static str {
         match self {
             Self::Cells => "cells",
@@ -121,7 +121,7 @@ impl Unit {
         }
     }
 
-    /// A number, or a range of numbers, with the unit after it.
+    /// Returns a number, or a range of numbers, followed by the unit.
     ///
     /// ```
     /// use taxel::parameter::Unit;
@@ -138,31 +138,31 @@ impl Unit {
     }
 }
 
-/// How many decimals a form shows and steps by.
+/// The number of decimals that a form shows and steps by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Decimals {
-    /// Two below ten, one from ten on.
+    /// Two decimals below ten, one from ten on.
     Paper,
-    /// This many.
+    /// This number of decimals.
     Fixed(u8),
 }
 
 /// A row of [`PARAMETERS`].
 #[derive(Clone, Copy, Debug)]
 pub struct ParameterRow {
-    /// Which quantity.
+    /// The parameter.
     pub parameter: Parameter,
-    /// Its name in files; see [`Parameter::flag`] for its flag.
+    /// The name in files. For the flag, see [`Parameter::flag`].
     pub key: &'static str,
-    /// Its name on the screen.
+    /// The name on the screen.
     pub label: &'static str,
-    /// Its name in the one-line summary of a shape.
+    /// The name in the one-line summary of a shape.
     pub short: &'static str,
-    /// Its unit.
+    /// The unit.
     pub unit: Unit,
-    /// The value in a new form, where the sensor is large enough.
+    /// The value in a new form, if the sensor is large enough for it.
     pub default: f64,
-    /// One line for help texts.
+    /// The meaning, in one line for help texts.
     pub meaning: &'static str,
     pub(super) low: Bound,
     pub(super) high: Bound,
@@ -179,13 +179,13 @@ named!(
 );
 
 impl ParameterRow {
-    /// Returns what is allowed on a sensor with this larger side, wherever the value comes from.
+    /// Returns the range on a sensor with this larger side. It is the same wherever a value comes from.
     pub(crate) fn range(&self, side: u8) -> Range {
         Range::new(self.low, self.high, side)
     }
 }
 
-/// A length of a figure: above 0, up to the sensor's larger side.
+/// The range of a length of a figure: above 0, up to the larger side of the sensor.
 const LENGTH: ParameterRow = ParameterRow {
     parameter: Parameter::Side,
     key: "side",
@@ -199,14 +199,14 @@ const LENGTH: ParameterRow = ParameterRow {
     decimals: Decimals::Paper,
 };
 
-/// A position, perhaps left of or above the sensor.
+/// The range of a position, which may lie left of or above the sensor.
 const POSITION: ParameterRow = ParameterRow {
     default: 4.0,
     low: Bound::Side(-1.0),
     ..LENGTH
 };
 
-/// A scale; at the upper bound one taxel is as large as the largest sensor.
+/// The range of a scale. At the upper bound, one taxel becomes as large as the largest sensor.
 const ZOOM: ParameterRow = ParameterRow {
     unit: Unit::Ratio,
     default: 1.0,
@@ -214,7 +214,7 @@ const ZOOM: ParameterRow = ParameterRow {
     ..LENGTH
 };
 
-/// A side of the sensor.
+/// The range of the number of columns or rows.
 const COUNT: ParameterRow = ParameterRow {
     unit: Unit::Taxels,
     default: 16.0,
@@ -224,7 +224,7 @@ const COUNT: ParameterRow = ParameterRow {
     ..LENGTH
 };
 
-/// The table, in the order of forms and of [`Parameter`].
+/// The table of parameters, in the order of forms and of [`Parameter`].
 pub const PARAMETERS: &[ParameterRow] = &[
     ParameterRow {
         parameter: Parameter::RadiusX,
@@ -356,7 +356,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
     },
 ];
 
-/// [`Parameter::row`] takes a parameter's number for its index.
+/// Checks at compile time that each row stands at the index that [`Parameter::row`] takes for its parameter.
 const _: () = {
     let mut index = 0;
     while index < PARAMETERS.len() {

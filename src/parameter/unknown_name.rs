@@ -1,4 +1,4 @@
-//! The error for text that is not one of the expected names.
+//! The error for a name that is not one of the expected ones, and the macro that reads and writes types by name.
 
 use std::fmt;
 
@@ -15,19 +15,19 @@ use crate::quote::shortened;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct UnknownName {
-    /// What the text was to name: "figure".
+    /// The kind of thing that was to be named, such as "figure".
     pub what: &'static str,
     /// The text, shortened.
     pub found: String,
-    /// The names.
+    /// The expected names.
     pub expected: Vec<&'static str>,
 }
 
 impl UnknownName {
-    /// Returns the value that has this name.
+    /// Returns the value with a name.
     ///
     /// # Errors
-    /// If none of them is called that.
+    /// Returns an error if no value has this name.
     pub(crate) fn unless_found<T: Copy>(
         what: &'static str,
         found: &str,
@@ -60,7 +60,7 @@ impl fmt::Display for UnknownName {
 
 impl std::error::Error for UnknownName {}
 
-/// A type whose values have a `name`: writes them as that, and reads them.
+/// Implements `Display` and `FromStr` for a type whose values have a `name`: both use that name.
 macro_rules! named {
     ($type:ident, $what:literal, $all:expr) => {
         impl std::fmt::Display for $type {
