@@ -1,13 +1,13 @@
-//! An ellipse cut at the lines of a grid.
+//! Areas of an ellipse in the cells of a grid: the ellipse is cut at the grid lines.
 //!
-//! Each half is followed from top to bottom, row by row. Within a row it runs in one direction to the column of its
-//! end, or first to the column of its leftmost or rightmost point and then back. So the columns determine the vertical
-//! lines at which a piece ends, each point is reached once, and nothing depends on how two rounding errors compare. An
-//! ellipse that merely touches a grid line is not a special case.
+//! Each half of the ellipse is followed from top to bottom, row by row. Within a row, it runs in one direction to the
+//! column of its end; in the row of the leftmost or rightmost point, it runs first to the column of that point and then
+//! back. So the columns determine the vertical lines at which a piece ends, each point is reached once, and nothing
+//! depends on how two rounding errors compare. An ellipse that merely touches a grid line is not a special case.
 //!
-//! What a piece adds to its cell is the difference of two running sums ([`Sums`]), so each line is computed once for
-//! the cells on its two sides. All lines are computed before the descent begins, so that a processor can work on
-//! several of them at once.
+//! A piece adds to its cell the difference of two running sums ([`Sums`]), so each line is computed once for the cells
+//! on its two sides. All lines are computed before the descent begins, so that a processor can work on several of them
+//! at once.
 
 use crate::geometry::cell_grid::CellGrid;
 use crate::geometry::ellipse_cuts::{EllipseCuts, Sums};
@@ -15,35 +15,36 @@ use crate::geometry::outline::{Point, Side};
 use crate::geometry::real::Real;
 use crate::index::from_first;
 
-/// Draws ellipses; drawing another one does not allocate.
+/// Draws ellipses on a grid. Drawing another ellipse does not allocate.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Arcs<T> {
-    /// Where the ellipse meets the vertical lines: above, below.
+    /// The sums where the ellipse meets each vertical line: above, below.
     vertical: Vec<[Sums<T>; 2]>,
-    /// Where it begins, meets the horizontal lines, and ends: left, right.
+    /// The states where the ellipse begins, meets each horizontal line, and ends: left, right.
     horizontal: Vec<[Way<T>; 2]>,
 }
 
-/// How far the descent along a half has come.
+/// The state of a descent along a half of an ellipse.
 #[derive(Clone, Copy, Debug)]
 struct Way<T> {
     sums: Sums<T>,
-    /// The column's slot in a row of the grid, which is the number of the line on its right; and that as a number.
+    /// The index of the column's entry in a row of the grid, which is also the number of the line on its right.
     slot: usize,
+    /// The x of that line.
     right: T,
 }
 
-/// A row of the grid that a half goes along.
+/// A row of the grid in which a half is followed.
 struct RowPass<T> {
     number: usize,
     start: usize,
-    /// Whether the descent adds or subtracts.
+    /// +1 or −1: whether the descent adds or subtracts.
     sign: T,
     quarter: T,
 }
 
 impl<T: Real> Arcs<T> {
-    /// For grids of that size.
+    /// Creates the memory for grids of this size.
     pub(crate) fn new(columns: u8, rows: u8) -> Self {
         let sums = Sums {
             height: T::ZERO,
@@ -60,7 +61,7 @@ impl<T: Real> Arcs<T> {
         }
     }
 
-    /// Draws an ellipse on a grid of the size given at first.
+    /// Draws an ellipse on a grid of the size given to [`Self::new`].
     pub(crate) fn draw(&mut self, grid: &mut CellGrid<T>, curve: &EllipseCuts<T>, material: Side) {
         let (top, end) = (curve.top.y.max(T::ZERO), curve.bottom.y.min(grid.bottom()));
         if top >= end {
@@ -100,7 +101,7 @@ impl<T: Real> Arcs<T> {
                     sign,
                     quarter,
                 };
-                // Above its turning point a half moves away from the middle, below it back.
+                // A half moves away from the middle above its turning point, and back below it.
                 if number < turn {
                     self.go(grid, &row, &mut way, goal.slot, 0);
                 } else {
@@ -114,7 +115,7 @@ impl<T: Real> Arcs<T> {
         }
     }
 
-    /// Computes the ends of each row's pieces, from `top` to `end`. Gives the number of rows.
+    /// Computes the ends of each row's pieces, from `top` to `end`. Returns the number of rows.
     fn cross(&mut self, grid: &CellGrid<T>, curve: &EllipseCuts<T>, top: T, end: T) -> usize {
         let meet = |y: T| {
             curve.across(y).map(|(x, sums)| {
@@ -137,7 +138,7 @@ impl<T: Real> Arcs<T> {
         rows
     }
 
-    /// Continues to a column within a row, above or below the turning point.
+    /// Follows a half to a column within a row, above or below the turning point.
     fn go(
         &self,
         grid: &mut CellGrid<T>,
@@ -170,7 +171,7 @@ impl<T: Real> Arcs<T> {
 }
 
 impl<T: Real> RowPass<T> {
-    /// Adds the piece up to a point.
+    /// Adds to the grid the piece from `from` to `to`.
     fn add(&self, grid: &mut CellGrid<T>, from: &Way<T>, to: Sums<T>) {
         let height = self.sign * (to.height - from.sums.height);
         let moment = self.sign * (to.moment - from.sums.moment);

@@ -1,13 +1,12 @@
-//! The sums that a boundary leaves in the cells of a grid, and the areas that follow from them.
+//! A grid of cells that sums up the boundary drawn on it, and computes areas from the sums.
 //!
-//! By Green's theorem the area of a shape in a cell is a sum over the pieces of its boundary, each cut at the grid
-//! lines. A piece that climbs by `h` through a cell leaves `h` times its mean distance from the cell's right side in
-//! that cell and the whole of `h` in every cell to the right of it. So each piece adds these two numbers to the entry
-//! of its own cell only, and the areas come from running sums of the rows: only cells that the boundary crosses are
-//! computed.
+//! By Green's theorem, the area of a shape in a cell is a sum over the pieces of its boundary, each cut at the grid
+//! lines. A piece that climbs by `h` through a cell adds `h` times its mean distance from the cell's right side to that
+//! cell, and the whole of `h` to every cell on the right of it. So each piece adds just two numbers to the entry of its
+//! own cell, and the areas come from running sums along the rows. Only cells that the boundary crosses are computed.
 //!
-//! Whatever lies left of the grid goes into a column before the first one, where only its height counts, and whatever
-//! lies right of it into one behind the last. So no piece is a special case.
+//! A piece left of the grid belongs to a column before the first one, where only its height counts. A piece right of
+//! the grid belongs to a column behind the last one. So no piece is a special case.
 //!
 //! Two rows are kept side by side, so that one running sum serves both: a processor adds a pair of `f64` in the time of
 //! one, and a touch of a polygon spends most of its time on running sums.
@@ -23,7 +22,7 @@ use crate::index::from_first;
 pub(crate) struct CellGrid<T> {
     columns: i32,
     rows: i32,
-    /// The entries of a pair of rows: one before the first column, one a column, one behind the last.
+    /// The number of entries of a pair of rows: one before the first column, one per column, one behind the last.
     stride: usize,
     entries: Vec<CellSums<T>>,
     /// The extent of everything drawn: the smallest x and y, and the largest ones.
@@ -33,7 +32,8 @@ pub(crate) struct CellGrid<T> {
     moment: T,
 }
 
-/// What the pieces of boundary in a cell and in the one below it contribute there, and to each cell further right.
+/// The sums of the pieces of boundary in a cell and in the cell below: what they add there, and to each cell further
+/// right.
 #[derive(Clone, Copy, Debug)]
 struct CellSums<T> {
     here: [T; 2],
@@ -79,50 +79,50 @@ impl<T: Real> CellGrid<T> {
         self.moment = T::ZERO;
     }
 
-    /// Clears every entry, whatever the extent says: that of coordinates that are not finite is not known.
+    /// Clears every entry, for a grid on which coordinates that are not finite were drawn: its extent is not known.
     pub(crate) fn wipe(&mut self) {
         self.entries.fill(CellSums::EMPTY);
         self.clear();
     }
 
-    /// Its lower end.
+    /// Returns the y of the grid's lower end.
     pub(crate) fn bottom(&self) -> T {
         T::whole(self.rows)
     }
 
-    /// Its right end.
+    /// Returns the x of the grid's right end.
     pub(crate) fn right(&self) -> T {
         T::whole(self.columns)
     }
 
-    /// Whether a rectangle lies on the grid.
+    /// Returns true if a rectangle lies on the grid.
     pub(crate) fn encloses(&self, low: Point<T>, high: Point<T>) -> bool {
         low.x >= T::ZERO && low.y >= T::ZERO && high.x <= self.right() && high.y <= self.bottom()
     }
 
-    /// The rows that may hold something; all others are empty.
+    /// Returns the rows that may contain something; all others are empty.
     pub(crate) fn rows(&self) -> Range<usize> {
         let row = |y: T| y.max(T::ZERO).min(self.bottom()).cell().0;
         let rows = from_first(self.rows);
         row(self.low.y)..(row(self.high.y) + 1).min(rows)
     }
 
-    /// The entries of these rows that may hold something; all others are empty. [`Real::cell`] also decides where
-    /// pieces lie, and it never puts a larger number into an earlier cell.
+    /// Returns the entries of these rows that may contain something; all others are empty. [`Real::cell`] also decides
+    /// which cell a piece belongs to, and it never puts a larger number into an earlier cell.
     fn entries_drawn(&self) -> Range<usize> {
         self.locate(self.low.x).0..self.locate(self.high.x).0 + 1
     }
 
-    /// The columns that may hold something; all others are empty.
+    /// Returns the columns that may contain something; all others are empty.
     pub(crate) fn columns(&self) -> Range<usize> {
         let entries = self.entries_drawn();
         let column = |entry: usize| entry.saturating_sub(1).min(self.stride - 2);
         column(entries.start)..column(entries.end)
     }
 
-    /// By how much the areas of rows `2 * pair` and `2 * pair + 1` exceed a level in these columns; the areas are in
-    /// [0, 1] up to a rounding error. `columns` is [`Self::columns`]. At least one of the two rows lies in
-    /// [`Self::rows`]; one outside is all 0.
+    /// Returns by how much the areas of rows `2 * pair` and `2 * pair + 1` exceed a level, for each of these columns.
+    /// The areas are in [0, 1] up to a rounding error. `columns` is [`Self::columns`]. At least one of the two rows
+    /// lies in [`Self::rows`]; the areas of a row outside are 0.
     pub(crate) fn pair(
         &self,
         pair: usize,
@@ -130,7 +130,7 @@ impl<T: Real> CellGrid<T> {
         level: T,
     ) -> impl Iterator<Item = [T; 2]> {
         let entries = &self.entries[pair * self.stride..][columns.start..=columns.end];
-        // Nothing left of these columns has a height, unless they begin with the first.
+        // No entry left of these columns has a height, unless they begin with the first column.
         let mut above = entries[0].beyond.map(|area| area - level);
         entries[1..].iter().map(move |entry| {
             let areas = [above[0] + entry.here[0], above[1] + entry.here[1]];
@@ -139,13 +139,13 @@ impl<T: Real> CellGrid<T> {
         })
     }
 
-    /// The areas of one row.
+    /// Returns the areas of one row.
     pub(crate) fn row(&self, row: usize, columns: &Range<usize>) -> impl Iterator<Item = T> {
         self.pair(row / 2, columns, T::ZERO)
             .map(move |areas| areas[row % 2])
     }
 
-    /// The area in the top left cell, which is the only one of a grid of 1 × 1.
+    /// Returns the area in the top left cell, which is the only cell of a grid of 1 × 1.
     pub(crate) fn first(&self) -> T {
         let (rows, columns) = (self.rows(), self.columns());
         if !rows.contains(&0) || !columns.contains(&0) {
@@ -155,8 +155,8 @@ impl<T: Real> CellGrid<T> {
         area.unwrap_or(T::ZERO)
     }
 
-    /// The index of the entry in a row, from [`Self::start`] on, of the column that `x` lies in by [`Real::cell`], and that
-    /// column's right end.
+    /// Returns the entry, counted from [`Self::start`], of the column in which `x` lies by [`Real::cell`], and the
+    /// right end of that column.
     pub(crate) fn locate(&self, x: T) -> (usize, T) {
         if x < T::ZERO {
             (0, T::ZERO)
@@ -168,12 +168,13 @@ impl<T: Real> CellGrid<T> {
         }
     }
 
-    /// Where the entries of a row begin: that of the column left of the grid.
+    /// Returns the index of the first entry of a row: that of the column left of the grid.
     pub(crate) fn start(&self, row: usize) -> usize {
         row / 2 * self.stride
     }
 
-    /// Adds to an entry, given from [`Self::start`] on, what a piece of boundary leaves in its cell and beyond.
+    /// Adds what a piece of boundary contributes to its own cell (`here`) and to each cell further right (`beyond`).
+    /// `entry` is the index of the cell's entry among those of all rows.
     pub(crate) fn add(&mut self, entry: usize, row: usize, here: T, beyond: T) {
         if let Some(entry) = self.entries.get_mut(entry) {
             let lane = row % 2;
@@ -182,19 +183,19 @@ impl<T: Real> CellGrid<T> {
         }
     }
 
-    /// An upper bound of the numbers whose sums are the areas: coordinates of edges, moments of ellipses.
+    /// Returns an upper bound of the numbers that the areas are sums of: coordinates of edges, moments of ellipses.
     pub(crate) fn magnitude(&self) -> T {
         let ends = [self.low.x, self.low.y, self.high.x, self.high.y];
         ends.into_iter()
             .fold(self.moment, |most, end| most.max(end.abs()))
     }
 
-    /// Remembers that an ellipse of this moment is drawn.
+    /// Notes that an ellipse with this moment is drawn.
     pub(crate) fn weighs(&mut self, moment: T) {
         self.moment = self.moment.max(moment);
     }
 
-    /// Remembers that something is drawn within a rectangle.
+    /// Notes that something is drawn within a rectangle.
     pub(crate) fn draws(&mut self, low: Point<T>, high: Point<T>) {
         self.low = Point::new(self.low.x.min(low.x), self.low.y.min(low.y));
         self.high = Point::new(self.high.x.max(high.x), self.high.y.max(high.y));

@@ -1,4 +1,4 @@
-//! Which cells of a grid are at least half covered by ellipses, decided by the cells' centres.
+//! Finds the cells of a grid that ellipses cover at least by half, from the positions of the cells' centres.
 //!
 //! **Method.** A cell is symmetric about its centre, so a straight line through the centre halves it. Therefore a
 //! convex shape covers less than half of a cell whose centre it does not cover.
@@ -13,8 +13,9 @@
 //! leaves *open* are decided by their areas: cells whose centre lies just inside an ellipse, and cells that two
 //! ellipses cross. For a circle of radius 4, fewer than 4 % of the cells that it crosses are open.
 //!
-//! No other cell is close to one half: if the centre lies on an ellipse, the ellipse's area in the cell falls short of
-//! one half by a 24th of its least curvature. Ellipses that are too flat for this are left to [`super::overlap`].
+//! The coverage of any other cell is not close to one half: if the centre lies on an ellipse, the ellipse's area in the
+//! cell falls short of one half by a 24th of its least curvature. Ellipses that are too flat for this are left to
+//! [`super::overlap`].
 
 use std::ops::Range;
 
@@ -25,11 +26,11 @@ use crate::geometry::outline::{Ellipse, Pen, Point, Side};
 use crate::geometry::real::{Real, nearest};
 use crate::index::from_first;
 
-/// As many rows as a grid can have, and as many columns.
+/// The largest number of rows of a grid, and of columns.
 const SIDE: usize = u64::BITS as usize;
-/// With coordinates or moments beyond this, the areas of open cells are not exact to 1e-10.
+/// If coordinates or moments are beyond this, the areas of open cells are not exact to 1e-10.
 const FAR: f64 = 25_000.0;
-/// With less curvature than this, the covered share of a cell that is not open may lie within 1e-10 of one half.
+/// If the curvature is below this, the covered share of a cell that is not open may lie within 1e-10 of one half.
 const FLAT: f64 = 1e-8;
 
 /// Ellipses on a grid of at most 64 × 64 unit cells with its top left corner at the origin.
@@ -38,14 +39,14 @@ pub(crate) struct CentreSampling {
     rows: i32,
     curves: Vec<Curve>,
     shape: [ShapeRow; SIDE],
-    /// The rows that may hold something; all others are empty.
+    /// The rows that may contain something; all others are empty.
     drawn: Range<i32>,
-    /// For the areas in one cell.
+    /// The grid of 1 × 1 on which the area in a single cell is computed.
     cell: CellGrid<f64>,
     arcs: Arcs<f64>,
 }
 
-/// A row of the shape, bit `i` for column `i`.
+/// A row of the shape, with column `i` in bit `i`.
 #[derive(Clone, Copy, Debug, Default)]
 struct ShapeRow {
     /// The cells whose centre is covered.
@@ -56,21 +57,21 @@ struct ShapeRow {
     open: u64,
 }
 
-/// An ellipse that was drawn.
+/// An ellipse that was added.
 #[derive(Clone, Debug)]
 struct Curve {
     ellipse: Ellipse<f64>,
     material: Side,
     cuts: EllipseCuts<f64>,
-    /// The square of its smaller radius.
+    /// The square of the smaller radius.
     radius_squared: f64,
 }
 
 impl CentreSampling {
-    /// The share of a cell that centres decide about.
+    /// The threshold for which centres decide, as a share of a cell.
     pub(crate) const THRESHOLD: f64 = 0.5;
 
-    /// An empty grid.
+    /// Creates an empty grid.
     pub(crate) fn new(rows: u8) -> Self {
         Self {
             rows: rows.into(),
@@ -82,7 +83,7 @@ impl CentreSampling {
         }
     }
 
-    /// Forgets all ellipses.
+    /// Removes all ellipses.
     pub(crate) fn clear(&mut self) {
         self.curves.clear();
     }
@@ -111,8 +112,8 @@ impl CentreSampling {
         }
     }
 
-    /// Samples the ellipses. Gives the rows that may have cells covered by half. None if centres do not decide: if an
-    /// ellipse is very large or flat, material overlaps, or a hole does not lie in material drawn before.
+    /// Samples the ellipses. Returns the rows that may have cells covered by half; None if centres do not decide,
+    /// because an ellipse is very large or flat, material overlaps, or a hole does not lie in material drawn before.
     pub(crate) fn sample(&mut self) -> Option<Range<i32>> {
         self.shape[slots(&self.drawn)].fill(ShapeRow::default());
         self.drawn = 0..0;
@@ -125,13 +126,14 @@ impl CentreSampling {
         (!undecided).then(|| self.drawn.clone())
     }
 
-    /// The cells of a row whose centre is covered, and those that are open; without regard to the number of columns.
+    /// Returns the cells of a row whose centre is covered, and those that are open. Columns beyond the grid may be
+    /// included.
     pub(crate) fn row(&self, row: i32) -> (u64, u64) {
         let ShapeRow { inside, open, .. } = self.shape[from_first(row)];
         (inside, open)
     }
 
-    /// The area of the ellipses in a cell.
+    /// Returns the area of the ellipses in a cell.
     pub(crate) fn area(&mut self, column: u32, row: i32) -> f64 {
         let corner = Point::new(f64::from(column), f64::from(row));
         let mut area = 0.0;
@@ -143,22 +145,23 @@ impl CentreSampling {
 }
 
 impl Curve {
-    /// Whether centres decide about an ellipse of this size and shape.
+    /// Returns true if centres decide for an ellipse of this size and shape.
     fn is_fit(&self) -> bool {
         let (left, right) = (self.cuts.left.x.abs(), self.cuts.right.x.abs());
         let (top, bottom) = (self.cuts.top.y, self.cuts.bottom.y);
         let farthest = max(max(left, right), max(top.abs(), bottom.abs()));
         let moment = 0.5 * max(left, right) * (bottom - top);
-        // The least curvature is the smaller radius over the square of the larger one; here squared.
+        // The least curvature is the smaller radius over the square of the larger one. All terms here are squared.
         let (square, span) = (self.radius_squared, self.cuts.span());
         let flat = FLAT * span * span;
         farthest < FAR && moment < FAR && square * square * square > flat * flat
     }
 
-    /// Adds itself to the rows from `first` on. Returns whether it is material in material, or a hole elsewhere.
+    /// Adds the ellipse to the rows from `first` on. Returns true if it is material within material, or a hole outside
+    /// of it.
     fn sample(&self, rows: &mut [ShapeRow], first: i32) -> bool {
         let cuts = &self.cuts;
-        // The points that lie deep enough form an ellipse, scaled by the square root of this.
+        // The points that lie deep enough form an ellipse of the same centre, scaled by the square root of this.
         let deep = 1.0 - self.sure_depth();
         let chord = |y: f64| {
             let level = min(max(y, cuts.top.y), cuts.bottom.y);
@@ -175,8 +178,8 @@ impl Curve {
             let mut crossed = 0;
             for side in 0..2 {
                 crossed |= columns_between(above[side], below[side]);
-                // Between two lines, the ellipse reaches further than on the lines only at its leftmost and its
-                // rightmost point.
+                // Between two lines, the ellipse reaches further than on the lines only at its leftmost and rightmost
+                // points.
                 let (level, columns) = farthest[side];
                 if number == level {
                     crossed |= columns_between(above[side], columns);
@@ -194,7 +197,7 @@ impl Curve {
         misplaced != 0
     }
 
-    /// The value of `1 − |u|²` from which on the ellipse surely covers more than half of the cell.
+    /// Returns the value of `1 − |u|²` from which on the ellipse surely covers more than half of the cell.
     fn sure_depth(&self) -> f64 {
         let square = self.radius_squared;
         let span = self.cuts.span();
@@ -202,7 +205,7 @@ impl Curve {
         (if round { 0.25 } else { 0.5 }) / square
     }
 
-    /// Its area in the cell with this corner; negative for a hole.
+    /// Returns the ellipse's area in the cell with this corner; negative for a hole.
     fn area(&self, corner: Point<f64>, cell: &mut CellGrid<f64>, arcs: &mut Arcs<f64>) -> f64 {
         cell.clear();
         let seen = self.cuts.moved(Point::new(-corner.x, -corner.y));
@@ -211,7 +214,7 @@ impl Curve {
     }
 }
 
-/// The smallest range that holds both.
+/// Returns the smallest range that contains both.
 fn around(one: &Range<i32>, other: &Range<i32>) -> Range<i32> {
     match (one.is_empty(), other.is_empty()) {
         (true, _) => other.clone(),
@@ -220,45 +223,46 @@ fn around(one: &Range<i32>, other: &Range<i32>) -> Range<i32> {
     }
 }
 
-/// The rows of a grid from one height to another.
+/// Returns the rows of a grid from one height to another.
 fn rows_between(top: f64, bottom: f64, rows: i32) -> Range<i32> {
     let end = cell(bottom).clamp(-1, rows - 1) + 1;
     cell(top).clamp(0, end)..end
 }
 
-/// Rows as indices.
+/// Converts rows to indices.
 fn slots(rows: &Range<i32>) -> Range<usize> {
     from_first(rows.start)..from_first(rows.end)
 }
 
-/// The unit interval that contains a number; for a whole number, it may be either of two.
+/// Returns the unit interval that contains a number. For a whole number, it may be either of the two that meet there.
 fn cell(number: f64) -> i32 {
     nearest(number - 0.5)
 }
 
-/// The columns from the one that contains `x` on, or from the nearest one.
+/// Returns the columns from the one that contains `x` on, or from the nearest one.
 fn columns_from(x: f64) -> u64 {
     u64::MAX.wrapping_shl(cell(min(max(x, 0.5), 63.5)).cast_unsigned())
 }
 
-/// The columns from one place to another, in either order, each given as [`columns_from`] it.
+/// Returns the columns from one position to another, in either order, each position given as [`columns_from`] returns
+/// it.
 fn columns_between(one: u64, other: u64) -> u64 {
     let first = |columns: u64| columns & columns.wrapping_neg();
     one ^ other | first(one) | first(other)
 }
 
-/// The columns whose centre lies between two places.
+/// Returns the columns whose centre lies between two positions.
 fn centres_between([left, right]: [f64; 2]) -> u64 {
     let from = |x: f64| u64::MAX.unbounded_shl(nearest(min(max(x, 0.0), 64.0)).cast_unsigned());
     from(left) & !from(right)
 }
 
-/// The larger of two numbers, in one instruction: `f64::max` takes six, for the sake of NaN.
+/// Returns the larger of two numbers in one instruction; `f64::max` takes six, because of NaN.
 fn max(one: f64, other: f64) -> f64 {
     Real::max(one, other)
 }
 
-/// The smaller one, likewise.
+/// Returns the smaller of two numbers in one instruction, likewise.
 fn min(one: f64, other: f64) -> f64 {
     Real::min(one, other)
 }
@@ -277,14 +281,14 @@ mod tests {
         }
     }
 
-    /// The ellipse as it is sampled.
+    /// Returns the ellipse as it is sampled.
     fn curve(ellipse: &Ellipse<f64>) -> Curve {
         let mut sampling = CentreSampling::new(1);
         sampling.add(ellipse, Side::Inside);
         sampling.curves.pop().expect("it has an area")
     }
 
-    /// The area in the cell at the origin.
+    /// Returns the area in the cell at the origin.
     fn area(curve: &Curve) -> f64 {
         let origin = Point::new(0.0, 0.0);
         curve.area(origin, &mut CellGrid::new(1, 1), &mut Arcs::new(1, 1))
@@ -302,7 +306,7 @@ mod tests {
                     if depth >= 1.0 {
                         continue;
                     }
-                    // The centre of the cell lies on an ellipse smaller by the root of this.
+                    // The centre of the cell lies on an ellipse that is smaller by the square root of this.
                     let size = (1.0 - depth).sqrt();
                     for place in 0..40_u32 {
                         let (sin, cos) = libm::sincos((9.0 * f64::from(place)).to_radians());
@@ -342,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_large_too_flat_or_misplaced_is_left_to_areas() {
+    fn large_flat_or_misplaced_ellipses_are_left_to_areas() {
         let circle = |x: f64, radius: f64| ellipse(Point::new(x, 8.2), [radius; 2], 0.0);
         let sampled = |drawn: &[(Ellipse<f64>, Side)]| {
             let mut sampling = CentreSampling::new(16);

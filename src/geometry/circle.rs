@@ -1,17 +1,17 @@
-//! Sines, cosines and angles in `f64`, in radians, by arithmetic alone and therefore the same on every machine.
+//! Sines, cosines and angles in `f64`, in radians. They use only arithmetic, so they are the same on every machine.
 //!
-//! Uses Taylor series, after reducing the angle so that few terms are enough. Errors stay below 5e-16.
+//! The functions use Taylor series, after reducing the angle so that few terms are enough. Errors stay below 5e-16.
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Sine and cosine of an angle from −π/4 to π/4.
+/// Returns the sine and the cosine of an angle from −π/4 to π/4.
 pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     // 1/n! for odd and for even n.
     const ODD: [f64; 8] = inverse_factorials(1.0);
     const EVEN: [f64; 10] = inverse_factorials(0.0);
     let square = -angle * angle;
     let fourth = square * square;
-    // In pairs, so that a processor can work on several at once.
+    // Terms are added in pairs, so that a processor can work on several at once.
     let sum = |terms: &[f64]| {
         let pairs = terms.as_chunks().0.iter().rev();
         pairs.fold(0.0, |sum, [one, other]| {
@@ -21,7 +21,7 @@ pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     (angle * sum(&ODD), sum(&EVEN))
 }
 
-/// For `first`, which is 0 or 1, and for every second number after it.
+/// Returns 1/n! for n = `first`, which is 0 or 1, and for every second n after it.
 const fn inverse_factorials<const TERMS: usize>(first: f64) -> [f64; TERMS] {
     let mut terms = [1.0; TERMS];
     let (mut term, mut number) = (1, first);
@@ -32,11 +32,11 @@ const fn inverse_factorials<const TERMS: usize>(first: f64) -> [f64; TERMS] {
     terms
 }
 
-/// The angle that has this sine and this cosine, from −π/2 to π/2: the cosine is not negative.
+/// Returns the angle with this sine and this cosine, from −π/2 to π/2: the cosine is not negative.
 ///
 /// The angle is first turned back by a nearly equal angle from a table; the rest is so small that its arc sine is a
-/// short series. The sine selects the entry, so that nothing waits for the cosine, which is often a root still being
-/// computed.
+/// short series. The sine selects the entry of the table, so that nothing has to wait for the cosine, which is often a
+/// root still being computed.
 pub(crate) fn angle(sin: f64, cos: f64) -> f64 {
     let size = sin.abs();
     #[expect(
@@ -51,7 +51,8 @@ pub(crate) fn angle(sin: f64, cos: f64) -> f64 {
         angle,
     } = NODES[number % NODES.len()];
     let rest = size * node_cos - cos * node_sin;
-    // |rest| < 0.09, so the next term is below 3e-18. In pairs, so that a processor can work on several at once.
+    // Since |rest| < 0.09, the next term is below 3e-18. Terms are added in pairs, so that a processor can work on
+    // several at once.
     let square = rest * rest;
     let fourth = square * square;
     let low = 1.0 / 6.0 + square * (3.0 / 40.0);
@@ -69,8 +70,8 @@ struct Node {
     angle: f64,
 }
 
-/// Entry n below 64: the angle halfway between the arc sines of n/64 and (n+1)/64. The others: a right angle; 64 is for a
-/// sine of 1, the rest lets seven bits index the table.
+/// The table of angles. Entry n below 64 is the angle halfway between the arc sines of n/64 and (n+1)/64. All others
+/// are a right angle: entry 64 is for a sine of 1, and the rest lets seven bits index the table.
 static NODES: [Node; 128] = nodes();
 
 const fn nodes() -> [Node; 128] {
@@ -98,7 +99,7 @@ const fn nodes() -> [Node; 128] {
 impl Node {
     const fn at(angle: f64) -> Self {
         let (mut sin, mut cos, mut term, mut power) = (0.0, 0.0, 1.0, 0.0);
-        // From the 28th power on the terms are below 1e-23.
+        // From the 28th power on, terms are below 1e-23.
         while power < 28.0 {
             cos += term;
             term *= angle / (power + 1.0);

@@ -1,11 +1,11 @@
 //! An ellipse prepared for being cut at the lines of a grid.
 //!
-//! With `a`, `b` the images of the disc's axes, the reach in y is `R = √(a.y² + b.y²)`. The line `y = c.y + R·sin η`
-//! meets the ellipse at `x = c.x + shear·R·sin η ± extent·cos η`, with `shear = (a.x·a.y + b.x·b.y) / R²` and
-//! `extent = |det| / R`; likewise for vertical lines.
+//! Let `a`, `b` be the images of the disc's axes and `c` the centre. The reach in y is `R = √(a.y² + b.y²)`. The line
+//! `y = c.y + R·sin η` meets the ellipse at `x = c.x + shear·R·sin η ± extent·cos η`, with
+//! `shear = (a.x·a.y + b.x·b.y) / R²` and `extent = |det| / R`; likewise for vertical lines.
 //!
 //! **Moments.** Along an arc whose angle in the disc is `φ`, Green's theorem gives `∫ X dY = (X·Y + det·φ) / 2` about
-//! the centre. A horizontal line needs only one angle `η` for the two points at which it meets the ellipse, since they
+//! the centre. A horizontal line needs only one angle `η` for the two points at which it meets the ellipse, since both
 //! are equally far from the topmost point; so does a vertical line.
 
 use crate::geometry::outline::{Ellipse, Point};
@@ -19,7 +19,7 @@ pub(crate) struct EllipseCuts<T> {
     inverse: Point<T>,
     shear: Point<T>,
     extent: Point<T>,
-    /// Half the area of the image of the unit square, positive.
+    /// Half of the area of the parallelogram that the axes span; positive.
     half_area: T,
     /// The angle by which the rightmost point lies below the middle between the topmost and the bottommost one.
     tilt: T,
@@ -35,16 +35,16 @@ pub(crate) struct EllipseCuts<T> {
 
 /// The running sums of a descent along a half of an ellipse, at one of its points.
 ///
-/// The contribution between two points is their difference.
+/// A piece between two points contributes the difference of their sums.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sums<T> {
     /// `∫ dy`: the height below the centre.
     pub height: T,
-    /// `∫ x dy`, from the leftmost or rightmost point on.
+    /// `∫ x dy`, starting at the leftmost or rightmost point.
     pub moment: T,
 }
 
-/// Where a line meets an ellipse: the x, and the sums of the descent along the left or the right half up to there.
+/// A point at which a line meets an ellipse: its x, and the sums of the descent along that half of the ellipse.
 pub(crate) type Crossing<T> = (T, Sums<T>);
 
 impl<T: Real> EllipseCuts<T> {
@@ -56,7 +56,7 @@ impl<T: Real> EllipseCuts<T> {
         }
         let inverse = Point::new(T::ONE / reach.x, T::ONE / reach.y);
         let extent = Point::new(area * inverse.y, area * inverse.x);
-        // How far the extreme points lie to the side of the centre.
+        // The distances by which the extreme points lie to the side of the centre.
         let mixed = ellipse.skew();
         let skew = Point::new(mixed * inverse.y, mixed * inverse.x);
         Some(Self {
@@ -79,7 +79,8 @@ impl<T: Real> EllipseCuts<T> {
         })
     }
 
-    /// Where the horizontal line at `y` meets it: left, right. If it passes by, the nearest extreme point, twice.
+    /// Returns where the horizontal line at `y` meets the ellipse: left, right. If it passes by, returns the nearest
+    /// extreme point twice.
     pub(crate) fn across(&self, y: T) -> [Crossing<T>; 2] {
         let height = y - self.centre.y;
         let (angle, half) = if height.abs() < self.reach.y {
@@ -102,8 +103,8 @@ impl<T: Real> EllipseCuts<T> {
         ]
     }
 
-    /// Where the vertical line at `x` meets it, which it must: above, below. The moments are a quarter turn off, see
-    /// [`Self::quarter`].
+    /// Returns where the vertical line at `x`, which must meet the ellipse, does so: above, below. The moments are off
+    /// by a quarter turn, see [`Self::quarter`].
     pub(crate) fn along(&self, x: T) -> [Sums<T>; 2] {
         let aside = x - self.centre.x;
         let sin = aside * self.inverse.x;
@@ -119,13 +120,14 @@ impl<T: Real> EllipseCuts<T> {
         [at(middle - half, sector), at(middle + half, -sector)]
     }
 
-    /// Where the horizontal line at `y` meets it: the x on the left and on the right. If it passes by, the middle,
-    /// twice.
+    /// Returns where the horizontal line at `y` meets the ellipse: the x on the left and on the right. If it passes by,
+    /// returns the middle twice.
     pub(crate) fn chord(&self, y: T) -> [T; 2] {
         self.chords(y, T::ONE)[0]
     }
 
-    /// The same, and where the line meets the ellipse scaled about its centre by the root of `size`.
+    /// Returns the same as [`Self::chord`], and where the line meets the ellipse scaled about its centre by the root of
+    /// `size`.
     pub(crate) fn chords(&self, y: T, size: T) -> [[T; 2]; 2] {
         let height = y - self.centre.y;
         let sin = height * self.inverse.y;
@@ -136,21 +138,21 @@ impl<T: Real> EllipseCuts<T> {
         })
     }
 
-    /// The area of the parallelogram that its axes span.
+    /// Returns the area of the parallelogram that the axes span.
     pub(crate) fn span(&self) -> T {
         self.half_area / T::HALF
     }
 
-    /// The square of the smaller radius.
+    /// Returns the square of the smaller radius.
     pub(crate) fn smaller_radius_squared(&self) -> T {
-        // The sum and the product of the squared radii are known.
+        // It follows from the sum and the product of the squared radii.
         let span = self.span();
         let sum = self.reach.x * self.reach.x + self.reach.y * self.reach.y;
         let larger = (sum + (sum * sum - T::whole(4) * span * span).sqrt()) * T::HALF;
         span * span / larger
     }
 
-    /// The same ellipse elsewhere.
+    /// Returns the ellipse moved by a vector.
     pub(crate) fn moved(&self, by: Point<T>) -> Self {
         Self {
             centre: self.centre.moved(by),
@@ -162,8 +164,8 @@ impl<T: Real> EllipseCuts<T> {
         }
     }
 
-    /// A quarter turn's share of a moment. Subtract it from the result of [`Self::along`] on a descent to the right,
-    /// and add it on a descent to the left.
+    /// Returns a quarter turn's share of a moment. It is subtracted from the result of [`Self::along`] on a descent to
+    /// the right, and added on a descent to the left.
     pub(crate) fn quarter(&self) -> T {
         self.half_area * T::QUARTER_TURN
     }

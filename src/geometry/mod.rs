@@ -1,10 +1,10 @@
 //! Plane geometry: outlines that bound a shape, and the exact area that they enclose in each cell of a grid.
 //!
-//! Coordinates are those of the sensory plane: x to the right, y **down**, in units of the side of a cell. Angles are
-//! in degrees. This room knows nothing about sensors, figures or imprints.
+//! Coordinates are those of the sensory plane: x to the right, y **down**, in sides of a cell. Angles are in degrees.
+//! This room knows nothing about sensors, figures or imprints.
 //!
-//! A shape is anything that implements [`Solid`]: it draws its boundary with a [`Pen`], in numbers of any precision
-//! ([`Real`]). [`Polygon`] is one for vertices of your own.
+//! A shape is any type that implements [`Solid`]: it draws its boundary with a [`Pen`], in numbers of any precision
+//! ([`Real`]). For vertices of your own, use [`Polygon`].
 
 pub(crate) mod circle;
 

@@ -1,34 +1,35 @@
 //! The boundary of a shape: straight edges and ellipses, drawn with a [`Pen`].
 //!
-//! A shape is *drawn* rather than returned: it calls the pen for each edge and each ellipse of its boundary. So one
-//! definition of a shape serves every purpose (areas, extents, pictures) with every type of number ([`Real`]), and
-//! allocates nothing with `f64`.
+//! A shape is *drawn* rather than returned: it calls the pen for each edge and each ellipse of its boundary. So a shape
+//! needs only one definition, which serves every purpose (areas, extents, pictures) and every type of number
+//! ([`Real`]), and allocates nothing with `f64`.
 //!
 //! **Orientation.** Edges run clockwise as seen (x right, y down) around the material, with the material on their
-//! right; around a hole they run the other way. Only closed sets of edges bound anything; their order does not matter.
+//! right; around a hole they run the other way. Only closed sets of edges bound an area; the order of the edges does
+//! not matter.
 //!
-//! **Size.** Coordinates are finite, and those of ellipses below 1e70; a shape with others leaves an empty imprint. They may
-//! lie far beyond the sensor, but rounding errors grow with them: of the 32 digits that decide a tie, those before the decimal
-//! point are lost, and twice as many for an ellipse.
+//! **Size.** Coordinates must be finite, and those of ellipses below 1e70; a shape with other coordinates leaves an
+//! empty imprint. Coordinates may lie far beyond the sensor, but rounding errors grow with them: of the 32 digits that
+//! decide a tie, as many are lost as a coordinate has before the decimal point, and twice as many for an ellipse.
 
 use crate::geometry::real::Real;
 
-/// A point of the plane, or a vector in it; cell sides.
+/// A point of the plane, or a vector in it; in cell sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point<T> {
-    /// To the right.
+    /// The coordinate to the right.
     pub x: T,
-    /// Downwards.
+    /// The coordinate downwards.
     pub y: T,
 }
 
 impl<T: Real> Point<T> {
-    /// The point at (`x`, `y`).
+    /// Creates the point at (`x`, `y`).
     pub const fn new(x: T, y: T) -> Self {
         Self { x, y }
     }
 
-    /// The point moved by a vector.
+    /// Returns the point moved by a vector.
     #[must_use]
     pub fn moved(self, by: Self) -> Self {
         Self::new(self.x + by.x, self.y + by.y)
@@ -43,13 +44,13 @@ pub struct Turn<T> {
 }
 
 impl<T: Real> Turn<T> {
-    /// Clockwise as seen (y runs down), by an angle in degrees.
+    /// Creates a clockwise rotation as seen (y runs down), by an angle in degrees.
     pub fn clockwise(degrees: T) -> Self {
         let (sin, cos) = degrees.sin_cos_degrees();
         Self { sin, cos }
     }
 
-    /// The rotated vector.
+    /// Returns the rotated vector.
     pub fn of(&self, vector: Point<T>) -> Point<T> {
         Point::new(
             vector.x * self.cos - vector.y * self.sin,
@@ -63,14 +64,14 @@ impl<T: Real> Turn<T> {
 pub struct Ellipse<T> {
     /// The centre.
     pub centre: Point<T>,
-    /// Where the disc's first axis goes.
+    /// The image of the disc's first axis.
     pub across: Point<T>,
-    /// Where its second axis goes; not parallel to the first.
+    /// The image of the disc's second axis; not parallel to the first.
     pub along: Point<T>,
 }
 
 impl<T: Real> Ellipse<T> {
-    /// Half of its width and of its height.
+    /// Returns half of the ellipse's width and half of its height.
     pub fn reach(&self) -> Point<T> {
         let length = |a: T, b: T| (a * a + b * b).sqrt();
         Point::new(
@@ -79,19 +80,19 @@ impl<T: Real> Ellipse<T> {
         )
     }
 
-    /// The area of the parallelogram that its two axes span: the area of the ellipse divided by π.
+    /// Returns the area of the parallelogram that the two axes span: the area of the ellipse divided by π.
     pub(crate) fn span(&self) -> T {
         (self.across.x * self.along.y - self.across.y * self.along.x).abs()
     }
 
-    /// How far an extreme point lies to the side of the centre, times the reach in its direction; 0 for a circle or an
-    /// upright ellipse.
+    /// Returns how far an extreme point lies to the side of the centre, times the reach in the direction of that point;
+    /// 0 for a circle or an upright ellipse.
     pub(crate) fn skew(&self) -> T {
         self.across.x * self.across.y + self.along.x * self.along.y
     }
 }
 
-/// Which side of a boundary the material lies on.
+/// The side of a boundary on which the material lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// The boundary encloses material.
@@ -100,14 +101,14 @@ pub enum Side {
     Outside,
 }
 
-/// The pen with which a shape draws its boundary; all coordinates are finite.
+/// The pen with which a shape draws its boundary. All coordinates are finite.
 pub trait Pen<T: Real> {
-    /// A straight piece of boundary, with the material on the right when going from `from` to `to`.
+    /// Draws a straight piece of boundary, with the material on the right when going from `from` to `to`.
     fn edge(&mut self, from: Point<T>, to: Point<T>);
-    /// A whole ellipse.
+    /// Draws a whole ellipse.
     fn ellipse(&mut self, ellipse: &Ellipse<T>, material: Side);
 
-    /// The closed ring through the points, given clockwise as seen.
+    /// Draws the closed ring through the points, which are given clockwise as seen.
     fn ring(&mut self, points: &[Point<T>], material: Side) {
         let Some(&last) = points.last() else { return };
         let mut from = last;
@@ -121,7 +122,7 @@ pub trait Pen<T: Real> {
     }
 }
 
-/// A pen that draws everything shifted.
+/// A pen that passes everything on to another pen, shifted.
 pub(crate) struct Moving<'a, T, P> {
     pub(crate) by: Point<T>,
     pub(crate) pen: &'a mut P,
@@ -137,9 +138,9 @@ impl<T: Real, P: Pen<T>> Pen<T> for Moving<'_, T, P> {
     }
 }
 
-/// Anything with a boundary: figures, pictures, and your own outlines.
+/// A shape with a boundary: a figure, a picture, or an outline of your own.
 ///
-/// Your own type defines once, for every type of number, how it is drawn:
+/// A type of your own defines once, for every type of number, how it is drawn:
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -168,9 +169,9 @@ impl<T: Real, P: Pen<T>> Pen<T> for Moving<'_, T, P> {
 /// assert!((covered - (36.0 - std::f64::consts::PI * 1.5 * 1.5)).abs() < 1e-9);
 /// ```
 ///
-/// [`Polygon`] takes vertices as they are.
+/// For an outline of vertices, use [`Polygon`].
 pub trait Solid {
-    /// Draws the whole boundary. Convert the numbers of the shape with [`Real::decimal`].
+    /// Draws the whole boundary. Implementations convert the numbers of the shape with [`Real::decimal`].
     fn draw<T: Real>(&self, pen: &mut impl Pen<T>);
 }
 
@@ -202,10 +203,10 @@ impl<S: Solid> Solid for &S {
     }
 }
 
-/// A simple polygon from at least three vertices, in either sense of rotation.
+/// A simple polygon with at least three vertices, in either sense of rotation.
 ///
-/// With fewer vertices, or with all of them on a line, it bounds nothing. If its edges cross each other, a part that is
-/// wound around twice counts twice: such polygons make no sense here.
+/// With fewer vertices, or with all of them on a line, it bounds nothing. Its edges should not cross each other: a part
+/// that the edges run around twice counts twice.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -225,8 +226,8 @@ pub struct Polygon {
 }
 
 impl Polygon {
-    /// The polygon through the vertices, in order. One with a coordinate that is not finite bounds nothing: any other number in
-    /// its place would make a wrong imprint that looks right.
+    /// Creates the polygon through the vertices, in order. If a coordinate is not finite, the polygon bounds nothing:
+    /// any other number in its place would make a wrong imprint that looks right.
     ///
     /// ```
     /// use taxel::geometry::{Extent, Polygon};
@@ -244,13 +245,13 @@ impl Polygon {
     }
 }
 
-/// Whether a ring of vertices runs counter-clockwise as seen: its area is negative.
+/// Returns true if a ring of vertices runs counter-clockwise as seen, so that its area is negative.
 fn turns_left(vertices: &[(f64, f64)]) -> bool {
     let Some(&first) = vertices.first() else {
         return false;
     };
-    // Relative to the first vertex, since a polygon far away would otherwise drown in rounding errors; and in units of
-    // its size, since products could overflow. Differences of halves cannot.
+    // Vertices are taken relative to the first one, since rounding errors would be too large for a polygon far away,
+    // and in units of the polygon's size, since products could overflow. Differences of halves cannot overflow.
     let way = |&(x, y): &(f64, f64)| (x / 2.0 - first.0 / 2.0, y / 2.0 - first.1 / 2.0);
     let ways = || vertices.iter().map(way);
     let size = ways().fold(f64::MIN_POSITIVE, |size, (x, y)| {
@@ -275,26 +276,26 @@ impl Solid for Polygon {
     }
 }
 
-/// The smallest upright rectangle around a shape; cell sides, in the plane's frame.
+/// The smallest upright rectangle around a shape; in cell sides, in the frame of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
-    /// Smallest x.
+    /// The smallest x.
     pub left: f64,
-    /// Smallest y.
+    /// The smallest y.
     pub top: f64,
-    /// Largest x.
+    /// The largest x.
     pub right: f64,
-    /// Largest y.
+    /// The largest y.
     pub bottom: f64,
 }
 
 impl Extent {
-    /// The extent of a shape; None without a boundary.
+    /// Returns the extent of a shape; None if the shape has no boundary.
     pub fn of(solid: &impl Solid) -> Option<Self> {
         Self::drawn(|pen| solid.draw(pen))
     }
 
-    /// The extent of what is drawn with the pen.
+    /// Returns the extent of everything that is drawn with the pen.
     pub(crate) fn drawn(draw: impl FnOnce(&mut ExtentPen)) -> Option<Self> {
         let mut pen = ExtentPen(None);
         draw(&mut pen);
@@ -302,7 +303,7 @@ impl Extent {
     }
 }
 
-/// Draws nothing, but remembers how far it went.
+/// A pen that draws nothing, but notes how far the boundary reaches.
 pub(crate) struct ExtentPen(Option<Extent>);
 
 impl ExtentPen {

@@ -1,12 +1,12 @@
 //! The exact area of a shape inside each cell of a grid.
 //!
-//! **Method.** The boundary is cut at the grid lines, and each piece adds to its own cell what the areas follow from
-//! (`cell_grid`): straight edges here, ellipses in `arcs`.
+//! **Method.** The boundary is cut at the grid lines, and each piece adds to its own cell the sums from which areas are
+//! computed (`cell_grid`). Straight edges are cut here, ellipses in `arcs`.
 //!
-//! **Error.** A few rounding errors per piece, of sums below 10^4 for every shape of the program: under 1e-11 in `f64`,
-//! a tenth of what a touch considers doubtful. Edges that are horizontal or vertical up to a rounding error are
-//! harmless: their contribution is as small as their height. Deciding a threshold exactly is the business of
-//! [`crate::touch`], which uses [`cell_area`] for it.
+//! **Error.** There are a few rounding errors per piece, of sums below 10^4 for every shape of the program: together
+//! less than 1e-11 in `f64`, a tenth of what a touch considers doubtful. Edges that are horizontal or vertical up to a
+//! rounding error are harmless: their contribution is as small as their height. To decide a threshold exactly,
+//! [`crate::touch`] uses [`cell_area`].
 
 use crate::geometry::arcs::Arcs;
 use crate::geometry::cell_grid::CellGrid;
@@ -15,7 +15,7 @@ use crate::geometry::outline::{Ellipse, Moving, Pen, Point, Side, Solid};
 use crate::geometry::real::Real;
 use crate::index::from_first;
 
-/// A grid of `columns × rows` unit cells with its top left corner at the origin, that sums up what is drawn on it.
+/// A grid of `columns × rows` unit cells with its top left corner at the origin, and a pen that draws on it.
 #[derive(Clone, Debug)]
 pub(crate) struct Overlap<T> {
     grid: CellGrid<T>,
@@ -23,7 +23,7 @@ pub(crate) struct Overlap<T> {
 }
 
 impl<T: Real> Overlap<T> {
-    /// An empty grid.
+    /// Creates an empty grid.
     pub(crate) fn new(columns: u8, rows: u8) -> Self {
         Self {
             grid: CellGrid::new(columns, rows),
@@ -31,23 +31,23 @@ impl<T: Real> Overlap<T> {
         }
     }
 
-    /// Wipes the grid.
+    /// Clears the grid.
     pub(crate) fn clear(&mut self) {
         self.grid.clear();
     }
 
-    /// Wipes a grid on which coordinates that are not finite may have been drawn.
+    /// Clears a grid on which coordinates that are not finite may have been drawn.
     pub(crate) fn wipe(&mut self) {
         self.grid.wipe();
     }
 
-    /// What has been drawn since.
+    /// Returns the grid with everything drawn since it was cleared.
     pub(crate) fn grid(&self) -> &CellGrid<T> {
         &self.grid
     }
 
-    /// Draws an edge from which the material lies on the side of `sign`. `whole` is for edges that do not reach beyond the
-    /// grid.
+    /// Draws an edge with the material on the right for a `sign` of +1, on the left for −1. `whole` says that the edge
+    /// does not reach beyond the grid.
     fn side(&mut self, from: Point<T>, to: Point<T>, sign: T, whole: bool) {
         let Some(edge) = SlopedEdge::between(from, to, sign) else {
             return;
@@ -77,7 +77,7 @@ impl<T: Real> Overlap<T> {
             let next = if ends {
                 to
             } else {
-                // Clamped between the ends: the slope of an edge that is horizontal up to a rounding error is
+                // Clamped between the ends, because the slope of an edge that is horizontal up to a rounding error is
                 // meaningless.
                 Point::new(here.x.max(edge.x_at(line)).min(to.x), line)
             };
@@ -90,7 +90,7 @@ impl<T: Real> Overlap<T> {
         }
     }
 
-    /// Draws a part of an edge in one row, that begins in a cell. Gives the cell in which it ends.
+    /// Draws the part of an edge in one row, which begins in a given cell. Returns the cell in which it ends.
     #[expect(
         clippy::inline_always,
         reason = "called for every row of every edge: a call takes a third as long as the rest"
@@ -114,8 +114,8 @@ impl<T: Real> Overlap<T> {
             add(last, height, last_right - (from.x + to.x) * T::HALF);
             return (last, last_left);
         }
-        // The height that remains after the first cell and the whole cells in between goes to the last cell: a sum that
-        // is too small in one cell by a rounding error is too large in the next one.
+        // The last cell gets the height that remains after the first cell and the whole cells in between: so a sum that
+        // is too small in one cell by a rounding error is too large by it in the next one.
         let way = first_left + T::ONE - from.x;
         let own = way * edge.climb;
         add(first, own, way * T::HALF);
@@ -128,7 +128,8 @@ impl<T: Real> Overlap<T> {
         (last, last_left)
     }
 
-    /// The part of an edge that lies on the grid, where it reaches beyond; what is left of the grid is drawn.
+    /// Returns the part of an edge that lies on the grid, for an edge that reaches beyond it; draws the part left of
+    /// the grid.
     #[cold]
     fn clipped(&mut self, edge: &SlopedEdge<T>) -> Option<[Point<T>; 2]> {
         let (mut from, mut to) = (edge.left, edge.right);
@@ -145,7 +146,7 @@ impl<T: Real> Overlap<T> {
             }
         }
         let at = |x: T| Point::new(x, top.max(edge.y_at(x)).min(end));
-        // Left of the grid only its height counts; right of it, nothing does.
+        // Left of the grid only the height of an edge counts; right of it, an edge does not count.
         if from.x < T::ZERO {
             let rim = if to.x < T::ZERO { to } else { at(T::ZERO) };
             self.aside(edge, from.y, rim.y);
@@ -157,7 +158,7 @@ impl<T: Real> Overlap<T> {
         (T::ZERO <= from.x && from.x <= to.x).then_some([from, to])
     }
 
-    /// Draws what lies left of the grid between two heights.
+    /// Draws the part of an edge left of the grid, between two heights.
     fn aside(&mut self, edge: &SlopedEdge<T>, from: T, to: T) {
         let (top, end) = (from.min(to), from.max(to));
         let sign = if from < to { edge.sign } else { -edge.sign };
@@ -176,18 +177,18 @@ impl<T: Real> Overlap<T> {
 struct SlopedEdge<T> {
     left: Point<T>,
     right: Point<T>,
-    /// How far it goes right for each step down.
+    /// The distance to the right for each unit down.
     slope: T,
-    /// How far it goes down for each step right.
+    /// The distance down for each unit to the right.
     steepness: T,
     /// −1 if the material is below, +1 if it is above: if the boundary runs upwards, the cells on its right gain.
     sign: T,
-    /// What it adds to the height of a cell that it crosses from side to side.
+    /// The height that the edge adds to a cell that it crosses from side to side.
     climb: T,
 }
 
 impl<T: Real> SlopedEdge<T> {
-    /// The edge between two points, with the material on its right for a sign of +1; None if it is horizontal.
+    /// Creates the edge between two points, with the material on its right for a sign of +1; None if it is horizontal.
     fn between(from: Point<T>, to: Point<T>, sign: T) -> Option<Self> {
         let (left, right, sign) = if from.x < to.x {
             (from, to, -sign)
@@ -234,7 +235,7 @@ impl<T: Real> Pen<T> for Overlap<T> {
         }
     }
 
-    /// Compares the ring with the grid once, not each edge.
+    /// Compares the whole ring with the grid, instead of each edge.
     fn ring(&mut self, points: &[Point<T>], material: Side) {
         let Some(&last) = points.last() else { return };
         let (mut low, mut high) = (last, last);
@@ -256,7 +257,7 @@ impl<T: Real> Pen<T> for Overlap<T> {
     }
 }
 
-/// The areas of a shape inside the first `columns` cells of a row, by the same method.
+/// Returns the areas of a shape inside the first `columns` cells of a row, by the same method.
 pub(crate) fn row_areas<T: Real>(solid: &impl Solid, columns: u8, row: u8) -> Vec<T> {
     let start = Point::new(T::ZERO, T::whole(-i32::from(row)));
     let mut overlap = Overlap::new(columns, 1);
@@ -275,7 +276,7 @@ pub(crate) fn row_areas<T: Real>(solid: &impl Solid, columns: u8, row: u8) -> Ve
     areas
 }
 
-/// The area of a shape inside the one cell whose top left corner is (`column`, `row`), by the same method.
+/// Returns the area of a shape inside the single cell whose top left corner is (`column`, `row`), by the same method.
 pub fn cell_area<T: Real>(solid: &impl Solid, column: u8, row: u8) -> T {
     let corner = Point::new(T::whole(-i32::from(column)), T::whole(-i32::from(row)));
     let mut overlap = Overlap::new(1, 1);

@@ -1,12 +1,12 @@
 //! The numbers that geometry computes with: [`f64`] for speed, [`Double`] to decide what `f64` cannot.
 //!
-//! Every outline and every area is written once, over [`Real`]. A touch computes in `f64`, whose error here stays below
-//! 1e-11. Whatever lies within ten times that of the threshold is computed again as a [`Double`], a pair of `f64` with
-//! about 106 bits; there, a difference below 1e-20 counts as zero ([`Real::TIE`]).
+//! Outlines and areas are written once, for any [`Real`]. A touch computes in `f64`, with errors below 1e-11. A
+//! coverage that lies within ten times that error of the threshold is computed again as a [`Double`], a pair of `f64`
+//! with about 106 bits. There, a difference below 1e-20 counts as zero ([`Real::TIE`]).
 //!
 //! **A parameter means the decimal number that is displayed.** `0.1` as an `f64` is not one tenth, so a figure that
-//! should cover exactly half of a cell would miss by 1e-17. [`Real::decimal`] therefore takes the shortest decimal that
-//! reads back as the given `f64`, which is what a user typed, and a `Double` holds that decimal to 32 digits.
+//! should cover exactly half of a cell would miss it by 1e-17. [`Real::decimal`] therefore takes the shortest decimal
+//! that reads back as the given `f64`, which is what a user typed. A `Double` holds that decimal to 32 digits.
 //!
 //! Double-double arithmetic after T. J. Dekker, *A floating-point technique for extending the available
 //! precision*, Numerische Mathematik 18 (1971), and D. E. Knuth, *The Art of Computer Programming*, vol. 2, 4.2.2.
@@ -19,7 +19,7 @@ use crate::geometry::circle;
 use crate::index::from_first;
 
 mod sealed {
-    /// What only the numbers of this file are.
+    /// Prevents other modules from implementing [`Real`](super::Real).
     pub trait Sealed {}
 }
 
@@ -49,50 +49,51 @@ pub trait Real:
     const HALF: Self;
     /// A right angle in radians.
     const QUARTER_TURN: Self;
-    /// Two areas (in cells) that differ by less than this count as equal.
+    /// Two areas (in cells) whose difference is below this count as equal.
     const TIE: Self;
 
-    /// The shortest decimal that reads back as `value`; `value` itself if the type has no more digits than `f64`.
+    /// Returns the shortest decimal that reads back as `value`; `value` itself if the type has no more digits than
+    /// `f64`.
     fn decimal(value: f64) -> Self;
-    /// The nearest `f64`.
+    /// Returns the nearest `f64`.
     fn to_f64(self) -> f64;
-    /// A whole number.
+    /// Converts a whole number.
     fn whole(value: i32) -> Self;
-    /// The largest whole number not above it; saturates beyond the range of `i32`.
+    /// Returns the largest whole number that is not above this number. Saturates beyond the range of `i32`.
     fn floor(self) -> i32;
-    /// The unit interval that contains a number from 0 to below 2²⁰: its index, and its lower end. For a whole number,
-    /// it may be either of two.
+    /// Returns the unit interval that contains a number from 0 to below 2²⁰: its index, and its lower end. For a whole
+    /// number, it may be either of the two that meet there.
     fn cell(self) -> (usize, Self);
-    /// The square root; 0 for a negative number, since a difference that vanishes may come out as −1e-17.
+    /// Returns the square root; 0 for a negative number, since a difference that should vanish may be −1e-17.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// Sine and cosine of an angle in degrees; exactly 0 and ±1 at the multiples of 90°.
+    /// Returns sine and cosine of an angle in degrees; exactly 0 and ±1 at multiples of 90°.
     fn sin_cos_degrees(self) -> (Self, Self);
-    /// The angle in radians that has this sine and this cosine, from −π/2 to π/2: the cosine is not negative.
+    /// Returns the angle in radians with this sine and this cosine, from −π/2 to π/2: the cosine is not negative.
     fn angle(sin: Self, cos: Self) -> Self;
 
-    /// The smaller of two.
+    /// Returns the smaller of two numbers.
     #[must_use]
     fn min(self, other: Self) -> Self {
         if other < self { other } else { self }
     }
-    /// The larger of two.
+    /// Returns the larger of two numbers.
     #[must_use]
     fn max(self, other: Self) -> Self {
         if other > self { other } else { self }
     }
-    /// The absolute value.
+    /// Returns the absolute value.
     #[must_use]
     fn abs(self) -> Self {
         if self < Self::ZERO { -self } else { self }
     }
 }
 
-/// 1.5 · 2⁵². Adding a number to it rounds the number to a whole one, which is then in the lowest bits. A cast takes
-/// three times as long, because it has to saturate.
+/// 1.5 · 2⁵². Adding a number to it rounds that number to a whole one, which then stands in the lowest bits. A cast
+/// takes three times as long, because it has to saturate.
 const WHOLE: f64 = 6_755_399_441_055_744.0;
 
-/// The whole number nearest to a number from −2³¹ to below 2³¹; the even one if two are equally near.
+/// Returns the whole number nearest to a number from −2³¹ to below 2³¹; the even one if two are equally near.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "the lowest bits are wanted"
@@ -146,9 +147,9 @@ impl Real for f64 {
     }
 }
 
-/// The nearest number of right angles, and the degrees left over, from −45 to 45. Both are exact.
+/// Returns the nearest number of right angles, and the degrees left over, from −45 to 45. Both are exact.
 fn quarters(degrees: f64) -> (i32, f64) {
-    // Not `round` and `rem_euclid`, which are function calls; a turn more or less makes no difference.
+    // Not `round` and `rem_euclid`, which are function calls. A full turn more or less makes no difference.
     let degrees = if degrees.abs() < 1e9 {
         degrees
     } else {
@@ -158,7 +159,7 @@ fn quarters(degrees: f64) -> (i32, f64) {
     (quarter, degrees - f64::from(quarter) * 90.0)
 }
 
-/// Turns the angle's reduced sine and cosine back by `quarter` right angles.
+/// Returns sine and cosine of an angle from those of the angle reduced by `quarter` right angles.
 fn turn_by_quarters<T: Real>(quarter: i32, sin: T, cos: T) -> (T, T) {
     match quarter & 3 {
         0 => (sin, cos),
@@ -181,13 +182,13 @@ const PI: Double = Double {
     low: 1.224_646_799_147_353_2e-16,
 };
 
-/// Half of it: halving is exact.
+/// Half of π. Halving is exact.
 const HALF_PI: Double = Double {
     high: 0.5 * PI.high,
     low: 0.5 * PI.low,
 };
 
-/// A sum and its rounding error.
+/// Returns a sum and its rounding error.
 fn two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     let part = high - a;
@@ -197,7 +198,7 @@ fn two_sum(a: f64, b: f64) -> Double {
     }
 }
 
-/// The same, if `a` is known to be the larger.
+/// Returns a sum and its rounding error, like [`two_sum`], if `a` is known to be the larger number.
 fn quick_two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     Double {
@@ -206,7 +207,7 @@ fn quick_two_sum(a: f64, b: f64) -> Double {
     }
 }
 
-/// A product and its rounding error.
+/// Returns a product and its rounding error.
 fn two_product(a: f64, b: f64) -> Double {
     let high = a * b;
     Double {
@@ -256,7 +257,7 @@ impl Mul for Double {
 impl Div for Double {
     type Output = Self;
     fn div(self, other: Self) -> Self {
-        // Long division, three digits of 53 bits each.
+        // Long division with three digits of 53 bits each.
         let first = self.high / other.high;
         let rest = self - other * Self::from(first);
         let second = rest.high / other.high;
@@ -267,7 +268,7 @@ impl Div for Double {
 }
 
 impl From<f64> for Double {
-    /// Exactly this binary number; see [`Real::decimal`] for the number that a user meant.
+    /// Converts exactly this binary number. For the number that a user meant, see [`Real::decimal`].
     fn from(value: f64) -> Self {
         Self {
             high: value,
@@ -296,7 +297,7 @@ impl Real for Double {
     };
 
     fn decimal(value: f64) -> Self {
-        // The power of ten below would overflow, and the error of the binary number is smaller than any tie.
+        // The power of ten below would overflow. The error of the binary number is smaller than any tie.
         if value.abs() < 1e-200 {
             return Self::from(value);
         }
@@ -311,7 +312,7 @@ impl Real for Double {
         let (Ok(exponent), Ok(places)) = (exponent.parse::<i32>(), i32::try_from(places)) else {
             return Self::from(value);
         };
-        // At most 17 digits, so the digits are exact, and so are the powers of ten up to 10^46.
+        // There are at most 17 digits, so the number is exact, and so are the powers of ten up to 10^46.
         let mut number = Self::ZERO;
         for digit in digits.bytes().filter(u8::is_ascii_digit) {
             number = number * Self::from(10.0) + Self::from(f64::from(digit - b'0'));
@@ -333,7 +334,7 @@ impl Real for Double {
     }
     fn floor(self) -> i32 {
         let floor = Real::floor(self.high);
-        // A whole high part with a negative low one lies just below that whole number.
+        // A whole high part with a negative low part lies just below that whole number.
         floor.saturating_sub(i32::from(Self::whole(floor) > self))
     }
     fn cell(self) -> (usize, Self) {
@@ -344,7 +345,7 @@ impl Real for Double {
         if self.high <= 0.0 {
             return Self::ZERO;
         }
-        // One Newton step from the f64 root doubles its digits; a second one settles the last.
+        // One Newton step from the f64 root doubles its digits; a second step corrects the last ones.
         let step = |root: Self| (root + self / root) * Self::HALF;
         step(step(Self::from(self.high.sqrt())))
     }
@@ -363,7 +364,7 @@ impl Real for Double {
 }
 
 impl Double {
-    /// Sine and cosine of an angle in radians, up to a right angle.
+    /// Returns sine and cosine of an angle in radians, up to a right angle.
     fn sin_cos(self) -> (Self, Self) {
         // Taylor's series; the terms fall below 1e-33 before the 36th power.
         let (mut sin, mut cos, mut term) = (Self::ZERO, Self::ZERO, Self::ONE);
