@@ -1,4 +1,4 @@
-//! The axes of a pose, and one value for each of them: ranges, indices, poses.
+//! The axes of a pose, and types with one value per axis: ranges, indices, poses.
 
 use std::ops::{Index, IndexMut};
 
@@ -6,7 +6,7 @@ use crate::parameter::{Parameter, named};
 use crate::pose::range::DecimalRange;
 use crate::source::Source;
 
-/// What a pose consists of, from the axis that runs fastest in a grid to the slowest.
+/// An axis of a pose. In a grid, the first axis runs fastest and the last one slowest.
 ///
 /// Figures have the first three; their zooms are 1. Pictures have all five.
 ///
@@ -20,15 +20,15 @@ use crate::source::Source;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Axis {
-    /// Position to the right, in cells.
+    /// The position to the right, in cells.
     X0,
-    /// Position downwards, in cells.
+    /// The position downwards, in cells.
     Y0,
-    /// Rotation in degrees: clockwise for figures, counter-clockwise for pictures.
+    /// The rotation in degrees: clockwise for figures, counter-clockwise for pictures.
     Angle,
-    /// Horizontal zoom of a picture.
+    /// The horizontal zoom of a picture.
     ZoomX,
-    /// Vertical zoom of a picture.
+    /// The vertical zoom of a picture.
     ZoomY,
 }
 
@@ -36,14 +36,14 @@ impl Axis {
     /// All axes, the fastest first.
     pub const ALL: [Self; 5] = [Self::X0, Self::Y0, Self::Angle, Self::ZoomX, Self::ZoomY];
 
-    /// The axes that a shape has: all of them for a picture, without the zooms for a figure.
+    /// Iterates over the axes that a shape has: all of them for a picture, all except the zooms for a figure.
     pub fn of(source: &Source) -> impl Iterator<Item = Self> + use<> {
         let figure = source.kind().is_some();
         let all = Self::ALL.into_iter();
         all.filter(move |axis| !(figure && axis.is_zoom()))
     }
 
-    /// The parameter of a shape that this axis sets, with its unit and range.
+    /// Returns the parameter that this axis sets. It has the unit and the range of the axis.
     pub const fn parameter(self) -> Parameter {
         match self {
             Self::X0 => Parameter::X0,
@@ -54,12 +54,12 @@ impl Axis {
         }
     }
 
-    /// The name in files, the key of the parameter: `"zoom_x"`.
+    /// Returns the name in files, which is the key of the parameter: `"zoom_x"`.
     pub fn name(self) -> &'static str {
         self.parameter().row().key
     }
 
-    /// Whether only pictures have it.
+    /// Returns true if only pictures have the axis.
     pub const fn is_zoom(self) -> bool {
         matches!(self, Self::ZoomX | Self::ZoomY)
     }
@@ -87,36 +87,36 @@ pub type Ranges = PerAxis<DecimalRange>;
 
 /// The values of one pose: cells, degrees, and zooms, which are 1 for figures.
 ///
-/// x0 and y0 locate the anchor, the corner of a picture before it is zoomed.
+/// x0 and y0 locate the anchor. If the anchor of a picture is its corner, they are the position before zooming.
 pub type Pose = PerAxis<f64>;
 
 /// The position of a pose in a grid: for each axis, the index of its value in the range, from 0.
 pub type PoseIndex = PerAxis<u64>;
 
 impl<T> PerAxis<T> {
-    /// The values in the order of [`Axis::ALL`].
+    /// Creates values from an array in the order of [`Axis::ALL`].
     pub const fn new(values: [T; 5]) -> Self {
         Self(values)
     }
 
-    /// The value that `value` gives for each axis.
+    /// Creates values by calling `value` for each axis.
     pub fn from_fn(value: impl FnMut(Axis) -> T) -> Self {
         Self(Axis::ALL.map(value))
     }
 
-    /// The same with another value on one axis.
+    /// Returns the same values with another value on one axis.
     #[must_use]
     pub fn with(mut self, axis: Axis, value: T) -> Self {
         self[axis] = value;
         self
     }
 
-    /// The values in the order of [`Axis::ALL`].
+    /// Returns the values in the order of [`Axis::ALL`].
     pub fn into_array(self) -> [T; 5] {
         self.0
     }
 
-    /// Each axis with its value, the fastest first.
+    /// Iterates over the axes and their values, the fastest axis first.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = (Axis, &T)> + ExactSizeIterator {
         Axis::ALL.into_iter().zip(&self.0)
     }
@@ -136,7 +136,7 @@ impl<T> IndexMut<Axis> for PerAxis<T> {
 }
 
 impl Default for Ranges {
-    /// The paper's grid: x0 and y0 over one cell from 5 on in hundredths, every whole degree, no zoom.
+    /// Returns the ranges of the paper: x0 and y0 over one cell from 5 on in hundredths, every whole degree, no zoom.
     fn default() -> Self {
         Self([
             DecimalRange::from_units(500, 1, 2, 100),
@@ -149,7 +149,7 @@ impl Default for Ranges {
 }
 
 impl<T> Default for PerAxis<Option<T>> {
-    /// None for every axis.
+    /// Returns None for every axis.
     fn default() -> Self {
         Self([const { None }; 5])
     }
@@ -162,7 +162,7 @@ pub enum Anchor {
     /// The top left corner of the bounding rectangle before rotation.
     #[default]
     Corner,
-    /// The centre of rotation. The centre of a picture lies at (x0, y0) for every zoom.
+    /// The centre of rotation. For a picture, it lies at (x0, y0) under every zoom.
     Centre,
 }
 
@@ -170,15 +170,15 @@ impl Anchor {
     /// Both anchors.
     pub const ALL: [Self; 2] = [Self::Corner, Self::Centre];
 
-    /// Their names, in the order of [`Self::ALL`].
+    /// The names of the anchors, in the order of [`Self::ALL`].
     pub const NAMES: [&'static str; 2] = ["corner", "centre"];
 
-    /// The name in files and on the command line.
+    /// Returns the name in files and on the command line.
     pub const fn name(self) -> &'static str {
         Self::NAMES[self as usize]
     }
 
-    /// The anchor of that name.
+    /// Returns the anchor with a name; None if there is none.
     ///
     /// ```
     /// use taxel::pose::Anchor;

@@ -1,12 +1,12 @@
-//! The stored boundary of a shape, drawn once for all positions that differ by a shift.
+//! The stored boundary of a shape: drawn once, and used for all positions that differ by a shift.
 //!
-//! In `f64` it is what bands are cut from; as [`Double`](crate::geometry::Double) it decides what `f64`
-//! cannot. Frame and units are those of the plane; the anchor of the shape lies at the origin.
+//! In `f64`, bands are cut from it. As [`Double`](crate::geometry::Double), it decides cases that `f64` cannot. Frame
+//! and units are those of the plane; the anchor of the shape lies at the origin.
 
 use crate::geometry::Real;
 use crate::geometry::{Ellipse, Extent, Moving, Pen, Point, Side, Solid};
 
-/// Straight edges with the material on their right, and ellipses.
+/// The boundary of a shape: straight edges with the material on their right, and ellipses.
 #[derive(Clone, Debug)]
 pub(crate) struct Boundary<T> {
     pub(crate) edges: Vec<(Point<T>, Point<T>)>,
@@ -23,7 +23,7 @@ impl<T: Real> Boundary<T> {
         boundary
     }
 
-    /// Draws it again, moved.
+    /// Draws the stored boundary, shifted.
     pub(crate) fn draw(&self, by: Point<T>, pen: &mut impl Pen<T>) {
         let mut pen = Moving { by, pen };
         for &(from, to) in &self.edges {
@@ -34,7 +34,8 @@ impl<T: Real> Boundary<T> {
         }
     }
 
-    /// The centre of a figure: of its ellipse, or the mean of its corners. A concentric hole leaves it where it is.
+    /// Returns the centre of a figure: that of its ellipse, or the mean of its corners. A concentric hole does not
+    /// change it.
     pub(crate) fn mean(&self) -> Point<T> {
         if let Some((ellipse, _)) = self.ellipses.first() {
             return ellipse.centre;
@@ -48,7 +49,7 @@ impl<T: Real> Boundary<T> {
         Point::new(sum.x / count, sum.y / count)
     }
 
-    /// The middle of the bounding rectangle of the edges; the origin if there are none.
+    /// Returns the middle of the bounding rectangle of the edges; the origin if there are none.
     pub(crate) fn middle(&self) -> Point<T> {
         let Some(&(first, _)) = self.edges.first() else {
             return Point::new(T::ZERO, T::ZERO);
@@ -63,7 +64,7 @@ impl<T: Real> Boundary<T> {
 }
 
 impl Boundary<f64> {
-    /// Its extent; None for a shape without a boundary.
+    /// Returns the extent; None for a shape without a boundary.
     pub(crate) fn extent(&self) -> Option<Extent> {
         Extent::drawn(|pen| self.draw(Point::new(0.0, 0.0), pen))
     }

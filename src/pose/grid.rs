@@ -1,12 +1,13 @@
 //! A grid of poses: a figure or a picture, a sensor, and a range for each axis.
 //!
-//! **Order of poses.** x0 runs fastest, then y0, the angle, zoom x and zoom y (only pictures have zooms). A *row* is all
-//! x0 at one y0; an *orientation* is all rows at one angle and one pair of zooms. Poses, rows and orientations are
-//! numbered from 0 in this order.
+//! **Order of poses.** x0 runs fastest, then y0, the angle, zoom x and zoom y (only pictures have zooms). A *row*
+//! consists of all x0 at one y0; an *orientation* consists of all rows at one angle and one pair of zooms. Poses, rows
+//! and orientations are numbered from 0 in this order.
 //!
-//! **Anchor.** The ranges of x0 and y0 locate the corner of the shape, as everywhere in the program, or its centre: for
-//! a figure its centre of rotation, for a picture the centre of its scaled bounding rectangle, which then lies *at* the
-//! given point for every zoom. Cells, degrees. Convention of this project.
+//! **Anchor.** The ranges of x0 and y0 locate either the corner of the shape, as everywhere in the program, or its
+//! centre. The centre of a figure is its centre of rotation. That of a picture is the centre of its scaled bounding
+//! rectangle, which then lies *at* the given point under every zoom. Units are cells and degrees. The anchor is a
+//! convention of this project.
 
 use crate::geometry::{Point, Real};
 use crate::parameter::number::{grouped, to_decimals};
@@ -41,11 +42,11 @@ pub struct PoseGrid {
 }
 
 impl PoseGrid {
-    /// A grid of poses of `source`, whose own position, angle and zoom do not matter.
+    /// Creates a grid of poses of `source`, whose own position, angle and zooms do not matter.
     ///
     /// # Errors
-    /// If a range exceeds that of its parameter, if a figure is to be zoomed, or if there are more than [`MAX_POSES`]
-    /// poses.
+    /// Returns an error if a range exceeds that of its parameter, if a figure has zooms other than 1, or if there are
+    /// more than [`MAX_POSES`] poses.
     pub fn new(
         source: Source,
         sensor: Sensor,
@@ -77,63 +78,63 @@ impl PoseGrid {
         })
     }
 
-    /// The shape, in the first pose.
+    /// Returns the shape, in the first pose.
     pub fn source(&self) -> &Source {
         &self.source
     }
 
-    /// The sensor.
+    /// Returns the sensor.
     pub fn sensor(&self) -> &Sensor {
         &self.sensor
     }
 
-    /// The point of the shape that x0 and y0 locate.
+    /// Returns the point of the shape that x0 and y0 locate.
     pub fn anchor(&self) -> Anchor {
         self.anchor
     }
 
-    /// The range of each axis.
+    /// Returns the range of each axis.
     pub fn ranges(&self) -> &Ranges {
         &self.ranges
     }
 
-    /// The axes that the shape has: all of them for a picture, none of the zooms for a figure.
+    /// Iterates over the axes that the shape has: all of them for a picture, all except the zooms for a figure.
     pub fn axes(&self) -> impl Iterator<Item = Axis> + use<> {
         Axis::of(&self.source)
     }
 
-    /// Number of poses.
+    /// Returns the number of poses.
     pub fn poses(&self) -> u64 {
         self.rows() * self.row_length()
     }
 
-    /// Number of poses of a row.
+    /// Returns the number of poses in a row.
     pub fn row_length(&self) -> u64 {
         self.ranges[Axis::X0].count()
     }
 
-    /// Number of rows of all orientations.
+    /// Returns the number of rows in all orientations together.
     pub fn rows(&self) -> u64 {
         self.orientations() * self.rows_per_orientation()
     }
 
-    /// Number of rows of one orientation.
+    /// Returns the number of rows in an orientation.
     pub fn rows_per_orientation(&self) -> u64 {
         self.ranges[Axis::Y0].count()
     }
 
-    /// Number of orientations: angles times zooms.
+    /// Returns the number of orientations: angles times zooms.
     fn orientations(&self) -> u64 {
         let [_, _, angles, zooms_x, zooms_y] = self.counts().into_array();
         angles * zooms_x * zooms_y
     }
 
-    /// Number of values of each axis.
+    /// Returns the number of values of each axis.
     pub fn counts(&self) -> PoseIndex {
         PoseIndex::from_fn(|axis| self.ranges[axis].count())
     }
 
-    /// The index of pose `number` on each axis. Numbers beyond the last pose start again at the first.
+    /// Returns the index of pose `number` on each axis. Numbers beyond the last pose start again at the first.
     pub fn index(&self, number: u64) -> PoseIndex {
         let mut rest = number;
         PoseIndex::from_fn(|axis| {
@@ -144,7 +145,7 @@ impl PoseGrid {
         })
     }
 
-    /// The number of the pose at an index. An index beyond the grid is moved to its edge.
+    /// Returns the number of the pose at an index. An index beyond the grid is moved to its edge.
     pub fn number(&self, index: PoseIndex) -> u64 {
         index.iter().rev().fold(0, |number, (axis, &index)| {
             let count = self.ranges[axis].count();
@@ -152,13 +153,14 @@ impl PoseGrid {
         })
     }
 
-    /// Pose `number`. Numbers beyond the last pose start again at the first.
+    /// Returns pose `number`. Numbers beyond the last pose start again at the first.
     pub fn pose(&self, number: u64) -> Pose {
         let index = self.index(number);
         Pose::from_fn(|axis| self.ranges[axis].value(index[axis]))
     }
 
-    /// The grid of the `counts` values from `from` on, on each axis. None if it is empty or leaves this grid.
+    /// Returns the part of the grid that has, on each axis, the `counts` values from `from` on. None if it is empty or
+    /// leaves this grid.
     pub fn part(&self, from: PoseIndex, counts: PoseIndex) -> Option<Self> {
         let mut ranges = self.ranges;
         for axis in Axis::ALL {
@@ -168,7 +170,7 @@ impl PoseGrid {
         Self::new(self.source.clone(), self.sensor, self.anchor, ranges).ok()
     }
 
-    /// The shape in a pose. A value beyond the range of its parameter is ignored.
+    /// Returns the shape in a pose. A value beyond the range of its parameter is ignored.
     pub fn placed(&self, pose: Pose) -> Placed {
         let corner = match self.anchor {
             Anchor::Corner => pose,
@@ -184,7 +186,7 @@ impl PoseGrid {
         }
     }
 
-    /// The shape with the values of a pose, except those beyond the range of their parameter.
+    /// Returns the shape with the values of a pose, except those beyond the range of their parameter.
     fn source_in(&self, pose: Pose) -> Source {
         let mut source = self.source.clone();
         for axis in self.axes() {
@@ -193,7 +195,7 @@ impl PoseGrid {
         source
     }
 
-    /// The point that the shape turns about, in a pose, whatever the anchor: x and y in cells.
+    /// Returns the point about which the shape turns, in a pose and for any anchor: x and y in cells.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -212,13 +214,13 @@ impl PoseGrid {
         [centre.x, centre.y]
     }
 
-    /// The shape of a pose with the corner as its anchor, as forms and files describe it.
+    /// Returns the shape in a pose, placed by its corner as in forms and files.
     ///
-    /// If the grid's anchor is the centre, the corner is rounded to nine decimals, so a taxel that is covered just at the
-    /// threshold may differ.
+    /// If the grid's anchor is the centre, the corner is rounded to nine decimals. So a taxel that is covered just at
+    /// the threshold may differ.
     ///
     /// # Errors
-    /// If the corner lies outside of the range of x0 and y0.
+    /// Returns an error if the corner lies outside of the range of x0 or y0.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -255,12 +257,12 @@ impl PoseGrid {
         with(zoomed, &placement, corner)
     }
 
-    /// Whether this grid is of that shape, in any pose, on that sensor.
+    /// Returns true if this grid is one of the same shape, in any pose, on the same sensor. The pitch does not matter.
     pub fn is_of(&self, source: &Source, sensor: &Sensor) -> bool {
         let own = &self.sensor;
         let same_sensor = (own.columns(), own.rows(), own.threshold())
             == (sensor.columns(), sensor.rows(), sensor.threshold());
-        // In the same pose only the shapes can differ.
+        // In the same pose, only the shapes can differ.
         let posed = |source: &Source| {
             Axis::of(source).try_fold(source.clone(), |source, axis| {
                 let parameter = axis.parameter();
@@ -271,24 +273,24 @@ impl PoseGrid {
             && matches!((posed(&self.source), posed(source)), (Ok(one), Ok(other)) if one == other)
     }
 
-    /// The first pose of an orientation.
+    /// Returns the first pose of an orientation.
     fn first_pose(&self, orientation: u64) -> Pose {
         self.pose(orientation * self.rows_per_orientation() * self.row_length())
     }
 
-    /// The boundary of the shape in an orientation, with its anchor at the origin.
+    /// Returns the boundary of the shape in an orientation, with its anchor at the origin.
     pub(crate) fn boundary<T: Real>(&self, orientation: u64) -> Boundary<T> {
         let pose = self.first_pose(orientation);
         Boundary::of(&self.placed(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0)))
     }
 
-    /// The point that the shape turns about, in an orientation, with the anchor at the origin.
+    /// Returns the point about which the shape turns, in an orientation, with the anchor at the origin.
     pub(crate) fn centre_from_anchor(&self, orientation: u64) -> [f64; 2] {
         let pose = self.first_pose(orientation);
         self.centre(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0))
     }
 
-    /// The position of the anchor in the plane at value `x` of x0 and value `y` of y0.
+    /// Returns the position of the anchor in the plane, for the values of x0 and y0 with indices `x` and `y`.
     pub(crate) fn offset<T: Real>(&self, orientation: u64, x: u64, y: u64) -> Point<T> {
         let anchor = Point::new(
             T::decimal(self.ranges[Axis::X0].value(x)),
@@ -306,29 +308,29 @@ impl PoseGrid {
     }
 }
 
-/// Why a grid was refused.
+/// The error for a grid that cannot be created.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GridError {
-    /// A range that exceeds that of its parameter.
+    /// A range exceeds that of its parameter.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// A number that no range can have.
+    /// A number has more digits than a range can have.
     #[error("{value} has too many digits for a range")]
     Digits {
         /// The number.
         value: f64,
     },
-    /// Zooms of a figure.
+    /// A figure has zooms other than 1.
     #[error("zoom_x, zoom_y: a {noun} has none, only pictures have")]
     Zoom {
-        /// The name of the figure.
+        /// The noun for the shape: "figure".
         noun: &'static str,
     },
-    /// Too many poses.
+    /// There are too many poses.
     #[error("{} poses, expected at most {}", grouped(*poses), grouped(MAX_POSES))]
     Poses {
-        /// Their number.
+        /// The number of poses.
         poses: u128,
     },
 }
@@ -346,7 +348,7 @@ mod tests {
         let zoomed = source.kind().is_none();
         let zoom = if zoomed { "0.5:1.5:0.25" } else { "1" };
         let ranges = Ranges::new([
-            // No place where a cell is covered just by half.
+            // At none of these positions is a cell covered exactly by half.
             range("5.013:5.913:0.3"),
             range("6.007:6.507:0.1"),
             range("0:350:50"),
@@ -394,7 +396,7 @@ mod tests {
         assert_eq!(cut([u64::MAX; 5], [1; 5]), None);
     }
 
-    /// Wherever the anchor is, the shape by itself leaves the imprint of its pose.
+    /// For any anchor, the shape by itself leaves the imprint of its pose.
     #[test]
     fn a_pose_can_be_touched_by_itself() {
         let triangle = Source::Figure(Figure::default_of(FigureKind::Triangle, &Sensor::default()));
@@ -417,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn another_shape_is_none_of_the_grid() {
+    fn a_grid_is_not_one_of_another_shape_or_sensor() {
         let sensor = Sensor::default();
         let hexagon = Figure::default_of(FigureKind::Hexagon, &Sensor::default());
         let grid = grid(Source::Figure(hexagon), Anchor::Corner);

@@ -1,7 +1,7 @@
-//! Poses: where a shape lies and how it is rotated.
+//! Poses: the positions and orientations of a shape.
 //!
-//! Each of the five axes (x0, y0, angle, and two zooms for pictures) has an exact range of decimals; together they span
-//! a grid whose poses are numbered.
+//! Each of the five axes (x0, y0, angle, and two zooms for pictures) has an exact range of decimals. Together the
+//! ranges span a grid, whose poses are numbered.
 
 mod range;
 

@@ -1,20 +1,20 @@
-//! A shape in one pose, with its anchor where the pose puts it.
+//! A shape in one pose, with its anchor at the position of the pose.
 
 use crate::geometry::{Moving, Pen, Point, Real, Solid};
 use crate::pose::boundary::Boundary;
 use crate::source::Source;
 
-/// A shape in a pose of a grid, ready to be touched ([`Plane::touch`](crate::touch::Plane::touch)).
+/// A shape in a pose of a grid, ready for a touch ([`Plane::touch`](crate::touch::Plane::touch)).
 #[derive(Clone, Debug)]
 pub struct Placed {
     rotated: Source,
-    /// If the anchor is the centre: the shape before rotation, and where its centre goes. Both shapes then have their
-    /// corner at the origin.
+    /// The shape before rotation, and the position of its centre, if the anchor is the centre. Both shapes then have
+    /// their corner at the origin.
     centred: Option<(Source, f64, f64)>,
 }
 
 impl Placed {
-    /// A shape that already lies where its corner is wanted.
+    /// Creates a placed shape from one whose corner already is at its position.
     pub(crate) fn at_corner(rotated: Source) -> Self {
         Self {
             rotated,
@@ -22,7 +22,7 @@ impl Placed {
         }
     }
 
-    /// A shape whose centre lies at `centre`; the corner of both given shapes is at the origin.
+    /// Creates a placed shape with its centre at `centre`. Both given shapes have their corner at the origin.
     pub(crate) fn at_centre(rotated: Source, upright: Source, centre: (f64, f64)) -> Self {
         Self {
             rotated,
@@ -42,7 +42,7 @@ impl Solid for Placed {
     }
 }
 
-/// The centre of rotation of a shape that is not rotated, in cells.
+/// Returns the centre of rotation of a shape that is not rotated, in cells.
 pub(crate) fn centre<T: Real>(upright: &Source) -> Point<T> {
     let boundary = Boundary::of(upright);
     match upright {

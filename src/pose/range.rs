@@ -1,9 +1,9 @@
 //! Exact ranges of decimals, `start:end:step` with the end included: the values of one axis of a sweep.
 //!
-//! The numbers are integers scaled by a power of ten, so `5:5.99:0.01` is one hundred hundredths and nothing is
-//! accumulated: value `i` is the `f64` nearest to the exact decimal `start + i·step`. If the steps do not reach the end
-//! exactly, the last value is the largest one below the end. A single number is a range of one. Units are those of the
-//! parameter. Convention of this project.
+//! The numbers are integers scaled by a power of ten. So `5:5.99:0.01` has exactly one hundred values, and no error
+//! accumulates: value `i` is the `f64` nearest to the exact decimal `start + i·step`. If the steps do not reach the end
+//! exactly, the last value is the largest one below the end. A single number is a range of one value. Units are those
+//! of the parameter. The form is a convention of this project.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -13,14 +13,14 @@ use crate::index::narrow;
 use crate::parameter::number::grouped;
 use crate::quote::shortened;
 
-/// The most values that one range may have.
+/// The largest number of values of a range.
 pub const MAX_VALUES: u64 = 1_000_000;
 
-/// The most decimals of a number. In units of the last of them, [`MAX_UNITS`] is just below 1000.
+/// The largest number of decimals of a number. In units of the last of them, [`MAX_UNITS`] is just below 1000.
 const MAX_PLACES: usize = 12;
 
-/// The largest number of units of the last place: every decimal of 15 digits has an `f64` of its own, which is written
-/// as that decimal again.
+/// The largest number in units of the last decimal. Every decimal of 15 digits has an `f64` of its own, which is
+/// written as that decimal again.
 const MAX_UNITS: i64 = 999_999_999_999_999;
 
 /// Decimals from a start to an end in equal steps; never empty.
@@ -35,7 +35,7 @@ const MAX_UNITS: i64 = 999_999_999_999_999;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DecimalRange {
-    /// First value and step, in units of `10^-places`.
+    /// The first value and the step, in units of `10^-places`.
     start: i64,
     step: i64,
     places: u32,
@@ -43,8 +43,8 @@ pub struct DecimalRange {
 }
 
 impl DecimalRange {
-    /// The range from `start` to `end`, which is included, in steps of `step`: `start:end:step` as text. Each number counts as
-    /// the shortest decimal that reads back as it, so 0.1 is one tenth.
+    /// Creates the range from `start` to `end`, which is included, in steps of `step`: as text, `start:end:step`. Each
+    /// number counts as the shortest decimal that reads back as it, so 0.1 is one tenth.
     ///
     /// ```
     /// use taxel::pose::DecimalRange;
@@ -55,22 +55,22 @@ impl DecimalRange {
     /// ```
     ///
     /// # Errors
-    /// If a number is not finite, or has more than 15 digits or 12 decimals, such as `0.1 + 0.2`; if the step is not above 0,
-    /// the end lies before the start, or there are more than [`MAX_VALUES`] values.
+    /// Returns an error if a number is not finite, or has more than 15 digits or 12 decimals (such as `0.1 + 0.2`); if
+    /// the step is not above 0; if the end lies before the start; or if there are more than [`MAX_VALUES`] values.
     pub fn new(start: f64, end: f64, step: f64) -> Result<Self, RangeError> {
         format!("{start}:{end}:{step}").parse()
     }
 
-    /// The range of one whole number.
+    /// Creates the range of a single whole number.
     pub const fn whole(value: i32) -> Self {
         Self::from_units(value as i64, 1, 0, 1)
     }
 
-    /// `count` values from `start` on, each `step` from the last, all in units of the last of `places` decimals; `count` and
-    /// `step` are above 0.
+    /// Creates the range of `count` values from `start` on, at distances of `step`, in units of the last of `places`
+    /// decimals. `count` and `step` are above 0.
     ///
-    /// Its fields are in units of as few decimals as the values need, and the step of a single value is 1. So equal ranges
-    /// are equal in their fields, however they were written.
+    /// The fields are in units of as few decimals as the values need, and the step of a single value is 1. So equal
+    /// ranges have equal fields, however they were written.
     pub(crate) const fn from_units(mut start: i64, step: i64, mut places: u32, count: u64) -> Self {
         let mut step = if count == 1 { 10_i64.pow(places) } else { step };
         while places > 0 && start % 10 == 0 && step % 10 == 0 {
@@ -84,12 +84,12 @@ impl DecimalRange {
         }
     }
 
-    /// Number of values, 1 to [`MAX_VALUES`].
+    /// Returns the number of values, 1 to [`MAX_VALUES`].
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// The `f64` nearest to value `index`, counted from 0; beyond the last one, as if the range went on.
+    /// Returns the `f64` nearest to value `index`, counted from 0; beyond the last value, as if the range went on.
     pub fn value(&self, index: u64) -> f64 {
         let units = i64::try_from(index)
             .ok()
@@ -98,17 +98,18 @@ impl DecimalRange {
         scaled(units.unwrap_or(i64::MAX), self.places)
     }
 
-    /// The last value.
+    /// Returns the last value.
     pub fn last(&self) -> f64 {
         self.value(self.count - 1)
     }
 
-    /// From one value to the next.
+    /// Returns the distance from one value to the next.
     pub fn step(&self) -> f64 {
         scaled(self.step, self.places)
     }
 
-    /// The range of one number, rounded to some decimals; None if it has more digits than are exact, or is not finite.
+    /// Creates the range of a single number, rounded to some decimals; None if the number has too many digits to be
+    /// exact, or is not finite.
     #[cfg(feature = "recognition")]
     pub(crate) fn rounded(value: f64, places: u32) -> Option<Self> {
         #[expect(clippy::cast_precision_loss, reason = "at most 2^53")]
@@ -122,7 +123,7 @@ impl DecimalRange {
         Some(Self::from_units(start, 1, places, 1))
     }
 
-    /// The values with these indices as a range of their own; None if `indices` is empty or leaves the range.
+    /// Returns the values with these indices as a range of their own; None if `indices` is empty or leaves the range.
     ///
     /// ```
     /// use taxel::pose::DecimalRange;
@@ -145,8 +146,8 @@ impl DecimalRange {
         ))
     }
 
-    /// Returns the values half a step beyond each of these; a single value stays as it is. None if they need more
-    /// decimals than a range can have.
+    /// Returns the range shifted by half a step; the range of a single value stays as it is. None if the shifted values
+    /// need more decimals than a range can have.
     ///
     /// ```
     /// use taxel::pose::DecimalRange;
@@ -171,7 +172,7 @@ impl DecimalRange {
         fits.then(|| Self::from_units(start, step, places, self.count))
     }
 
-    /// All values in order.
+    /// Iterates over all values in order.
     ///
     /// ```
     /// use taxel::pose::DecimalRange;
@@ -184,24 +185,24 @@ impl DecimalRange {
         (0..narrow(self.count)).map(|index| self.value(index.into()))
     }
 
-    /// First value and step in units of the last place: exact, for questions of symmetry.
+    /// Returns the first value and the step, exactly, in units of the last decimal. Symmetries are decided with them.
     pub(crate) fn units(&self) -> [i128; 2] {
         [i128::from(self.start), i128::from(self.step)]
     }
 
-    /// One, in the same units.
+    /// Returns one, in units of the last decimal.
     pub(crate) fn one(&self) -> i128 {
         10_i128.pow(self.places)
     }
 
-    /// Value `index` modulo a whole number, in units of the last place: exact as well.
+    /// Returns value `index` modulo a whole number, exactly, in units of the last decimal.
     pub(crate) fn residue(&self, index: u64, modulus: u32) -> i128 {
         let units = i128::from(self.start) + i128::from(index) * i128::from(self.step);
         units.rem_euclid(i128::from(modulus) * self.one())
     }
 }
 
-/// Correctly rounded: both numbers of the quotient are exact.
+/// Returns `units · 10^-places`, correctly rounded: both numbers of the quotient are exact.
 #[expect(clippy::cast_precision_loss, reason = "at most 2^53")]
 fn scaled(units: i64, places: u32) -> f64 {
     units as f64 / 10_u64.pow(places) as f64
@@ -226,7 +227,8 @@ impl FromStr for DecimalRange {
         let units = |text: &str| {
             units(text, places).ok_or_else(|| {
                 if is_decimal(text) {
-                    // All three count: the finest of them decides how many decimals each needs.
+                    // The error shows all three numbers: the one with the most decimals decides how many each of them
+                    // needs.
                     let text = shortened(whole.trim());
                     RangeError::Digits { text }
                 } else {
@@ -259,19 +261,19 @@ impl FromStr for DecimalRange {
 impl TryFrom<f64> for DecimalRange {
     type Error = RangeError;
 
-    /// The range of one number.
+    /// Creates the range of a single number.
     ///
     /// # Errors
-    /// If it is not finite, or has more than 15 digits or 12 decimals, such as `0.1 + 0.2`.
+    /// Returns an error if the number is not finite, or has more than 15 digits or 12 decimals, such as `0.1 + 0.2`.
     fn try_from(value: f64) -> Result<Self, RangeError> {
         value.to_string().parse()
     }
 }
 
-/// The exponents that are written out, up or down. Beyond them any number has too many digits.
+/// The largest exponent that is written out, in size. Beyond it, any number has too many digits.
 const LARGEST_EXPONENT: i32 = 30;
 
-/// A number with an exponent as a plain decimal: `1e-3` as `0.001`. Other text stays as it is.
+/// Writes a number with an exponent as a plain decimal: `1e-3` as `0.001`. Other text stays as it is.
 fn without_exponent(text: &str) -> Cow<'_, str> {
     let written_out = || {
         let (number, exponent) = text.split_once(['e', 'E'])?;
@@ -297,19 +299,19 @@ fn without_exponent(text: &str) -> Cow<'_, str> {
     written_out().map_or(Cow::Borrowed(text), Cow::Owned)
 }
 
-/// The number of decimals that a number is written with, without trailing zeros.
+/// Returns the number of decimals with which a number is written, without trailing zeros.
 fn places(text: &str) -> usize {
     let fraction = text.split_once('.').map_or("", |(_, after)| after);
     fraction.trim_end_matches('0').len()
 }
 
-/// The digits before and after the decimal point, without the sign.
+/// Returns the digits before and after the decimal point, without the sign.
 fn parts(text: &str) -> (&str, &str) {
     let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
     digits.split_once('.').unwrap_or((digits, ""))
 }
 
-/// Whether a text is a plain decimal, however long.
+/// Returns true if text is a plain decimal, of any length.
 fn is_decimal(text: &str) -> bool {
     let (whole, fraction) = parts(text);
     let mut digits = whole.bytes().chain(fraction.bytes());
@@ -317,7 +319,7 @@ fn is_decimal(text: &str) -> bool {
     any && digits.all(|byte| byte.is_ascii_digit())
 }
 
-/// A decimal in units of `10^-places`; None if the text is not a plain decimal, or too long to be exact.
+/// Converts a decimal to units of `10^-places`; None if the text is not a plain decimal, or too long to be exact.
 fn units(text: &str, places: usize) -> Option<i64> {
     let negative = text.starts_with('-');
     if !is_decimal(text) || places > MAX_PLACES {
@@ -337,7 +339,7 @@ fn units(text: &str, places: usize) -> Option<i64> {
 }
 
 impl fmt::Display for DecimalRange {
-    /// Writes the form that is read.
+    /// Writes the range in the form in which it is read.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // The shortest decimal that reads back as the nearest `f64` is the exact decimal itself.
         write!(f, "{}", self.value(0))?;
@@ -348,23 +350,23 @@ impl fmt::Display for DecimalRange {
     }
 }
 
-/// The error for text that is not a range.
+/// The error for numbers or text that are not a range.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RangeError {
-    /// Neither one number nor three.
+    /// The text is neither one number nor three.
     #[error("\"{text}\" is not a range, expected a number or start:end:step")]
     Form {
         /// The text, shortened.
         text: String,
     },
-    /// Not a plain decimal.
+    /// A part of the text is not a plain decimal.
     #[error("\"{text}\" is not a decimal number, such as 0.25")]
     Number {
         /// The text, shortened.
         text: String,
     },
-    /// More digits than are exact.
+    /// A number has more digits than are exact.
     #[error(
         "\"{text}\" has too many digits: each number may have 15, {MAX_PLACES} of them behind the point, when all have the \
          same number of decimals"
@@ -373,23 +375,23 @@ pub enum RangeError {
         /// The whole range, shortened.
         text: String,
     },
-    /// A step of 0, or backwards.
+    /// The step is not above 0.
     #[error("step {step}: expected one above 0")]
     Step {
-        /// As given, shortened.
+        /// The step as given, shortened.
         step: String,
     },
-    /// An end before the start.
+    /// The end lies before the start.
     #[error("{start}:{end}:{step} ends before it starts, expected an end from {start} on")]
     Backwards {
-        /// As given, shortened.
+        /// The start as given, shortened.
         start: String,
-        /// As given, shortened.
+        /// The end as given, shortened.
         end: String,
-        /// As given, shortened.
+        /// The step as given, shortened.
         step: String,
     },
-    /// Too many values.
+    /// There are too many values.
     #[error("{} values, at most {}", grouped(*count), grouped(MAX_VALUES))]
     Many {
         /// The number of values.
@@ -398,7 +400,7 @@ pub enum RangeError {
 }
 
 impl RangeError {
-    /// What was expected, for a place that shows the text itself.
+    /// Returns the part of the message that says what was expected, for a place that shows the text itself.
     pub fn expected(&self) -> String {
         match self {
             Self::Form { .. } => "expected a number or start:end:step".to_owned(),
@@ -416,7 +418,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_make_the_range_that_their_decimals_make() {
+    fn a_range_of_numbers_equals_that_of_their_decimals() {
         for (start, end, step) in [(5.0, 5.99, 0.01), (-0.0, 1e-9, 1e-12), (-3.5, 64.0, 0.3)] {
             let written = format!("{start}:{end}:{step}").parse();
             assert_eq!(DecimalRange::new(start, end, step), written);
@@ -454,7 +456,7 @@ mod tests {
     }
 
     #[test]
-    fn half_a_step_has_one_decimal_more_as_long_as_a_range_can() {
+    fn half_a_step_needs_one_more_decimal_if_a_range_can_have_it() {
         let half = |text: &str| {
             let range: DecimalRange = text.parse().expect("a range");
             range.half_a_step_on().map(|half| half.to_string())
@@ -466,7 +468,7 @@ mod tests {
         let parsed = |text: &str| text.parse::<DecimalRange>().ok();
         let range = parsed(finest).expect("a range");
         assert_eq!(range.half_a_step_on(), parsed(expected));
-        // Thirteen decimals, and sixteen digits.
+        // They would need thirteen decimals, and sixteen digits.
         assert_eq!(half("0:0.000000000002:0.000000000001"), None);
         assert_eq!(half("0:999999999999999:111111111111111"), None);
     }

@@ -1,16 +1,15 @@
-//! How far a shape reaches over all orientations of a grid: which poses the sensor cuts off, which positions it does
-//! not, and which sensor is large enough.
+//! The reach of a shape over all orientations of a grid. It tells which poses the sensor cuts off, at which positions
+//! it cuts nothing off, and which sensor is large enough.
 //!
-//! The *reach* is the smallest upright rectangle around the shape in every orientation, seen from its anchor. A pose is
-//! cut off when the shape reaches beyond the sensor there, by the rule of [`crate::touch::reaches_beyond`]. Units are
-//! cell sides, the frame is that of the plane. Convention of this project.
+//! The *reach* is the smallest upright rectangle around the shape in every orientation, relative to its anchor. A pose
+//! is cut off if the shape then reaches beyond the sensor, by the rule of [`crate::touch::reaches_beyond`]. Units are
+//! cell sides, and the frame is that of the plane. The default positions are a convention of this project:
 //!
 //! If x0 or y0 is not given, a sweep takes one cell of positions, in steps of a hundredth of a cell unless another step
-//! is requested. It takes the cell that the shape lies in (1.99 lies in `1:1.99:0.01`) if the sensor cuts nothing off
-//! there, and otherwise one around the middle: of the cells in which nothing is cut off, the one nearest to the middle,
-//! starting at a whole number if possible. If something is cut off in every cell, it takes the middle of the sensor.
-//! All positions are multiples of the step, so that large and small shapes are touched at the same places within a
-//! cell.
+//! is requested. It takes the cell in which the shape lies (1.99 lies in `1:1.99:0.01`) if the sensor cuts nothing off
+//! there. Otherwise it takes the cell nearest to the middle among those in which nothing is cut off, starting at a
+//! whole number if possible. If something is cut off in every cell, it takes the middle of the sensor. All positions
+//! are multiples of the step, so that large and small shapes are touched at the same positions within a cell.
 
 use std::ops::Range;
 
@@ -24,11 +23,11 @@ use crate::sensor::{MAX_SIDE, Sensor};
 use crate::source::Source;
 use crate::touch::DOUBTFUL;
 
-/// The ranges that were asked for. Absent, an axis has its default: x0 and y0 one cell that suits the shape
-/// ([`default_ranges`]), the others that of [`Ranges::default`].
+/// The ranges that the user gave. An axis without a range has its default: for x0 and y0 one cell that suits the shape
+/// ([`default_ranges`]), for the others that of [`Ranges::default`].
 pub type GivenRanges = PerAxis<Option<DecimalRange>>;
 
-/// The side of a cell in hundredths. Steps from one position to the next divide it.
+/// The side of a cell in hundredths. A step from one position to the next divides it.
 const CELL: u32 = 100;
 
 /// The step of a default range, in hundredths.
@@ -36,10 +35,10 @@ const FINE: u32 = 1;
 
 impl PoseGrid {
     /// Returns the smallest upright rectangle around the shape in every orientation of the grid, with its anchor at the
-    /// origin; cell sides. None if the shape has no boundary: a picture of an empty imprint.
+    /// origin; in cell sides. None if the shape has no boundary, as a picture of an empty imprint.
     ///
-    /// The position of a picture placed by its corner is zoomed too: it is `zoom_x · x0`, `zoom_y · y0` that the
-    /// rectangle is to be moved by.
+    /// The position of a picture that is placed by its corner is zoomed too. In such a pose, the rectangle has to be
+    /// moved by `zoom_x · x0`, `zoom_y · y0`.
     ///
     /// Takes time in proportion to the number of orientations.
     ///
@@ -59,8 +58,8 @@ impl PoseGrid {
         self.extents().flatten().reduce(union)
     }
 
-    /// Returns the number of poses in which the shape reaches beyond the sensor and is cut off. It is the number that a
-    /// sweep of the grid reports.
+    /// Returns the number of poses in which the shape reaches beyond the sensor and is cut off. A sweep of the grid
+    /// reports the same number.
     ///
     /// Takes time in proportion to the number of orientations.
     ///
@@ -91,13 +90,13 @@ impl PoseGrid {
         self.poses() - inside.sum::<u64>()
     }
 
-    /// The extent of the shape in each orientation, with its anchor at the origin.
+    /// Iterates over the extents of the shape in each orientation, with its anchor at the origin.
     fn extents(&self) -> impl Iterator<Item = Option<Extent>> + '_ {
         let orientations = 0..self.rows() / self.rows_per_orientation();
         orientations.map(|orientation| self.boundary::<f64>(orientation).extent())
     }
 
-    /// The values of x0, by number, at which the shape reaches beyond neither the left nor the right side.
+    /// Returns the indices of x0 at which the shape reaches beyond neither the left nor the right side of the sensor.
     pub(crate) fn columns_inside(&self, orientation: u64, extent: &Extent) -> Range<u64> {
         let at = |index| self.offset::<f64>(orientation, index, 0).x;
         inside(
@@ -108,7 +107,7 @@ impl PoseGrid {
         )
     }
 
-    /// The values of y0, by number, at which the shape reaches beyond neither the upper nor the lower side.
+    /// Returns the indices of y0 at which the shape reaches beyond neither the upper nor the lower side of the sensor.
     pub(crate) fn rows_inside(&self, orientation: u64, extent: &Extent) -> Range<u64> {
         let at = |index| self.offset::<f64>(orientation, 0, index).y;
         inside(
@@ -120,8 +119,8 @@ impl PoseGrid {
     }
 }
 
-/// The numbers of the positions at which what reaches from `low` to `high` lies within `side`. Positions grow with
-/// their number.
+/// Returns the indices of the positions at which the interval from `low` to `high` lies within `side`. Positions grow
+/// with their index.
 fn inside(count: u64, at: impl Fn(u64) -> f64, (low, high): (f64, f64), side: u8) -> Range<u64> {
     let from = first(0..count, |index| low + at(index) >= -DOUBTFUL);
     let to = first(from..count, |index| {
@@ -130,7 +129,8 @@ fn inside(count: u64, at: impl Fn(u64) -> f64, (low, high): (f64, f64), side: u8
     from..to
 }
 
-/// The first number of a range for which something is true; from then on it is true for all. The end if for none.
+/// Returns the first number of a range for which a condition is true; it stays true from then on. The end of the range
+/// if it is never true.
 fn first(range: Range<u64>, is_true: impl Fn(u64) -> bool) -> u64 {
     let Range { mut start, mut end } = range;
     while start < end {
@@ -153,13 +153,14 @@ fn union(one: Extent, other: Extent) -> Extent {
     }
 }
 
-/// Returns the ranges of a sweep of `source`, with defaults for those that are not given: for x0 and y0, the cell that
-/// the shape lies in if no pose is cut off there, otherwise one around the middle.
+/// Returns the ranges of a sweep of `source`, with defaults for those that are not given: for x0 and y0, the cell in
+/// which the shape lies if no pose is cut off there, otherwise one around the middle.
 ///
-/// The shape's own position counts; its angle and zooms only if they are in the ranges. Given ranges stay as they are.
+/// The shape's own position matters; its angle and zooms matter only if they are in the ranges. Given ranges stay as
+/// they are.
 ///
 /// # Errors
-/// If a given range exceeds that of its parameter, or a figure is to be zoomed.
+/// Returns an error if a given range exceeds that of its parameter, or a figure has zooms other than 1.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -210,14 +211,14 @@ pub fn default_ranges(
     Ok(ranges)
 }
 
-/// Returns the ranges in which each of several shapes is swept on one sensor. If x0 or y0 is not given, it gets the
-/// cell around the middle in which none of the shapes is cut off at any requested angle.
+/// Returns the ranges in which several shapes are swept on the same sensor. If x0 or y0 is not given, it gets the cell
+/// around the middle in which none of the shapes is cut off at any requested angle.
 ///
-/// If there is no such cell, it lies where the middle of their common reach is in the middle of the sensor, and
-/// [`PoseGrid::poses_beyond_sensor`] says how many poses of which shape are cut off.
+/// If there is no such cell, the positions put the middle of the common reach in the middle of the sensor.
+/// [`PoseGrid::poses_beyond_sensor`] then returns how many poses of a shape are cut off.
 ///
 /// # Errors
-/// If a given range exceeds that of its parameter, or a figure is to be zoomed.
+/// Returns an error if a given range exceeds that of its parameter, or a figure has zooms other than 1.
 pub fn common_ranges<'a>(
     sources: impl IntoIterator<Item = &'a Source>,
     sensor: &Sensor,
@@ -229,13 +230,14 @@ pub fn common_ranges<'a>(
 }
 
 /// Returns the smallest square sensor of at least `least` × `least` taxels on which no shape is cut off in any pose,
-/// and the ranges of these poses: where x0 or y0 is not given, one cell around the middle that is the same for all
-/// shapes. It has the threshold and the pitch of the default sensor. None if even 64 × 64 taxels are too few.
+/// and the ranges of these poses: if x0 or y0 is not given, one cell around the middle that is the same for all shapes.
+/// The sensor has the default threshold and pitch. None if even 64 × 64 taxels are too few.
 ///
-/// Recognition takes 16 for `least`, so that a set of small shapes is swept on the same sensor as everything else.
+/// Recognition sets `least` to 16, so that a set of small shapes is swept on the same sensor as other sets.
 ///
 /// # Errors
-/// If a given range exceeds that of its parameter on the largest sensor, or a figure is to be zoomed.
+/// Returns an error if a given range exceeds that of its parameter on the largest sensor, or a figure has zooms
+/// other than 1.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -265,7 +267,8 @@ pub fn smallest_sensor<'a>(
     Ok(reach.smallest_sensor(&sources, given, sides, FINE))
 }
 
-/// The sides of a sensor that is looked for: given ones, and how small the others may be. If none is given, it is square.
+/// The sides of the sensors to choose from: sides that are given, and the smallest length of the others. If no side is
+/// given, the sensors are square.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SensorSides {
     columns: Option<u8>,
@@ -274,7 +277,7 @@ pub(crate) struct SensorSides {
 }
 
 impl SensorSides {
-    /// None is given.
+    /// Creates sides of which none is given.
     pub(crate) fn at_least(least: u8) -> Self {
         Self {
             columns: None,
@@ -283,7 +286,7 @@ impl SensorSides {
         }
     }
 
-    /// The sides of `sensor` along some axes are given, too.
+    /// Sets the sides along the given axes to those of `sensor`.
     #[cfg(feature = "cli")]
     pub(crate) fn with_sides_of(self, sensor: &Sensor, is_given: impl Fn(Axis) -> bool) -> Self {
         Self {
@@ -293,12 +296,12 @@ impl SensorSides {
         }
     }
 
-    /// The largest of its sensors.
+    /// Returns the largest sensor with these sides.
     pub(crate) fn largest(self) -> Sensor {
         self.sensors().last().unwrap_or(Sensor::LARGEST)
     }
 
-    /// From the smallest to the largest.
+    /// Iterates over the sensors with these sides, from the smallest to the largest.
     fn sensors(self) -> impl Iterator<Item = Sensor> {
         let sides = self.least..=MAX_SIDE;
         sides.filter_map(move |side| {
@@ -306,7 +309,7 @@ impl SensorSides {
         })
     }
 
-    /// The side along an axis, if it is given.
+    /// Returns the side along an axis, if it is given.
     fn given(self, axis: Axis) -> Option<u8> {
         match axis {
             Axis::Y0 => self.rows,
@@ -315,17 +318,18 @@ impl SensorSides {
     }
 }
 
-/// The axes of positions, and the sides of a sensor along them.
+/// Returns the axes of positions, and the sides of a sensor along them.
 fn plane_axes(sensor: &Sensor) -> [(Axis, u8); 2] {
     [(Axis::X0, sensor.columns()), (Axis::Y0, sensor.rows())]
 }
 
-/// Whether given positions and the sizes of the shapes are allowed on a sensor: they may be too large for a small one.
+/// Returns true if a sensor allows the given positions and the sizes of the shapes; they may be too large for a small
+/// one.
 fn allows(sensor: &Sensor, given: &GivenRanges, sources: &[&Source]) -> bool {
     check_given(given, sensor).is_ok() && sources.iter().all(|source| is_allowed(source, sensor))
 }
 
-/// The rule of parameters: a size may be too large for a sensor on which the shape lies.
+/// Returns true if the sizes of a shape are in range on a sensor. They may be too large even if the shape fits on it.
 fn is_allowed(source: &Source, sensor: &Sensor) -> bool {
     let own = source.parameters();
     own.iter().all(|parameter| {
@@ -335,7 +339,7 @@ fn is_allowed(source: &Source, sensor: &Sensor) -> bool {
     })
 }
 
-/// Whether given ranges lie in those of their parameters.
+/// Returns an error if a given range exceeds that of its parameter.
 pub(crate) fn check_given(given: &GivenRanges, sensor: &Sensor) -> Result<(), GridError> {
     for (axis, range) in given.iter() {
         if let Some(range) = range {
@@ -346,21 +350,21 @@ pub(crate) fn check_given(given: &GivenRanges, sensor: &Sensor) -> Result<(), Gr
     Ok(())
 }
 
-/// How far shapes reach from their anchor, for each pair of zooms: positions of a picture are zoomed with it.
+/// The reach of shapes from their anchor, for each pair of zooms, since positions of a picture are zoomed with it.
 ///
-/// A step is the distance from one position of a cell to the next in hundredths, a divisor of 100.
+/// In the methods, `step` is the distance from one position in a cell to the next, in hundredths; it divides 100.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reach(Vec<(Extent, [f64; 2])>);
 
 impl Reach {
-    /// Of one shape, in the given angles and zooms.
+    /// Computes the reach of a shape at the given angles and zooms.
     pub(crate) fn of(
         source: &Source,
         anchor: Anchor,
         given: &GivenRanges,
     ) -> Result<Self, GridError> {
         let mut ranges = filled(given);
-        // Where it lies on which sensor does not matter, but a given position must be in range.
+        // The position does not matter, but a given one must be in range.
         for axis in [Axis::X0, Axis::Y0] {
             if given[axis].is_none() {
                 ranges[axis] = DecimalRange::whole(0);
@@ -387,7 +391,7 @@ impl Reach {
         Ok(Self(reaches))
     }
 
-    /// Of all of some shapes together.
+    /// Computes the reach of several shapes together.
     pub(crate) fn of_all<'a>(
         sources: impl IntoIterator<Item = &'a Source>,
         anchor: Anchor,
@@ -400,13 +404,13 @@ impl Reach {
         Ok(all)
     }
 
-    /// Adds that of another shape.
+    /// Adds the reach of another shape.
     pub(crate) fn add(&mut self, mut other: Self) {
         self.0.append(&mut other.0);
     }
 
-    /// The smallest sensor with these sides that cuts nothing off, and the ranges there, as [`smallest_sensor`] gives them;
-    /// `sources` are the shapes. None if there is none.
+    /// Returns the smallest sensor with these sides that cuts nothing off, and the ranges on it, like
+    /// [`smallest_sensor`]; `sources` are the shapes. None if there is no such sensor.
     pub(crate) fn smallest_sensor(
         &self,
         sources: &[&Source],
@@ -425,8 +429,8 @@ impl Reach {
         Some(best).filter(is_held)
     }
 
-    /// The smallest sensor with these sides beyond which nothing is gained, and the ranges there: a larger one would cut off
-    /// as much. The largest sensor if each gains something. Where nothing needs to be cut off, nothing is.
+    /// Returns the smallest sensor with these sides that cuts off no more than any larger one would, and the ranges on
+    /// it; the largest sensor if each larger one cuts off less. If nothing has to be cut off, nothing is.
     pub(crate) fn best_sensor(
         &self,
         sources: &[&Source],
@@ -438,7 +442,8 @@ impl Reach {
         let is_enough = |(sensor, ranges): &(Sensor, Ranges)| {
             let mut axes = plane_axes(sensor).into_iter();
             let gains_nothing = axes.all(|(axis, side)| {
-                // What is cut off at the left or the top is so on every sensor, unless the position is chosen with it.
+                // Parts cut off at the left or the top are so on every sensor, unless the position is chosen together
+                // with the sensor.
                 sides.given(axis).is_some()
                     || self.clears_end(axis, side, ranges[axis])
                         && (given[axis].is_some() || self.clears_start(axis, ranges[axis]))
@@ -449,7 +454,8 @@ impl Reach {
         enough.next().unwrap_or_else(|| at(sides.largest()))
     }
 
-    /// Given ranges, which the sensor allows, and one cell around the middle for a position that is not given.
+    /// Returns the given ranges, which the sensor must allow, with one cell around the middle for a position that is
+    /// not given.
     pub(crate) fn ranges(&self, sensor: &Sensor, given: &GivenRanges, step: u32) -> Ranges {
         let mut ranges = filled(given);
         for (axis, side) in plane_axes(sensor) {
@@ -460,7 +466,7 @@ impl Reach {
         ranges
     }
 
-    /// How far it reaches on an axis, from and to, and the zoom of the position.
+    /// Iterates over the reach along an axis: its start, its end, and the zoom of the position.
     fn along(&self, axis: Axis) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
         self.0
             .iter()
@@ -470,21 +476,21 @@ impl Reach {
             })
     }
 
-    /// Whether nothing is cut off at the left, or at the top, with the anchor at any of these positions.
+    /// Returns true if nothing is cut off at the left (or at the top) with the anchor at any of these positions.
     fn clears_start(&self, axis: Axis, positions: DecimalRange) -> bool {
         let mut all = self.along(axis);
         all.all(|(low, _, zoom)| low + zoom * positions.value(0) >= -DOUBTFUL)
     }
 
-    /// The same at the right, or at the bottom, of a sensor of this side.
+    /// Returns true if nothing is cut off at the right (or at the bottom) of a sensor with this side, likewise.
     fn clears_end(&self, axis: Axis, side: u8, positions: DecimalRange) -> bool {
         let end = f64::from(side) + DOUBTFUL;
         let mut all = self.along(axis);
         all.all(|(_, high, zoom)| high + zoom * positions.last() <= end)
     }
 
-    /// The first and the last position at which nothing is cut off. The last is below the first if something is cut off
-    /// everywhere. Without a shape, only the sensor limits the positions.
+    /// Returns the first and the last position at which nothing is cut off. The last is below the first if something is
+    /// cut off at every position. Without a shape, only the sensor limits the positions.
     fn limits(&self, axis: Axis, side: u8) -> (f64, f64) {
         let end = f64::from(side);
         let all = self.along(axis);
@@ -494,20 +500,20 @@ impl Reach {
             .unwrap_or((0.0, end))
     }
 
-    /// The hundredths from which one cell of positions lies within the limits.
+    /// Returns the positions, in hundredths, from which one cell of positions lies within the limits.
     fn free(&self, axis: Axis, side: u8, step: u32) -> std::ops::RangeInclusive<i64> {
         let (low, high) = self.limits(axis, side);
-        // A limit that is a hundredth but for its rounding is that hundredth.
+        // A limit that differs from a hundredth only by rounding counts as that hundredth.
         let from = (low * 100.0 - 1e-9) / f64::from(step);
         let to = (high * 100.0 + 1e-9) / f64::from(step);
         multiple(from.ceil(), step)..=multiple(to.floor(), step) - beyond(step)
     }
 
-    /// The hundredths from which the cell around the middle starts.
+    /// Returns the position, in hundredths, at which the cell around the middle starts.
     fn middle(&self, axis: Axis, side: u8, step: u32) -> i64 {
         let (low, high) = self.limits(axis, side);
         let free = self.free(axis, side, step);
-        // If two are equally near, the lower one.
+        // If two positions are equally near, the lower one is taken.
         let middle = ((low + high) * 50.0 - f64::from(CELL) / 2.0 - 1e-9) / f64::from(step);
         let middle = multiple(middle.ceil(), step);
         if free.is_empty() {
@@ -524,7 +530,7 @@ impl Reach {
     }
 }
 
-/// Where the anchor of a shape is, in its own pose.
+/// Returns the position of the anchor of a shape in its own pose.
 fn own_position(source: &Source, anchor: Anchor) -> (f64, f64) {
     match anchor {
         Anchor::Corner => {
@@ -539,30 +545,30 @@ fn own_position(source: &Source, anchor: Anchor) -> (f64, f64) {
     }
 }
 
-/// The given ranges, and the default ones where none is given.
+/// Returns the given ranges, with default ranges for the axes that have none.
 fn filled(given: &GivenRanges) -> Ranges {
     let default = Ranges::default();
     Ranges::from_fn(|axis| given[axis].unwrap_or(default[axis]))
 }
 
-/// A multiple of the step, in hundredths.
+/// Returns a multiple of the step, in hundredths.
 fn multiple(count: f64, step: u32) -> i64 {
     hundredths(count).saturating_mul(step.into())
 }
 
-/// How far the last position of a cell lies beyond its first, in hundredths.
+/// Returns how far the last position of a cell lies beyond its first one, in hundredths.
 fn beyond(step: u32) -> i64 {
     i64::from(CELL - step)
 }
 
-/// One cell of positions from `start` on, in hundredths; all of them positions that the sensor allows.
+/// Returns one cell of positions from `start` on, in hundredths, moved so that the sensor allows all of them.
 fn cell_from(start: i64, sensor: &Sensor, step: u32) -> DecimalRange {
     let limit = limit(sensor);
     let start = start.clamp(-limit, limit - beyond(step));
     DecimalRange::from_units(start, step.into(), 2, u64::from(CELL / step))
 }
 
-/// The largest position that a sensor allows, in hundredths of a cell.
+/// Returns the largest position that a sensor allows, in hundredths of a cell.
 fn limit(sensor: &Sensor) -> i64 {
     i64::from(sensor.side()) * 100
 }

@@ -1,14 +1,14 @@
-//! The angles at which a shape looks the same, or like its mirror image.
+//! The symmetries of shapes: the angles at which a shape looks the same, or like its mirror image.
 //!
-//! (x0, y0) places the corner of the figure *before* it is turned, so the centre stays where it is, and two angles give
-//! the same shape when they differ by a symmetry of the figure: 180° for rectangles and ellipses, 90° for squares,
-//! 360°/n for regular polygons where that is a whole number of degrees (not the heptagon's), and any angle for circles.
-//! A picture that a half turn maps onto itself has 180°; for sweeps also one that has a quarter turn, since its zooms may differ.
-//! Angles are compared as exact decimals.
+//! (x0, y0) locates the corner of a figure *before* rotation, so its centre stays where it is under rotation. Two
+//! angles show the same shape if they differ by a symmetry of the figure: 180° for rectangles and ellipses, 90° for
+//! squares, 360°/n for regular polygons if that is a whole number of degrees (not for the heptagon), and any angle for
+//! circles. A picture has 180° if a half turn maps it onto itself; in sweeps, this is so even if a quarter turn does,
+//! since its zooms may differ. Angles are compared as exact decimals.
 //!
-//! Upright figures are left-right symmetric, so a figure at minus an angle is the mirror image of itself at that angle,
-//! about the vertical line through its centre. The same holds for some pictures; others are top-bottom symmetric, and
-//! their mirror image is at 180° minus the angle.
+//! Upright figures are left-right symmetric. So a figure at minus an angle is the mirror image of itself at that angle,
+//! about the vertical line through its centre. The same holds for some pictures. Others are top-bottom symmetric: their
+//! mirror image is at 180° minus the angle.
 
 use crate::figure::FigureKind;
 use crate::imprint::{Bounds, Imprint};
@@ -18,7 +18,8 @@ use crate::pose::axis::{Axis, Ranges};
 use crate::pose::range::DecimalRange;
 use crate::source::Source;
 
-/// The order of a shape's rotational symmetry: how many rotations within a full turn leave it as it is; None if all do.
+/// Returns the order of a shape's rotational symmetry: the number of rotations within a full turn that map it onto
+/// itself; None if all do.
 fn order(source: &Source) -> Option<u32> {
     let figure = match source {
         Source::Figure(figure) => figure,
@@ -46,14 +47,15 @@ fn order(source: &Source) -> Option<u32> {
     }
 }
 
-/// The least rotation in whole degrees after which a shape looks the same, 360 of a heptagon; None if it looks the same at
-/// every angle.
+/// Returns the smallest rotation in whole degrees after which a shape looks the same (360 for a heptagon); None if it
+/// looks the same at every angle.
 pub(crate) fn period(source: &Source) -> Option<u32> {
     order(source).map(|order| if 360 % order == 0 { 360 / order } else { 360 })
 }
 
-/// The least rotation in degrees after which a shape in the poses of a grid looks the same: 360/7 of a heptagon; a quarter turn
-/// of a picture that has it, where both zooms are the same. None as of [`period`].
+/// Returns the smallest rotation in degrees after which a shape in the poses of a grid looks the same: 360/7 for a
+/// heptagon, and 90 for a picture that a quarter turn maps onto itself, if both zooms have the same single value. None
+/// if it looks the same at every angle.
 #[cfg(feature = "recognition")]
 pub(crate) fn exact_period(source: &Source, ranges: &Ranges) -> Option<f64> {
     let order = order(source)?;
@@ -66,7 +68,7 @@ pub(crate) fn exact_period(source: &Source, ranges: &Ranges) -> Option<f64> {
     Some(360.0 / f64::from(order))
 }
 
-/// Whether a quarter turn maps an imprint onto itself.
+/// Returns true if a quarter turn maps an imprint onto itself.
 #[cfg(feature = "recognition")]
 fn quarter_turned(imprint: &Imprint) -> bool {
     let turned = |bounds: &Bounds, column, row| {
@@ -79,8 +81,8 @@ fn quarter_turned(imprint: &Imprint) -> bool {
     imprint.bounds().is_some_and(is_square) && maps_onto_itself(imprint, turned)
 }
 
-/// The sum of two angles, in degrees, at which a shape shows its mirror image, right and left exchanged; None if it has
-/// none.
+/// Returns the sum in degrees of two angles at which a shape shows its mirror image, with right and left exchanged;
+/// None if there are no such angles.
 fn mirror(source: &Source) -> Option<u32> {
     let picture = match source {
         Source::Picture(picture) => picture,
@@ -103,7 +105,7 @@ fn mirror(source: &Source) -> Option<u32> {
     }
 }
 
-/// Whether a map of taxels within the bounds maps active ones onto active ones.
+/// Returns true if a map of taxels within the bounds maps active taxels to active ones.
 fn maps_onto_itself(imprint: &Imprint, map: impl Fn(&Bounds, u8, u8) -> (u8, u8)) -> bool {
     imprint.bounds().is_some_and(|bounds| {
         imprint.active().all(|(column, row)| {
@@ -113,7 +115,7 @@ fn maps_onto_itself(imprint: &Imprint, map: impl Fn(&Bounds, u8, u8) -> (u8, u8)
     })
 }
 
-/// The angles of a range in classes: those of a class show the same shape.
+/// The angles of a range, in classes. The angles of a class show the same shape.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AngleClasses {
     angles: DecimalRange,
@@ -122,7 +124,7 @@ pub(crate) struct AngleClasses {
 }
 
 impl AngleClasses {
-    /// The classes of a shape.
+    /// Creates the classes of angles for a shape.
     pub(crate) fn of(source: &Source, angles: DecimalRange) -> Self {
         Self {
             angles,
@@ -131,14 +133,14 @@ impl AngleClasses {
         }
     }
 
-    /// The class of an angle, which is given by its index.
+    /// Returns the class of an angle, which is given by its index.
     pub(crate) fn class(&self, index: u64) -> i128 {
         self.period
             .map_or(0, |period| self.angles.residue(index, period))
     }
 
-    /// The class that shows the mirror image of a class, right and left exchanged; None if there is none, or if it is the
-    /// class itself.
+    /// Returns the class that shows the mirror image of a class, with right and left exchanged; None if there is none,
+    /// or if it is the class itself.
     pub(crate) fn mirrored(&self, class: i128) -> Option<i128> {
         let (mirror, period, one) = (self.mirror?, self.period?, self.angles.one());
         let image = (i128::from(mirror) * one - class).rem_euclid(i128::from(period) * one);
@@ -157,7 +159,7 @@ mod tests {
         AngleClasses::of(source, angles.parse().expect("a range"))
     }
 
-    /// The index of the angle that shows the mirror image of angle `index`.
+    /// Returns the index of the angle that shows the mirror image of angle `index`.
     fn image(source: &Source, angles: &str, index: u64) -> Option<u64> {
         let classes = classes(source, angles);
         let image = classes.mirrored(classes.class(index))?;
@@ -180,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_mirror_each_other_if_their_sides_are_alike() {
+    fn symmetric_pictures_mirror_each_other() {
         let picture = |rows: &str| {
             let rows = rows.parse().expect("rows");
             Source::Picture(Picture::at_home(rows))
@@ -193,7 +195,7 @@ mod tests {
 
     #[cfg(feature = "recognition")]
     #[test]
-    fn a_picture_looks_the_same_after_a_quarter_turn_under_one_zoom_alone() {
+    fn a_quarter_turn_is_a_symmetry_only_if_both_zooms_are_always_equal() {
         let rows = ".#.\n###\n.#.".parse().expect("rows");
         let plus = Source::Picture(Picture::at_home(rows));
         let period = |zoom_x: &str, zoom_y: &str| {
@@ -203,7 +205,7 @@ mod tests {
         };
         assert_eq!(period("2", "2"), Some(90.0));
         assert_eq!(period("2", "1"), Some(180.0));
-        // Of two zooms each, some poses have different ones.
+        // With two values for each zoom, the zooms differ in some poses.
         assert_eq!(period("1:2:1", "1:2:1"), Some(180.0));
     }
 }
