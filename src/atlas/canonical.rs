@@ -1,15 +1,15 @@
-//! One canonical form for imprints that differ only by a shift, a quarter turn or a mirror image.
+//! The canonical form of imprints that differ only by a shift, a quarter turn or a mirror image.
 //!
-//! First the active taxels are moved to the top left corner. There are eight images under quarter turns and
-//! mirrors; only those at least as wide as high are considered: four, or all eight if the bounds are a square. The one
-//! whose rows come first in order is the canonical form. Rows are compared as whole numbers, from the top.
+//! First, the active taxels are moved to the top left corner. There are eight images under quarter turns and mirroring.
+//! Only those that are at least as wide as high are considered: four, or all eight if the bounds are a square. The
+//! canonical form is the image whose rows come first in order. Rows are compared as whole numbers, from the top.
 
 use crate::atlas::counter::ImprintCounter;
 use crate::atlas::packing::Layout;
 use crate::imprint::Imprint;
 use crate::sensor::MAX_SIDE;
 
-/// Counts imprints up to shifts, and up to shifts, quarter turns and mirror images.
+/// Counts distinct imprints up to shifts, and up to shifts, quarter turns and mirror images.
 #[derive(Debug)]
 pub(crate) struct Classes {
     layout: Layout,
@@ -18,7 +18,7 @@ pub(crate) struct Classes {
     key: Vec<u64>,
 }
 
-/// The rows of an imprint at the top left corner.
+/// The rows of an imprint after it was moved to the top left corner.
 #[derive(Clone, Copy)]
 struct Block {
     width: usize,
@@ -28,7 +28,7 @@ struct Block {
 
 impl Classes {
     pub(crate) fn new(columns: u8, rows: u8) -> Self {
-        // Square, so that a quarter turn fits.
+        // The layout is square, so that a quarter turn fits.
         let side = columns.max(rows);
         let layout = Layout::new(side, side);
         let words = layout.words();
@@ -40,7 +40,7 @@ impl Classes {
         }
     }
 
-    /// The number of imprints added, up to shifts, and up to shifts, quarter turns and mirror images.
+    /// Returns the number of distinct imprints up to shifts, and up to shifts, quarter turns and mirror images.
     pub(crate) fn counts(&self) -> (usize, usize) {
         (self.shifts.len(), self.symmetry.len())
     }
@@ -51,7 +51,7 @@ impl Classes {
         let known = self.shifts.len();
         self.shifts.add(&self.key, mixed(&self.key), 1, 0);
         if self.shifts.len() == known {
-            // Its class under more symmetries is known as well.
+            // The class under more symmetries is known too.
             return;
         }
         let turned = block.transposed();
@@ -106,7 +106,7 @@ impl Block {
         }]
     }
 
-    /// Whether its rows come before those of another one of the same size.
+    /// Returns true if the rows of this block come before those of another block of the same size.
     fn before(&self, upwards: bool, other: &Self, other_upwards: bool) -> bool {
         let rows = (0..self.height).map(|index| self.row(index, upwards));
         rows.lt((0..self.height).map(|index| other.row(index, other_upwards)))
@@ -136,7 +136,7 @@ impl Block {
     }
 }
 
-/// A hash of any words.
+/// Returns a hash of words.
 fn mixed(key: &[u64]) -> u64 {
     key.iter().fold(0, |hash: u64, &word| {
         let mixed = (hash.rotate_left(29) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);

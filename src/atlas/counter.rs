@@ -1,29 +1,30 @@
-//! Counts keys: keeps each distinct key once, in the order in which they came, with its count and its first pose.
+//! Counts keys: stores each distinct key once, in the order of its first addition, with its count and its first pose.
 //!
-//! An open hash table of indices beside the keys themselves. A slot holds the upper half of a hash and an index, so
-//! nearly all comparisons end there; a key is found only if all of its words are equal.
+//! The counter is an open hash table of indices; the keys are stored beside it. A slot holds the upper half of a hash
+//! and an index, so nearly all comparisons end there. A key is found only if all of its words are equal.
 
 use crate::index::index;
 
-/// How often a key occurred, and the number of the first pose with it.
+/// The number of occurrences of a key, and the number of the first pose with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Tally {
-    /// How often it was counted.
+    /// The number of occurrences.
     pub(crate) count: u64,
-    /// The number of the pose that left it first.
+    /// The number of the first pose that leaves the key.
     pub(crate) first: u64,
 }
 
-/// Keys of one length, counted.
+/// Counts keys that all have the same length.
 #[derive(Clone, Debug)]
 pub(crate) struct ImprintCounter {
-    /// Words in a key.
+    /// The number of words in a key.
     length: usize,
-    /// All keys, one behind the other, in the order in which they came.
+    /// All keys, one behind the other, in the order of their first addition.
     keys: Vec<u64>,
     hashes: Vec<u64>,
     tallies: Vec<Tally>,
-    /// Upper half of the hash, and index + 1; 0 where empty. A power of two, at most half of them taken.
+    /// The slots: the upper half of the hash and index + 1, or 0 if empty. Their number is a power of two, and at most
+    /// half are taken.
     slots: Vec<u64>,
 }
 
@@ -41,7 +42,7 @@ impl ImprintCounter {
         }
     }
 
-    /// Number of distinct keys.
+    /// Returns the number of distinct keys.
     pub(crate) fn len(&self) -> usize {
         self.tallies.len()
     }
@@ -58,7 +59,8 @@ impl ImprintCounter {
         &self.tallies
     }
 
-    /// Adds `count` to the count of a key, and returns its index, from 0. `first` is a pose that left it.
+    /// Adds `count` to the count of a key, and returns the key's index, from 0. `first` is the number of a pose that
+    /// leaves it.
     #[inline]
     pub(crate) fn add(&mut self, key: &[u64], hash: u64, count: u64, first: u64) -> usize {
         match self.probe(key, hash) {
@@ -72,7 +74,7 @@ impl ImprintCounter {
         }
     }
 
-    /// The index of a key, or else the empty slot where it belongs.
+    /// Returns the index of a key, or as an error the empty slot where it belongs.
     #[inline]
     fn probe(&self, key: &[u64], hash: u64) -> Result<usize, usize> {
         let mask = self.slots.len() - 1;
@@ -84,7 +86,7 @@ impl ImprintCounter {
             }
             if (held ^ hash) & !INDEX == 0 {
                 let known = index((held & INDEX) - 1);
-                // Word by word: a call costs more than these few.
+                // Compares word by word, because a call costs more than these few words.
                 if self.key(known).iter().eq(key) {
                     return Ok(known);
                 }
@@ -93,14 +95,14 @@ impl ImprintCounter {
         }
     }
 
-    /// Adds to the count of a known key.
+    /// Adds to the count of a known key, given by its index.
     pub(crate) fn count(&mut self, index: usize, count: u64) {
         self.tallies[index].count += count;
     }
 
-    /// Sorts the keys by their first poses. The result is the former index of each.
+    /// Sorts the keys by their first poses. Returns the former index of each key.
     pub(crate) fn sort_by_first_pose(&mut self) -> Vec<usize> {
-        // Beside their indices, first poses are compared without a look into the tallies.
+        // With the first poses beside the indices, comparisons need not look into the tallies.
         let firsts = self.tallies.iter().map(|tally| tally.first);
         let mut order: Vec<(u64, usize)> = firsts.zip(0..).collect();
         order.sort_unstable();
@@ -120,7 +122,7 @@ impl ImprintCounter {
         order
     }
 
-    /// The index of a key; None if it was never added.
+    /// Returns the index of a key; None if it was never added.
     pub(crate) fn find(&self, key: &[u64], hash: u64) -> Option<usize> {
         self.probe(key, hash).ok()
     }
@@ -142,7 +144,7 @@ impl ImprintCounter {
         self.slots = self.slots_for(self.slots.len() * 2);
     }
 
-    /// The slots of all keys; `count` of them, a power of two.
+    /// Returns a table of `count` slots, a power of two, with the slots of all keys.
     fn slots_for(&self, count: usize) -> Vec<u64> {
         let mask = count - 1;
         let mut slots = vec![0; count];

@@ -9,7 +9,7 @@ use crate::atlas::packing::Layout;
 use crate::imprint::Imprint;
 use crate::index::{narrow, wide};
 
-/// Distinct imprints, counted and described.
+/// The distinct imprints of a sweep, counted and described.
 #[derive(Clone, Debug)]
 pub struct Atlas {
     layout: Layout,
@@ -21,15 +21,15 @@ pub struct Atlas {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AtlasEntry {
-    /// Its number, from 0, in order of first occurrence.
+    /// The number of the imprint, from 0, in the order of first occurrence.
     pub id: u32,
     /// The imprint.
     pub imprint: Imprint,
-    /// The number of poses that leave it.
+    /// The number of poses that leave the imprint.
     pub count: u64,
     /// The number of the first of these poses in the grid.
     pub first_pose: u64,
-    /// Pieces, holes and the description of its main region.
+    /// The number of pieces and holes, and the description of the main region.
     pub summary: ImprintSummary,
 }
 
@@ -47,7 +47,8 @@ impl Atlas {
         &self.layout
     }
 
-    /// Adds the imprints of a counter, with their counts times `times`. Returns the number that each of them has here.
+    /// Adds the imprints of a counter, with their counts times `times`. Returns the number that each imprint has in
+    /// this atlas.
     pub(crate) fn add(&mut self, other: &ImprintCounter, times: u64) -> Vec<u32> {
         let tallies = other.tallies().iter().enumerate();
         tallies
@@ -61,7 +62,7 @@ impl Atlas {
             .collect()
     }
 
-    /// Adds all of another atlas of the same sensor.
+    /// Adds all imprints of another atlas of the same sensor.
     pub(crate) fn add_all(&mut self, other: &Self) {
         let ids = self.add(&other.counter, 1);
         for (id, summary) in ids.into_iter().zip(&other.summaries) {
@@ -71,7 +72,7 @@ impl Atlas {
         }
     }
 
-    /// Describes the imprints that are new since the last time.
+    /// Describes the imprints that were added since the last call.
     pub(crate) fn describe(&mut self) {
         let (layout, counter) = (&self.layout, &self.counter);
         self.summaries.par_extend(
@@ -82,38 +83,38 @@ impl Atlas {
         );
     }
 
-    /// Numbers the imprints, all of them described, in the order of their first poses.
+    /// Numbers the imprints in the order of their first poses. All imprints must be described.
     pub(crate) fn sort_by_first_pose(&mut self) {
         let order = self.counter.sort_by_first_pose();
         self.summaries = order.iter().map(|&old| self.summaries[old]).collect();
     }
 
-    /// The summaries of the imprints, in their order.
+    /// Returns the summaries of the imprints, in their order.
     pub(crate) fn summaries(&self) -> &[ImprintSummary] {
         &self.summaries
     }
 
-    /// How often the imprints occur, in their order.
+    /// Iterates over the numbers of poses that leave the imprints, in their order.
     pub fn counts(&self) -> impl DoubleEndedIterator<Item = u64> + ExactSizeIterator {
         self.counter.tallies().iter().map(|tally| tally.count)
     }
 
-    /// The numbers of the first poses that leave the imprints, in their order.
+    /// Iterates over the numbers of the first poses that leave the imprints, in their order.
     pub fn first_poses(&self) -> impl DoubleEndedIterator<Item = u64> + ExactSizeIterator {
         self.counter.tallies().iter().map(|tally| tally.first)
     }
 
-    /// Number of distinct imprints.
+    /// Returns the number of distinct imprints.
     pub fn len(&self) -> usize {
         self.summaries.len()
     }
 
-    /// Whether it has no imprints, because no pose was swept.
+    /// Returns true if there are no imprints, because no pose was swept.
     pub fn is_empty(&self) -> bool {
         self.summaries.is_empty()
     }
 
-    /// The imprint of that number.
+    /// Returns the imprint with a number; None if there is none.
     pub fn entry(&self, id: u32) -> Option<AtlasEntry> {
         let index = wide(id);
         let summary = self.summaries.get(index)?;
@@ -131,13 +132,13 @@ impl Atlas {
         }
     }
 
-    /// All rows in order.
+    /// Iterates over all imprints in order.
     pub fn entries(&self) -> impl DoubleEndedIterator<Item = AtlasEntry> + ExactSizeIterator {
         let summaries = self.summaries.iter().enumerate();
         summaries.map(|(index, summary)| self.described(index, summary))
     }
 
-    /// The number of an imprint; None if no pose leaves it.
+    /// Returns the number of an imprint; None if no pose leaves it.
     pub fn find(&self, imprint: &Imprint) -> Option<u32> {
         if (imprint.columns(), imprint.rows()) != (self.layout.columns(), self.layout.rows()) {
             return None;
@@ -146,8 +147,9 @@ impl Atlas {
         self.number(&key, hash)
     }
 
-    /// The number of the nearest imprint that differs from the given one only by a shift of whole taxels, and how many
-    /// columns to the right and rows below it the given one lies. None if there is no such imprint.
+    /// Returns the number of the nearest imprint that differs from the given one only by a shift of whole taxels, and
+    /// by how many columns to the right and rows down the given one is shifted from it. None if there is no such
+    /// imprint.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -171,7 +173,7 @@ impl Atlas {
         let mut nearest: Option<(u32, i8, i8)> = None;
         for top in 0..=rows.checked_sub(u8::try_from(high).ok()?)? {
             for left in 0..=columns.checked_sub(u8::try_from(wide).ok()?)? {
-                // At most 64 each.
+                // Both are at most 64.
                 let right = bounds.left.cast_signed() - left.cast_signed();
                 let down = bounds.top.cast_signed() - top.cast_signed();
                 let far =
@@ -192,14 +194,14 @@ impl Atlas {
         nearest
     }
 
-    /// The number of the imprint that has a key.
+    /// Returns the number of the imprint that has a key.
     pub(crate) fn number(&self, key: &[u64], hash: u64) -> Option<u32> {
         let index = self.counter.find(key, hash)?;
         u32::try_from(index).ok()
     }
 
-    /// The value of a feature for every imprint, in their order; None where it does not exist. `feature` is its index
-    /// in [`features`](crate::atlas::feature::features).
+    /// Returns the value of a feature for every imprint, in their order; None if it does not exist. `feature` is its
+    /// index in [`features`](crate::atlas::feature::features).
     pub fn values(&self, feature: usize) -> Vec<Option<f64>> {
         let feature = features().get(feature);
         let value = |summary: &ImprintSummary| feature?.value(summary.description.as_ref()?);
@@ -210,7 +212,7 @@ impl Atlas {
             .collect()
     }
 
-    /// The number of poses in which no taxel is active.
+    /// Returns the number of poses in which no taxel is active.
     pub fn empty_poses(&self) -> u64 {
         let described = self
             .summaries
@@ -222,7 +224,8 @@ impl Atlas {
         empty.map(|(_, count)| count).sum()
     }
 
-    /// The number of distinct imprints up to whole-cell shifts, and up to shifts, quarter turns and mirror images.
+    /// Returns the number of distinct imprints up to shifts by whole taxels, and up to shifts, quarter turns and mirror
+    /// images.
     pub fn distinct_classes(&self) -> (usize, usize) {
         let mut classes = Classes::new(self.layout.columns(), self.layout.rows());
         for index in 0..self.len() {
@@ -241,7 +244,7 @@ mod tests {
     use crate::sweep::Sweep;
 
     #[test]
-    fn of_imprints_that_are_as_near_the_first_one_is_found() {
+    fn the_first_of_equally_near_imprints_is_found() {
         let sensor = Sensor::default();
         let bar = Figure::rectangle(3.0, 1.0).on(&sensor).expect("in range");
         let found = |x0: &str, y0: &str| {

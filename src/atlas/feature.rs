@@ -1,9 +1,10 @@
-//! The numbers that statistics use: every descriptor of [`DESCRIPTORS`], split into its parts if it has any.
+//! The features: the numbers for which statistics are computed. Each descriptor of [`DESCRIPTORS`] is one feature, or
+//! several if it has parts.
 //!
 //! A point `cg` gives `cg_x` and `cg_y`; a rectangle `rect` gives `rect_left`, `rect_top`, `rect_right` and
-//! `rect_bottom`; the two diagonals give `diagonals_1`, in (0, 90), and `diagonals_2`, in (90, 180): neither
-//! comes near the end of its range, so both are taken as plain numbers. The one direction that goes all around,
-//! `cg_cd_direction`, is [`Feature::circular`].
+//! `rect_bottom`; the two diagonals give `diagonals_1`, in (0, 90), and `diagonals_2`, in (90, 180). Neither comes near
+//! the end of its range, so both count as plain numbers. Only the direction `cg_cd_direction` goes all around: it is
+//! [`Feature::circular`].
 
 use std::sync::LazyLock;
 
@@ -15,18 +16,18 @@ use crate::imprint::Imprint;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Feature {
-    /// Its name in JSON and CSV.
+    /// The name in JSON and CSV.
     pub key: String,
-    /// The descriptor that it is a part of.
+    /// The descriptor of which it is a part.
     pub descriptor: &'static Descriptor,
-    /// A direction that goes all around, in degrees: its mean and its deviation are circular ones.
+    /// Whether it is a direction that goes all around, in degrees: then its mean and its deviation are circular.
     pub circular: bool,
-    /// Which of the descriptor's parts it is.
+    /// The index of the descriptor's part.
     part: usize,
 }
 
 impl Feature {
-    /// Its value; None where it does not exist. Of all descriptors only its own is measured.
+    /// Returns the value of the feature; None if it does not exist. Only the feature's own descriptor is computed.
     pub fn value(&self, description: &Description) -> Option<f64> {
         let (mut index, mut found) = (0, None);
         each_part((self.descriptor.measure)(description), |value| {
@@ -39,7 +40,7 @@ impl Feature {
     }
 }
 
-/// All of them, in the order of [`DESCRIPTORS`].
+/// Returns all features, in the order of [`DESCRIPTORS`].
 ///
 /// ```
 /// use taxel::atlas::features;
@@ -53,7 +54,7 @@ pub fn features() -> &'static [Feature] {
 }
 
 fn all() -> Vec<Feature> {
-    // An imprint of which every descriptor exists shows which parts each one has.
+    // All descriptors of this imprint exist, so they show which parts each one has.
     let mut corner = Imprint::empty(2, 2);
     corner.set_word(0, 0b11);
     corner.set_word(1, 0b01);
@@ -78,7 +79,7 @@ fn all() -> Vec<Feature> {
     all
 }
 
-/// Calls `take` with the index in [`features`] and the value of each feature that has one.
+/// Calls `take` with the index in [`features`] and the value of each feature that has a value.
 pub fn feature_values(description: &Description, mut take: impl FnMut(usize, f64)) {
     let mut index = 0;
     for descriptor in DESCRIPTORS {
@@ -107,20 +108,20 @@ fn each_part(value: Value, mut take: impl FnMut(f64)) {
     }
 }
 
-/// The regions of an imprint and the description of its main region.
+/// The number of regions of an imprint, and the description of its main region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ImprintSummary {
-    /// Number of its pieces, 8-connected.
+    /// The number of 8-connected pieces.
     pub pieces: u16,
-    /// Number of its holes.
+    /// The number of holes.
     pub holes: u16,
     /// The description of the main region; None for an empty imprint.
     pub description: Option<Description>,
 }
 
 impl ImprintSummary {
-    /// Counts the regions of an imprint and describes the main one.
+    /// Counts the regions of an imprint and describes its main region.
     pub fn of(imprint: &Imprint) -> Self {
         let mut summary = Self {
             pieces: 0,
@@ -134,7 +135,7 @@ impl ImprintSummary {
             }
             summary.pieces = summary.pieces.saturating_add(1);
             let best = summary.description.as_ref().map(|best| best.nae);
-            // The bounds alone show that most pieces are too small.
+            // For most pieces, the bounds alone show that they are too small.
             if is_main(region.bounds().area(), best) && is_main(region.area(), best) {
                 summary.description = Some(Description::of(region));
             }

@@ -1,4 +1,4 @@
-//! Filters the imprints of an atlas by an expression that the user typed: `na>=40 holes=0 f<12`.
+//! Filters the imprints of an atlas by an expression that the user types: `na>=40 holes=0 f<12`.
 //!
 //! ```text
 //! na>=40 holes=0      every condition has to hold; blanks around the sign do not matter
@@ -6,8 +6,8 @@
 //!  |  sign
 //!  a descriptor as in JSON and CSV, or id, count (also: poses), pieces, holes
 //! ```
-//! `=` and `!=` compare as many decimals as were typed: `f=12.3`, or `f=1.23e1`, holds for 12.26 and for 12.34. An
-//! imprint without a value for a descriptor fulfils no condition on that descriptor.
+//! `=` and `!=` compare as many decimals as were typed: `f=12.3`, or `f=1.23e1`, holds for 12.26 and for 12.34. If an
+//! imprint has no value for a descriptor, it fulfils no condition on that descriptor.
 
 use rayon::prelude::*;
 
@@ -15,7 +15,7 @@ use crate::atlas::distinct::Atlas;
 use crate::atlas::feature::{ImprintSummary, features};
 use crate::quote::shortened;
 
-/// Conditions that all have to hold.
+/// A filter: conditions that must all hold.
 ///
 /// ```
 /// # use taxel::prelude::*;
@@ -35,46 +35,46 @@ pub struct AtlasFilter {
     conditions: Vec<Condition>,
 }
 
-/// Why a text is not an expression.
+/// The error for text that is not an expression.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FilterError {
-    /// A word that names nothing.
+    /// A word is not the name of a quantity.
     #[error("{found:?} is not known here; possible are {}", names().join(", "))]
     Unknown {
         /// The word.
         found: String,
     },
-    /// A word between conditions.
+    /// A word stands between conditions, such as "and".
     #[error("{found:?}: conditions stand side by side and must all hold, as in na>40 holes=0")]
     Joined {
         /// The word.
         found: String,
     },
-    /// No sign after a name.
+    /// There is no sign after a name.
     #[error("{name}: expected = != < <= > or >= after it")]
     Sign {
         /// The name.
         name: String,
     },
-    /// No number after a sign.
+    /// There is no number after a sign.
     #[error("{before}: expected a number after it, found {found:?}")]
     Number {
         /// The name and the sign.
         before: String,
-        /// What stands there.
+        /// The text in place of the number.
         found: String,
     },
 }
 
-/// What a condition is about.
+/// The quantity that a condition compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Quantity {
     Id,
     Count,
     Pieces,
     Holes,
-    /// By its index in [`features`].
+    /// The feature with this index in [`features`].
     Feature(usize),
 }
 
@@ -89,7 +89,7 @@ enum Relation {
     AtLeast,
 }
 
-/// The signs; of two that begin alike the longer one comes first.
+/// The signs. Where one sign begins with another, the longer one comes first.
 const SIGNS: [(&str, Relation); 7] = [
     ("!=", Relation::Unequal),
     ("<=", Relation::AtMost),
@@ -100,7 +100,7 @@ const SIGNS: [(&str, Relation); 7] = [
     (">", Relation::Greater),
 ];
 
-/// The names beside those of the features; the last one is another word for `count`.
+/// The names besides those of the features. The last one is a synonym of `count`.
 const OWN_NAMES: [(&str, Quantity); 5] = [
     ("id", Quantity::Id),
     ("count", Quantity::Count),
@@ -115,18 +115,18 @@ struct Condition {
     quantity: Quantity,
     relation: Relation,
     number: f64,
-    /// Half of the last decimal that was typed: a value at most this far from the number counts as equal.
+    /// Half of the last decimal that was typed: a value that differs from the number by at most this counts as equal.
     half: f64,
 }
 
-/// All names that a condition can begin with.
+/// Returns all names with which a condition can begin.
 fn names() -> Vec<&'static str> {
     let features = features().iter().map(|feature| feature.key.as_str());
     features.chain(OWN_NAMES.map(|(name, _)| name)).collect()
 }
 
 impl Condition {
-    /// Whether a value of the quantity fulfils it.
+    /// Returns true if a value of the quantity fulfils the condition.
     fn holds(&self, value: f64) -> bool {
         let equal = (value - self.number).abs() <= self.half;
         match self.relation {
@@ -143,7 +143,7 @@ impl Condition {
 impl std::str::FromStr for AtlasFilter {
     type Err = FilterError;
 
-    /// Reads an expression; an empty one has no condition.
+    /// Reads an expression; an empty one has no conditions.
     fn from_str(text: &str) -> Result<Self, FilterError> {
         let mut conditions = Vec::new();
         let mut rest = text.trim();
@@ -157,12 +157,12 @@ impl std::str::FromStr for AtlasFilter {
 }
 
 impl AtlasFilter {
-    /// Whether it has no condition, and so keeps everything.
+    /// Returns true if there are no conditions, so that every imprint is kept.
     pub fn is_empty(&self) -> bool {
         self.conditions.is_empty()
     }
 
-    /// Whether each imprint of an atlas fulfils it, in their order.
+    /// Returns for each imprint of an atlas, in their order, whether it fulfils all conditions.
     pub fn keeps(&self, atlas: &Atlas) -> Vec<bool> {
         let counts: Vec<u64> = atlas.counts().collect();
         let rows = atlas.summaries().par_iter().zip(counts).enumerate();
@@ -171,7 +171,7 @@ impl AtlasFilter {
             .collect()
     }
 
-    /// Whether an imprint fulfils all conditions.
+    /// Returns true if an imprint fulfils all conditions.
     #[expect(clippy::cast_precision_loss, reason = "compared with a typed number")]
     fn fits(&self, id: usize, count: u64, summary: &ImprintSummary) -> bool {
         self.conditions.iter().all(|condition| {
@@ -190,10 +190,10 @@ impl AtlasFilter {
     }
 }
 
-/// What other languages write between conditions, in any case of letters.
+/// Words and signs that other languages write between conditions; upper and lower case are the same.
 const JOINING: [&str; 5] = ["and", "or", "&", "&&", ","];
 
-/// The condition that a text begins with, and the text behind it.
+/// Reads the condition with which text begins. Returns it and the text behind it.
 fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
     let in_name = |c: char| c.is_alphanumeric() || c == '_';
     let end = text
@@ -241,7 +241,7 @@ fn condition(text: &str) -> Result<(Condition, &str), FilterError> {
     Ok((condition, rest))
 }
 
-/// What a name stands for, in small or large letters.
+/// Returns the quantity with a name; upper and lower case are the same.
 fn quantity(name: &str) -> Option<Quantity> {
     let own = OWN_NAMES.iter();
     let mut own = own
@@ -252,11 +252,11 @@ fn quantity(name: &str) -> Option<Quantity> {
     feature.map(Quantity::Feature).or(own.next())
 }
 
-/// Half of the last decimal of a number as it was typed. One with an exponent has the decimals that it has when written
-/// out: two in `1.166e1`, none in `4e1`.
+/// Returns half of the last decimal of a number as it was typed. A number with an exponent has the decimals that it has
+/// when written out: two in `1.166e1`, none in `4e1`.
 fn half_a_unit(number: &str) -> f64 {
     let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
-    // An exponent that has no place in 32 bits makes the number 0, without a last decimal.
+    // An exponent that does not fit into 32 bits makes the number 0, which then has no last decimal.
     let Ok(exponent) = exponent.parse::<i32>() else {
         return 0.0;
     };
@@ -265,7 +265,7 @@ fn half_a_unit(number: &str) -> f64 {
         .map_or(0, |(_, decimals)| decimals.len());
     let decimals = i32::try_from(decimals).unwrap_or(i32::MAX);
     let decimals = decimals.saturating_sub(exponent).max(0);
-    // Slightly more, since the ends are decimals that `f64` cannot hold.
+    // Slightly more than half, since the ends are decimals that `f64` cannot represent.
     0.5 * 10_f64.powi(-decimals) * (1.0 + 1e-9)
 }
 
@@ -278,7 +278,7 @@ mod tests {
     use crate::source::Source;
     use crate::sweep::Sweep;
 
-    /// Whether a value and a number stand to each other as a sign says.
+    /// A function that returns true if a value and a number fulfil a relation.
     type Rule = fn(f64, f64) -> bool;
 
     fn filter(text: &str) -> AtlasFilter {
@@ -286,7 +286,7 @@ mod tests {
             .unwrap_or_else(|error| panic!("{text}: {error}"))
     }
 
-    /// A rectangle that leaves the sensor: some imprints are empty.
+    /// Returns the atlas of a rectangle that leaves the sensor: some imprints are empty.
     fn atlas() -> Atlas {
         let figure = Figure::default_of(FigureKind::Rectangle, &Sensor::default());
         let range = |text: &str| text.parse().expect("a range");
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn every_sign_keeps_what_it_says() {
+    fn every_sign_keeps_the_imprints_that_fulfil_it() {
         let atlas = atlas();
         for (index, feature) in features().iter().enumerate() {
             let values = atlas.values(index);
@@ -319,7 +319,7 @@ mod tests {
                 let text = format!("{}{sign}{middle}", feature.key);
                 let kept = filter(&text).keeps(&atlas);
                 for (value, kept) in values.iter().zip(kept) {
-                    // Ends of an interval are decided by a hair.
+                    // At the ends of an interval, rounding decides.
                     let at_end =
                         value.is_some_and(|value| ((value - number).abs() - 0.05).abs() < 1e-6);
                     let expected = value.is_some_and(|value| rule(value, number));
@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn all_conditions_have_to_hold_and_none_keeps_everything() {
+    fn all_conditions_must_hold_and_an_empty_filter_keeps_everything() {
         let atlas = atlas();
         let count = |text: &str| {
             filter(text)

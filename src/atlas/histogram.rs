@@ -1,17 +1,18 @@
-//! How often the values of a feature occur, over all poses.
+//! Histograms: how often the values of a feature occur, over all poses.
 
 use crate::atlas::distinct::Atlas;
 use crate::atlas::feature::Feature;
 use crate::description::Dimension;
 
-/// Poses counted in equal intervals of a value, each with its lower end; the last one with both.
+/// The number of poses in equal intervals of a value. Each interval includes its lower end; the last one includes both
+/// ends.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Histogram {
     /// The lower end of the first interval, in the feature's own unit.
     pub start: f64,
-    /// The width of an interval: 1, 2 or 5 times a power of ten, so that all ends are short decimals; a divisor of 360
-    /// for circular directions.
+    /// The width of an interval: 1, 2 or 5 times a power of ten, so that all ends are short decimals. For circular
+    /// directions, it divides 360.
     pub width: f64,
     /// The number of poses with a value in each interval; empty if no pose has a value.
     pub poses: Vec<u64>,
@@ -19,14 +20,14 @@ pub struct Histogram {
     pub without: u64,
 }
 
-/// Widths of directions, in degrees.
+/// The widths of intervals of directions, in degrees; 360 if none of them fits.
 const ARCS: [f64; 12] = [
     1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 45.0, 60.0, 90.0, 120.0, 180.0,
 ];
 
 impl Histogram {
-    /// Counts the poses of an atlas in at most `most` intervals, or as few as there can be. `values` are those of the
-    /// feature, one per imprint ([`Atlas::values`]).
+    /// Counts the poses of an atlas in at most `most` intervals, or in the smallest possible number. `values` are those
+    /// of the feature, one per imprint ([`Atlas::values`]).
     ///
     /// ```
     /// # use taxel::prelude::*;
@@ -75,13 +76,13 @@ impl Histogram {
         histogram
     }
 
-    /// Where an interval begins, in the feature's own unit.
+    /// Returns the lower end of an interval, in the feature's own unit.
     #[expect(clippy::cast_precision_loss, reason = "few of them")]
     pub fn from(&self, bin: usize) -> f64 {
         self.start + self.width * bin as f64
     }
 
-    /// The number of decimals that the ends of the intervals need, at most 12.
+    /// Returns the number of decimals that the ends of the intervals need, at most 12.
     pub fn decimals(&self) -> usize {
         let short = |decimals: &u8| {
             let scaled = self.width * 10_f64.powi(i32::from(*decimals));
@@ -91,8 +92,8 @@ impl Histogram {
     }
 }
 
-/// The index of the interval at a distance from the start. A value that equals an end except for rounding counts as
-/// equal.
+/// Returns the index of the interval at a distance from the start. A value that differs from an end only by rounding
+/// counts as equal to it.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -102,16 +103,17 @@ fn interval(way: f64, width: f64) -> usize {
     (way / width + 1e-9).floor().max(0.0) as usize
 }
 
-/// The intervals of a direction: all around, from −180.
+/// Returns the start, the width and the number of the intervals of a direction: all around, from −180.
 fn around(most: usize) -> (f64, f64, usize) {
     let fits = |width: &&f64| interval(360.0, **width) <= most;
     let width = ARCS.iter().find(fits).copied().unwrap_or(360.0);
     (-180.0, width, interval(360.0, width))
 }
 
-/// The intervals from a multiple of their width on, as narrow as `most` allows.
+/// Returns the start, the width and the number of intervals that begin at a multiple of the width, as narrow as `most`
+/// allows.
 fn straight(low: f64, high: f64, least: f64, most: usize) -> (f64, f64, usize) {
-    // Zero is an end of every width: one interval cannot have both sides of it.
+    // Zero is an end for every width, so a single interval cannot have values on both sides of it.
     let most = most.max(if low < 0.0 && high >= 0.0 { 2 } else { 1 });
     #[expect(clippy::cast_precision_loss, reason = "an estimate, made larger below")]
     let guess = ((high - low) / most as f64).max(least).max(1e-9);
@@ -123,7 +125,7 @@ fn straight(low: f64, high: f64, least: f64, most: usize) -> (f64, f64, usize) {
     };
     loop {
         for step in [1.0, 2.0, 5.0] {
-            // The quotient of two whole numbers is the nearest to the decimal, a product would not be.
+            // The quotient of two whole numbers is the f64 nearest to the decimal; a product may not be.
             let width = if exponent < 0 {
                 step / 10_f64.powi(-exponent)
             } else {
@@ -159,9 +161,9 @@ mod tests {
         Sweep::new(&grid.expect("in range")).run()
     }
 
-    /// Every pose is in one interval or has no value, and the intervals hold what they say.
+    /// Every pose is in one interval or has no value, and each interval has the poses whose values lie in it.
     #[test]
-    fn all_poses_are_counted_where_their_value_is() {
+    fn every_pose_is_counted_in_the_interval_of_its_value() {
         let result = result("-5:15:0.5");
         for (index, feature) in features().iter().enumerate() {
             let values = result.atlas.values(index);
@@ -228,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_counted_where_nothing_is() {
+    fn empty_imprints_are_counted_as_without_a_value() {
         let source = Source::Figure(Figure::default_of(FigureKind::Triangle, &Sensor::default()));
         let ranges = Ranges::default()
             .with(Axis::X0, "-16".parse().expect("a range"))

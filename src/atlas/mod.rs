@@ -1,8 +1,8 @@
-//! The atlas: every imprint of a sweep once, with how often and where it occurs and what it looks like.
+//! The atlas: the distinct imprints of a sweep, each with its description and with how often and where it occurs.
 //!
-//! Two imprints are the same when the same taxels are active. An imprint's number is that of its first occurrence in
-//! the order of poses (see [`crate::pose::PoseGrid`]), the same for any number of threads. Descriptors are those of the
-//! main region. Convention of this project.
+//! Two imprints are the same if the same taxels are active. Imprints are numbered in the order of their first
+//! occurrence among the poses (see [`crate::pose::PoseGrid`]); the numbers are the same for any number of threads.
+//! Descriptors are those of the main region. These are conventions of this project.
 
 mod packing;
 

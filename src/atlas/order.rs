@@ -1,30 +1,31 @@
-//! The imprints of an atlas in an order other than that of their first occurrence.
+//! Sorts the imprints of an atlas by a key, such as the number of poses that leave them.
 
 use std::cmp::Ordering;
 
 use crate::atlas::distinct::Atlas;
 use crate::index::narrow;
 
-/// What an atlas can be sorted by.
+/// A key by which the imprints of an atlas can be sorted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum SortKey {
-    /// The number of the first pose, which orders the imprints' own numbers too.
+    /// The number of the first pose, which is the order of the imprints' numbers too.
     FirstPose,
     /// The number of poses that leave an imprint.
     Poses,
-    /// Number of pieces.
+    /// The number of pieces.
     Pieces,
-    /// Number of holes.
+    /// The number of holes.
     Holes,
-    /// A value of each imprint that is given beside the atlas.
+    /// A value per imprint, which is given in addition to the atlas.
     Value,
 }
 
 /// Returns the numbers of all imprints, sorted by a key, ascending or `descending`.
 ///
-/// Equal ones stay in the order of their first poses, and those without a value come last, in both directions. `values`
-/// is for [`SortKey::Value`]: one per imprint ([`Atlas::values`]); imprints beyond its end have none.
+/// In both directions, imprints with equal keys stay in the order of their first poses, and those without a value come
+/// last. `values` is for [`SortKey::Value`]: one value per imprint ([`Atlas::values`]); imprints beyond its end have no
+/// value.
 pub fn sorted(atlas: &Atlas, values: &[Option<f64>], by: SortKey, descending: bool) -> Vec<u32> {
     let count = narrow(atlas.len());
     let summaries = |of: fn(&crate::atlas::feature::ImprintSummary) -> u16| {
@@ -43,7 +44,7 @@ pub fn sorted(atlas: &Atlas, values: &[Option<f64>], by: SortKey, descending: bo
         SortKey::Value => return by_value(count, values, descending),
     };
     let mut ids: Vec<(u64, u32)> = keys.into_iter().zip(0..count).collect();
-    // Stable: the ids are in order already. Many keys are equal, which a stable sort also makes use of.
+    // The sort is stable, and the numbers are in order already. Many keys are equal, which makes a stable sort faster.
     ids.sort_by(|(one, _), (other, _)| turned(one.cmp(other), descending));
     ids.into_iter().map(|(_, id)| id).collect()
 }
@@ -74,7 +75,7 @@ mod tests {
     use crate::source::Source;
     use crate::sweep::Sweep;
 
-    /// A rectangle that leaves the sensor: some poses are empty, and have no values.
+    /// Returns the atlas of a rectangle that leaves the sensor: some poses are empty, and have no values.
     fn atlas() -> Atlas {
         let source = Source::Figure(Figure::default_of(
             FigureKind::Rectangle,
@@ -90,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn every_order_has_every_imprint_once_and_is_one() {
+    fn every_imprint_comes_once_in_the_order_of_the_key() {
         let atlas = atlas();
         let count = u32::try_from(atlas.len()).expect("few");
         let values = atlas.values(0);

@@ -1,29 +1,30 @@
-//! Imprints as short keys: several rows of the matrix in one word, so that a 16 × 16 imprint takes 32 bytes.
+//! Packs imprints into short keys: several rows of the matrix share a word, so that a 16 × 16 imprint takes 32 bytes.
 //!
-//! Each row takes 8, 16, 32 or 64 bits, whichever is the first to hold the sensor's columns. A key's hash is the
+//! Each row takes the smallest of 8, 16, 32 or 64 bits that holds the sensor's columns. The hash of a key is the
 //! exclusive or of one random number per active taxel (A. L. Zobrist, *A new hashing method with application for game
-//! playing*, 1970), so toggling a taxel changes it in one step. Keys with equal hashes are still compared in full, and no
-//! result depends on the hashes. The numbers differ from run to run: if they were known, anybody could make an atlas of
-//! imprints with equal hashes, which would take minutes to merge.
+//! playing*, 1970), so toggling a taxel changes it in one step. Keys with equal hashes are still compared in full, and
+//! no result depends on the hashes. The random numbers differ from run to run: if they were known, anybody could make
+//! an atlas of imprints with equal hashes, which would take minutes to merge.
 
 use std::hash::{BuildHasher, RandomState};
 use std::sync::OnceLock;
 
 use crate::imprint::Imprint;
 
-/// What the random numbers are made from: one for the whole run, since hashes of one sweep are compared with those of another.
+/// The seed of the random numbers. The whole run has a single one, because hashes of one sweep are compared with those
+/// of another.
 static SEED: OnceLock<u64> = OnceLock::new();
 
-/// How the imprints of a sensor are packed.
+/// The way in which the imprints of a sensor are packed.
 #[derive(Clone, Debug)]
 pub(crate) struct Layout {
-    /// Columns of the sensor.
+    /// The number of columns of the sensor.
     columns: u8,
-    /// Rows of the sensor.
+    /// The number of rows of the sensor.
     rows: u8,
-    /// The binary logarithm of the bits that a row takes: 3 to 6.
+    /// The binary logarithm of the number of bits that a row takes: 3 to 6.
     log_width: u32,
-    /// One number per taxel, in reading order.
+    /// A random number per taxel, in reading order.
     numbers: Vec<u64>,
 }
 
@@ -50,24 +51,24 @@ impl Layout {
         self.rows
     }
 
-    /// Number of words in a key.
+    /// Returns the number of words in a key.
     pub(crate) fn words(&self) -> usize {
         (usize::from(self.rows) << self.log_width).div_ceil(64)
     }
 
-    /// The word that holds a row, and by how much it is shifted there.
+    /// Returns the index of the word that holds a row, and by how many bits the row is shifted in it.
     pub(crate) fn slot(&self, row: usize) -> (usize, usize) {
         let bits = row << self.log_width;
         (bits / 64, bits % 64)
     }
 
-    /// The numbers of a row's taxels.
+    /// Returns the random numbers of a row's taxels.
     pub(crate) fn numbers(&self, row: usize) -> &[u64] {
         let columns = usize::from(self.columns);
         &self.numbers[row * columns..][..columns]
     }
 
-    /// The imprint of a key.
+    /// Returns the imprint of a key.
     pub(crate) fn imprint(&self, key: &[u64]) -> Imprint {
         let mut imprint = Imprint::empty(self.columns, self.rows);
         for row in 0..usize::from(self.rows) {
@@ -77,7 +78,7 @@ impl Layout {
         imprint
     }
 
-    /// The key of an imprint, and its hash.
+    /// Returns the key of an imprint, and its hash.
     pub(crate) fn key(&self, imprint: &Imprint) -> (Vec<u64>, u64) {
         let mut key = vec![0; self.words()];
         let mut hash = 0;
@@ -89,16 +90,16 @@ impl Layout {
         (key, hash)
     }
 
-    /// Writes the key of an imprint after a half turn, and returns its hash. The coordinates of a taxel's centre and of
-    /// its image sum up to `across` and `down`, which must keep all active taxels on the matrix.
+    /// Writes the key of an imprint after a half turn, and returns its hash. The coordinates of a taxel's centre and
+    /// those of its image sum up to `across` and `down`, which must be such that all active taxels stay on the matrix.
     pub(crate) fn half_turned(
         &self,
         key: &[u64],
         [across, down]: [i32; 2],
         turned: &mut [u64],
     ) -> u64 {
-        // Column `i` goes to `across − 1 − i`, row `j` to `down − 1 − j`, so the numbers of a bit and of its image have
-        // the same sum for all taxels: the image is the key read backwards, shifted as a whole.
+        // Column `i` becomes `across − 1 − i`, and row `j` becomes `down − 1 − j`. So the numbers of a bit and of its
+        // image have the same sum for all taxels: the image is the key read backwards, shifted as a whole.
         let sum = (down - 1) * (1 << self.log_width) + across - 1;
         let words = (sum + 1).div_euclid(64);
         let left = (sum + 1).rem_euclid(64).unsigned_abs();
@@ -116,13 +117,13 @@ impl Layout {
         rows.fold(0, |hash, row| hash ^ self.hash(row, self.row(turned, row)))
     }
 
-    /// The taxels of a row.
+    /// Returns the taxels of a row.
     fn row(&self, key: &[u64], row: usize) -> u64 {
         let (word, shift) = self.slot(row);
         key[word] >> shift & u64::MAX >> (u64::BITS - u32::from(self.columns))
     }
 
-    /// What the taxels of a row add to a hash.
+    /// Returns the contribution of a row's taxels to a hash.
     pub(crate) fn hash(&self, row: usize, mut taxels: u64) -> u64 {
         let numbers = self.numbers(row);
         let mut hash = 0;
@@ -134,7 +135,7 @@ impl Layout {
     }
 }
 
-/// The generator of G. L. Steele, D. Lea and C. H. Flood (2014): a sequence of numbers from one seed.
+/// Returns the next number of a pseudo-random sequence: the generator of G. L. Steele, D. Lea and C. H. Flood (2014).
 fn split_mix(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut mixed = *state;
@@ -148,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_half_turn_of_a_key_is_that_of_the_imprint() {
+    fn a_half_turned_key_is_the_key_of_the_half_turned_imprint() {
         for (columns, rows) in [
             (1, 1),
             (3, 64),
@@ -159,7 +160,7 @@ mod tests {
             (64, 64),
         ] {
             let layout = Layout::new(columns, rows);
-            // An L, away from the sides where there is room.
+            // An L, away from the sides if there is room.
             let left = columns / 3;
             let (top, right, bottom) = (rows / 3, columns - left / 2 - 1, rows - rows / 3 - 1);
             let stem = (top..=bottom).map(|row| (left, row));
@@ -177,7 +178,7 @@ mod tests {
                 imprint
             };
             let (key, _) = layout.key(&imprint(&taxels));
-            // The sums that keep all of them on the matrix.
+            // These are the sums that keep all taxels on the matrix.
             for across in right + 1..=columns + left {
                 for down in bottom + 1..=rows + top {
                     let image = |&(column, row): &(u8, u8)| (across - 1 - column, down - 1 - row);

@@ -1,18 +1,18 @@
-//! Statistics of every feature over all poses that have one, and how much of the variance comes from the position.
+//! Statistics of every feature over all poses that have it, and how much of its variance comes from the position.
 //!
-//! Mean, standard deviation (of the population) and coefficient of variation are weighted by how often each imprint
-//! occurs. The variance of a feature is the mean of its variances at a fixed orientation (one angle, one pair of zooms), plus
-//! the variance of its means at these: **`sd_position`** is the square root of the first part, **`sd_angle`** that of
-//! the second, so `sd² = sd_position² + sd_angle²`. Each orientation is weighted by its number of poses with a value,
-//! which is usually the same for all.
+//! The mean, the standard deviation (of the population) and the coefficient of variation are weighted by how often each
+//! imprint occurs. The variance of a feature is the mean of its variances at a fixed orientation (one angle, one pair
+//! of zooms), plus the variance of its means at these orientations. **`sd_position`** is the square root of the first
+//! part, **`sd_angle`** that of the second, so `sd² = sd_position² + sd_angle²`. Each orientation is weighted by its
+//! number of poses with a value, which is usually the same for all.
 //!
-//! **Directions** that go all around have a circular mean, that of the unit vectors; with `R` the length of the mean
-//! vector the deviation is `√(−2 ln R)` (K. V. Mardia, *Statistics of Directional Data*, 1972), in degrees. Logarithms
+//! **Directions** that go all around have a circular mean, that of the unit vectors. With `R` the length of the mean
+//! vector, the deviation is `√(−2 ln R)` (K. V. Mardia, *Statistics of Directional Data*, 1972), in degrees. Logarithms
 //! of `R` take the place of the variances: `sd_position` comes from the mean of the orientations' own `R`, `sd_angle`
 //! from the difference between that mean and the overall `R`, and the squares add up as above. A direction has no
-//! smallest and no largest value, and no coefficient of variation.
+//! smallest or largest value, and no coefficient of variation.
 //!
-//! All sums are whole numbers of 2⁻⁴⁰: the result does not depend on threads, shards or symmetries.
+//! All sums are whole multiples of 2⁻⁴⁰. So the result does not depend on threads, shards or symmetries.
 
 use rayon::prelude::*;
 
@@ -22,25 +22,26 @@ use crate::atlas::values::{Row, RowSums, Sum, Table, columns, row_width};
 use crate::atlas::variance::VarianceParts;
 use crate::index::lower_word;
 
-/// The statistics of a feature over all poses that have it. Values are None if no pose has it.
+/// The statistics of a feature over all poses that have it. If no pose has it, all values that depend on poses are
+/// None.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Statistic {
     /// The feature.
     pub feature: &'static Feature,
-    /// Number of poses that have it.
+    /// The number of poses that have the feature.
     pub poses: u64,
     /// The smallest value; None for a direction.
     pub min: Option<f64>,
-    /// The mean. For a direction it is the circular one, which is None if the directions cancel.
+    /// The mean. For a direction, it is the circular mean, which is None if the directions cancel.
     pub mean: Option<f64>,
     /// The largest value; None for a direction.
     pub max: Option<f64>,
-    /// Standard deviation of the population.
+    /// The standard deviation of the population.
     pub sd: Option<f64>,
-    /// The standard deviation over the mean; None for a direction, or if the mean is 0.
+    /// The standard deviation divided by the mean; None for a direction, or if the mean is 0.
     pub cv: Option<f64>,
-    /// The value for the continuous figure, if there is one.
+    /// The value of the continuous figure, if there is one.
     pub ideal: Option<f64>,
     /// The part of the deviation that comes from the position at a fixed angle.
     pub sd_position: Option<f64>,
@@ -52,15 +53,15 @@ pub struct Statistic {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct StatisticColumn {
-    /// Its name in JSON.
+    /// The name in JSON.
     pub key: &'static str,
-    /// Its heading.
+    /// The heading.
     pub title: &'static str,
-    /// Its value for a feature.
+    /// Returns the value for a feature.
     pub value: fn(&Statistic) -> Option<f64>,
 }
 
-/// All of them, in their order.
+/// All columns, in their order.
 pub const STATISTIC_COLUMNS: &[StatisticColumn] = &[
     column("min", "min", |row| row.min),
     column("mean", "mean", |row| row.mean),
@@ -80,7 +81,7 @@ const fn column(
     StatisticColumn { key, title, value }
 }
 
-/// What is summed up over all imprints.
+/// The sums over all imprints.
 #[derive(Clone, Debug)]
 struct Totals {
     rows: RowSums,
@@ -88,8 +89,8 @@ struct Totals {
     squares: Vec<Squares>,
 }
 
-/// A sum of squares, as the sums of their lower and of their upper words: all poses together are below 2⁴⁰, so neither
-/// overflows.
+/// A sum of squares, as the sum of the squares' lower words and the sum of their upper words. All poses together are
+/// below 2⁴⁰, so neither overflows.
 type Squares = [u128; 2];
 
 impl Totals {
@@ -121,7 +122,7 @@ impl Totals {
     }
 }
 
-/// What is summed up of one feature.
+/// The sums of one feature.
 #[derive(Clone, Copy, Debug)]
 struct Total {
     sum: Sum,
@@ -129,7 +130,7 @@ struct Total {
 }
 
 impl Total {
-    /// The statistics of a feature whose smallest and largest values are `extremes`.
+    /// Returns the statistics of a feature whose smallest and largest values are `extremes`.
     fn statistic(
         &self,
         feature: &'static Feature,
@@ -177,13 +178,14 @@ impl Total {
             signed_mean(self.sum.x, poses),
             signed_mean(self.sum.y, poses),
         );
-        // No vector is longer than its parts together: a file may say otherwise, and rounding may.
+        // No vector is longer than its parts together. A damaged file may say otherwise, and so may rounding.
         let own = libm::hypot(x, y).min(1.0);
         let within = between.mean(poses).clamp(own, 1.0);
-        // Lengths that differ by no more than their rounding are equal: the root of the rounding would look like a deviation.
+        // Lengths that differ by no more than their rounding count as equal, because the root of the rounding would
+        // look like a deviation.
         let within = if 1.0 - within < ROUNDING { 1.0 } else { within };
         let own = if within - own < ROUNDING { within } else { own };
-        // Vectors that cancel up to the rounding of their parts point nowhere.
+        // Vectors that cancel up to the rounding of their parts have no direction.
         if own < 1e-11 {
             return;
         }
@@ -195,11 +197,11 @@ impl Total {
     }
 }
 
-/// The mean length of vectors is exact to less than this. Their parts are the nearest multiples of 2⁻⁴⁰, and so is the length of
-/// the sum of an orientation.
+/// The mean length of vectors is exact to less than this. The parts of the vectors are rounded to multiples of 2⁻⁴⁰,
+/// and so is the length of the sum of an orientation.
 const ROUNDING: f64 = 1.0 / ONE;
 
-/// The statistics of all features. `counts` says how often each imprint of the table occurs.
+/// Returns the statistics of all features. `counts` says how often each imprint of the table occurs.
 pub(crate) fn statistics(
     table: &Table,
     counts: &[u64],
@@ -234,7 +236,7 @@ mod tests {
     use super::*;
     use crate::atlas::sums::signed;
 
-    /// The statistic of directions. Each group is those of an orientation.
+    /// Returns the statistic of directions. Each group contains those of an orientation.
     fn of_directions(groups: &[&[f64]]) -> Statistic {
         let feature = features().iter().find(|feature| feature.circular);
         let (mut sum, mut between) = (Sum::default(), Wide::default());
@@ -254,7 +256,7 @@ mod tests {
         total.statistic(feature.expect("there is one"), None, between, None)
     }
 
-    /// Their deviations: in all, from the position and from the angle.
+    /// Returns the deviations of directions: in all, from the position and from the angle.
     fn deviations(groups: &[&[f64]]) -> [f64; 3] {
         let found = of_directions(groups);
         let found = [found.sd, found.sd_position, found.sd_angle];
@@ -262,11 +264,11 @@ mod tests {
     }
 
     #[test]
-    fn directions_that_do_not_differ_deviate_by_nothing() {
+    fn equal_directions_have_no_deviation() {
         for first in 0..360 {
             let (one, other) = (f64::from(first) + 0.3, f64::from(first) + 40.7);
             assert_eq!(deviations(&[&[one; 7], &[one; 7]]), [0.0; 3]);
-            // Of two orientations with the same directions, all of the deviation comes from the position.
+            // If two orientations have the same directions, all of the deviation comes from the position.
             let [sd, position, angle] = deviations(&[&[one, other], &[one, other]]);
             assert_eq!((sd, angle), (position, 0.0));
             let [sd, position, angle] = deviations(&[&[one; 3], &[other; 3]]);
@@ -279,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn directions_that_cancel_but_for_a_rounding_error_have_no_mean() {
+    fn directions_that_cancel_up_to_rounding_have_no_mean() {
         for first in 0..120 {
             let first = f64::from(first) + 0.3;
             let found = of_directions(&[&[first, first + 120.0, first + 240.0]]);

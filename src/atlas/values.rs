@@ -1,6 +1,6 @@
-//! The values of all features of all imprints, in rows, from which the statistics are computed.
+//! A table of the values of all features of all imprints, from which statistics are computed.
 //!
-//! They are fixed-point numbers ([`crate::atlas::sums`]), because each one is added once per orientation.
+//! The values are fixed-point numbers ([`crate::atlas::sums`]), because each one is added once per orientation.
 
 use rayon::prelude::*;
 
@@ -9,15 +9,16 @@ use crate::atlas::sums::{fixed, signed};
 use crate::geometry::Real;
 use crate::index::wide;
 
-/// Rows in a part of a table. One vector of all rows would be copied whenever it grows, and fill pages on one thread.
+/// The number of rows in a part of a table. A single vector of all rows would be copied whenever it grows, and its
+/// memory filled on one thread.
 const PART: usize = 256;
 
-/// The values of all features of the imprints of an atlas.
+/// The values of all features of the imprints of an atlas, one row per imprint.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
     /// The length of a row.
     width: usize,
-    /// A row per imprint. All parts but the last have [`PART`] rows.
+    /// The rows. All parts except the last have [`PART`] rows.
     parts: Vec<Part>,
     /// The number of rows.
     imprints: usize,
@@ -32,30 +33,30 @@ struct Part {
     missing: Vec<u32>,
 }
 
-/// The values of an imprint.
+/// The values of all features of an imprint.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row<'a> {
-    /// Each feature, 0 where it does not exist; of a direction its cosine and sine.
+    /// The value of each feature, 0 if it does not exist. A circular feature has two values: its cosine and its sine.
     pub(crate) values: &'a [i64],
-    /// Bit `i` is set where feature `i` does not exist.
+    /// The features that do not exist, with feature `i` in bit `i`.
     pub(crate) missing: u32,
 }
 
-/// Nothing yet between the smallest and the largest value.
+/// The extremes of a feature without values.
 const NOTHING: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 
-/// How many values of a row a feature takes.
+/// Returns the number of values that a feature takes in a row.
 fn width(circular: bool) -> usize {
     if circular { 2 } else { 1 }
 }
 
-/// The length of a row.
+/// Returns the length of a row.
 pub(crate) fn row_width() -> usize {
     let widths = features().iter().map(|feature| width(feature.circular));
     widths.sum()
 }
 
-/// Where the values of each feature stand in a row, and whether it is circular.
+/// Returns for each feature the position of its first value in a row, and whether it is circular.
 pub(crate) fn columns() -> Vec<(usize, bool)> {
     let all = features().iter().map(|feature| feature.circular);
     let columns = all.scan(0, |next, circular| {
@@ -67,7 +68,7 @@ pub(crate) fn columns() -> Vec<(usize, bool)> {
 }
 
 impl Default for Table {
-    /// Of no imprint.
+    /// Returns an empty table.
     fn default() -> Self {
         Self {
             width: row_width(),
@@ -79,7 +80,7 @@ impl Default for Table {
 }
 
 impl Table {
-    /// Adds the values of the imprints that are not in it yet.
+    /// Adds the rows of the imprints that are not in the table yet.
     pub(crate) fn extend(&mut self, summaries: &[ImprintSummary]) {
         let (columns, width) = (columns(), self.width);
         let new = &summaries[self.imprints.min(summaries.len())..];
@@ -106,7 +107,7 @@ impl Table {
         self.imprints = summaries.len();
     }
 
-    /// The values of an imprint.
+    /// Returns the values of an imprint.
     pub(crate) fn row(&self, index: usize) -> Row<'_> {
         let (part, row) = (&self.parts[index / PART], index % PART);
         Row {
@@ -115,14 +116,14 @@ impl Table {
         }
     }
 
-    /// The smallest and the largest value of a feature; None if no imprint has one.
+    /// Returns the smallest and the largest value of a feature; None if no imprint has a value.
     pub(crate) fn extremes(&self, feature: usize) -> Option<(f64, f64)> {
         let (low, high) = self.extremes[feature];
         (low <= high).then_some((low, high))
     }
 }
 
-/// Adds rows of the values of imprints.
+/// Adds the rows of imprints to a part of a table, and their values to the extremes.
 fn note(
     summaries: &[ImprintSummary],
     columns: &[(usize, bool)],
@@ -154,7 +155,8 @@ fn note(
     }
 }
 
-/// How many poses have a feature and the sum of its values; of a direction the sums of cosines and of sines.
+/// The number of poses that have a feature, and the sum of its values; of a circular feature, the sums of its
+/// cosines and sines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Sum {
     pub(crate) poses: u64,
@@ -169,34 +171,34 @@ impl Sum {
         self.y += other.y;
     }
 
-    /// The sum of values that are not directions. They are not negative; a damaged file may say otherwise, and counts
+    /// Returns the sum of a feature that is not circular. It is not negative, except in a damaged file, where it counts
     /// as 0.
     pub(crate) fn total(&self) -> u128 {
         self.x.max(0).cast_unsigned()
     }
 
-    /// The length of the sum of the unit vectors.
+    /// Returns the length of the sum of the unit vectors.
     #[expect(clippy::cast_precision_loss, reason = "the nearest f64 is wanted")]
     pub(crate) fn length(&self) -> f64 {
         libm::hypot(self.x as f64, self.y as f64)
     }
 }
 
-/// The sums of rows of a table, each row times the number of poses that leave its imprint.
+/// The sums of the columns of a table, each row times the number of poses that leave its imprint.
 ///
-/// Of each orientation all rows of its imprints are added up, which is a large part of a sweep with many imprints: so all
-/// columns are added alike, whether they have a value or not.
+/// For each orientation, the rows of all of its imprints are added up, which is a large part of a sweep with many
+/// imprints. So all columns are added in the same way, whether they have a value or not.
 #[derive(Clone, Debug)]
 pub(crate) struct RowSums {
     /// The number of poses, with or without a value.
     poses: u64,
     columns: Vec<i128>,
-    /// The poses that do not have a feature.
+    /// The number of poses in which each feature does not exist.
     missing: Vec<u64>,
 }
 
 impl RowSums {
-    /// Of no row.
+    /// Creates sums of no rows.
     pub(crate) fn new() -> Self {
         Self {
             poses: 0,
@@ -205,10 +207,10 @@ impl RowSums {
         }
     }
 
-    /// Adds a row.
+    /// Adds a row, times the number of poses that leave its imprint.
     pub(crate) fn add(&mut self, row: Row, poses: u64) {
         self.poses += poses;
-        // One multiplication of the processor: both numbers fit into 64 bits with their signs.
+        // One multiplication of the processor is enough: both numbers fit into 64 bits with their signs.
         let times = i128::from(poses.cast_signed());
         for (sum, &value) in self.columns.iter_mut().zip(row.values) {
             *sum += i128::from(value) * times;
@@ -220,7 +222,7 @@ impl RowSums {
         }
     }
 
-    /// Adds other sums.
+    /// Adds other sums to these.
     pub(crate) fn merge(&mut self, other: &Self) {
         self.poses += other.poses;
         for (sum, other) in self.columns.iter_mut().zip(&other.columns) {
@@ -231,12 +233,12 @@ impl RowSums {
         }
     }
 
-    /// The number of poses that were added.
+    /// Returns the number of poses that were added.
     pub(crate) fn poses(&self) -> u64 {
         self.poses
     }
 
-    /// The sum of each feature.
+    /// Returns the sum of each feature.
     pub(crate) fn sums(&self) -> Vec<Sum> {
         let features = columns().into_iter().zip(&self.missing);
         let sum = |((column, circular), missing): ((usize, bool), &u64)| Sum {

@@ -1,7 +1,7 @@
 //! Sums per orientation, from which follows how much of a variance comes from the position and how much from the angle.
 //!
-//! Once all poses of an orientation are added, only its contribution is kept; incomplete orientations are kept one by
-//! one.
+//! As soon as all poses of an orientation have been added, only its contribution is stored. Incomplete orientations are
+//! stored one by one.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,8 @@ pub(crate) struct OrientationSums {
 }
 
 impl OrientationSums {
-    /// The sums over imprints, given with the number of poses of one orientation that leave each.
+    /// Computes the sums over imprints; `counted` gives each imprint with the number of poses in one orientation that
+    /// leave it.
     pub(crate) fn of(table: &Table, times: u64, counted: impl Iterator<Item = (u32, u64)>) -> Self {
         let mut rows = RowSums::new();
         for (id, count) in counted {
@@ -35,8 +36,8 @@ impl OrientationSums {
         }
     }
 
-    /// Whether these sums are possible for an orientation of `full` poses. Others, from a damaged file, could overflow
-    /// later.
+    /// Returns true if these sums are possible for an orientation of `full` poses. Other sums, from a damaged file,
+    /// could overflow later.
     fn is_sound(&self, full: u64) -> bool {
         let sound = |sum: &Sum| {
             let most = u128::from(sum.poses) << 58;
@@ -51,14 +52,15 @@ impl OrientationSums {
 pub(crate) struct VarianceParts {
     /// The number of poses of an orientation of the grid.
     full: u64,
-    /// For each feature, over the complete orientations: the sum of (sum² / poses), or of the vectors' lengths.
+    /// For each feature, over the complete orientations: the sum of sum²/poses, or of the vectors' lengths for a
+    /// circular feature.
     between: Vec<Wide>,
-    /// The incomplete orientations, by number.
+    /// The incomplete orientations, by their number.
     open: BTreeMap<u64, OrientationSums>,
 }
 
 impl VarianceParts {
-    /// For orientations of `full` poses, without any of them yet.
+    /// Creates the parts for orientations of `full` poses each, without any sums.
     pub(crate) fn new(full: u64) -> Self {
         Self {
             full,
@@ -67,7 +69,7 @@ impl VarianceParts {
         }
     }
 
-    /// Adds a part of an orientation. All parts of it must have the same `times`.
+    /// Adds a part of an orientation. All parts of an orientation must have the same `times`.
     pub(crate) fn add(&mut self, orientation: u64, part: OrientationSums) {
         let sums = match self.open.remove(&orientation) {
             Some(mut sums) => {
@@ -86,7 +88,7 @@ impl VarianceParts {
         }
     }
 
-    /// Adds what other rows of the same grid gave.
+    /// Adds the parts from other rows of the same grid.
     pub(crate) fn merge(&mut self, other: Self) {
         for (sum, other) in self.between.iter_mut().zip(other.between) {
             *sum += other;
@@ -96,7 +98,7 @@ impl VarianceParts {
         }
     }
 
-    /// As words: three per feature, then each incomplete orientation.
+    /// Returns the parts as words: three per feature, then each incomplete orientation.
     pub(crate) fn words(&self) -> Vec<u64> {
         let halves = |sum: i128| {
             let bits = sum.cast_unsigned();
@@ -114,7 +116,8 @@ impl VarianceParts {
         words
     }
 
-    /// From words; None if their number is wrong, or they are not possible for orientations of `full` poses.
+    /// Creates the parts from words; None if the number of words is wrong, or if they are not possible for orientations
+    /// of `full` poses.
     pub(crate) fn from_words(full: u64, words: &[u64]) -> Option<Self> {
         let count = features().len();
         let (between, open) = words.split_at_checked(3 * count)?;
@@ -145,7 +148,7 @@ impl VarianceParts {
         })
     }
 
-    /// The same, with every orientation taken as complete.
+    /// Returns `between`, with every orientation taken as complete.
     pub(crate) fn closed(&self) -> Vec<Wide> {
         let mut between = self.between.clone();
         for sums in self.open.values() {
