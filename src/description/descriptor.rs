@@ -38,9 +38,9 @@ pub struct Description {
     pub nae: u32,
     /// CE: the number of outline taxels of the filled region.
     pub ce: u32,
-    /// NumX: the sum of the taxels' x coordinates.
+    /// `NumX`: the sum of the taxels' x coordinates.
     pub num_x: f64,
-    /// NumY: the sum of the taxels' y coordinates.
+    /// `NumY`: the sum of the taxels' y coordinates.
     pub num_y: f64,
     /// The steps of the chain around the filled region.
     pub steps: ChainSteps,
@@ -133,7 +133,7 @@ impl Description {
             .map(|(low, high)| i64::from(high) - i64::from(low))
     }
 
-    /// Returns NumX and NumY, doubled so that they are whole.
+    /// Returns `NumX` and `NumY`, doubled so that they are whole.
     fn doubled_sums(&self) -> [i64; 2] {
         #[expect(
             clippy::cast_possible_truncation,
