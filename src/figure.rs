@@ -45,7 +45,7 @@ impl FigureKind {
         Self::Octagon,
     ];
 
-    /// Returns its name in files and flags and on the screen.
+    /// Returns the name of the kind, as in files, in flags and on the screen.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ellipse => "ellipse",
@@ -58,12 +58,12 @@ impl FigureKind {
         }
     }
 
-    /// Returns the kind with this name.
+    /// Returns the kind with this name; None if there is none.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// Returns a hint for a word that is not the name of a kind but means one, such as "circle".
+    /// Returns a hint for a word that is not the name of a figure but means one: "circle" or "square".
     #[cfg(feature = "json")]
     pub(crate) fn of_other_name(word: &str) -> Option<&'static str> {
         match word.to_ascii_lowercase().as_str() {
@@ -134,8 +134,8 @@ pub struct Figure {
 
 /// A figure whose values are not checked yet; [`Self::on`] checks them all.
 ///
-/// By default its bounding rectangle starts at the sensor's top left corner ([`Self::at`]), it is upright
-/// ([`Self::angle`]) and solid ([`Self::thickness`]).
+/// Without [`Self::at`] its bounding rectangle starts at the sensor's top left corner; without [`Self::angle`] it is
+/// upright; without [`Self::thickness`] it is solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use = "only `on` makes a figure of it"]
 pub struct FigureBuilder(Figure);
@@ -177,8 +177,7 @@ impl FigureBuilder {
     /// Returns the figure, after checking its values against the ranges of a sensor.
     ///
     /// # Errors
-    /// Returns the error of the first value that is out of range; values are checked in the order of
-    /// [`FigureKind::parameters`].
+    /// Returns the error of the first value that is out of range, in the order of [`FigureKind::parameters`].
     pub fn on(self, sensor: &Sensor) -> Result<Figure, ParameterError> {
         let mut figure = self.0;
         for &parameter in figure.kind.parameters() {
@@ -233,7 +232,7 @@ impl Figure {
     /// sensor.
     ///
     /// # Errors
-    /// Returns the error of the first value that is out of range or missing; only the thickness may be missing.
+    /// Returns the error of the first value that is out of range or missing. Only the thickness may be missing.
     pub fn new(
         kind: FigureKind,
         sensor: &Sensor,
@@ -256,7 +255,7 @@ impl Figure {
     }
 
     /// Returns the figure that a new form shows: solid, with every other parameter at its default. On a small sensor
-    /// it is moved up and to the left by whole cells, so that as much of it as possible is on the sensor.
+    /// the figure is moved up and to the left by whole cells, so that as much of it as possible is on the sensor.
     pub fn default_of(kind: FigureKind, sensor: &Sensor) -> Self {
         let mut sizes = [1.0; 2];
         for (size, &parameter) in sizes.iter_mut().zip(kind.sizes()) {
@@ -304,7 +303,7 @@ impl Figure {
         Ok(self)
     }
 
-    /// Changes one value; changes nothing if the value is refused.
+    /// Changes one value; after an error, nothing is changed.
     pub(crate) fn set(
         &mut self,
         parameter: Parameter,
@@ -340,7 +339,7 @@ impl Figure {
         self.kind
     }
 
-    /// Returns one of its values; None if the figure does not have this parameter, and for the thickness of a solid
+    /// Returns the value of a parameter; None for one that the figure does not have, and for the thickness of a solid
     /// figure.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
@@ -355,7 +354,7 @@ impl Figure {
         }
     }
 
-    /// Returns true if the figure has a hole: its thickness leaves room for one.
+    /// Returns true if the figure has a hole, that is, a thickness that leaves room for one.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -371,8 +370,8 @@ impl Figure {
         pen.0
     }
 
-    /// Draws an ellipse or a rectangle of this half width and half height; its hole is smaller by the wall on each
-    /// side.
+    /// Draws an ellipse or a rectangle; `half` is half of its width and height. Those of the hole are smaller by the
+    /// wall.
     fn draw_round_or_square<T: Real>(&self, half: Point<T>, pen: &mut impl Pen<T>) {
         let centre = Point::new(T::decimal(self.x0), T::decimal(self.y0)).moved(half);
         let turn = Turn::clockwise(T::decimal(self.angle));
@@ -412,13 +411,12 @@ impl Figure {
         }
     }
 
-    /// Draws a regular polygon. Its hole is a polygon of the same kind about the same centre, its inradius smaller by
-    /// the wall.
+    /// Draws a regular polygon; a hole is the same polygon about the same centre, its inradius smaller by the wall.
     fn draw_regular<T: Real>(&self, corners: u8, pen: &mut impl Pen<T>) {
         let (sin, cos) = (T::whole(180) / T::whole(corners.into())).sin_cos_degrees();
         let half_side = T::decimal(self.sizes[0]) * T::HALF;
         let inradius = half_side * cos / sin;
-        // The corners relative to the centre, clockwise from the left end of the bottom side.
+        // The corners about the centre, clockwise from the left end of the bottom side.
         let mut ring = [Point::new(T::ZERO, T::ZERO); 8];
         let ring = &mut ring[..usize::from(corners)];
         let (step_sin, step_cos) = (T::whole(2) * sin * cos, T::ONE - T::whole(2) * sin * sin);
@@ -483,7 +481,7 @@ impl Pen<f64> for HolePen {
 }
 
 impl Figure {
-    /// Returns the kind with its sizes, which is the beginning of the summary: `hexagon side 4.00`.
+    /// Returns the kind and the sizes, with which the summary begins: `hexagon side 4.00`.
     pub fn kind_and_sizes(&self) -> String {
         let sizes = self.kind.sizes().iter().zip(self.sizes);
         let sizes = sizes.map(|(parameter, size)| {
@@ -494,7 +492,7 @@ impl Figure {
 }
 
 impl fmt::Debug for Figure {
-    /// Lists only the sizes that this kind of figure has.
+    /// Writes only the sizes that the kind has.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             kind,
@@ -564,7 +562,7 @@ mod tests {
                         low >= 0.0 && low + 0.5 < side,
                         "{figure} on {columns} × {rows}"
                     );
-                    // It lies wholly on the sensor if there is room for it.
+                    // If there is room, the whole figure lies on the sensor.
                     let fits = high - low <= side;
                     assert!(!fits || high <= side, "{figure} on {columns} × {rows}");
                 }

@@ -45,17 +45,17 @@ impl Imprint {
         self.rows
     }
 
-    /// Returns the rows from the top; bit `i` is column `i`.
+    /// Returns the rows from the top, with column `i` in bit `i`.
     pub fn words(&self) -> &[u64] {
         &self.words[..usize::from(self.rows)]
     }
 
-    /// Returns the rows, to change them. The caller must leave the bits beyond the last column at 0.
+    /// Returns the rows for writing. The caller must leave the bits beyond the last column at 0.
     pub(crate) fn words_mut(&mut self) -> &mut [u64] {
         &mut self.words[..usize::from(self.rows)]
     }
 
-    /// Sets a whole row. Bits beyond the last column and rows beyond the last one are ignored.
+    /// Sets a whole row. Drops bits beyond the last column, and does nothing beyond the last row.
     pub fn set_word(&mut self, row: usize, word: u64) {
         let mask = self.mask();
         if let Some(slot) = self.words[..usize::from(self.rows)].get_mut(row) {
@@ -72,17 +72,17 @@ impl Imprint {
         }
     }
 
-    /// Returns the word of a row in which every taxel is active.
+    /// Returns a row in which all taxels are active.
     pub fn mask(&self) -> u64 {
         u64::MAX >> (MAX_SIDE - self.columns)
     }
 
-    /// Returns true if a taxel is active; false outside the matrix.
+    /// Returns true if a taxel is active; false beyond the matrix.
     pub fn get(&self, column: u8, row: u8) -> bool {
         column < self.columns && row < self.rows && self.words[usize::from(row)] >> column & 1 == 1
     }
 
-    /// Makes a taxel active or inactive; does nothing outside the matrix.
+    /// Makes a taxel active or inactive; does nothing beyond the matrix.
     pub fn set(&mut self, column: u8, row: u8, active: bool) {
         if column < self.columns && row < self.rows {
             let word = &mut self.words[usize::from(row)];
@@ -90,7 +90,7 @@ impl Imprint {
         }
     }
 
-    /// Toggles a taxel; does nothing outside the matrix.
+    /// Toggles a taxel; does nothing beyond the matrix.
     pub fn toggle(&mut self, column: u8, row: u8) {
         self.set(column, row, !self.get(column, row));
     }
@@ -116,7 +116,7 @@ impl Imprint {
         Bounds::around(across, top, last + 1 - top)
     }
 
-    /// Returns true if a taxel in the first or last row or column is active: the shape may be cut off there.
+    /// Returns true if a taxel in the first or last row or column is active, so that the shape may be cut off.
     pub fn touches_rim(&self) -> bool {
         self.bounds().is_some_and(|bounds| {
             bounds.left == 0
@@ -126,7 +126,7 @@ impl Imprint {
         })
     }
 
-    /// Returns the active taxels, (column, row), in reading order.
+    /// Iterates over the active taxels as (column, row), in reading order.
     pub fn active(&self) -> impl DoubleEndedIterator<Item = (u8, u8)> {
         (0..self.rows).flat_map(move |row| {
             let word = self.words[usize::from(row)];
@@ -146,7 +146,7 @@ impl Imprint {
         differing
     }
 
-    /// Returns the taxels that are active in either imprint or both, on the matrix of this one.
+    /// Returns the taxels that are active in this imprint, in the other, or in both, on the matrix of this one.
     ///
     /// ```
     /// use taxel::imprint::Imprint;
@@ -180,7 +180,7 @@ impl Imprint {
         rest
     }
 
-    /// Returns the same active taxels on a matrix of another size; taxels outside it are dropped.
+    /// Returns the same imprint on a matrix of another size; active taxels beyond it are dropped.
     #[must_use]
     pub fn resized(&self, columns: u8, rows: u8) -> Self {
         let mut resized = Self::empty(columns, rows);
@@ -191,25 +191,24 @@ impl Imprint {
     }
 }
 
-/// A rectangle of whole taxels, by the plane coordinates of its edges: columns `left..right`, rows `top..bottom`.
-// The alignment is for speed: four bytes at an odd address, as in an enum, would be copied in parts, and the
-// processor would wait for the last part.
+/// A rectangle of whole taxels, given by its edges: columns `left..right`, rows `top..bottom`.
+// Aligned, because the four bytes at an odd address (as in an enum) would be copied in parts, which takes longer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(align(4))]
 pub struct Bounds {
-    /// The first column.
+    /// First column.
     pub left: u8,
-    /// The first row.
+    /// First row.
     pub top: u8,
-    /// The column after the last one.
+    /// One past the last column.
     pub right: u8,
-    /// The row after the last one.
+    /// One past the last row.
     pub bottom: u8,
 }
 
 impl Bounds {
-    /// Returns the rectangle of the columns whose bits are set, and of `rows` rows from `top` on; None if no bit is
-    /// set.
+    /// Creates the bounds of the columns whose bits are set in `across` and of `rows` rows from `top` on; None if no
+    /// bit is set.
     pub(crate) fn around(across: u64, top: usize, rows: usize) -> Option<Self> {
         let side = |count: u32| u8::try_from(count).unwrap_or(MAX_SIDE);
         let row = |row: usize| u8::try_from(row).unwrap_or(MAX_SIDE);
@@ -221,7 +220,7 @@ impl Bounds {
         })
     }
 
-    /// Returns the rectangle of a single taxel. In column or row 255 it is empty.
+    /// Creates the bounds of a single taxel. They are empty beyond column or row 254.
     pub fn of_taxel(column: u8, row: u8) -> Self {
         Self {
             left: column,
@@ -231,17 +230,18 @@ impl Bounds {
         }
     }
 
-    /// Returns its columns.
+    /// Returns the columns of the rectangle.
     pub fn columns(&self) -> Range<u8> {
         self.left..self.right
     }
 
-    /// Returns its rows.
+    /// Returns the rows of the rectangle.
     pub fn rows(&self) -> Range<u8> {
         self.top..self.bottom
     }
 
-    /// Returns the number of its taxels; 0 if its sides are the wrong way round.
+    /// Returns the number of taxels in the rectangle; 0 if left and right, or top and bottom, are the wrong way
+    /// round.
     pub fn area(&self) -> u32 {
         let columns = self.right.saturating_sub(self.left);
         let rows = self.bottom.saturating_sub(self.top);
@@ -250,7 +250,7 @@ impl Bounds {
 }
 
 impl fmt::Display for Imprint {
-    /// Writes one line for each row, `#` for active and `.` for inactive taxels, with no line end after the last row.
+    /// Writes one line per row, `#` for active and `.` for inactive, without a line end after the last row.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (row, line) in self.lines().enumerate() {
             if row > 0 {
@@ -269,7 +269,7 @@ impl fmt::Debug for Imprint {
 }
 
 impl Imprint {
-    /// Returns the rows as text, `#` for active and `.` for inactive taxels.
+    /// Iterates over the rows as text: `#` for active, `.` for inactive.
     pub fn lines(&self) -> impl DoubleEndedIterator<Item = String> + ExactSizeIterator {
         (0..self.rows).map(|row| {
             (0..self.columns)
@@ -281,7 +281,7 @@ impl Imprint {
     /// Reads an imprint from rows of `#` and `.`, at most 64 × 64, all of the same length.
     ///
     /// # Errors
-    /// Returns an error if a row differs in length from the first, has another character, or if a side is not 1 to
+    /// Returns an error if a row differs in length from the first, contains another character, or a side is not 1 to
     /// 64.
     pub fn from_rows<'a>(rows: impl IntoIterator<Item = &'a str>) -> Result<Self, ImprintError> {
         let mut read = ImprintRows::default();
@@ -292,12 +292,12 @@ impl Imprint {
     }
 }
 
-/// An imprint that is being read row by row.
+/// Reads an imprint row by row.
 #[derive(Debug, Default)]
 pub(crate) struct ImprintRows {
-    /// The rows read so far, in a matrix of [`MAX_SIDE`] rows; None before the first.
+    /// The rows so far, in a matrix of [`MAX_SIDE`] rows; None before the first row.
     imprint: Option<Imprint>,
-    /// The number of rows read so far.
+    /// The number of rows so far.
     count: u8,
 }
 
@@ -362,20 +362,20 @@ impl std::str::FromStr for Imprint {
     }
 }
 
-/// The error for rows of text that are not an imprint.
+/// The error for text that is not an imprint. Rows and columns count from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ImprintError {
-    /// There are no rows, or too many.
+    /// No rows, or too many.
     Rows,
-    /// A row is empty or too long.
+    /// A row that is empty or too long.
     Columns {
         /// The row, from 1.
         row: usize,
         /// The number of its characters.
         found: usize,
     },
-    /// A row is not as long as the first.
+    /// A row that is not as long as the first.
     Ragged {
         /// The row, from 1.
         row: usize,
@@ -384,13 +384,13 @@ pub enum ImprintError {
         /// The number of characters in the first row.
         expected: u8,
     },
-    /// A row has a character other than `#` or `.`.
+    /// A character other than `#` or `.`.
     Character {
         /// The row, from 1.
         row: usize,
         /// The column, from 1.
         column: usize,
-        /// The character found.
+        /// The character found there.
         found: char,
     },
 }
@@ -429,7 +429,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bounds_with_reversed_sides_have_no_area() {
+    fn bounds_the_wrong_way_round_have_an_area_of_0() {
         let bounds = Bounds {
             left: 5,
             top: 0,

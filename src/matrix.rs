@@ -1,11 +1,11 @@
-//! A matrix of values, one for each taxel, row by row from the top left, such as what a sensor measures in its cells.
+//! A matrix with one value per taxel, row by row from the top left: for example the measurements of a sensor's cells.
 
 use std::fmt;
 
 use crate::parameter::number::counted;
 use crate::sensor::MAX_SIDE;
 
-/// A matrix of 1 × 1 to 64 × 64 values, row by row.
+/// A matrix of 1 × 1 to 64 × 64 values, row-major.
 ///
 /// ```
 /// use taxel::matrix::Matrix;
@@ -46,7 +46,7 @@ impl<T: Copy> Matrix<T> {
     /// ```
     ///
     /// # Errors
-    /// Returns an error if a side is not 1 to 64, or if there are not as many values as cells.
+    /// Returns an error if a side is not 1 to 64, or the number of values differs from the number of cells.
     pub fn from_values(columns: u8, rows: u8, values: Vec<T>) -> Result<Self, MatrixError> {
         let sides = 1..=MAX_SIDE;
         if !sides.contains(&columns) || !sides.contains(&rows) {
@@ -67,8 +67,8 @@ impl<T: Copy> Matrix<T> {
         })
     }
 
-    /// Changes the size and fills every cell with `value`. It allocates only if there are more cells than ever
-    /// before.
+    /// Changes the size and sets every cell to `value`. Allocates only if there are more cells than ever before.
+    /// Sides are clamped to 1 to 64.
     pub fn reset(&mut self, columns: u8, rows: u8, value: T) {
         self.columns = columns.clamp(1, MAX_SIDE);
         self.rows = rows.clamp(1, MAX_SIDE);
@@ -92,24 +92,24 @@ impl<T: Copy> Matrix<T> {
         &self.values
     }
 
-    /// Returns all values, row by row, to change them.
+    /// Returns all values for writing, row by row.
     pub fn values_mut(&mut self) -> &mut [T] {
         &mut self.values
     }
 
-    /// Returns the values of a row from the left; none beyond the last row.
+    /// Returns the values of a row from the left; empty beyond the last row.
     pub fn row(&self, row: u8) -> &[T] {
         let columns = usize::from(self.columns);
         let start = usize::from(row) * columns;
         self.values.get(start..start + columns).unwrap_or(&[])
     }
 
-    /// Returns the value of a cell; None outside the matrix.
+    /// Returns the value of a cell; None beyond the matrix.
     pub fn get(&self, column: u8, row: u8) -> Option<T> {
         self.index(column, row).map(|index| self.values[index])
     }
 
-    /// Changes the value of a cell; does nothing outside the matrix.
+    /// Changes the value of a cell; does nothing beyond the matrix.
     pub fn set(&mut self, column: u8, row: u8, value: T) {
         if let Some(index) = self.index(column, row) {
             self.values[index] = value;
@@ -122,7 +122,7 @@ impl<T: Copy> Matrix<T> {
     }
 }
 
-/// The error for values that do not make a matrix.
+/// The error for sides or values that do not make a matrix.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MatrixError {

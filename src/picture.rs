@@ -1,4 +1,4 @@
-//! A picture: a stored imprint used as a shape, which can be moved, zoomed and turned.
+//! A picture: a stored imprint that is used as a shape, and is moved, zoomed and turned.
 //!
 //! The union of its active taxels, each a unit square, is the shape. It is placed in three steps. First, the top left
 //! corner of its bounding rectangle goes to (`x0`, `y0`). Then everything, including that position, is scaled about
@@ -22,10 +22,10 @@ pub const PICTURE_PARAMETERS: [Parameter; 5] = [
     Parameter::ZoomY,
 ];
 
-/// A stored imprint with its position, angle and zoom. Its values are always finite, its zooms above 0.
+/// A stored imprint and its placement. The values are always finite, and the zooms above 0.
 ///
-/// It may have the name that its imprint is stored under. The name is displayed, but neither compared nor written to
-/// files.
+/// A picture may carry the name under which its imprint is stored. The name is displayed, but neither compared nor
+/// written to files.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -53,7 +53,7 @@ impl PartialEq for Picture {
 
 /// A picture whose values are not checked yet; [`Self::on`] checks them all.
 ///
-/// The imprint starts where it is stored: at its own corner, with angle 0 and zoom 1.
+/// Without any of its methods the imprint stays where it is: at its own corner, with angle 0 and zoom 1.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use = "only `on` makes a picture of it"]
 pub struct PictureBuilder(Picture);
@@ -80,8 +80,7 @@ impl PictureBuilder {
     /// Returns the picture, after checking its values against the ranges of a sensor.
     ///
     /// # Errors
-    /// Returns the error of the first value that is out of range; values are checked in the order of
-    /// [`PICTURE_PARAMETERS`].
+    /// Returns the error of the first value that is out of range, in the order of [`PICTURE_PARAMETERS`].
     pub fn on(mut self, sensor: &Sensor) -> Result<Picture, ParameterError> {
         for (parameter, value) in PICTURE_PARAMETERS.into_iter().zip(&mut self.0.values) {
             *value = sensor.check(parameter, *value)?;
@@ -91,12 +90,12 @@ impl PictureBuilder {
 }
 
 impl Picture {
-    /// Starts building a picture of this imprint.
+    /// Starts a picture of this imprint.
     pub fn of(imprint: Imprint) -> PictureBuilder {
         PictureBuilder(Self::at_home(imprint))
     }
 
-    /// Returns a picture of the imprint where it is: at its own corner, with angle 0 and zoom 1.
+    /// Creates a picture that leaves the imprint where it is: at its own corner, with angle 0 and zoom 1.
     pub fn at_home(imprint: Imprint) -> Self {
         let (left, top) = imprint
             .bounds()
@@ -153,7 +152,7 @@ impl Picture {
         Ok(self)
     }
 
-    /// Changes one value; changes nothing if the value is refused.
+    /// Changes one value; after an error, nothing is changed.
     pub(crate) fn set(
         &mut self,
         parameter: Parameter,
@@ -171,7 +170,7 @@ impl Picture {
         Ok(())
     }
 
-    /// Returns one of its values; None if a picture does not have this parameter.
+    /// Returns the value of a parameter; None for one that a picture does not have.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         PICTURE_PARAMETERS
             .iter()
@@ -179,14 +178,13 @@ impl Picture {
             .map(|index| self.values[index])
     }
 
-    /// Returns the name that its imprint is stored under, if it was given.
+    /// Returns the name under which the imprint is stored; None if it was not given.
     pub fn name(&self) -> Option<&str> {
         self.name.as_deref()
     }
 
-    /// Returns the corner (`x0`, `y0`, in cells) that keeps the centre of the picture in place under other zooms,
-    /// both above 0. The corner may be out of range: it is not checked. An empty imprint has no centre and counts as
-    /// a point.
+    /// Returns the corner (`x0`, `y0`, in cells) that keeps the picture's centre in its place under other zooms, both
+    /// above 0. The corner may be out of range. An empty imprint counts as a point.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -211,7 +209,7 @@ impl Picture {
         )
     }
 
-    /// Returns the stored imprint.
+    /// Returns the stored imprint, without placement.
     pub fn imprint(&self) -> &Imprint {
         &self.imprint
     }
@@ -235,8 +233,8 @@ impl Solid for Picture {
             let y = size(bounds.top, row) * zoom_y - half.y;
             centre.moved(turn.of(Point::new(x, y)))
         };
-        // A side between two rows or two columns is part of the boundary if exactly one of its two taxels is active.
-        // A run of such sides in a line is drawn as one edge.
+        // A side between two neighbouring taxels belongs to the boundary if just one of them is active. Runs of such
+        // sides on a line are drawn as one edge.
         let word = |row: i32| {
             usize::try_from(row)
                 .ok()
@@ -255,7 +253,7 @@ impl Solid for Picture {
         for column in bounds.left..=bounds.right {
             let bit = |row: u8, column: u8| u64::from(self.imprint.get(column, row)) << row;
             let line = |column: u8| bounds.rows().fold(0, |line, row| line | bit(row, column));
-            // Column −1 wraps to 255, which has no taxels.
+            // Column −1 wraps to 255, where no taxel is active.
             let (before, after) = (line(column.wrapping_sub(1)), line(column));
             for (top, bottom) in runs(after & !before) {
                 pen.edge(corner(column, bottom), corner(column, top));
@@ -267,7 +265,7 @@ impl Solid for Picture {
     }
 }
 
-/// Iterates over the runs of ones in a word: the first bit of each run, and the bit after its last.
+/// Iterates over the runs of ones in a word, each given by its first bit and the bit after its last.
 fn runs(mut word: u64) -> impl Iterator<Item = (u8, u8)> {
     std::iter::from_fn(move || {
         if word == 0 {

@@ -1,4 +1,4 @@
-//! The names for a quick start: `use taxel::prelude::*;`.
+//! The names that most programs need: `use taxel::prelude::*;`.
 
 pub use crate::description::{
     DESCRIPTORS, Description, Region, RegionKind, each_region, main_region, regions,

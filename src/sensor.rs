@@ -1,5 +1,5 @@
-//! The tactile matrix sensor: its columns and rows of square cells, its threshold, its pitch, and the ranges of the
-//! values it allows.
+//! The tactile matrix sensor: its columns and rows of square cells, its threshold, its pitch, and the values that it
+//! allows.
 //!
 //! The ranges of a figure's lengths and positions scale with the larger side of the sensor. So it is the sensor that
 //! checks, parses and steps values: `sensor.check(Parameter::X0, 1.99)`.
@@ -9,7 +9,7 @@ use std::fmt;
 use crate::parameter::{Parameter, ParameterError, Range, Unit, number};
 use crate::quote::shortened;
 
-/// The largest number of columns or rows.
+/// The largest number of columns, and of rows.
 pub const MAX_SIDE: u8 = 64;
 
 /// The parameters of a sensor, in the order in which forms show them.
@@ -20,8 +20,8 @@ pub const SENSOR_PARAMETERS: [Parameter; 4] = [
     Parameter::Pitch,
 ];
 
-/// A tactile sensor. Its values are always in range: columns and rows 1 to 64, threshold above 0 up to 1, pitch above
-/// 0 up to 1000 mm.
+/// A sensor whose values are always in range: 1 to 64 columns and rows, a threshold above 0 and up to 1, a pitch
+/// above 0 and up to 1000 mm.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -41,7 +41,7 @@ pub struct Sensor {
 }
 
 impl Default for Sensor {
-    /// Returns the paper's sensor: 16 × 16 taxels, threshold one half, cells of 1 mm.
+    /// Returns the paper's sensor: 16 × 16 taxels, a threshold of one half, cells of 1 mm.
     fn default() -> Self {
         Self {
             columns: 16,
@@ -76,18 +76,18 @@ impl Sensor {
         pitch_mm: 1.0,
     };
 
-    /// Creates a sensor of `columns × rows` taxels with the default threshold and pitch.
+    /// Creates a sensor of `columns × rows` taxels, with the default threshold and pitch.
     ///
     /// # Errors
-    /// Returns an error if a number is not 1 to [`MAX_SIDE`].
+    /// Returns an error if a number is not from 1 to [`MAX_SIDE`].
     pub fn new(columns: u8, rows: u8) -> Result<Self, ParameterError> {
         Self::default()
             .with(Parameter::Columns, columns.into())?
             .with(Parameter::Rows, rows.into())
     }
 
-    /// Creates a sensor of `columns × rows` taxels, like [`Self::new`], with both numbers clamped to 1 to
-    /// [`MAX_SIDE`]. So every imprint is the whole matrix of some sensor.
+    /// Creates a sensor of `columns × rows` taxels, like [`Self::new`], but clamps the numbers to 1 to [`MAX_SIDE`].
+    /// So every imprint has a sensor of its size.
     pub fn clamped(columns: u8, rows: u8) -> Self {
         Self {
             columns: columns.clamp(1, MAX_SIDE),
@@ -99,7 +99,7 @@ impl Sensor {
     /// Returns the same sensor with one of [`SENSOR_PARAMETERS`] changed to `value`, in the parameter's unit.
     ///
     /// # Errors
-    /// Returns an error if the value is out of range, or the parameter is not one of [`SENSOR_PARAMETERS`].
+    /// Returns an error if the value is out of range, or the parameter is not one of a sensor.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -123,8 +123,7 @@ impl Sensor {
         Ok(self)
     }
 
-    /// Returns the same sensor with another threshold: the share of a cell that must be covered to make its taxel
-    /// active.
+    /// Returns the same sensor with another threshold: the covered share of a cell from which on its taxel is active.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -135,7 +134,7 @@ impl Sensor {
     /// ```
     ///
     /// # Errors
-    /// Returns an error if the threshold is not above 0 and up to 1.
+    /// Returns an error if the threshold is not above 0 and at most 1.
     pub fn with_threshold(self, threshold: f64) -> Result<Self, ParameterError> {
         self.with(Parameter::Threshold, threshold)
     }
@@ -143,12 +142,12 @@ impl Sensor {
     /// Returns the same sensor with another pitch: the side of a cell in mm.
     ///
     /// # Errors
-    /// Returns an error if the pitch is not above 0 and up to 1000.
+    /// Returns an error if the pitch is not above 0 and at most 1000.
     pub fn with_pitch_mm(self, pitch: f64) -> Result<Self, ParameterError> {
         self.with(Parameter::Pitch, pitch)
     }
 
-    /// Returns one of its values; None if a sensor does not have this parameter.
+    /// Returns the value of a parameter; None if a sensor does not have the parameter.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
             Parameter::Columns => Some(f64::from(self.columns)),
@@ -169,30 +168,31 @@ impl Sensor {
         self.rows
     }
 
-    /// Returns the larger of columns and rows, which bounds the lengths and positions of figures.
+    /// Returns the number of columns or rows, whichever is larger. It bounds the lengths and positions of figures.
     pub fn side(&self) -> u8 {
         self.columns.max(self.rows)
     }
 
-    /// Returns the threshold: the share of a cell that must be covered to make its taxel active.
+    /// Returns the threshold: the covered share of a cell from which on its taxel is active.
     pub fn threshold(&self) -> f64 {
         self.threshold
     }
 
-    /// Returns the side of a cell, in mm.
+    /// Returns the side of a cell in mm.
     pub fn pitch_mm(&self) -> f64 {
         self.pitch_mm
     }
 }
 
-/// The ranges of the values that a sensor allows.
+/// The values that a sensor allows for each parameter.
 impl Sensor {
-    /// Returns the range of a parameter. It is the same in forms, files, flags and commands.
+    /// Returns the range of a parameter on this sensor. It is the same in forms, flags, files and commands.
     pub fn range(&self, parameter: Parameter) -> Range {
         parameter.row().range(self.side())
     }
 
-    /// Returns the value in a new form: the parameter's default, or on a sensor too small for it, the larger side.
+    /// Returns the value of a parameter in a new form: its default, or the larger side of the sensor if the default
+    /// is out of range.
     pub fn default_value(&self, parameter: Parameter) -> f64 {
         let default = parameter.row().default;
         if self.range(parameter).contains(default) {
@@ -205,7 +205,8 @@ impl Sensor {
     /// Returns `value` if the parameter may have it; a negative zero becomes 0.
     ///
     /// # Errors
-    /// Returns [`ParameterError::Range`], also for NaN and the infinities.
+    /// Returns [`ParameterError::Range`] if the value is out of range, NaN or infinite, or should be whole and is
+    /// not.
     pub fn check(&self, parameter: Parameter, value: f64) -> Result<f64, ParameterError> {
         let range = self.range(parameter);
         let whole = parameter.row().unit != Unit::Taxels || value.fract() == 0.0;
@@ -220,28 +221,29 @@ impl Sensor {
         }
     }
 
-    /// Reads a value from the text of a flag, a command or a form's field.
+    /// Parses a value from the text of a flag, a command or a form's field.
     ///
     /// # Errors
-    /// Returns [`ParameterError::Number`] or [`ParameterError::Range`].
+    /// Returns [`ParameterError::Number`] if the text is not a number, and [`ParameterError::Range`] as
+    /// [`Self::check`] does.
     pub fn read(&self, parameter: Parameter, text: &str) -> Result<f64, ParameterError> {
         let value = number::read(text).ok_or_else(|| not_a_number(parameter, text))?;
         self.check(parameter, value)
     }
 
-    /// Returns the next value up or down, by the sign of `direction`, in steps of the paper's last decimal:
-    /// hundredths below ten, tenths from ten on, whole degrees. Angles wrap around; other parameters stop at the ends
-    /// of their range.
+    /// Returns the next value up or down, by the sign of `direction`; 0 only rounds to the nearest one. Values are in
+    /// steps of the last decimal that the paper gives: hundredths below ten, tenths from ten on, whole degrees.
+    /// Angles wrap around; other parameters stop at the ends of their range.
     pub fn step(&self, parameter: Parameter, value: f64, direction: i32) -> f64 {
-        // At ten, the step up is a tenth and the step down a hundredth; at minus ten, the other way round.
+        // Upwards from ten the steps are tenths, downwards from ten hundredths. Below zero it is the other way round.
         let towards = match direction {
             1.. if value < 0.0 => value + 0.01,
             ..=-1 if value > 0.0 => value - 0.01,
             _ => value,
         };
         let scale = 10_f64.powi(parameter.decimals_at(towards).into());
-        // A value with more decimals goes to the next one that a form accepts. A value that a form accepts may be off
-        // by a rounding error once it is multiplied by `scale`, hence the 1e-6.
+        // A value between two steps goes to the next one. The tolerance of 1e-6 is for a value on a step, which
+        // rounding may have moved off it.
         let places = value * scale;
         let stepped = match direction {
             1.. => (places + 1e-6).floor() + 1.0,

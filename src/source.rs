@@ -18,7 +18,7 @@ use crate::sensor::Sensor;
 pub enum Source {
     /// One of the seven figures.
     Figure(Figure),
-    /// A stored imprint that is moved, zoomed or turned.
+    /// A stored imprint, placed on the plane.
     Picture(Picture),
 }
 
@@ -39,7 +39,7 @@ impl Source {
         }
     }
 
-    /// Returns one of its values; None if the source does not have this parameter, or has no value for it.
+    /// Returns the value of a parameter; None for one that the shape does not have or that has no value.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match self {
             Self::Figure(figure) => figure.get(parameter),
@@ -61,7 +61,7 @@ impl Source {
         Ok(self)
     }
 
-    /// Changes one value; changes nothing if the value is refused.
+    /// Changes one value; after an error, nothing is changed.
     pub(crate) fn set(
         &mut self,
         parameter: Parameter,
@@ -87,7 +87,7 @@ impl Source {
         self.kind().map_or("picture", FigureKind::name)
     }
 
-    /// Returns the direction in which the source turns as its angle grows, as seen: +1 clockwise, −1
+    /// Returns the sense in which the shape turns as its angle grows, as seen: +1 for clockwise, −1 for
     /// counter-clockwise.
     pub fn sense(&self) -> f64 {
         match self {

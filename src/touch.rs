@@ -1,7 +1,7 @@
 //! One touch: from a shape on a sensor to the coverage of every taxel and the imprint.
 //!
-//! **The rule** (the paper's "50 %"): a taxel is active if the shape covers at least the threshold share of its cell.
-//! Parts of the shape beyond the sensor are cut off.
+//! **The rule** (the paper's "50 %"): a taxel is active if the shape covers at least a given share of its cell, the
+//! threshold. Parts of the shape beyond the sensor are cut off.
 //!
 //! **A coverage of exactly the threshold is active**, in real arithmetic, for the decimals that the user wrote.
 //! Coverages are first computed in `f64`, with an error below 1e-11 ([`crate::geometry::cell_area`]). If one lies
@@ -25,17 +25,16 @@ use crate::imprint::Imprint;
 use crate::index::from_first;
 use crate::sensor::Sensor;
 
-/// The distance from the threshold, as a share of a cell, below which a coverage is computed with more digits. It is
-/// wide enough for every shape of the program.
+/// Coverages this near to the threshold are computed again with more digits; a share of a cell. It holds for every
+/// shape of the program.
 pub(crate) const DOUBTFUL: f64 = 1e-10;
-/// The limit of an ellipse's coordinates: products of four of them must be finite.
+/// The limit of the coordinates of ellipses: products of four coordinates must be finite.
 const ELLIPSE_LIMIT: f64 = 1e70;
-/// A factor for user-defined outlines, which may reach farther than the shapes of the program: rounding errors grow
-/// with the coordinates.
+/// A bound of the rounding error of a coverage, per unit of the magnitudes that are added up. Outlines defined by
+/// users may reach farther than the shapes of the program, and rounding errors grow with coordinates.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
-/// The sensory plane: a sensor that can be touched repeatedly. A touch allocates only if a coverage is near the
-/// threshold.
+/// The sensory plane: a sensor that can be touched repeatedly. A touch allocates only if a coverage is in doubt.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -56,7 +55,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Creates the untouched plane of a sensor.
+    /// Creates the plane of a sensor, not touched yet.
     pub fn new(sensor: Sensor) -> Self {
         Self {
             sensor,
@@ -70,8 +69,8 @@ impl Plane {
         &self.sensor
     }
 
-    /// Returns the imprint that a shape leaves. It never fails. The imprint is empty if the shape has no boundary, or
-    /// if a shape of your own has a coordinate that is not finite, or an ellipse with a coordinate of 1e70 or more.
+    /// Returns the imprint that a shape leaves. It never fails: the imprint is empty if the shape has no boundary, or
+    /// has (as your own shapes may) a coordinate that is not finite or an ellipse with a coordinate of 1e70 or more.
     pub fn touch(&mut self, solid: &impl Solid) -> Imprint {
         self.areas.clear();
         self.ellipses.clear();
@@ -85,7 +84,7 @@ impl Plane {
         let (round, finite) = (!pen.edges, pen.finite);
         let mut imprint = Imprint::empty(self.sensor.columns(), self.sensor.rows());
         if !finite {
-            // Nothing of this touch may remain for the next shape.
+            // Clears everything, since the extent of such a shape is not known.
             self.areas.wipe();
             self.ellipses.clear();
             return imprint;
@@ -124,7 +123,7 @@ impl Plane {
         }
     }
 
-    /// Activates the taxels that are covered enough, as decided by their areas.
+    /// Activates the taxels that are covered enough. The covered areas decide.
     fn activate_by_areas(&self, solid: &impl Solid, imprint: &mut Imprint) {
         let (threshold, doubt) = (self.sensor.threshold(), self.doubt());
         let areas = self.areas.grid();
@@ -156,7 +155,7 @@ impl Plane {
         }
     }
 
-    /// Returns how near to the threshold a coverage of the last touch is in doubt.
+    /// Returns how near to the threshold a coverage of the last touch must be to be in doubt.
     fn doubt(&self) -> f64 {
         DOUBTFUL.max(ROUNDINGS * self.areas.grid().magnitude())
     }
@@ -173,15 +172,15 @@ impl Plane {
         doubtful
     }
 
-    /// Returns the active taxels of a row after computing the doubtful ones again.
+    /// Returns the active taxels of a row, after computing those in doubt again.
     #[cold]
     fn decide(&self, solid: &impl Solid, row: usize, mut active: u64, doubtful: u64) -> u64 {
         let Ok(row) = u8::try_from(row) else {
             return active;
         };
         let least = least(self.sensor.threshold());
-        // If several in a row are in doubt, such as full cells at a threshold of 1, the shape is drawn once for all
-        // of them.
+        // If several cells of a row are in doubt, such as full cells at a threshold of 1, the shape is drawn once for
+        // all of them.
         let areas = (doubtful.count_ones() > 1)
             .then(|| row_areas::<Double>(solid, self.sensor.columns(), row));
         for column in 0..self.sensor.columns() {
@@ -196,10 +195,10 @@ impl Plane {
         active
     }
 
-    /// Returns how much of a taxel's cell the shape of the last touch covers, 0 to 1; 0 for a taxel outside the
+    /// Returns how much of a taxel's cell the shape of the last touch covers, 0 to 1; 0 for a taxel beyond the
     /// sensor.
     ///
-    /// It takes as long as [`Self::coverages`], which returns the coverages of all taxels.
+    /// Takes as long as [`Self::coverages`], which returns the coverages of all taxels.
     pub fn coverage(&self, column: u8, row: u8) -> f64 {
         let width = self.sensor.columns();
         if column >= width || row >= self.sensor.rows() {
@@ -230,17 +229,19 @@ impl Plane {
     }
 }
 
-/// Draws edges at once, and collects ellipses: if a shape has only these, their areas may not be needed.
+/// A pen that draws edges at once but only collects ellipses: if there is nothing else, their areas may not be
+/// needed.
 struct TouchPen<'a> {
     areas: &'a mut Overlap<f64>,
     ellipses: &'a mut CentreSampling,
     /// Whether the shape has edges.
     edges: bool,
-    /// Whether all coordinates are finite and small enough to compute areas.
+    /// Whether areas can be computed with all coordinates of the shape: they are finite, and small enough for
+    /// ellipses.
     finite: bool,
 }
 
-/// Returns true if both coordinates of a point are below a limit; false if one is NaN.
+/// Returns true if both coordinates of a point are below a limit in size; false if one is NaN.
 fn is_within(point: Point<f64>, limit: f64) -> bool {
     point.x.abs() < limit && point.y.abs() < limit
 }
@@ -274,14 +275,14 @@ impl Pen<f64> for TouchPen<'_> {
     }
 }
 
-/// Returns the least coverage that activates a taxel: the threshold minus the tolerance for ties, but more than 0, so
+/// Returns the least coverage that activates a taxel: the threshold minus the tolerance for ties. It is above 0, so
 /// that a tiny threshold does not activate taxels that are not covered at all.
 pub(crate) fn least(threshold: f64) -> Double {
     Real::max(Double::decimal(threshold) - Double::TIE, Double::TIE)
 }
 
-/// Returns a coverage without visible rounding errors: from 0 to 1, and exactly 0, ½ or 1 if it is close to one of
-/// these.
+/// Removes visible rounding errors from a share of a cell: the result is never below 0 or above 1, and exactly 0, ½
+/// or 1 if it is close to them.
 fn share(area: f64) -> f64 {
     let near = (area * 2.0).round() / 2.0;
     let area = if (area - near).abs() < f64::TIE {
@@ -289,7 +290,7 @@ fn share(area: f64) -> f64 {
     } else {
         area
     };
-    // A negative zero would be printed as such. `max` may keep it; adding 0 does not.
+    // A negative zero would be printed with its sign. `max` may keep the sign, the sum does not.
     area.clamp(0.0, 1.0) + 0.0
 }
 
