@@ -29,8 +29,8 @@ impl<'a, W: Write + Seek> FirstErrorWriter<'a, W> {
         }
     }
 
-    /// Returns the first error of the system or of stopping, otherwise `written`, the result of the function that wrote:
-    /// it may not have noticed that error.
+    /// Returns the first error of the system or of stopping, otherwise `written`, the result of the function that
+    /// wrote: it may not have noticed that error.
     pub(crate) fn finish<E: From<io::Error>>(self, written: Result<(), E>) -> Result<(), E> {
         match self.error {
             Some(error) => Err(error.into()),
