@@ -6,24 +6,24 @@ use crate::recognition::model::{Model, add_log_counts};
 use crate::recognition::nearest::Nearest;
 use crate::recognition::noise::{Method, NEGLIGIBLE, Noise};
 
-/// How far an answer can be trusted.
+/// The state of an answer: how far it can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum AnswerState {
     /// No other shape of the set leaves these imprints.
     Certain,
-    /// Other shapes leave them less often, or the imprint may be cut off.
+    /// Other shapes leave these imprints less often, or an imprint may be cut off.
     Likely,
-    /// Another shape leaves them just as often.
+    /// Another shape leaves these imprints just as often.
     Tied,
     /// The likeliest shape is less likely than required.
     Rejected,
-    /// No shape of the set leaves them.
+    /// No shape of the set leaves these imprints.
     Unknown,
 }
 
 impl AnswerState {
-    /// All of them, those that say most first.
+    /// All states, the most definite first.
     pub const ALL: [Self; 5] = [
         Self::Certain,
         Self::Likely,
@@ -32,7 +32,7 @@ impl AnswerState {
         Self::Unknown,
     ];
 
-    /// Returns its name in JSON and on the screen.
+    /// Returns the name used in JSON and on the screen.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Certain => "certain",
@@ -56,7 +56,7 @@ pub struct Evidence<'a> {
 }
 
 impl<'a> Evidence<'a> {
-    /// These touches, of a sensor whose taxels never fail; any probability is enough for an answer.
+    /// Creates evidence from touches of a sensor whose taxels never fail; any probability is enough for an answer.
     pub fn of(touches: &'a [Imprint]) -> Self {
         Self {
             touches,
@@ -65,7 +65,8 @@ impl<'a> Evidence<'a> {
         }
     }
 
-    /// Assumes that taxels fail as the noise says, and a prior uniform over poses and places. None: taxels never fail.
+    /// Assumes that taxels fail as the noise says, and a prior uniform over poses and places. None means that taxels
+    /// never fail.
     #[must_use]
     pub fn under(self, noise: impl Into<Option<&'a Noise>>) -> Self {
         Self {
@@ -74,8 +75,8 @@ impl<'a> Evidence<'a> {
         }
     }
 
-    /// Rejects an answer that is less probable than this, from 0 to 1. With 0 or less, or NaN, none is rejected; with more than
-    /// 1, all are.
+    /// Rejects an answer that is less probable than this, from 0 to 1. With 0 or less, or NaN, no answer is rejected;
+    /// with more than 1, every answer is.
     #[must_use]
     pub fn reject_below(self, probability: f64) -> Self {
         Self {
@@ -85,7 +86,7 @@ impl<'a> Evidence<'a> {
     }
 }
 
-/// Which shape was touched, and how certain that is.
+/// The shape that was touched, and how certain that is.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Answer {
@@ -100,17 +101,17 @@ pub struct Answer {
     /// Every shape with a positive probability, the likeliest first; equally likely ones in the order of the set. Under noise,
     /// a shape may be missing whose probability is below 1e-9.
     pub ranking: Vec<(usize, f64)>,
-    /// Which keys were looked up; for several touches, by the touch that needed the most.
+    /// The keys that were compared; for several touches, those of the touch that needed the most.
     pub method: Method,
 }
 
-/// Two logarithms that differ by less count as equal: the order in which the same whole numbers are multiplied changes
-/// the last digits.
+/// Two probabilities that differ by at most this share of the larger one count as equal: multiplying the same whole
+/// numbers in another order changes the last digits.
 const SAME: f64 = 1e-12;
 
 impl Model {
-    /// Says which shape was touched. Without any touch, the answer is the prior. With noise no answer is certain, since
-    /// any shape may leave any imprint.
+    /// Names the shape that was touched. Without any touch, the answer is the prior. If taxels may flip, no answer is
+    /// certain, since any shape may leave any imprint.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -146,7 +147,7 @@ impl Model {
         Answer { method, ..answer }
     }
 
-    /// The shapes that may leave the touches under a noise, and which keys were compared.
+    /// Returns the probabilities of the shapes under a noise, and which keys were compared.
     fn possible_under(&self, noise: &Noise, touches: &[Imprint]) -> (Posterior, Method) {
         let mut further = 0;
         loop {
@@ -157,7 +158,7 @@ impl Model {
                 own.map(|odds| libm::exp(odds - most)).sum()
             };
             let (least, all) = (sum(0), sum(1));
-            // The sums are equal where nothing lies further away, or where nothing is possible.
+            // The sums are equal if nothing lies further away; `most` is not finite if no shape is possible.
             if all - least <= NEGLIGIBLE * least || !most.is_finite() {
                 let odds: Vec<f64> = odds.into_iter().map(|[odds, _]| odds).collect();
                 return (Posterior::of_logarithms(&odds), method);
@@ -166,8 +167,8 @@ impl Model {
         }
     }
 
-    /// A lower and an upper bound of ln(w Π P(touch | s)) for each shape, and which keys were compared. Takes `further`
-    /// more distances into account than one touch needs.
+    /// Returns a lower and an upper bound of ln(w Π P(touch | s)) for each shape, and which keys were compared. Takes
+    /// `further` more distances into account than one touch needs.
     fn odds_under(
         &self,
         noise: &Noise,
@@ -192,13 +193,13 @@ impl Model {
         (odds, method)
     }
 
-    /// The shapes that leave all of the touches.
+    /// Returns the probabilities of the shapes that leave all of the touches.
     fn possible(&self, touches: &[Imprint]) -> Posterior {
         if let [touch] = touches {
             let shares = self.posterior(touch).unwrap_or_default();
             return Posterior::of_shares(shares.into_iter());
         }
-        // ln(w Π n), of the shapes that leave every one of the keys.
+        // ln(w Π n) for the shapes that leave all of the keys, −∞ for the others.
         let mut logarithms = self.log_weights();
         for touch in touches {
             add_log_counts(&mut logarithms, self.counts_of(touch));
@@ -222,17 +223,16 @@ impl Model {
     }
 }
 
-/// How probable the shapes are.
+/// The probabilities of the shapes.
 struct Posterior {
-    /// Those of positive probability, the likeliest first, equals in their order.
+    /// The shapes of positive probability, the likeliest first; equally likely ones in the order of the set.
     ranking: Vec<(usize, f64)>,
-    /// How many shapes are possible at all. The ranking may have fewer: some probabilities may be too small for an
-    /// `f64`.
+    /// The number of possible shapes. The ranking may have fewer: some probabilities may be too small for an `f64`.
     possible: usize,
 }
 
 impl Posterior {
-    /// Of shares; 0 for shapes that are impossible.
+    /// Creates a posterior from shares; 0 for shapes that are impossible.
     fn of_shares(shares: impl Iterator<Item = f64>) -> Self {
         let positive = shares.enumerate().filter(|&(_, share)| share > 0.0);
         let mut ranking: Vec<(usize, f64)> = positive.collect();
@@ -243,7 +243,7 @@ impl Posterior {
         }
     }
 
-    /// Of the logarithms of odds; −∞ for odds of 0.
+    /// Creates a posterior from the logarithms of odds; −∞ for odds of 0.
     fn of_logarithms(logarithms: &[f64]) -> Self {
         let possible = logarithms.iter().filter(|own| own.is_finite()).count();
         if possible == 0 {
@@ -262,7 +262,7 @@ impl Posterior {
     }
 }
 
-/// The answer that a posterior gives.
+/// Returns the answer that a posterior gives.
 fn judged(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answer {
     let Posterior { ranking, possible } = posterior;
     let mut answer = Answer {

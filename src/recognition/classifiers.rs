@@ -1,4 +1,4 @@
-//! Classifiers that use descriptors of the imprint, as the paper does, and what they reach compared with the limit of
+//! Classifiers that use descriptors of the imprint, as the paper does, and their results compared with the limit of
 //! one touch.
 //!
 //! All of them see the same touches as the [`Evaluation`] of the model. Means, deviations and covariances are those of
@@ -25,7 +25,7 @@ use crate::recognition::model::Model;
 use crate::recognition::simulation::Draw;
 use crate::recognition::templates::Templates;
 
-/// A classifier that uses descriptors or samples. It is not the best one: those answers come from the model itself.
+/// A classifier that uses descriptors or samples. The best classifier is the model itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Classifier {
@@ -44,7 +44,7 @@ pub enum Classifier {
 }
 
 impl Classifier {
-    /// All of them.
+    /// All classifiers.
     pub const ALL: [Self; 6] = [
         Self::Z,
         Self::Diagonal,
@@ -54,7 +54,7 @@ impl Classifier {
         Self::Template,
     ];
 
-    /// Returns its name on the command line.
+    /// Returns the name used on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Z => "z",
@@ -76,19 +76,19 @@ impl Classifier {
 
 named!(Classifier, "classifier", &Classifier::ALL);
 
-/// What classifiers may use, and how much of it.
+/// The settings of classifiers: which descriptors and how many samples they use.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ClassifierSettings {
-    /// The descriptors that the features come from; None for all that do not change under shifts.
+    /// The descriptors that the features come from; None for all descriptors that do not change under shifts.
     pub descriptors: Option<Vec<ShapeDescriptor>>,
-    /// How many neighbours of [`Classifier::Knn`] vote.
+    /// The number of neighbours of [`Classifier::Knn`] that vote.
     pub neighbours: usize,
-    /// How many poses of each shape [`Classifier::Knn`] draws.
+    /// The number of poses of each shape that [`Classifier::Knn`] draws.
     pub sample: usize,
-    /// The seed that they are drawn with.
+    /// The seed for drawing these poses.
     pub seed: u64,
-    /// How many imprints of each shape [`Classifier::Template`] compares with.
+    /// The number of imprints of each shape that [`Classifier::Template`] compares with.
     pub templates: usize,
 }
 
@@ -105,20 +105,20 @@ impl Default for ClassifierSettings {
     }
 }
 
-/// What a classifier reached on a model's touches.
+/// The result of a classifier on a model's touches.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ClassifierEvaluation {
-    /// Which one.
+    /// The classifier.
     pub classifier: Classifier,
     /// The same counts as for the best classifier. `information_bits` is what the given name tells about the shape;
     /// `certain` is 0, since these classifiers do not know when they are certain.
     pub evaluation: Evaluation,
-    /// The features that it used; empty for [`Classifier::Template`].
+    /// The features that the classifier used; empty for [`Classifier::Template`].
     pub features: Vec<String>,
-    /// Those that were left out, with the reason.
+    /// The features that were left out, with the reason.
     pub dropped: Vec<(String, &'static str)>,
-    /// What was drawn at random; None if all touches were counted.
+    /// The poses that [`Classifier::Knn`] drew at random; None for the other classifiers.
     pub sample: Option<PoseSample>,
 }
 
@@ -126,24 +126,24 @@ pub struct ClassifierEvaluation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct PoseSample {
-    /// How many of each shape.
+    /// The number of poses of each shape.
     pub per_shape: usize,
-    /// The seed that they were drawn with.
+    /// The seed for drawing these poses.
     pub seed: u64,
 }
 
 /// Scores of the shapes for a key; the lowest is the best.
 type Scores = Vec<f64>;
 
-/// What is added to a variance of 1, so that covariances of dependent features can be inverted.
+/// The number added to a variance of 1, so that covariances of dependent features can be inverted.
 const RIDGE: f64 = 0.001;
-/// The same for single variances, which only have to differ from 0.
+/// The number added to single variances, which only have to differ from 0.
 const LEAST_VARIANCE: f64 = 1e-9;
 
 impl Classifier {
-    /// Trains it on a model's touches and classifies all of them.
+    /// Trains the classifier on a model's touches and classifies all of them.
     ///
-    /// Ties go to the first in the order of the set.
+    /// Ties go to the first shape in the order of the set.
     pub fn evaluate(self, model: &Model, settings: &ClassifierSettings) -> ClassifierEvaluation {
         let features = || FeatureTable::new(model, settings.descriptors.as_deref());
         let (evaluation, table) = match self {
@@ -223,7 +223,8 @@ fn evaluate(model: &Model, scores: impl Fn(usize) -> Scores + Sync) -> Evaluatio
     evaluation.finished()
 }
 
-/// The shape with the lowest score, the one with the second lowest, and the second one again if the two are tied.
+/// Returns the shape with the lowest score, the one with the second lowest, and the second one again if the two are
+/// tied.
 fn first_two(scores: &[f64]) -> [Option<usize>; 3] {
     let lowest = |without: Option<usize>| {
         let open = (0..scores.len()).filter(|&shape| Some(shape) != without);
@@ -243,7 +244,7 @@ fn first_two(scores: &[f64]) -> [Option<usize>; 3] {
     [first, second, tie.map(|(_, second)| second)]
 }
 
-/// How much the name tells about the shape, in bits.
+/// Returns how much the name tells about the shape, in bits.
 fn information(confusion: &ConfusionMatrix) -> f64 {
     let shapes = 0..confusion.shapes();
     let rows: Vec<u128> = (shapes.clone())
@@ -262,7 +263,7 @@ fn information(confusion: &ConfusionMatrix) -> f64 {
 struct FeatureTable {
     names: Vec<String>,
     dropped: Vec<(String, &'static str)>,
-    /// A row per key.
+    /// A row of features for each key.
     values: Vec<f64>,
 }
 
@@ -336,7 +337,7 @@ impl FeatureTable {
         covariances.into_iter().map(gaussian).collect()
     }
 
-    /// Mean and population covariance of each class, over all its poses.
+    /// Returns mean and population covariance of each class, over all its poses.
     fn moments_of_classes(&self, model: &Model) -> Vec<(DVector<f64>, DMatrix<f64>)> {
         let (shapes, width) = (model.shapes().len(), self.names.len());
         let mut means = vec![DVector::zeros(width); shapes];
@@ -422,7 +423,8 @@ impl FeatureTable {
     }
 }
 
-/// The features with their names and descriptors, and the value of each for every key, NaN where it does not exist.
+/// Returns the features with their names and descriptors, and the value of each for every key, NaN where it does not
+/// exist.
 fn columns(
     descriptions: &[Option<Description>],
 ) -> impl Iterator<Item = (String, &'static Descriptor, Vec<f64>)> {
@@ -464,7 +466,7 @@ fn columns(
 }
 
 impl Gaussian {
-    /// The square of the distance from the mean, in deviations.
+    /// Returns the square of the distance from the mean, in standard deviations.
     fn distance(&self, row: &[f64]) -> f64 {
         let parts = row.iter().zip(self.means.iter().zip(&self.variances));
         parts
@@ -473,14 +475,14 @@ impl Gaussian {
     }
 }
 
-/// −2 ln P(shape).
+/// Iterates over −2 ln P(shape) of each shape.
 fn priors(model: &Model) -> impl Iterator<Item = f64> + '_ {
     let weights = model.weights();
     let shapes = model.shapes().iter();
     shapes.map(move |shape| -2.0 * libm::log(share(shape.weight.into(), weights)))
 }
 
-/// Mean and population variance of a feature over all touches of all shapes.
+/// Returns mean and population variance of a feature over all touches of all shapes.
 fn moments(model: &Model, column: &[f64]) -> (f64, f64) {
     let touches = u128::from(model.poses()) * model.weights();
     let mean_of = |value: &dyn Fn(f64) -> f64| {
@@ -497,7 +499,7 @@ fn moments(model: &Model, column: &[f64]) -> (f64, f64) {
 
 /// Touches drawn at random.
 struct Sample {
-    /// The number of the key of each, and its shape.
+    /// The number of the key and the number of the shape of each touch.
     touches: Vec<(usize, usize)>,
     shapes: usize,
 }
@@ -511,7 +513,7 @@ impl Sample {
             let keys = (0..settings.sample).filter_map(|_| draw.key(&mut random));
             sample.extend(keys.map(|key| (key, shape)));
         }
-        // Touches with the same key stand side by side and are compared with once.
+        // Touches with the same key stand side by side, so that their distance is computed once.
         sample.sort_unstable();
         Self {
             touches: sample,
@@ -519,8 +521,8 @@ impl Sample {
         }
     }
 
-    /// Minus the votes of each shape. All touches as near as the last neighbour vote too, since
-    /// many touches have the same features.
+    /// Returns minus the votes of each shape. All touches as near as the last neighbour vote too, since many touches
+    /// have the same features.
     fn scores(&self, table: &FeatureTable, neighbours: usize, key: usize) -> Scores {
         let row = table.row(key);
         let mut last = (usize::MAX, 0.0);
@@ -568,7 +570,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_that_leaves_nothing_takes_no_count_from_the_features() {
+    fn an_empty_imprint_does_not_remove_counts_from_the_features() {
         let sensor = Sensor::default();
         let shapes = [
             ("tri", Figure::triangle(1.2).on(&sensor)),

@@ -1,19 +1,19 @@
-//! The confusion matrix: the touches of each shape by the name that they are given.
+//! The confusion matrix: how many touches of each shape are given which name.
 //!
 //! Only cells above 0 are stored. Most shapes of a large set are confused with few others, so the matrix takes far less
 //! memory than the square of their number.
 
-/// How many touches of each shape are named as which one.
+/// A confusion matrix: how many touches of each shape are named as which shape.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ConfusionMatrix {
-    /// For each shape the names that its touches are given, in the order of the set, with the number of touches.
+    /// For each shape, the names that its touches are given, in the order of the set, with the number of touches.
     rows: Vec<Vec<(usize, u128)>>,
     /// The sum of each column.
     named: Vec<u128>,
 }
 
 impl ConfusionMatrix {
-    /// A matrix of some shapes, without touches.
+    /// Creates a matrix for some shapes, without touches.
     pub(super) fn new(shapes: usize) -> Self {
         Self {
             rows: vec![Vec::new(); shapes],
@@ -54,7 +54,7 @@ impl ConfusionMatrix {
         self.named.get(shape).into_iter().sum()
     }
 
-    /// Iterates over the cells above 0, row by row: the shape that is touched, the one that is named, the touches.
+    /// Iterates over the cells above 0, row by row: (touched shape, named shape, touches).
     pub fn cells(&self) -> impl DoubleEndedIterator<Item = (usize, usize, u128)> + '_ {
         let rows = self.rows.iter().enumerate();
         rows.flat_map(|(touched, row)| {
@@ -63,7 +63,8 @@ impl ConfusionMatrix {
         })
     }
 
-    /// Iterates over the rows with all their cells: that of shape i has the touches of i that are named 0, 1, 2 and so on.
+    /// Iterates over the rows with all their cells: row i has the touches of shape i that are named 0, 1, 2 and so
+    /// on.
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = Vec<u128>> + ExactSizeIterator {
         self.rows.iter().map(|row| {
             let mut cells = vec![0; self.shapes()];

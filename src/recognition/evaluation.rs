@@ -1,4 +1,4 @@
-//! How well any method can name the shapes of a model from one touch: exact counts over all its touches.
+//! The limit of any method that names the shapes of a model from one touch: exact counts over all its touches.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use crate::parameter::number::share;
 use crate::recognition::confusion::ConfusionMatrix;
 use crate::recognition::model::{Model, NamedShape, ShapeCount, first_of_most};
 
-/// How well the best classifier of one touch does, over every touch of a model.
+/// The result of the best classifier of one touch, over every touch of a model.
 ///
 /// A touch is a shape in a pose. A shape of weight w counts as if it were touched w times in each pose. All counts are
 /// exact; `right` of `touches` is the *Bayes accuracy*, which no classifier of one touch exceeds on these poses.
@@ -39,19 +39,20 @@ pub struct Evaluation {
     pub right: u128,
     /// Touches that only one shape can leave.
     pub certain: u128,
-    /// Touches whose greatest count two or more shapes share; the first of these in the set is the answer.
+    /// Touches with a key that two or more shapes leave equally often, and no other shape more often. The first of
+    /// these shapes in the set is the answer.
     pub tied: u128,
     /// Touches whose shape is one of the two most frequent.
     pub right_in_top_two: u128,
-    /// How much a touch tells about the shape on average, in bits: H(S) − H(S | key).
+    /// The information that a touch gives about the shape on average, in bits: H(S) − H(S | key).
     pub information_bits: f64,
-    /// How many bits are needed to name the shape: H(S).
+    /// The information needed to name the shape, in bits: H(S).
     pub prior_bits: f64,
     /// Number of distinct keys, or of distinct values if descriptors are given instead of keys.
     pub keys: usize,
-    /// How many of these only one shape leaves.
+    /// Number of these that only one shape leaves.
     pub keys_of_one_shape: usize,
-    /// Which shapes are named as which.
+    /// The confusion matrix: which shapes are named as which.
     pub confusion: ConfusionMatrix,
     /// The sum of the weights of all shapes.
     weights: u128,
@@ -68,7 +69,7 @@ impl Evaluation {
         evaluation.finished()
     }
 
-    /// An evaluation that has seen no touch.
+    /// Creates an evaluation that has counted no touch yet.
     pub(super) fn new(model: &Model) -> Self {
         let shapes = model.shapes();
         Self {
@@ -87,7 +88,7 @@ impl Evaluation {
         }
     }
 
-    /// Adds all touches of one key, or of one value; at least one.
+    /// Adds all touches of one key, or of one value if descriptors are given; at least one touch.
     pub(super) fn add(&mut self, model: &Model, counts: &[ShapeCount]) {
         self.keys += 1;
         let shapes = model.weighted_shapes(counts);
@@ -108,7 +109,7 @@ impl Evaluation {
         }
         for (shape, touches) in shapes {
             self.confusion.add(shape, named, touches);
-            // Of all touches, those of this shape with this key; per touch of the key and of the shape.
+            // `joint` is P(shape, key), `ratio` is P(shape | key) / P(shape).
             let prior = u128::from(model.shapes()[shape].weight);
             let joint = share(touches, self.touches);
             let ratio = share(touches, sum) / share(prior, self.weights);
@@ -132,8 +133,8 @@ impl Evaluation {
         share(self.touches - self.right, self.touches)
     }
 
-    /// Returns the recall of a shape: the share of its touches that get its name; None if it has no touch, as no shape beyond
-    /// the last one has.
+    /// Returns the recall of a shape: the share of its touches that get its name; None if it has no touch, or if
+    /// there is no such shape.
     pub fn recall(&self, shape: usize) -> Option<f64> {
         let touches = self.confusion.touches_of(shape);
         (touches > 0).then(|| share(self.confusion.get(shape, shape), touches))
@@ -164,7 +165,7 @@ impl Evaluation {
     }
 }
 
-/// H(S), in bits.
+/// Returns H(S), in bits.
 fn prior_bits(shapes: &[NamedShape]) -> f64 {
     let sum: u128 = shapes.iter().map(|shape| u128::from(shape.weight)).sum();
     let bits = shapes.iter().map(|shape| {
@@ -177,7 +178,7 @@ fn prior_bits(shapes: &[NamedShape]) -> f64 {
 
 impl Model {
     /// Returns, for each pair of shapes, the error of the best classifier that has to tell just these two apart:
-    /// `errors[i][j]`, from 0 to ½ for equal weights; 0 on the diagonal. It takes 24 bytes of memory for each of these.
+    /// `errors[i][j]`, from 0 to ½ for equal weights; 0 on the diagonal. Needs 24 bytes of memory for each element.
     pub fn pair_errors(&self) -> Vec<Vec<f64>> {
         let shapes = self.shapes().len();
         let mut wrong = vec![vec![0_u128; shapes]; shapes];
@@ -228,7 +229,7 @@ mod tests {
 
     /// A whole matrix would take 6.4 GB.
     #[test]
-    fn a_large_set_takes_memory_for_the_pairs_that_are_confused() {
+    fn a_large_set_takes_memory_only_for_confused_pairs() {
         const SHAPES: u16 = 20_000;
         let bar = Figure::rectangle(4.0, 2.0).on(&Sensor::default());
         let bar = bar.expect("in range");

@@ -34,7 +34,7 @@ impl std::hash::Hash for ShapeDescriptor {
     }
 }
 
-/// Why a text is not a list of descriptors, or not a rounding.
+/// The error for a text that is not a list of descriptors, or not a rounding.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GivenError {
@@ -45,25 +45,25 @@ pub enum GivenError {
         did_you_mean(found, ShapeDescriptor::keys())
     )]
     Unknown {
-        /// What was given.
+        /// The given text.
         found: String,
     },
     /// A descriptor that says where the imprint lies.
     #[error("{key} says where the imprint lies, not what it is; expected one of {}", ShapeDescriptor::keys().join(", "))]
     OfPlace {
-        /// The descriptor.
+        /// The key of the descriptor.
         key: &'static str,
     },
     /// An invalid rounding.
     #[error("rounding {found:?}: expected a descriptor and a step above 0, such as cg_cd=0.01")]
     Rounding {
-        /// What was given.
+        /// The given text.
         found: String,
     },
 }
 
 impl ShapeDescriptor {
-    /// Returns all of them, in the order of [`DESCRIPTORS`].
+    /// Iterates over all of them, in the order of [`DESCRIPTORS`].
     pub fn all() -> impl Iterator<Item = Self> {
         let all = DESCRIPTORS.iter();
         all.filter(|row| !row.changes_under.shift).map(Self)
@@ -73,12 +73,12 @@ impl ShapeDescriptor {
         Self::all().map(Self::key).collect()
     }
 
-    /// Returns its row in the table.
+    /// Returns the row of the descriptor in the table.
     pub fn descriptor(self) -> &'static Descriptor {
         self.0
     }
 
-    /// Returns its name in JSON.
+    /// Returns the name used in JSON.
     pub fn key(self) -> &'static str {
         self.0.key
     }
@@ -105,7 +105,7 @@ impl std::fmt::Display for ShapeDescriptor {
     }
 }
 
-/// A descriptor measured in steps only: values are rounded to the nearest multiple of the step.
+/// A descriptor that is measured in steps: values are rounded to the nearest multiple of the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding {
     descriptor: ShapeDescriptor,
@@ -159,7 +159,7 @@ pub struct GivenDescriptors {
 }
 
 impl GivenDescriptors {
-    /// These descriptors, some of them rounded.
+    /// Creates a list of descriptors, some of them rounded.
     pub fn new(descriptors: Vec<ShapeDescriptor>, roundings: Vec<Rounding>) -> Self {
         Self {
             descriptors,
@@ -167,7 +167,7 @@ impl GivenDescriptors {
         }
     }
 
-    /// The same, some of them rounded.
+    /// Returns the same descriptors, some of them rounded.
     #[must_use]
     pub fn rounded(self, roundings: Vec<Rounding>) -> Self {
         Self { roundings, ..self }
@@ -241,7 +241,7 @@ impl GivenDescriptors {
         model.simulated(touches, progress, &judge)
     }
 
-    /// The values of these descriptors, in steps where they are rounded.
+    /// Returns the values of these descriptors, in steps where they are rounded.
     fn values(&self, description: Option<&Description>) -> Vec<ExactValue> {
         let value = |&descriptor: &ShapeDescriptor| {
             let rounding = Rounding::of(descriptor, &self.roundings);
@@ -251,7 +251,7 @@ impl GivenDescriptors {
     }
 }
 
-/// What is known of a description by one of its descriptors, in steps if it is rounded.
+/// Returns the value of one descriptor in a description, in steps if it is rounded.
 fn known(
     descriptor: ShapeDescriptor,
     rounding: Option<&Rounding>,
@@ -287,7 +287,7 @@ impl std::fmt::Display for GivenDescriptors {
 #[derive(Debug)]
 pub struct GivenTable<'a> {
     model: &'a Model,
-    /// Of the main region of each key; None of the empty one.
+    /// The description of the main region of each key; None for the empty key.
     descriptions: Vec<Option<Description>>,
 }
 
@@ -305,17 +305,17 @@ impl<'a> GivenTable<'a> {
         }
     }
 
-    /// Returns what is known of each key, in their order; None for the empty key.
+    /// Returns the description of each key, in their order; None for the empty key.
     pub(super) fn descriptions(&self) -> &[Option<Description>] {
         &self.descriptions
     }
 
-    /// Nothing is known: all keys are one class.
+    /// Returns the classes if nothing is known: all keys are one class.
     fn one_class(&self) -> Classes {
         vec![0; self.descriptions.len()]
     }
 
-    /// The classes that remain if one more descriptor is known.
+    /// Returns the classes that remain if one more descriptor is known.
     fn refined(
         &self,
         classes: &Classes,
@@ -364,13 +364,13 @@ impl Rounding {
         self.descriptor
     }
 
-    /// That of a descriptor, if there is one.
+    /// Returns the rounding of a descriptor, if there is one.
     fn of(descriptor: ShapeDescriptor, all: &[Self]) -> Option<&Self> {
         all.iter().find(|own| own.descriptor == descriptor)
     }
 
-    /// Returns how many steps a number is. Directions of 180° and −180° are the same one, if a whole number of steps makes
-    /// a turn.
+    /// Returns the number of steps that is nearest to a number. Directions of 180° and −180° are the same one, if a
+    /// whole number of steps makes a turn.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "values of descriptors over a step of at least 1e-9 are far below 2⁶³"
@@ -406,8 +406,8 @@ impl Rounding {
     }
 }
 
-/// The nearest whole number. Equal values that were computed in different ways differ by rounding errors, which must not
-/// part them half way between two steps: there, all are rounded away from zero.
+/// Rounds to the nearest whole number. Equal values that were computed in different ways differ by rounding errors,
+/// which must not separate them half way between two steps: there, all are rounded away from zero.
 fn round(steps: f64) -> f64 {
     let halves = (2.0 * steps).round();
     let error = f64::max(1e-9, 16.0 * f64::EPSILON * steps.abs());
@@ -464,13 +464,13 @@ mod tests {
         assert_eq!(steps(&format!("{turn}180"), numbers), [1, 1, 0]);
         assert_eq!(steps(&format!("{turn}30"), numbers), [6, 6, 9]);
         assert_eq!(steps("cg_cd=30", numbers), [6, -6, -3]);
-        // A turn has no whole number of these.
+        // A turn is not a whole number of these steps.
         assert_eq!(steps(&format!("{turn}7"), numbers), [26, -26, -11]);
         assert_eq!(steps(&format!("{turn}720"), numbers), [0, 0, 0]);
     }
 
     #[test]
-    fn rounding_errors_do_not_part_equal_values_between_two_steps() {
+    fn rounding_errors_do_not_separate_equal_values_between_two_steps() {
         let rounding: Rounding = "cg_cd_direction=10".parse().expect("a rounding");
         let below = 45.0_f64.next_down().next_down();
         assert_eq!(

@@ -11,7 +11,7 @@ use crate::recognition::model::{Model, ShapeCount};
 use crate::recognition::training::{Training, TrainingError};
 use crate::sensor::MAX_SIDE;
 
-/// How touches half a step off the grid, in x0, y0 and angle, are named.
+/// The result of touches half a step off the grid, in x0, y0 and angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct HalfStep {
@@ -50,7 +50,7 @@ impl Model {
     /// searched.
     ///
     /// # Errors
-    /// [`TrainingError::Steps`] if half a step has too many decimals; [`TrainingError::Stopped`].
+    /// Returns [`TrainingError::Steps`] if half a step has too many decimals, or [`TrainingError::Stopped`].
     pub fn half_step(
         &self,
         progress: &(dyn Fn(u64) -> bool + Sync),
@@ -108,7 +108,7 @@ impl Model {
     }
 }
 
-/// An imprint with a margin of up to two taxels, in which the nearest imprint may lie.
+/// Returns an imprint with a margin of up to two taxels, in which the nearest imprint may lie.
 fn with_margin(imprint: Option<&Imprint>) -> Imprint {
     const MARGIN: u8 = 2;
     let Some(imprint) = imprint else {
@@ -146,14 +146,14 @@ mod tests {
         };
         let result = stop_after(usize::MAX).expect("not stopped");
         assert!(result.missing() > 0.0);
-        // The last call is that of the last imprint that the model does not hold.
+        // The last call is made for the last imprint that the model does not hold.
         let all = calls.load(Ordering::Relaxed);
         assert_eq!(stop_after(all - 1), Err(TrainingError::Stopped));
         assert_eq!(stop_after(all), Ok(result));
     }
 
     #[test]
-    fn touches_count_with_weights_and_the_nearest_names_what_is_missing() {
+    fn touches_count_with_weights_and_missing_imprints_get_the_nearest_name() {
         let steps = GridSteps::new(4, 30).expect("divisors");
         let mut shapes = equal_figures();
         shapes[0].weight = 3;

@@ -6,8 +6,8 @@ use hashbrown::{DefaultHashBuilder, HashTable};
 
 use crate::imprint::Imprint;
 
-/// All active taxels of an imprint, of all its pieces, cropped to their bounding box. The key of an empty imprint has
-/// sides of 0.
+/// The key of an imprint: its active taxels, of all its pieces, cropped to their bounding box. The key of an empty
+/// imprint has sides of 0.
 ///
 /// Keys are ordered by height, width, and the taxels in reading order.
 ///
@@ -64,12 +64,12 @@ impl ImprintKey {
         self.borrowed().imprint()
     }
 
-    /// Returns the number of columns of its box.
+    /// Returns the number of columns of the bounding box.
     pub fn width(&self) -> u8 {
         self.width
     }
 
-    /// Returns the number of rows of its box.
+    /// Returns the number of rows of the bounding box.
     pub fn height(&self) -> u8 {
         self.height
     }
@@ -83,7 +83,7 @@ impl ImprintKey {
     }
 }
 
-/// Number of words that the taxels of a box take.
+/// Returns the number of words that the taxels of a box take.
 fn words(width: u8, height: u8) -> usize {
     (usize::from(width) * usize::from(height)).div_ceil(64)
 }
@@ -98,7 +98,7 @@ pub(super) fn or_bits(bits: &mut [u64], place: usize, row: u64) {
     }
 }
 
-/// A key of a table.
+/// A reference to a key of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct KeyRef<'a> {
     pub(super) height: u8,
@@ -107,12 +107,12 @@ pub(super) struct KeyRef<'a> {
 }
 
 impl KeyRef<'_> {
-    /// The number of its active taxels.
+    /// Returns the number of active taxels.
     pub(super) fn count(self) -> u32 {
         self.bits.iter().map(|word| word.count_ones()).sum()
     }
 
-    /// Its rows from the top, bit `i` for column `i`.
+    /// Iterates over the rows from the top, bit `i` for column `i`.
     pub(super) fn rows(self) -> impl Iterator<Item = u64> {
         let mask = u64::MAX.unbounded_shr(64 - u32::from(self.width));
         (0..usize::from(self.height)).map(move |row| {
@@ -137,11 +137,11 @@ impl KeyRef<'_> {
     }
 }
 
-/// Many keys, each in as few words as its box needs, found by a seeded hash.
+/// A table of many keys, each in as few words as its box needs, found by a seeded hash.
 #[derive(Clone, Debug, Default)]
 pub struct KeyTable {
     sizes: Vec<(u8, u8)>,
-    /// Where the bits of each key start.
+    /// The index of the first word of each key.
     starts: Vec<usize>,
     bits: Vec<u64>,
     index: HashTable<u32>,
@@ -154,20 +154,20 @@ impl KeyTable {
         self.sizes.len()
     }
 
-    /// Whether there is none.
+    /// Returns true if the table has no key.
     pub fn is_empty(&self) -> bool {
         self.sizes.is_empty()
     }
 
-    /// Returns the imprint of a key, on a matrix of just its size; None of the empty key.
+    /// Returns the imprint of a key, on a matrix of exactly its size; None for the empty key.
     ///
     /// # Panics
-    /// If there are not that many keys.
+    /// Panics if there are not that many keys.
     pub fn imprint(&self, index: usize) -> Option<Imprint> {
         self.get(index).imprint()
     }
 
-    /// Returns where a key stands.
+    /// Returns the number of a key, from 0; None if the table does not have it.
     pub fn find(&self, key: &ImprintKey) -> Option<usize> {
         self.find_ref(key.borrowed())
     }
@@ -188,7 +188,7 @@ impl KeyTable {
         self.index.find(hash, same).map(|&index| index as usize)
     }
 
-    /// Adds a key unless it is there; returns where it stands.
+    /// Adds a key unless the table has it; returns its number.
     pub(super) fn intern(&mut self, key: KeyRef<'_>) -> usize {
         let hash = self.hash(key);
         let same = |&index: &u32| self.get(index as usize) == key;
@@ -221,7 +221,7 @@ impl KeyTable {
         index
     }
 
-    /// The same keys in their order, and for each the number that it had.
+    /// Returns the same keys in their order, and for each its number in this table.
     pub(super) fn sorted(&self) -> (Self, Vec<usize>) {
         let mut order: Vec<usize> = (0..self.len()).collect();
         order.sort_unstable_by_key(|&index| self.get(index));

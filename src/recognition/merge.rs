@@ -6,10 +6,11 @@ use crate::recognition::model::{Gathered, Model, ModelError, ModelParts, ShapeCo
 use crate::sweep::Shard;
 
 impl Model {
-    /// Merges all shards of one training into the same model as that of a single run. [`ModelMerge`] needs less memory.
+    /// Merges all shards of one training into the same model that a single run gives. [`ModelMerge`] needs less
+    /// memory.
     ///
     /// # Errors
-    /// If no shard is given, or one is missing, given twice, or of another training.
+    /// Returns an error if no shard is given, or one is missing, given twice, or of another training.
     pub fn merge(shards: impl IntoIterator<Item = Self>) -> Result<Self, ModelError> {
         let mut shards: Vec<Self> = shards.into_iter().collect();
         shards.sort_by_key(|model| model.shard().number());
@@ -24,7 +25,7 @@ impl Model {
 /// Merges the shards of a training one after another: memory holds only what is already merged and one shard.
 #[derive(Debug, Default)]
 pub struct ModelMerge {
-    /// The training as the first shard describes it, with the number of poses so far and the number of the last shard.
+    /// The training as the first shard describes it, with the poses so far and the last shard.
     head: Option<ModelParts>,
     gathered: Gathered,
 }
@@ -33,7 +34,8 @@ impl ModelMerge {
     /// Adds the next shard: the first, then the second, and so on.
     ///
     /// # Errors
-    /// If it is not the next one, or of another training than the first. The merge then stays unchanged.
+    /// Returns an error if it is not the next one, or of another training than the first. The merge then stays
+    /// unchanged.
     pub fn add(&mut self, model: &Model) -> Result<(), ModelError> {
         let (shard, of) = (model.shard(), model.shard().of());
         // Everything is checked before anything changes: after a refusal, the right shard can still be added.
@@ -72,7 +74,7 @@ impl ModelMerge {
     /// Returns the model of all shards.
     ///
     /// # Errors
-    /// If some or all are missing.
+    /// Returns an error if some or all are missing.
     pub fn finish(self) -> Result<Model, ModelError> {
         let mut head = self.head.ok_or(ModelError::NoShards)?;
         let (last, of) = (head.shard.number(), head.shard.of());
@@ -86,7 +88,7 @@ impl ModelMerge {
     }
 }
 
-/// Adds a count to those of a key, which stay in the order of the shapes.
+/// Adds a count to the counts of a key, which stay in the order of the shapes.
 fn slot_add(counts: &mut Vec<ShapeCount>, more: ShapeCount) {
     match counts.binary_search_by_key(&more.shape, |count| count.shape) {
         Ok(index) => counts[index].poses += more.poses,

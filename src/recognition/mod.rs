@@ -1,20 +1,20 @@
-//! Names a shape from one touch, and computes how well any method can.
+//! Names a shape from one touch, and computes how well any method can do this.
 //!
-//! A sweep finds *every* imprint of a shape and how often it occurs, so the best classifier of one touch is not learned
-//! but counted. The place of a touch is not known, so all that counts of an imprint is its [`ImprintKey`]: the active
+//! A sweep finds *every* imprint of a shape and how often it occurs, so the best classifier of one touch is not
+//! learned but counted. The place of a touch is unknown, so only the [`ImprintKey`] of an imprint counts: the active
 //! taxels, cropped to their bounding box. A [`Model`] holds, for each key, in how many poses each shape leaves it,
 //! `n[s, k]`. These integers give the [`posterior`](Model::posterior) of a touch and, exactly, the [`Evaluation`]:
-//! which touches the best classifier names right, which are certain, and how much a touch tells in bits. No classifier
-//! of one touch errs less on these poses.
+//! which touches the best classifier names right, which are certain, and how much a touch tells in bits. No
+//! classifier of one touch makes fewer errors on these poses.
 //!
 //! ```text
-//! shapes + poses -> Training -> Model -> Answer       of an imprint: posterior, state, nearest imprint
-//!                                     -> Noise        the same where taxels flip or are dead
+//! shapes + poses -> Training -> Model -> Answer       to an imprint: posterior, state, nearest imprint
+//!                                     -> Noise        the same with taxels that flip or are dead
 //!                                     -> scan         all keys in all places: the nearest, and those within a distance
 //!                                     -> Evaluation   of the model: the limit of one touch
-//!                                     -> given        the same where only some descriptors are known
+//!                                     -> given        the same if only some descriptors are known
 //!                                     -> classifiers  the paper's way: classifiers on descriptors, and templates
-//! shards of a training -> ModelMerge -> Model          the same bytes as of a training in one piece
+//! shards of a training -> ModelMerge -> Model          the same bytes as from a training in one piece
 //! shapes + sizes                      -> Separation   the limit against size and threshold
 //! ```
 //!

@@ -17,16 +17,16 @@ use crate::sweep::Shard;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct NamedShape {
-    /// Its name, which no other shape of the set has.
+    /// The name; no other shape of the set has it.
     pub name: String,
-    /// The shape; where it lies does not matter.
+    /// The shape; its position does not matter.
     pub source: Source,
-    /// How likely it is before the touch, relative to the others; at least 1.
+    /// The prior weight: how likely the shape is before the touch, relative to the others; at least 1.
     pub weight: u32,
 }
 
 impl NamedShape {
-    /// A shape as likely as any other.
+    /// Creates a shape of weight 1, as likely as any other.
     pub fn new(name: impl Into<String>, source: impl Into<Source>) -> Self {
         Self {
             name: name.into(),
@@ -35,7 +35,7 @@ impl NamedShape {
         }
     }
 
-    /// The same shape, with another weight.
+    /// Returns the same shape with another weight.
     #[must_use]
     pub fn weighted(self, weight: u32) -> Self {
         Self { weight, ..self }
@@ -46,22 +46,22 @@ impl NamedShape {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ShapeCount {
-    /// The number of the shape in the set.
+    /// The index of the shape in the set.
     pub shape: u16,
-    /// Its poses with this key; at least 1.
+    /// The number of its poses with this key; at least 1.
     pub poses: u64,
 }
 
 impl ShapeCount {
-    /// That many poses of the shape of that number.
+    /// Creates a count for the shape with this index.
     pub fn new(shape: u16, poses: u64) -> Self {
         Self { shape, poses }
     }
 }
 
-/// The shapes to tell apart, the poses in which each was touched, and the keys that these left.
+/// The shapes to tell apart, the poses in which each was touched, and the keys that they left.
 ///
-/// Made by [`Training`](crate::recognition::Training), or read from a file.
+/// A model is made by [`Training`](crate::recognition::Training), or read from a file.
 #[derive(Clone, Debug)]
 pub struct Model {
     shapes: Vec<NamedShape>,
@@ -71,23 +71,23 @@ pub struct Model {
     shard: Shard,
     /// The number of poses of each shape; the same for all.
     poses: u64,
-    /// Poses of each shape that reach beyond the sensor.
+    /// The number of poses of each shape that reach beyond the sensor.
     cut: Vec<u64>,
-    /// In their order.
+    /// The keys, sorted.
     keys: KeyTable,
-    /// Where the counts of each key start, and where those of the last end.
+    /// The index of each key's first count, and at the end the number of counts.
     starts: Vec<usize>,
-    /// For each key its shapes in the order of the set.
+    /// The counts of each key, in the order of the shapes.
     counts: Vec<ShapeCount>,
-    /// The keys again, in the order in which a scan compares them; made by the first one.
+    /// The keys again, in the order in which a scan compares them; made by the first scan.
     scan: OnceLock<ScanTables>,
 }
 
-/// What scans of a model need besides its keys.
+/// The tables that scans of a model need besides its keys.
 #[derive(Clone, Debug)]
 struct ScanTables {
     index: KeyIndex,
-    /// For each box of the index the poses of each shape.
+    /// For each box of the index, the number of poses of each shape.
     poses: Vec<u64>,
 }
 
@@ -99,22 +99,22 @@ pub struct ModelParts {
     pub shapes: Vec<NamedShape>,
     /// The sensor that they were touched with.
     pub sensor: Sensor,
-    /// What x0 and y0 locate.
+    /// The point of the shape that x0 and y0 locate.
     pub anchor: Anchor,
-    /// The poses.
+    /// The ranges of the poses.
     pub ranges: Ranges,
-    /// Which part of the poses this is.
+    /// The part of the poses that these are.
     pub shard: Shard,
-    /// Poses of each shape in that part.
+    /// The number of poses of each shape in that part.
     pub poses: u64,
-    /// Poses of each shape that reach beyond the sensor.
+    /// The number of poses of each shape that reach beyond the sensor.
     pub cut: Vec<u64>,
-    /// An imprint of each key, None for the key of an empty touch; in any order.
+    /// An imprint of each key (None for the key of an empty touch) and its counts; in any order.
     pub keys: Vec<(Option<Imprint>, Vec<ShapeCount>)>,
 }
 
 impl ModelParts {
-    /// Parts without a key.
+    /// Creates parts without keys.
     pub fn new(
         shapes: Vec<NamedShape>,
         sensor: Sensor,
@@ -134,17 +134,17 @@ impl ModelParts {
     }
 }
 
-/// The most shapes of a set.
+/// The largest number of shapes in a set.
 pub(super) const MAX_SHAPES: usize = 1 << 15;
 
-/// Why shapes or numbers do not make a model.
+/// The error for shapes or numbers that do not make a model.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
     /// No shape, or too many.
     #[error("{found} shapes, expected 1 to {MAX_SHAPES}")]
     Shapes {
-        /// How many.
+        /// The number of shapes.
         found: usize,
     },
     /// A name that two shapes have.
@@ -156,13 +156,13 @@ pub enum ModelError {
     /// A shape without a name.
     #[error("shape {number} has no name")]
     NoName {
-        /// Counted from 1.
+        /// The number of the shape, from 1.
         number: usize,
     },
     /// A name that would break the lines of an answer.
     #[error("name {name:?} of shape {number} has a line break or another control character")]
     ControlCharacter {
-        /// Counted from 1.
+        /// The number of the shape, from 1.
         number: usize,
         /// The name.
         name: String,
@@ -170,7 +170,7 @@ pub enum ModelError {
     /// A weight of 0.
     #[error("weight of {name:?}: 0, expected at least 1")]
     Weight {
-        /// The shape.
+        /// The name of the shape.
         name: String,
     },
     /// Numbers that contradict each other.
@@ -182,19 +182,19 @@ pub enum ModelError {
     /// Models that are not parts of one training.
     #[error("shard {shard} belongs to another training")]
     Foreign {
-        /// The one that does not fit the first.
+        /// The shard that does not fit the first one.
         shard: Shard,
     },
     /// A shard that is given twice.
     #[error("shard {shard} is given twice")]
     Twice {
-        /// That one.
+        /// The shard.
         shard: Shard,
     },
     /// A missing shard.
     #[error("shard {number}/{of} is missing")]
     Missing {
-        /// Which, from 1.
+        /// The number of the missing shard, from 1.
         number: u32,
         /// The number of shards.
         of: u32,
@@ -204,7 +204,7 @@ pub enum ModelError {
 /// Checks the names and weights of a set.
 ///
 /// # Errors
-/// The first problem found.
+/// Returns the first problem found.
 pub(super) fn check_shapes(shapes: &[NamedShape]) -> Result<(), ModelError> {
     if shapes.is_empty() || shapes.len() > MAX_SHAPES {
         return Err(ModelError::Shapes {
@@ -238,7 +238,8 @@ impl Model {
     /// Assembles a model.
     ///
     /// # Errors
-    /// If a name or weight is invalid, or if the counts of a shape do not add up to its poses.
+    /// Returns an error if a name or weight is invalid, if a key is given twice, or if numbers contradict each other,
+    /// such as counts that do not add up to the poses of a shape.
     pub fn from_parts(mut parts: ModelParts) -> Result<Self, ModelError> {
         let keys = std::mem::take(&mut parts.keys);
         let mut table = KeyTable::default();
@@ -315,7 +316,7 @@ impl Model {
         })
     }
 
-    /// Whether both are parts of one training.
+    /// Returns true if both are parts of one training.
     pub(super) fn same_training(&self, other: &ModelParts) -> bool {
         self.shapes == other.shapes
             && self.sensor == other.sensor
@@ -324,7 +325,7 @@ impl Model {
             && self.shard.of() == other.shard.of()
     }
 
-    /// All but its keys.
+    /// Returns all parts except the keys.
     pub(super) fn head(&self) -> ModelParts {
         ModelParts {
             shapes: self.shapes.clone(),
@@ -348,7 +349,7 @@ impl Model {
         &self.sensor
     }
 
-    /// Returns what the ranges of x0 and y0 locate.
+    /// Returns the point of the shape that x0 and y0 locate.
     pub fn anchor(&self) -> Anchor {
         self.anchor
     }
@@ -358,7 +359,7 @@ impl Model {
         &self.ranges
     }
 
-    /// Returns which part of the poses the model holds; only a model with [`Shard::WHOLE`] should answer touches.
+    /// Returns the part of the poses that the model holds. Only a model with [`Shard::WHOLE`] should answer touches.
     pub fn shard(&self) -> Shard {
         self.shard
     }
@@ -381,13 +382,13 @@ impl Model {
     /// Returns the shapes that leave a key, in the order of the set.
     ///
     /// # Panics
-    /// If there are not that many keys.
+    /// Panics if there are not that many keys.
     pub fn counts(&self, key: usize) -> &[ShapeCount] {
         &self.counts[self.starts[key]..self.starts[key + 1]]
     }
 
-    /// Iterates over the keys in their order: the imprint of each, None for that of touches that activate nothing, and the
-    /// shapes that leave it.
+    /// Iterates over the keys in their order. Each item is the imprint of a key (None for touches that activate no
+    /// taxel) and the shapes that leave it.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -407,7 +408,7 @@ impl Model {
         (0..self.keys.len()).map(|key| (self.keys.imprint(key), self.counts(key)))
     }
 
-    /// Returns the shapes that leave the key of an imprint; empty if none does.
+    /// Returns the shapes that leave the key of an imprint; empty if no shape does.
     pub fn counts_of(&self, imprint: &Imprint) -> &[ShapeCount] {
         self.keys
             .find(&ImprintKey::of(imprint))
@@ -428,12 +429,12 @@ impl Model {
         Some(posterior)
     }
 
-    /// The keys in the order in which scans compare them.
+    /// Returns the keys in the order in which scans compare them.
     pub(super) fn index(&self) -> &KeyIndex {
         &self.scan_tables().index
     }
 
-    /// For each box of the index the poses in which each shape leaves a key of that box.
+    /// Iterates over the boxes of the index: the number of poses in which each shape leaves a key of that box.
     pub(super) fn poses_by_box(&self) -> impl Iterator<Item = &[u64]> {
         self.scan_tables().poses.chunks(self.shapes.len())
     }
@@ -451,12 +452,12 @@ impl Model {
         })
     }
 
-    /// A count times the weight of its shape.
+    /// Returns a count times the weight of its shape.
     pub(super) fn weighted(&self, count: ShapeCount) -> u128 {
         u128::from(count.poses) * u128::from(self.shapes[usize::from(count.shape)].weight)
     }
 
-    /// The shapes of some counts, each with its count times its weight.
+    /// Iterates over the shapes of some counts, each with its count times its weight.
     pub(super) fn weighted_shapes<'a>(
         &'a self,
         counts: &'a [ShapeCount],
@@ -465,20 +466,20 @@ impl Model {
         counts.map(|&count| (usize::from(count.shape), self.weighted(count)))
     }
 
-    /// ln w of each shape, in the order of the set.
+    /// Returns ln w of each shape, in the order of the set.
     pub(super) fn log_weights(&self) -> Vec<f64> {
         let weights = self.shapes.iter().map(|shape| f64::from(shape.weight));
         weights.map(libm::log).collect()
     }
 
-    /// The sum of all weights.
+    /// Returns the sum of all weights.
     pub(super) fn weights(&self) -> u128 {
         let weights = self.shapes.iter().map(|shape| u128::from(shape.weight));
         weights.sum()
     }
 }
 
-/// The number of poses of a grid, or of a part of it; None if it is too large for any grid.
+/// Returns the number of poses of a grid, or of a part of it; None if it is too large for any grid.
 fn poses(ranges: &Ranges, shard: Shard) -> Option<u64> {
     let count = |axis: Axis| ranges[axis].count();
     let others = [Axis::Y0, Axis::Angle, Axis::ZoomX, Axis::ZoomY].map(count);
@@ -497,7 +498,7 @@ pub(super) fn add_log_counts(logarithms: &mut [f64], counts: &[ShapeCount]) {
     }
 }
 
-/// A count as a number to compute with.
+/// Converts a count to a number to compute with.
 #[expect(
     clippy::cast_precision_loss,
     reason = "neither a mean nor a probability has more digits"
@@ -506,8 +507,8 @@ pub(super) fn float(count: u64) -> f64 {
     count as f64
 }
 
-/// The largest of some values, with the number of its shape; the first among equals. The values are in the order of the
-/// set.
+/// Returns the largest of some values, with the number of its shape; the first among equals. The values are in the
+/// order of the set.
 pub(super) fn first_of_most<T: PartialOrd>(
     values: impl IntoIterator<Item = (usize, T)>,
 ) -> Option<(usize, T)> {
@@ -523,7 +524,7 @@ pub(super) struct Gathered {
 }
 
 impl Gathered {
-    /// Where the counts of a key of another table are gathered.
+    /// Returns the slot in which the counts of a key of another table are gathered.
     pub(super) fn slot(&mut self, keys: &KeyTable, index: usize) -> usize {
         let slot = self.keys.intern(keys.get(index));
         if slot == self.counts.len() {
@@ -539,7 +540,7 @@ mod tests {
     use crate::figure::Figure;
 
     #[test]
-    fn a_set_may_have_as_many_shapes_as_its_refusal_says() {
+    fn a_set_may_have_as_many_shapes_as_the_error_says() {
         let bar = Figure::rectangle(2.0, 1.0).on(&Sensor::default());
         let bar = bar.expect("in range");
         let shape = |number: usize| NamedShape::new(number.to_string(), bar);

@@ -11,13 +11,13 @@ use crate::recognition::scan::Observed;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Nearest {
-    /// The shape that leaves it most often: its number in the set.
+    /// The number of the shape in the set that leaves the imprint most often.
     pub shape: usize,
     /// Number of taxels that differ.
     pub distance: u32,
     /// The imprint, on the matrix of the observed one.
     pub imprint: Imprint,
-    /// The number of its key.
+    /// The number of the imprint's key in the model.
     pub key: usize,
 }
 
@@ -31,7 +31,7 @@ impl Model {
         self.nearest_without(observed, None)
     }
 
-    /// The same, but the active taxels of `dead` do not count.
+    /// Returns the same as [`Self::nearest`], except that the active taxels of `dead` do not count.
     pub(super) fn nearest_without(
         &self,
         observed: &Imprint,
@@ -63,7 +63,7 @@ impl Model {
         })
     }
 
-    /// The shape that leaves a key most often (the first among equals), and how often.
+    /// Returns the shape that leaves a key most often (the first among equals), and how often.
     pub(crate) fn most_frequent(&self, key: usize) -> (usize, u128) {
         let most = first_of_most(self.weighted_shapes(self.counts(key)));
         most.expect("every key is left by some shape")

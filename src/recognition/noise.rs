@@ -22,7 +22,7 @@ use crate::parameter::named;
 use crate::recognition::model::{Model, float};
 use crate::recognition::scan::{Observed, shift_count};
 
-/// How much leaving out far keys may change a probability.
+/// The largest change of a probability that leaving out far keys may cause.
 pub(super) const NEGLIGIBLE: f64 = 1e-9;
 
 /// The probability that a taxel flips, from 0 to below ½, and the taxels that are known to be dead.
@@ -32,16 +32,17 @@ pub struct Noise {
     dead: Option<Imprint>,
 }
 
-/// A probability that is out of range.
+/// The error for a probability that is out of range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("noise {found}: expected a probability from 0 to below 0.5")]
 #[non_exhaustive]
 pub struct NoiseError {
-    /// What was given.
+    /// The given probability.
     pub found: f64,
 }
 
-/// More taxels of a touch differ from every imprint of a model than a noise explains.
+/// A difference that a noise does not explain: more taxels of a touch differ from every imprint of a model than are
+/// likely to flip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct UnexplainedDifference {
@@ -52,7 +53,7 @@ pub struct UnexplainedDifference {
 }
 
 impl fmt::Display for UnexplainedDifference {
-    /// What it means, in a sentence.
+    /// Writes what the difference means, in a sentence.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let expected = match libm::round(self.expected) {
             few if few < 1.0 => "less than 1 is".to_owned(),
@@ -68,16 +69,16 @@ impl fmt::Display for UnexplainedDifference {
 }
 
 /// A noise does not explain a difference if a difference at least as large is less probable than this. A posterior
-/// compares the shapes of a set only with each other, so it names one of them however far the touch is from all. If a
-/// shape of the set left the touch, its own imprint is no nearer than the nearest one, so fewer than one such touch in
-/// a million is reported as unexplained.
+/// compares the shapes of a set only with each other, so it names one of them even if the touch is far from all. If a
+/// shape of the set left the touch, its own imprint is no nearer than the nearest one, so fewer than one such touch
+/// in a million is reported as unexplained.
 const EXPLAINED: f64 = 1e-6;
 
 impl Noise {
-    /// Every taxel flips with this probability.
+    /// Creates a noise in which every taxel flips with this probability.
     ///
     /// # Errors
-    /// If it is not from 0 to below ½.
+    /// Returns an error if the probability is not from 0 to below ½.
     pub fn new(flip: f64) -> Result<Self, NoiseError> {
         if (0.0..0.5).contains(&flip) {
             Ok(Self { flip, dead: None })
@@ -86,7 +87,7 @@ impl Noise {
         }
     }
 
-    /// The active taxels of `dead` are ignored: they are stuck on or off. Those beyond an imprint do not matter.
+    /// Ignores the active taxels of `dead`, which are stuck on or off. Taxels beyond an imprint do not matter.
     #[must_use]
     pub fn without(self, dead: Imprint) -> Self {
         let dead = (!dead.is_empty()).then_some(dead);
@@ -98,13 +99,13 @@ impl Noise {
         self.flip
     }
 
-    /// Returns the taxels that are left out; None if all count.
+    /// Returns the dead taxels, which are left out; None if all taxels count.
     pub fn dead(&self) -> Option<&Imprint> {
         self.dead.as_ref()
     }
 
-    /// Checks whether this noise explains that a touch differs from its nearest imprint in `found` taxels. None if it
-    /// does; otherwise the numbers.
+    /// Checks whether this noise explains that a touch differs from its nearest imprint in `found` taxels. Returns
+    /// None if it does; otherwise the numbers.
     ///
     /// ```
     /// use taxel::recognition::Noise;
@@ -127,7 +128,7 @@ impl Noise {
         })
     }
 
-    /// The probability that at least `least` of some taxels flip.
+    /// Returns the probability that at least `least` of `cells` taxels flip.
     fn at_least(&self, least: u32, cells: u32) -> f64 {
         // As logarithms: the first terms may be too small for an `f64`.
         let mut term = f64::from(cells) * libm::log1p(-self.flip);
@@ -142,18 +143,18 @@ impl Noise {
         sum
     }
 
-    /// The factor by which each differing taxel makes a touch less probable.
+    /// Returns the factor by which each differing taxel makes a touch less probable.
     fn ratio(&self) -> f64 {
         self.flip / (1.0 - self.flip)
     }
 
-    /// How many distances beyond the least one matter, if all touches together, apart from their distances, are at most
-    /// `odds` times as probable as the nearest one.
+    /// Returns how many distances beyond the least one matter, if all touches together, without regard to their
+    /// distances, are at most `odds` times as probable as the nearest one.
     fn reach(&self, odds: f64) -> u32 {
         if self.flip == 0.0 {
             return 0;
         }
-        // The nearest touch weighs 1, all beyond D at most odds · ratio^(D + 1 − least).
+        // The nearest touch weighs 1, all touches beyond D at most odds · ratio^(D + 1 − least).
         let steps = libm::log(NEGLIGIBLE / odds) / libm::log(self.ratio());
         #[expect(
             clippy::cast_possible_truncation,
@@ -165,23 +166,23 @@ impl Noise {
     }
 }
 
-/// Which keys were compared for an answer, the fewest first.
+/// The keys that were compared for an answer, the fewest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Method {
     /// The key of the imprint itself.
     Exact,
-    /// Those that differ from it by one taxel at most.
+    /// The keys of all imprints that differ from it by one taxel at most.
     OneFlip,
-    /// All keys at all places.
+    /// All keys in all places.
     Scan,
 }
 
 impl Method {
-    /// All of them.
+    /// All methods.
     pub const ALL: [Self; 3] = [Self::Exact, Self::OneFlip, Self::Scan];
 
-    /// Returns its name in JSON.
+    /// Returns the name used in JSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Exact => "exact",
@@ -193,15 +194,15 @@ impl Method {
 
 named!(Method, "method", &Method::ALL);
 
-/// For each shape, how many touches lie at each distance from an imprint.
+/// The number of touches of each shape at each distance from an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Distances {
     /// The least distance of any touch.
     pub least: u32,
-    /// Touches of each shape at the distances from `least` on.
+    /// For each shape, the number of touches at each distance from `least` on.
     pub touches: Vec<Vec<u64>>,
-    /// Which keys were looked at.
+    /// The keys that were compared.
     pub method: Method,
 }
 
@@ -238,7 +239,7 @@ impl Model {
         (sum > 0.0).then(|| likelihoods.into_iter().map(|own| own / sum).collect())
     }
 
-    /// P(imprint | s) · w for each shape, times a common factor; `distances` are those of the imprint.
+    /// Returns P(imprint | s) · w for each shape, times a common factor. `distances` are those of the imprint.
     pub(super) fn likelihoods(
         &self,
         imprint: &Imprint,
@@ -257,8 +258,8 @@ impl Model {
             .collect()
     }
 
-    /// A lower and an upper bound of ln P(imprint | s) for each shape, plus a common number: without and with
-    /// everything beyond `distances`. Both are −∞ for a shape if none of its imprints fits the matrix.
+    /// Returns a lower and an upper bound of ln P(imprint | s) for each shape, plus a common number: without and with
+    /// all touches beyond `distances`. Both are −∞ for a shape if none of its imprints fits the matrix.
     pub(super) fn log_likelihoods(
         &self,
         imprint: &Imprint,
@@ -294,16 +295,16 @@ impl Model {
         own.map(bounds).collect()
     }
 
-    /// The first shape of the set that leaves nothing on a matrix of some columns and rows, since none of its imprints fits
-    /// there.
+    /// Returns the first shape of the set that leaves nothing on a matrix of this size, since none of its imprints
+    /// fits there; None if there is no such shape.
     pub fn first_too_large(&self, size: (u8, u8)) -> Option<usize> {
         self.touches_on(size)
             .iter()
             .position(|&touches| touches == 0)
     }
 
-    /// Returns, for each shape of the set, how many of its poses leave an imprint that does not fit on a matrix of some columns
-    /// and rows. [`Self::recognition_rate`] draws no such touches.
+    /// Returns, for each shape of the set, how many of its poses leave an imprint that does not fit on a matrix of
+    /// this size. [`Self::recognition_rate`] draws no such touches.
     pub fn poses_too_large(&self, (columns, rows): (u8, u8)) -> Vec<u64> {
         let mut too_large = vec![0; self.shapes().len()];
         for (own, poses) in self.index().boxes().iter().zip(self.poses_by_box()) {
@@ -316,7 +317,8 @@ impl Model {
         too_large
     }
 
-    /// The touches of each shape on a matrix of some columns and rows: its poses, in every place where they fit.
+    /// Returns the number of touches of each shape on a matrix of this size: its poses, in every place where they
+    /// fit.
     fn touches_on(&self, size: (u8, u8)) -> Vec<u64> {
         let mut totals = vec![0; self.shapes().len()];
         for (own, poses) in self.index().boxes().iter().zip(self.poses_by_box()) {
@@ -328,7 +330,7 @@ impl Model {
         totals
     }
 
-    /// Returns the number of pairs of a key and a place on a matrix of some columns and rows.
+    /// Returns the number of pairs of a key and a place on a matrix of this size.
     pub fn pairs(&self, size: (u8, u8)) -> u64 {
         let boxes = self.index().boxes().iter();
         let pairs =
@@ -337,12 +339,12 @@ impl Model {
     }
 
     /// Returns how many touches of each shape lie at the distances from an imprint that matter under a noise. None if
-    /// there is none.
+    /// no key fits the matrix, or, without noise, if no shape leaves the imprint.
     pub fn distances(&self, imprint: &Imprint, noise: &Noise) -> Option<Distances> {
         self.distances_further(imprint, noise, 0)
     }
 
-    /// The same, and those of `further` distances more.
+    /// Returns the same as [`Self::distances`], with `further` more distances.
     pub(super) fn distances_further(
         &self,
         imprint: &Imprint,
@@ -350,7 +352,7 @@ impl Model {
         further: u32,
     ) -> Option<Distances> {
         let totals = self.touches_on((imprint.columns(), imprint.rows()));
-        // Of each shape all touches together weigh w; the nearest one weighs w / T of its shape.
+        // All touches of a shape together weigh w; the nearest one weighs w / T of its shape.
         let weights = self.shapes().iter().map(|shape| f64::from(shape.weight));
         let of_all: f64 = weights.clone().sum();
         let of_one = totals.iter().zip(weights);
@@ -419,7 +421,7 @@ impl Model {
         })
     }
 
-    /// Touches of each shape at the distances from `least` to `most`.
+    /// Returns the touches of each shape at the distances from `least` to `most`.
     fn histogram(&self, observed: &Observed, least: u32, most: u32) -> Vec<Vec<u64>> {
         let (shapes, width) = (self.shapes().len(), wide(most - least) + 1);
         let take = |sums: &mut Vec<u64>, key: usize, places: &[u32]| {
@@ -436,14 +438,14 @@ impl Model {
     }
 }
 
-/// The sum of touches at distances from the first one on, each as probable as its distance makes it.
+/// Returns the sum of touches at increasing distances, each weighted by the probability of its distance.
 fn weighed(touches: &[u64], noise: &Noise) -> f64 {
     // From far to near, so that small numbers are added first.
     let touches = touches.iter().rev();
     touches.fold(0.0, |sum, &touches| sum * noise.ratio() + float(touches))
 }
 
-/// ln(e^one + e^other).
+/// Returns ln(e^one + e^other).
 fn log_of_sum(one: f64, other: f64) -> f64 {
     let (low, high) = if one < other {
         (one, other)
@@ -456,7 +458,7 @@ fn log_of_sum(one: f64, other: f64) -> f64 {
     high + libm::log1p(libm::exp(low - high))
 }
 
-/// Sums added up.
+/// Adds sums element by element.
 fn added(mut one: Vec<u64>, other: Vec<u64>) -> Vec<u64> {
     one.iter_mut()
         .zip(other)
@@ -488,7 +490,7 @@ mod tests {
     }
 
     #[test]
-    fn a_noise_explains_as_many_flips_as_it_makes_in_a_million_touches() {
+    fn a_noise_explains_differences_down_to_one_in_a_million() {
         let touch = Imprint::empty(16, 16);
         let noise = Noise::new(0.01).expect("in range");
         assert!(noise.at_least(0, 256) > 1.0 - 1e-12);
@@ -503,7 +505,7 @@ mod tests {
         let dead = "################".parse().expect("a row");
         let found = noise.without(dead).unexplained(&touch, 14);
         assert_eq!(found.map(|own| own.expected), Some(2.4));
-        // The largest matrix, where the probability of no flip is no `f64`.
+        // The largest matrix, where the probability of no flip is too small for an `f64`.
         let most = Noise::new(0.49).expect("in range");
         let largest = Imprint::empty(64, 64);
         assert_eq!(most.unexplained(&largest, 2100), None);

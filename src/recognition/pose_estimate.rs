@@ -1,4 +1,4 @@
-//! Where a shape lay and how it was turned, given the imprint that it left.
+//! Estimates where a shape lay and how it was turned, given the imprint that it left.
 
 use crate::imprint::Imprint;
 use crate::pose::{Axis, PoseGrid, exact_period};
@@ -12,17 +12,17 @@ use crate::touch::Plane;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PoseEstimate {
-    /// How many poses of the model leave it.
+    /// The number of poses of the model that leave the imprint.
     pub poses: u64,
-    /// Mean position x, y of the centre, about which the shape turns, in cells on the matrix of the imprint.
+    /// The mean position x, y of the centre, about which the shape turns, in cells on the matrix of the imprint.
     pub position: [f64; 2],
-    /// Standard deviation of each.
+    /// The standard deviations of x and y, in cells.
     pub standard_deviation: [f64; 2],
     /// The angle; None if the shape looks the same at any angle, like a disc.
     pub angle: Option<AngleEstimate>,
 }
 
-/// The angles in which a shape leaves an imprint, up to its symmetry.
+/// The angles at which a shape leaves an imprint, up to its symmetry.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AngleEstimate {
@@ -32,14 +32,15 @@ pub struct AngleEstimate {
     pub mean: Option<f64>,
     /// Circular standard deviation in degrees. None if the mean is None.
     pub standard_deviation: Option<f64>,
-    /// The fewest neighbouring whole degrees that hold 95 % of the poses: the first of them, and how many.
+    /// The fewest neighbouring whole degrees that hold 95 % of the poses: the first degree, and the number of
+    /// degrees.
     pub most: (u32, u32),
 }
 
 impl AngleEstimate {
-    /// Mean and standard deviation. None if the angles spread as far as if they were unknown: as far as equally likely
-    /// angles of one period, whose standard deviation is the period divided by √12. The mean lies between the
-    /// [`ends`](Self::ends), so it may be below 0.
+    /// Returns mean and standard deviation. None if the angles spread as far as if they were unknown: as far as
+    /// equally likely angles of one period, whose standard deviation is the period divided by √12. The mean lies
+    /// between the [`ends`](Self::ends), so it may be below 0.
     #[must_use]
     pub fn known(&self) -> Option<(f64, f64)> {
         let (mean, deviation) = (self.mean?, self.standard_deviation?);
@@ -50,8 +51,8 @@ impl AngleEstimate {
         Some((if begun { mean - self.period } else { mean }, deviation))
     }
 
-    /// The first and the last of the fewest whole degrees that hold 95 %. A run that passes the end of the period
-    /// begins below 0.
+    /// Returns the first and the last of the fewest whole degrees that hold 95 % of the poses. If they pass the end
+    /// of the period, the first is below 0.
     #[must_use]
     pub fn ends(&self) -> (i64, i64) {
         let (first, count) = (i64::from(self.most.0), i64::from(self.most.1));
@@ -64,7 +65,7 @@ impl AngleEstimate {
     }
 }
 
-/// The number of whole degrees in a period, counting one that is cut short: 52 for a heptagon.
+/// Returns the number of whole degrees in a period, counting one that is cut short: 52 for a heptagon.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -105,9 +106,9 @@ impl Model {
             .map(|(estimate, _)| estimate)
     }
 
-    /// Returns the same with at most `most` of the poses: first the one nearest to the mean, then others spread over
-    /// the 95 % of the poses that are nearest to it. Single poses are equally likely, so the first one stands for the
-    /// likeliest place.
+    /// Returns the same as [`Self::pose_of`], with at most `most` of the poses: first the one nearest to the mean,
+    /// then others spread over the 95 % of the poses that are nearest to it. Single poses are equally likely, so the
+    /// first one stands for the likeliest place.
     pub fn poses_of(
         &self,
         shape: usize,
@@ -171,24 +172,24 @@ impl Model {
 pub struct PlacedSource {
     /// The shape on the sensor of the model.
     pub source: Source,
-    /// By how many columns and rows its imprint is shifted on the matrix.
+    /// The number of columns and rows by which its imprint is shifted on the matrix.
     pub by: [f64; 2],
 }
 
-/// Neighbouring poses that leave the imprint.
+/// A run of neighbouring poses that leave the imprint.
 struct SeenPose {
-    /// x, y and angle of their middle.
+    /// x, y and angle of the middle of the run.
     place: [f64; 3],
-    /// How many poses they count as.
+    /// The number of poses that the run counts as.
     weight: u64,
-    /// The number of the middle one.
+    /// The number of the middle pose.
     number: u64,
-    /// How far its imprint is moved.
+    /// The columns and rows by which its imprint is moved.
     by: [f64; 2],
 }
 
-/// The pose nearest to the mean, then others spread evenly over the 95 % nearest to it, in order of distance; at most
-/// `most` of them. Distances are in units of the standard deviation of each number.
+/// Chooses the pose nearest to the mean, then others spread evenly over the 95 % nearest to it, in order of distance;
+/// at most `most` of them. Distances are in units of the standard deviation of x, y and angle.
 fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<SeenPose> {
     let distance = |own: &SeenPose| {
         let over = |from: f64, deviation: f64| {
@@ -219,7 +220,7 @@ fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<
     let others = most.max(2) - 1;
     let mut index = 0;
     seen.retain(|_| {
-        // The first, and each that begins another part of the rest.
+        // The first pose, the first of each further part, and the last one.
         let part = |index: usize| index * others / count;
         let kept = index == 0 || part(index) != part(index - 1) || index + 1 == count;
         index += 1;
@@ -229,12 +230,12 @@ fn chosen(mut seen: Vec<SeenPose>, estimate: &PoseEstimate, most: usize) -> Vec<
     seen
 }
 
-/// A number from 0 on that is in the order of its bits.
+/// Maps distances to integers in the same order.
 fn ordered(distance: f64) -> u64 {
     distance.max(0.0).to_bits()
 }
 
-/// The whole degree that an angle from 0 to below a period lies in.
+/// Returns the whole degree that contains an angle from 0 to below a period.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -244,7 +245,7 @@ fn whole(angle: f64, period: f64) -> usize {
     (angle as usize).min(whole_degrees(period) as usize - 1)
 }
 
-/// Sums over poses of positions, their squares and directions.
+/// Sums over poses: positions, their squares, and directions.
 #[derive(Debug, Default)]
 struct PoseMoments {
     poses: u64,
@@ -258,13 +259,13 @@ struct PoseMoments {
 }
 
 impl PoseMoments {
-    /// Adds neighbours on a row from one x to another: `count` of them, which count as `weight` poses.
+    /// Adds neighbouring poses of a row from one x to another: `count` poses, which count as `weight`.
     fn add(&mut self, weight: u64, (from, to): (f64, f64), count: u64, y: f64) {
         let (poses, number) = (float(weight), float(count));
         let middle = f64::midpoint(from, to);
         let origin = *self.origin.get_or_insert([middle, y]);
         let (x, y) = (middle - origin[0], y - origin[1]);
-        // The variance of equal steps between two ends.
+        // The variance of `count` equally spaced values between two ends.
         let own = if count > 1 {
             (to - from).powi(2) * (number + 1.0) / (12.0 * (number - 1.0))
         } else {
@@ -314,13 +315,15 @@ impl PoseMoments {
     }
 }
 
-/// An angle from 0 to below a period. The remainder of one just below 0 is rounded to the whole period.
+/// Reduces an angle to 0 up to below a period. For an angle just below 0, the remainder is rounded to the period
+/// itself.
 fn within_period(angle: f64, period: f64) -> f64 {
     let rest = angle.rem_euclid(period);
     if rest < period { rest } else { 0.0 }
 }
 
-/// The fewest neighbours on a circle that hold 95 % of all: the first, and how many. The first of equals.
+/// Returns the fewest neighbours on a circle that hold 95 % of `all`: the first, and how many. Among equals, returns
+/// the first.
 fn fewest(degrees: &[u64], all: u64) -> (u32, u32) {
     let count = degrees.len();
     let needed = u128::from(all) * 95;
@@ -397,7 +400,7 @@ mod tests {
         assert_eq!(model.pose_of(7, &Imprint::empty(4, 4), &|_| true), None);
     }
 
-    /// Of the angles of a heptagon, those that look alike count as one.
+    /// Angles at which a heptagon looks alike count as one.
     #[test]
     fn a_heptagon_repeats_every_seventh_of_a_turn() {
         let steps = GridSteps::new(4, 1).expect("divisors");
@@ -448,7 +451,7 @@ mod tests {
     }
 
     #[test]
-    fn the_fewest_degrees_may_lie_over_the_end() {
+    fn the_fewest_degrees_may_pass_the_end_of_the_circle() {
         assert_eq!(fewest(&[10, 0, 0, 0, 0, 9, 1], 20), (5, 3));
         assert_eq!(fewest(&[0, 0, 4], 4), (2, 1));
         assert_eq!(fewest(&[1, 1, 1, 1], 4), (0, 4));

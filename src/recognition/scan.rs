@@ -24,7 +24,8 @@ use crate::recognition::key::{KeyRef, KeyTable, or_bits};
 /// The number of keys that are compared with all windows before the next ones, so that their counts stay in the cache.
 const BLOCK: usize = 64;
 
-/// Keys of one task. Fewer keys than this are compared on the calling thread. In tests few models have so many.
+/// The number of keys of one task. Fewer keys than this are compared on the calling thread. In tests few models have
+/// so many.
 const TASK: usize = if cfg!(test) { 64 } else { 1 << 15 };
 
 /// All keys of a model, by box and number of taxels.
@@ -34,20 +35,20 @@ pub(super) struct KeyIndex {
     groups: Vec<Group>,
     /// The numbers of the keys in their table, group after group.
     numbers: Vec<u32>,
-    /// Their taxels in the same order, each key in the words of its box.
+    /// The taxels of the keys in the same order, each key in the words of its box.
     bits: Vec<u64>,
 }
 
-/// A box that keys have.
+/// A box, and the keys that have it.
 #[derive(Clone, Debug)]
 pub(super) struct KeyBox {
     pub(super) width: u8,
     pub(super) height: u8,
-    /// Words of a key.
+    /// The number of words of a key.
     length: usize,
     /// The numbers of its keys in the table.
     pub(super) keys: Range<usize>,
-    /// Its groups, in the order of their numbers of taxels.
+    /// The groups of the box, in the order of their numbers of taxels.
     groups: Range<usize>,
 }
 
@@ -56,7 +57,7 @@ pub(super) struct KeyBox {
 struct Group {
     count: u32,
     keys: Range<usize>,
-    /// Where its taxels start.
+    /// The index of its first word in the bits of all keys.
     bits: usize,
 }
 
@@ -70,7 +71,7 @@ pub(super) struct PlacedKey {
     pub(super) place: (u8, u8),
 }
 
-/// The number of shifts that keep a box on a matrix, its places there; 0 if it does not fit.
+/// Returns the number of places of a box on a matrix; 0 if it does not fit.
 pub(super) fn shift_count((width, height): (u8, u8), (columns, rows): (u8, u8)) -> u64 {
     let fits = |side: u8, of: u8| of.checked_sub(side).map_or(0, |rest| u64::from(rest) + 1);
     fits(width, columns) * fits(height, rows)
@@ -79,10 +80,10 @@ pub(super) fn shift_count((width, height): (u8, u8), (columns, rows): (u8, u8)) 
 /// An observed imprint, without its dead taxels.
 pub(super) struct Observed {
     seen: Imprint,
-    /// What is not dead, if some taxels are.
+    /// The taxels that are not dead; None if no taxel is.
     living: Option<Imprint>,
     count: u32,
-    /// Active taxels above and left of each corner of a cell, and dead ones.
+    /// Sums of active taxels; `dead` has those of dead ones, if there are any.
     active: IntegralImage,
     dead: Option<IntegralImage>,
 }
@@ -108,7 +109,7 @@ impl IntegralImage {
         Self { width, sums }
     }
 
-    /// Taxels inside of a box whose first taxel is in some column and row.
+    /// Returns the number of taxels inside a box whose first taxel is in some column and row.
     fn inside(&self, (column, row): (usize, usize), (width, height): (usize, usize)) -> u32 {
         let at = |column: usize, row: usize| u32::from(self.sums[row * self.width + column]);
         let (right, bottom) = (column + width, row + height);
@@ -121,7 +122,7 @@ impl IntegralImage {
 struct BoxPosition {
     column: u8,
     row: u8,
-    /// Observed taxels inside of the box, and dead ones.
+    /// The number of observed taxels inside the box; `dead` is the number of dead ones.
     inside: u32,
     dead: u32,
 }
@@ -129,7 +130,7 @@ struct BoxPosition {
 impl Observed {
     pub(super) fn new(imprint: &Imprint, dead: Option<&Imprint>) -> Self {
         let (columns, rows) = (imprint.columns(), imprint.rows());
-        // On the matrix of the imprint; what lies beyond it is dropped.
+        // Fitted to the matrix of the imprint: what lies beyond it is dropped.
         let dead = dead.map(|dead| dead.resized(columns, rows));
         let dead = dead.filter(|dead| !dead.is_empty());
         let seen = dead.map_or(*imprint, |dead| imprint.without(&dead));
@@ -149,12 +150,12 @@ impl Observed {
         }
     }
 
-    /// The size of the matrix.
+    /// Returns the size of the matrix.
     pub(super) fn size(&self) -> (u8, u8) {
         (self.seen.columns(), self.seen.rows())
     }
 
-    /// Visits all places of a box in reading order; none if it does not fit.
+    /// Visits all places of a box in reading order; none if the box does not fit.
     fn each_place(&self, (width, height): (u8, u8), mut visit: impl FnMut(BoxPosition)) {
         let (columns, rows) = self.size();
         let size = (usize::from(width), usize::from(height));
@@ -175,8 +176,8 @@ impl Observed {
         }
     }
 
-    /// A lower bound of the distance of a key of `count` taxels in a place. It grows with neither of the place's two
-    /// numbers.
+    /// Returns a lower bound of the distance of a key of `count` taxels in a place. More taxels inside, active or
+    /// dead, never make it larger.
     fn bound(&self, count: u32, place: BoxPosition) -> u32 {
         let apart = if place.inside > count {
             place.inside - count
@@ -192,15 +193,15 @@ impl Observed {
 /// the most taxels first.
 struct Windows {
     places: Vec<BoxPosition>,
-    /// Words of each.
+    /// The number of words of each window.
     length: usize,
-    /// For each place the taxels inside, as a key would have them, and which of them are not dead.
+    /// The taxels inside each place, in the layout of keys; `living` has those that are not dead.
     bits: Vec<u64>,
     living: Vec<u64>,
 }
 
 impl Windows {
-    /// Those outside of which at most `most` taxels are active.
+    /// Creates the windows outside of which at most `most` taxels are active.
     fn new(observed: &Observed, of: &KeyBox, most: u32) -> Self {
         let mut places = Vec::new();
         observed.each_place((of.width, of.height), |place| {
@@ -208,7 +209,7 @@ impl Windows {
                 places.push(place);
             }
         });
-        // Stable: of equals the first in reading order.
+        // The sort is stable: of equals, the first in reading order comes first.
         places.sort_by_key(|place| Reverse(place.inside));
         let mut bits = vec![0; places.len() * of.length];
         let mut living = vec![u64::MAX; places.len() * of.length];
@@ -228,7 +229,7 @@ impl Windows {
         }
     }
 
-    /// The least distance of a key of `count` taxels in any of them.
+    /// Returns a lower bound of the distance of a key of `count` taxels in any of the windows; None without a window.
     fn bound(&self, observed: &Observed, count: u32) -> Option<u32> {
         let bounds = self.places.iter();
         bounds.map(|&place| observed.bound(count, place)).min()
@@ -288,13 +289,13 @@ impl KeyIndex {
         index
     }
 
-    /// The boxes that keys have, by height and width.
+    /// Returns the boxes that keys have, by height and width.
     pub(super) fn boxes(&self) -> &[KeyBox] {
         &self.boxes
     }
 
-    /// The key and place of the least distance; of equals that whose key has the lowest `rank`, then the first key, then
-    /// the first place in reading order. None if no key fits the matrix.
+    /// Returns the key and place of the least distance; among equals the one whose key has the lowest `rank`, then
+    /// the first key, then the first place in reading order. None if no key fits the matrix.
     pub(super) fn nearest<R: Ord + Send>(
         &self,
         observed: &Observed,
@@ -334,7 +335,7 @@ impl KeyIndex {
         })
     }
 
-    /// The group of the least bound, with its box. None if no key fits the matrix.
+    /// Returns the group of the least bound, with its box. None if no key fits the matrix.
     fn promising(&self, observed: &Observed) -> Option<(&KeyBox, &Group)> {
         let bounds = self.boxes.iter().filter_map(|of| {
             let mut most: Option<BoxPosition> = None;
@@ -368,7 +369,7 @@ impl KeyIndex {
             let mut at = vec![0_u32; BLOCK * width];
             for start in keys.clone().step_by(BLOCK) {
                 let block = start..keys.end.min(start + BLOCK);
-                // A bit for each key that has such a place.
+                // A bit for each key of the block that has a place near enough.
                 let mut found = 0_u64;
                 let count = |key: usize, _: BoxPosition, distance: u32| {
                     found |= 1 << (key - start);
@@ -390,7 +391,7 @@ impl KeyIndex {
         sum.unwrap_or_else(none)
     }
 
-    /// Gives each piece of the groups that may have a distance of at most `most` to `task`, in parallel where there are
+    /// Calls `task` for each piece of the groups that may have a distance of at most `most`, in parallel if there are
     /// many keys, and adds up the results.
     fn over<S: Send>(
         &self,
@@ -425,8 +426,8 @@ impl KeyIndex {
         boxes.reduce_with(&add)
     }
 
-    /// Calls `take` for each of some keys of a group and each window whose distance is at most `most`, with the place
-    /// of the key in this index; its result is the largest distance that still matters.
+    /// Calls `take` for each of some keys of a group and each window whose distance is at most `most`, with the
+    /// number of the key in this index. `take` returns the largest distance that still matters.
     fn compare(
         &self,
         group: &Group,
@@ -452,13 +453,13 @@ impl KeyIndex {
 /// Keys of one group, and the windows that they are compared with.
 struct Comparison<'a, F> {
     keys: Range<usize>,
-    /// Their taxels.
+    /// The taxels of the keys.
     bits: &'a [u64],
-    /// The number of taxels of each.
+    /// The number of taxels of each key.
     count: u32,
     windows: &'a Windows,
     observed: &'a Observed,
-    /// Up to which distance they matter.
+    /// The largest distance that matters.
     most: u32,
     take: F,
 }
@@ -522,7 +523,8 @@ impl<F: FnMut(usize, BoxPosition, u32) -> u32> Comparison<'_, F> {
     }
 }
 
-/// The distance of each key of `N` words (0 for any number) from a window: the taxels that differ inside, and those outside.
+/// Computes the distance of each key of `N` words (0 for any number) from a window: the taxels that differ inside,
+/// and those outside.
 #[expect(
     clippy::inline_always,
     reason = "so that it is compiled for the registers that are there"

@@ -1,8 +1,9 @@
-//! Which sensor tells a set of shapes apart: the limit of one touch as a function of the size of the shapes in cells,
-//! and of the threshold.
+//! Shows which sensor tells a set of shapes apart: the limit of one touch as a function of the size of the shapes in
+//! cells, and of the threshold.
 //!
-//! A scale of 2 makes every length of every shape twice as long in cells, as a sensor with half the pitch does. Each
-//! shape is touched with its centre in one cell and at the angles asked for, on a sensor that cuts nothing off, as in a training.
+//! A scale of 2 makes every length of every shape twice as long in cells, as a sensor with half the pitch does. As in
+//! a training, each shape is touched with its centre in one cell and at the given angles, on a sensor that cuts
+//! nothing off.
 
 use crate::figure::Figure;
 use crate::parameter::number::{share, to_decimals};
@@ -17,10 +18,10 @@ use crate::recognition::training::{LEAST_SIDE, Training, TrainingError};
 use crate::sensor::Sensor;
 use crate::source::Source;
 
-/// Steps into which a search divides the distance between two values of a scan.
+/// The number of steps into which a search divides the distance between two values of a scan.
 const FINER: u8 = 10;
 
-/// What is varied to change the size of the shapes in cells.
+/// The quantity that is varied to change the size of the shapes in cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum SizeAxis {
@@ -31,10 +32,10 @@ pub enum SizeAxis {
 }
 
 impl SizeAxis {
-    /// Both.
+    /// Both axes.
     pub const ALL: [Self; 2] = [Self::Scale, Self::Pitch];
 
-    /// Returns its name in JSON and in tables.
+    /// Returns the name used in JSON and in tables.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Scale => "scale",
@@ -42,7 +43,8 @@ impl SizeAxis {
         }
     }
 
-    /// Returns the values of a range, the smallest size first: of pitches the last one.
+    /// Returns the values of a range, from the smallest size to the largest. Pitches are reversed: the largest pitch
+    /// gives the smallest size.
     pub fn smallest_first(self, values: &DecimalRange) -> Vec<f64> {
         let mut values: Vec<f64> = values.values().collect();
         if self == Self::Pitch {
@@ -51,7 +53,7 @@ impl SizeAxis {
         values
     }
 
-    /// Returns the scale that a value stands for; a value above 0.
+    /// Returns the scale for a value above 0.
     pub fn scale(self, value: f64) -> f64 {
         match self {
             Self::Scale => value,
@@ -124,19 +126,19 @@ impl SeparationPoint {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SmallestSize {
-    /// What was found.
+    /// The point that was found.
     pub point: SeparationPoint,
     /// The step of the search there. 0 if the first value of the scan reaches the error: smaller ones were not tried.
     pub step: f64,
-    /// How many larger sizes of the scan miss the error again.
+    /// The number of larger sizes of the scan that miss the error again.
     pub missed_again: usize,
 }
 
 impl Separation {
-    /// A set in hundredths of a cell and whole degrees, as models are trained.
+    /// Creates a set with positions in hundredths of a cell and whole degrees, as models are trained.
     ///
     /// # Errors
-    /// If a name is missing or given twice, or a weight is 0.
+    /// Returns an error if a name is missing or given twice, or a weight is 0.
     pub fn new(shapes: Vec<NamedShape>) -> Result<Self, TrainingError> {
         check_shapes(&shapes)?;
         Ok(Self {
@@ -146,21 +148,21 @@ impl Separation {
         })
     }
 
-    /// Touches at these positions of a cell in each direction.
+    /// Sets the number of positions of a cell in each direction.
     #[must_use]
     pub fn positions(mut self, positions: CellPositions) -> Self {
         self.positions = positions;
         self
     }
 
-    /// Touches at these angles.
+    /// Sets the angles.
     #[must_use]
     pub fn angles(mut self, angles: DecimalRange) -> Self {
         self.angles = angles;
         self
     }
 
-    /// Returns the number of touches of one point, for progress.
+    /// Returns the number of touches of one point, for reports of progress.
     pub fn touches(&self) -> u64 {
         let cell = u64::from(self.positions.get()).pow(2);
         cell * self.angles.count() * self.shapes.len() as u64
@@ -169,8 +171,8 @@ impl Separation {
     /// Returns the training for a scale and a threshold.
     ///
     /// # Errors
-    /// [`TrainingError::Large`] for shapes that do not fit on the largest sensor, [`TrainingError::Grid`] for values out
-    /// of range.
+    /// Returns [`TrainingError::Large`] for shapes that do not fit on the largest sensor, or [`TrainingError::Grid`]
+    /// for values out of range.
     pub fn training(&self, scale: f64, threshold: f64) -> Result<Training<'static>, TrainingError> {
         let refused = |name: &str, error| TrainingError::Grid {
             name: name.to_owned(),
@@ -213,8 +215,8 @@ impl Separation {
         Ok(Training::of_grids(scaled, grids))
     }
 
-    /// A shape with every length multiplied, and its angles and zooms: a picture is zoomed. None if it is too large for any
-    /// sensor.
+    /// Multiplies every length of a shape; a picture is zoomed instead. Returns the shape with its angles and zooms,
+    /// or None if it is too large for any sensor.
     fn scaled(
         &self,
         source: &Source,
@@ -236,7 +238,7 @@ impl Separation {
                     if zoom > f64::from(Sensor::LARGEST.side()) {
                         return Ok(None);
                     }
-                    // The error of a zoom out of range names it.
+                    // If the zoom is out of range, the error names it.
                     Sensor::LARGEST.check(axis.parameter(), zoom)?;
                     let rounded = DecimalRange::rounded(zoom, 9);
                     given[axis] = Some(rounded.ok_or(GridError::Digits { value: zoom })?);
@@ -250,7 +252,7 @@ impl Separation {
     /// Returns the limit for one value and one threshold. `progress` is called as by [`Training::progress`].
     ///
     /// # Errors
-    /// Those of [`Self::training`]; [`TrainingError::Stopped`].
+    /// Returns the errors of [`Self::training`], or [`TrainingError::Stopped`].
     pub fn at(
         &self,
         axis: SizeAxis,
@@ -262,11 +264,11 @@ impl Separation {
         Ok(point)
     }
 
-    /// Returns the same with the model that it was counted from and the evaluation of that model. The model has the
-    /// zooms of its first shape only, so it stays in the crate.
+    /// Returns the same as [`Self::at`], with the model that was counted and its evaluation. The model has the zooms
+    /// of its first shape only, so it stays in the crate.
     ///
     /// # Errors
-    /// Those of [`Self::at`].
+    /// Returns the errors of [`Self::at`].
     pub(crate) fn model_at(
         &self,
         axis: SizeAxis,
@@ -292,10 +294,10 @@ impl Separation {
         Ok((point, model, limit))
     }
 
-    /// Returns the limit for every value of a range, the smallest size first: of pitches the last one.
+    /// Returns the limit for every value of a range, in the order of [`SizeAxis::smallest_first`].
     ///
     /// # Errors
-    /// Those of [`Self::at`].
+    /// Returns the errors of [`Self::at`].
     pub fn scan(
         &self,
         axis: SizeAxis,
@@ -317,7 +319,7 @@ impl Separation {
     /// were tried, it may reach the wanted error unnoticed. So this is the smallest size *of those that were tried*.
     ///
     /// # Errors
-    /// Those of [`Self::at`].
+    /// Returns the errors of [`Self::at`].
     pub fn smallest(
         &self,
         axis: SizeAxis,
@@ -351,7 +353,7 @@ impl Separation {
     }
 }
 
-/// A figure with every length multiplied; None if one is longer than the largest sensor.
+/// Multiplies every length of a figure; None if one becomes longer than the side of the largest sensor.
 fn enlarged(figure: &Figure, scale: f64) -> Result<Option<Figure>, GridError> {
     let sensor = Sensor::LARGEST;
     let mut scaled = *figure;
@@ -385,7 +387,7 @@ mod tests {
             .angles("0:355:5".parse().expect("a range"))
     }
 
-    /// Sizes changed by hand, trained as any other set: the same touches and keys.
+    /// Shapes that are enlarged by hand and trained like any other set give the same touches and keys.
     #[test]
     fn a_point_is_a_training_of_larger_shapes() {
         let bar = |length: f64, width: f64| Figure::rectangle(length, width).on(&Sensor::LARGEST);
@@ -426,7 +428,7 @@ mod tests {
 
     /// 7.5 cells of reach leave room for one cell of positions on 16 × 16, from 7.5 on.
     #[test]
-    fn the_size_that_is_given_is_a_training_of_the_set_itself() {
+    fn scale_1_is_a_training_of_the_set_itself() {
         let figure = |figure: crate::figure::FigureBuilder| figure.on(&Sensor::LARGEST);
         let shapes = vec![
             NamedShape::new("disc", figure(Figure::ellipse(7.5, 7.5)).expect("in range")),
@@ -503,7 +505,7 @@ mod tests {
         let found = found.expect("not stopped").expect("it is reached");
         assert_eq!(found.step, 0.02);
         assert!(found.point.error() <= wanted);
-        // The same by trying every one.
+        // Trying every size gives the same result.
         let fine = scan("0.5:1.7:0.02");
         let first = fine.iter().find(|point| {
             let coarse = points.iter().find(|other| other.error() <= wanted);
@@ -531,7 +533,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_that_is_just_allowed_is_small_enough_and_not_missed() {
+    fn an_error_equal_to_the_wanted_one_is_small_enough() {
         let point = |value: f64, right: u128| SeparationPoint {
             value,
             scale: value,

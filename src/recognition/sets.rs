@@ -63,10 +63,10 @@ impl CellPositions {
     /// Tenths of a cell.
     pub const COARSE: Self = Self(10);
 
-    /// That many positions.
+    /// Creates a number of positions.
     ///
     /// # Errors
-    /// [`GridStepsError::Positions`] if it is not a divisor of 100.
+    /// Returns [`GridStepsError::Positions`] if it is not a divisor of 100.
     pub fn new(count: u8) -> Result<Self, GridStepsError> {
         if count > 0 && 100_u8.is_multiple_of(count) {
             Ok(Self(count))
@@ -75,12 +75,12 @@ impl CellPositions {
         }
     }
 
-    /// Returns their number.
+    /// Returns the number of positions.
     pub fn get(self) -> u8 {
         self.0
     }
 
-    /// Returns the hundredths from one to the next.
+    /// Returns the distance between two positions, in hundredths of a cell.
     pub(crate) fn step(self) -> u32 {
         100 / u32::from(self.0)
     }
@@ -93,20 +93,20 @@ pub struct GridSteps {
     degrees: u16,
 }
 
-/// Why there is no grid in these steps.
+/// The error for steps that do not make a grid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GridStepsError {
     /// Steps of a cell that are not whole hundredths.
     #[error("{found} positions in a cell: expected a divisor of 100")]
     Positions {
-        /// What was given.
+        /// The given number of positions.
         found: u8,
     },
     /// A step of the angle that does not divide 360.
     #[error("steps of {found} degrees: expected a divisor of 360")]
     Degrees {
-        /// What was given.
+        /// The given step, in degrees.
         found: u16,
     },
 }
@@ -124,11 +124,11 @@ impl GridSteps {
         degrees: 2,
     };
 
-    /// This many positions of a cell in each direction, a divisor of 100, and degrees from one angle to the next, a
-    /// divisor of 360.
+    /// Creates steps from the number of positions of a cell in each direction, a divisor of 100, and the degrees from
+    /// one angle to the next, a divisor of 360.
     ///
     /// # Errors
-    /// If one is not a divisor.
+    /// Returns an error if one is not a divisor.
     pub fn new(positions: u8, degrees: u16) -> Result<Self, GridStepsError> {
         let positions = CellPositions::new(positions)?;
         if degrees == 0 || !360_u16.is_multiple_of(degrees) {
@@ -147,7 +147,7 @@ impl GridSteps {
         self.degrees
     }
 
-    /// Returns all angles.
+    /// Returns the range of all angles.
     fn angles(self) -> DecimalRange {
         let count = u64::from(360 / self.degrees);
         DecimalRange::from_units(0, self.degrees.into(), 0, count)
@@ -155,11 +155,11 @@ impl GridSteps {
 }
 
 impl Training<'_> {
-    /// A training on the smallest square sensor, at least 16 × 16, that cuts off none of the shapes in any of the poses:
-    /// one cell of positions around its middle, all angles.
+    /// Creates a training on the smallest square sensor, at least 16 × 16, that cuts off none of the shapes in any of
+    /// the poses: one cell of positions around its middle, all angles.
     ///
     /// # Errors
-    /// [`TrainingError::Large`] if no sensor is large enough, and those of [`Training::new`].
+    /// Returns [`TrainingError::Large`] if no sensor is large enough, or the errors of [`Training::new`].
     pub fn fitting(shapes: Vec<NamedShape>, steps: GridSteps) -> Result<Self, TrainingError> {
         let mut given = GivenRanges::default();
         given[Axis::Angle] = Some(steps.angles());
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_that_would_be_another_grid_are_refused() {
+    fn steps_that_are_not_divisors_are_refused() {
         let error = |positions, degrees| {
             let steps = GridSteps::new(positions, degrees);
             steps.map_err(|error| error.to_string())
@@ -230,10 +230,10 @@ mod tests {
         assert_eq!(steps.angles().to_string(), "0");
     }
 
-    /// On 16 × 16, the centre of a disc of radius 7.5 can move by a whole cell, that of one of radius 7.7 by 0.6 cells, and
-    /// that of one of radius 8 not at all.
+    /// On 16 × 16, the centre of a disc can move by a whole cell if its radius is 7.5, by 0.6 cells if it is 7.7, and
+    /// not at all if it is 8.
     #[test]
-    fn the_sensor_holds_the_positions_that_are_taken_and_no_others() {
+    fn the_sensor_is_just_large_enough_for_the_positions() {
         let fit = |radius: f64, positions| {
             let disc = Figure::ellipse(radius, radius).on(&Sensor::LARGEST);
             let shapes = vec![NamedShape::new("disc", disc.expect("in range"))];

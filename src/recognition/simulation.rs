@@ -1,4 +1,5 @@
-//! Simulates what cannot be counted: how often noisy touches are named right, and how many touches it takes.
+//! Simulates touches to estimate what cannot be counted: how often noisy touches are named right, and how many
+//! touches are needed to name a shape.
 //!
 //! Random touches are the same for the same seed on every machine and for any number of threads. Every mean has its
 //! standard error.
@@ -17,8 +18,8 @@ use crate::recognition::noise::Noise;
 use crate::recognition::scan::shift_count;
 use crate::sensor::Sensor;
 
-/// How often noisy touches are named right. The same number of touches is drawn for each shape; in shares and means,
-/// each touch counts with the weight of its shape.
+/// The rate at which noisy touches are named right. The same number of touches is drawn for each shape; in shares and
+/// means, each touch counts with the weight of its shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct RecognitionRate {
@@ -26,7 +27,7 @@ pub struct RecognitionRate {
     pub touches: u64,
     /// Touches that were named right.
     pub right: u64,
-    /// Touches that left an imprint that some shape leaves without noise, too.
+    /// Touches whose imprint some shape also leaves without noise.
     pub held: u64,
     accuracy: f64,
     standard_error: f64,
@@ -40,8 +41,8 @@ impl RecognitionRate {
         self.accuracy
     }
 
-    /// Returns the standard error of [`Self::accuracy`]. How many touches each shape has is fixed, so only what varies
-    /// among the touches of one shape counts, not how the shapes differ from each other.
+    /// Returns the standard error of [`Self::accuracy`]. The number of touches of each shape is fixed, so only the
+    /// variation among the touches of one shape counts, not the differences between shapes.
     pub fn standard_error(&self) -> f64 {
         self.standard_error
     }
@@ -56,7 +57,7 @@ impl RecognitionRate {
         self.held_share
     }
 
-    /// The rate of all shapes, each with its weight.
+    /// Returns the rate of all shapes, each with its weight.
     fn of(shapes: &[(u32, ShapeRate)]) -> Self {
         let sum = |of: fn(&ShapeRate) -> u64| shapes.iter().map(|(_, own)| of(own)).sum();
         let weighted = |of: fn(&ShapeRate) -> u64| -> u128 {
@@ -84,14 +85,14 @@ impl RecognitionRate {
     }
 }
 
-/// The result of a touch: whether the model holds its imprint, and the shape that it was named as, with the
-/// probability; None if it got no name.
+/// The result of a touch: whether the model holds its imprint, and the name that it got (the shape and its
+/// probability), if any.
 pub(super) struct Judgement {
     pub(super) is_held: bool,
     pub(super) named: Option<(usize, f64)>,
 }
 
-/// How often the touches of one shape are named right.
+/// The counts of the touches of one shape.
 #[derive(Clone, Copy, Default)]
 struct ShapeRate {
     touches: u64,
@@ -111,7 +112,7 @@ impl ShapeRate {
         self.claimed += judged.named.map_or(0.0, |(_, probability)| probability);
     }
 
-    /// Counts touches of the same shape.
+    /// Adds the counts of more touches of the same shape.
     fn add(&mut self, more: Self) {
         self.touches += more.touches;
         self.right += more.right;
@@ -119,22 +120,23 @@ impl ShapeRate {
         self.claimed += more.claimed;
     }
 
-    /// The variance of the number of touches that are named right, which is binomial.
+    /// Returns the variance of the number of touches that are named right, which is binomial.
     fn variance(&self) -> f64 {
         let wrong = self.touches - self.right;
         float(self.right) * float(wrong) / float(self.touches.max(1))
     }
 }
 
-/// How many touches of a shape it takes until it, or another one, is as probable as wanted.
+/// The number of touches of a shape until some shape, right or wrong, is as probable as wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TouchesUntil {
-    /// The mean; None if a run did not reach it, since it is not known how many touches that run would take.
+    /// The mean; None if a run did not reach the probability, since it is unknown how many touches that run would
+    /// take.
     pub mean: Option<f64>,
-    /// Its standard error; None for fewer than two runs, too.
+    /// The standard error of the mean; also None for fewer than two runs.
     pub standard_error: Option<f64>,
-    /// Runs that reached it within [`MOST_TOUCHES`].
+    /// Runs that reached the probability within [`MOST_TOUCHES`].
     pub reached: u64,
     /// Runs in all.
     pub runs: u64,
@@ -142,26 +144,27 @@ pub struct TouchesUntil {
     pub right: u64,
 }
 
-/// A run that takes more touches is abandoned: shapes that leave the same imprints can never be told apart.
+/// The largest number of touches of a run. Longer runs are abandoned: shapes that leave the same imprints can never
+/// be told apart.
 pub const MOST_TOUCHES: u32 = 10_000;
 
-/// A generator for one of many tasks, so that no task waits for another.
+/// Creates a random generator for one of many tasks, so that no task waits for another.
 fn generator(seed: u64, task: u64) -> Pcg64 {
     Pcg64::seed_from_u64(seed ^ task.wrapping_mul(0x9e37_79b9_7f4a_7c15))
 }
 
-/// A number from 0 to below `end`, each as likely as any other to within 2⁻⁶⁴.
+/// Draws a number from 0 to below `end`, each as likely as any other to within 2⁻⁶⁴.
 pub(crate) fn below(random: &mut Pcg64, end: u64) -> u64 {
     let product = u128::from(random.next_u64()) * u128::from(end);
     u64::try_from(product >> 64).expect("below `end`")
 }
 
-/// A number from 0 to below 1, in steps of 2⁻⁵³.
+/// Draws a number from 0 to below 1, in steps of 2⁻⁵³.
 fn unit(random: &mut Pcg64) -> f64 {
     float(random.next_u64() >> 11) / float(1 << 53)
 }
 
-/// Draws that many different taxels of a matrix; all of them if there are no more.
+/// Draws `count` different taxels of a matrix; all taxels if it has no more.
 fn random_taxels((columns, rows): (u8, u8), count: u32, random: &mut Pcg64) -> Imprint {
     let mut taxels = Imprint::empty(columns, rows);
     let cells = u32::from(columns) * u32::from(rows);
@@ -189,8 +192,8 @@ pub struct NoisyTouches {
 }
 
 impl NoisyTouches {
-    /// Draws `per_shape` touches of each shape on a sensor, of which only the columns and rows count. Taxels flip as `noise`
-    /// says, and its dead taxels always read as inactive.
+    /// Describes `per_shape` touches of each shape on a sensor, of which only the columns and rows count. Taxels flip
+    /// as `noise` says, and its dead taxels always read as inactive.
     pub fn new(sensor: &Sensor, noise: Noise, per_shape: u64, seed: u64) -> Self {
         Self {
             size: (sensor.columns(), sensor.rows()),
@@ -201,9 +204,9 @@ impl NoisyTouches {
         }
     }
 
-    /// The same with that many additional dead taxels. They are drawn anew for each touch, and the classifier knows
-    /// which they are. So touches are independent, and the standard error includes how much sensors with different dead
-    /// taxels differ. The same seed draws the same dead taxels whatever the noise.
+    /// Returns the same touches with `count` additional dead taxels. They are drawn anew for each touch, and the
+    /// classifier knows which they are. So touches are independent, and the standard error includes how much sensors
+    /// with different dead taxels differ. The same seed draws the same dead taxels for any noise.
     #[must_use]
     pub fn with_random_dead(self, count: u32) -> Self {
         let random_dead = count;
@@ -214,15 +217,15 @@ impl NoisyTouches {
     }
 }
 
-/// Draws touches of one shape.
+/// A distribution from which touches of one shape are drawn.
 #[derive(Clone, Default)]
 pub(super) struct Draw {
-    /// For each key: the number of touches up to and including it, and the number of the key.
+    /// For each key: the number of touches up to and including this key, and the number of the key.
     sums: Vec<(u64, usize)>,
 }
 
 impl Draw {
-    /// Touches of each shape of a model, each key as often as `times` says.
+    /// Creates the distribution of each shape of a model; a pose with a key counts as `times` touches.
     pub(super) fn all(model: &Model, times: impl Fn(usize) -> u64) -> Vec<Self> {
         let mut draws = vec![Self::default(); model.shapes().len()];
         for key in 0..model.keys().len() {
@@ -235,7 +238,7 @@ impl Draw {
         draws
     }
 
-    /// Draws the number of a key; None if there is no touch.
+    /// Draws the number of a key; None if the shape has no touch.
     pub(super) fn key(&self, random: &mut Pcg64) -> Option<usize> {
         let &(end, _) = self.sums.last().filter(|(sum, _)| *sum > 0)?;
         let touch = below(random, end);
@@ -245,15 +248,15 @@ impl Draw {
 }
 
 impl Model {
-    /// Draws touches of each shape, names the shape of each as `assumed` says, and counts. The dead taxels of `assumed` are
-    /// left out, and so are those that are drawn for each touch.
+    /// Draws touches of each shape, names the shape of each as the noise `assumed` says, and counts. The dead taxels
+    /// of `assumed` are left out, and so are those drawn for each touch.
     ///
-    /// An imprint lies in any place on the sensor of the touches where all of it fits. Those that fit nowhere are not drawn:
-    /// the rate is that of the others ([`Self::poses_too_large`] counts them), and a shape none of whose imprints fits has no
-    /// touches.
+    /// Each imprint is put in a random place on the sensor of the touches where all of it fits. Imprints that fit
+    /// nowhere are not drawn ([`Self::poses_too_large`] counts them): the rate is that of the others. A shape none of
+    /// whose imprints fits has no touches.
     ///
-    /// `progress` is called with the number of touches done since the last call, and stops it by returning `false`; then
-    /// there is no result. There is none without any touch either.
+    /// `progress` is called with the number of touches done since the last call, and stops the simulation by
+    /// returning `false`. Returns None if it was stopped, or if there is no touch.
     ///
     /// ```
     /// use taxel::recognition::{GridSteps, Noise, NoisyTouches, Training, equal_figures};
@@ -287,8 +290,8 @@ impl Model {
         self.simulated(touches, progress, &judge)
     }
 
-    /// Draws touches as [`Self::recognition_rate`] does; `judge` names the shape of each, and is given the dead taxels that
-    /// were drawn for it.
+    /// Draws touches as [`Self::recognition_rate`] does. `judge` names the shape of each touch, given the dead taxels
+    /// that were drawn for it.
     pub(super) fn simulated(
         &self,
         touches: &NoisyTouches,
@@ -312,7 +315,7 @@ impl Model {
         let rate = |(shape, chunk): (usize, u64)| {
             let number = crate::index::index(chunk) * draws.len() + shape;
             let mut random = generator(touches.seed, number as u64);
-            // From the last task down: independent of all touches, and the same for any noise.
+            // Tasks are numbered from the last one down: independent of all touches, and the same for any noise.
             let mut random_of_dead = generator(touches.seed, !(number as u64));
             let mut rate = ShapeRate::default();
             for _ in 0..CHUNK.min(per_shape - chunk * CHUNK) {
@@ -338,7 +341,7 @@ impl Model {
                 break;
             }
             let counted: Vec<ShapeRate> = held.par_iter().map(|&task| rate(task)).collect();
-            // In their order, so that the sums have the same digits for any number of threads.
+            // In order, so that the sums have the same digits for any number of threads.
             for ((shape, _), counted) in held.into_iter().zip(counted) {
                 rates[shape].add(counted);
             }
@@ -349,7 +352,7 @@ impl Model {
         (!stopped.into_inner() && rate.touches > 0).then_some(rate)
     }
 
-    /// A key in a random place, with random flips.
+    /// Returns the imprint of a key in a random place, with random flips.
     fn touch_of(&self, key: usize, touches: &NoisyTouches, random: &mut Pcg64) -> Imprint {
         let ((columns, rows), noise) = (touches.size, &touches.noise);
         let key = self.keys().get(key);
@@ -371,9 +374,9 @@ impl Model {
         noise.dead().map_or(touch, |dead| touch.without(dead))
     }
 
-    /// Draws touches of each shape until some shape is as probable as `until` (0 to 1), `runs` times, and gives the number of
-    /// touches for each shape, in the order of the set. None if `progress` stopped it. No run reaches more than 1 or NaN;
-    /// every run reaches 0 or less with its first touch.
+    /// Draws touches of each shape until some shape is as probable as `until` (0 to 1), `runs` times, and returns the
+    /// number of touches for each shape, in the order of the set. None if `progress` stopped it. If `until` is above
+    /// 1 or NaN, no run reaches it; if it is 0 or less, every run reaches it with its first touch.
     pub fn touches_until(
         &self,
         until: f64,
@@ -406,7 +409,8 @@ impl Model {
         (!stopped.into_inner()).then_some(results)
     }
 
-    /// The number of touches of one run, and whether it ended with the right shape. None if the run was abandoned.
+    /// Returns the number of touches of one run, and whether it ended with the right shape. None if the run was
+    /// abandoned.
     fn run_until(
         &self,
         until: f64,
@@ -414,7 +418,7 @@ impl Model {
         shape: usize,
         random: &mut Pcg64,
     ) -> Option<(u32, bool)> {
-        // ln(w Π n), −∞ of shapes that do not leave one of the keys.
+        // ln(w Π n); −∞ for shapes that do not leave all of the keys.
         let mut logarithms = self.log_weights();
         for touches in 1..=MOST_TOUCHES {
             add_log_counts(&mut logarithms, self.counts(draw.key(random)?));
@@ -428,7 +432,8 @@ impl Model {
     }
 }
 
-/// Mean and standard error of runs. Leaving out abandoned runs would make the mean too small.
+/// Returns the mean and standard error of runs. Both are None if a run was abandoned: without it, the mean would be too
+/// small.
 fn summary(runs: u64, lengths: &[Option<(u32, bool)>]) -> TouchesUntil {
     let own: Vec<f64> = lengths
         .iter()
@@ -458,7 +463,7 @@ mod tests {
     use crate::recognition::{NamedShape, Training};
 
     #[test]
-    fn more_taxels_than_there_are_is_all_of_them() {
+    fn drawing_more_taxels_than_there_are_draws_all() {
         let mut random = generator(0, 0);
         let taxels = random_taxels((64, 64), 5000, &mut random);
         assert_eq!(taxels.count(), 64 * 64);
@@ -492,7 +497,7 @@ mod tests {
 
     /// Otherwise the first touches of a simulation would depend on which taxels are dead.
     #[test]
-    fn dead_taxels_are_not_drawn_with_the_numbers_of_touches() {
+    fn dead_taxels_are_drawn_from_random_numbers_of_their_own() {
         for seed in 0..4 {
             let mut random = generator(seed, 0);
             let side = || below(&mut random, 64);
@@ -506,7 +511,7 @@ mod tests {
         }
     }
 
-    /// On a matrix as large as the shapes, one taxel tells them apart. Where it is dead, the first is named.
+    /// On a matrix as large as the shapes, one taxel tells them apart. If it is dead, the first shape is named.
     #[test]
     fn the_standard_error_includes_which_taxels_are_dead() {
         let sensor = Sensor::new(5, 1).expect("in range");
@@ -538,7 +543,7 @@ mod tests {
         assert!((found / claimed - 1.0).abs() < 0.3, "{found} {claimed}");
     }
 
-    /// The bar leaves 5 taxels, or 6 where it lies between two.
+    /// The imprint of the bar is 5 taxels long, or 6 if the bar lies between taxels.
     #[test]
     fn touches_that_fit_nowhere_are_left_out_and_counted() {
         let sensor = Sensor::default();
@@ -562,7 +567,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_was_given_up_leaves_no_mean() {
+    fn an_abandoned_run_leaves_no_mean() {
         let known = summary(2, &[Some((2, true)), Some((4, true))]);
         assert_eq!((known.mean, known.standard_error), (Some(3.0), Some(1.0)));
         let unknown = summary(3, &[Some((2, true)), None, Some((4, true))]);
@@ -570,9 +575,9 @@ mod tests {
         assert_eq!((unknown.reached, unknown.runs), (2, 3));
     }
 
-    /// Two names of one shape are as probable after every touch.
+    /// Two names of one shape are equally probable after every touch.
     #[test]
-    fn of_equals_the_first_is_named_after_several_touches_too() {
+    fn the_first_of_equals_is_named_after_several_touches_too() {
         let sensor = Sensor::default();
         let bar = Figure::rectangle(4.0, 2.0).on(&sensor).expect("in range");
         let shapes = ["one", "other"].map(|name| NamedShape::new(name, bar));
@@ -581,7 +586,7 @@ mod tests {
         let touches = model.touches_until(0.4, 10, 0, &|_| true);
         let right = touches.map(|own| own.iter().map(|own| own.right).collect());
         assert_eq!(right, Some(vec![10, 0]));
-        // Each is exactly as probable as that.
+        // Each has exactly this probability.
         let half = model.touches_until(0.5, 2, 0, &|_| true);
         let means = half.map(|own| own.iter().map(|own| own.mean).collect());
         assert_eq!(means, Some(vec![Some(1.0), Some(1.0)]));

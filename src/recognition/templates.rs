@@ -6,7 +6,7 @@ use crate::recognition::model::Model;
 /// The most frequent imprints of each shape.
 pub(super) struct Templates(Vec<Vec<Template>>);
 
-/// An imprint, and how many of its taxels lie above each row and left of each column. The imprint of nothing has no rows.
+/// An imprint, and how many of its taxels lie above each row and left of each column. An empty imprint has no rows.
 struct Template {
     words: Vec<u64>,
     above: Vec<u32>,
@@ -33,7 +33,8 @@ impl Templates {
         Self(all.into_iter().map(templates).collect())
     }
 
-    /// The least number of taxels that differ, over all templates of a shape and all their shifts.
+    /// Returns, for each shape, the least number of taxels that differ from a key, over all templates of the shape
+    /// and all their shifts.
     pub(super) fn scores(&self, model: &Model, key: usize) -> Vec<f64> {
         let touch = Template::of(model.keys().imprint(key).as_ref());
         let own = |templates: &Vec<Template>| {
@@ -68,11 +69,11 @@ impl Template {
         self.above[self.words.len()]
     }
 
-    /// The least number of taxels in which two imprints differ, over all shifts of one against the other; `most` if it is
-    /// not below that.
+    /// Returns the least number of taxels in which two imprints differ, over all shifts of one against the other;
+    /// `most` if it is not below that.
     fn distance(&self, other: &Self, most: u32) -> u32 {
         let sum = self.count() + other.count();
-        // A shift counts if it has more taxels in common than these. Its rows and columns alone rule out most.
+        // Only shifts at which more taxels than this coincide matter. Rows and columns alone rule out most shifts.
         let mut shared = sum.saturating_sub(most) / 2;
         let mut least = most.min(sum);
         for down in shifts(&self.above, &other.above) {
@@ -109,18 +110,18 @@ fn sums_before(values: impl Iterator<Item = u32>) -> Vec<u32> {
     std::iter::once(0).chain(after).collect()
 }
 
-/// The shifts at which rows, or columns, of two imprints meet.
+/// Returns the shifts at which rows, or columns, of two imprints meet.
 fn shifts(own: &[u32], other: &[u32]) -> std::ops::Range<isize> {
     2 - other.len().cast_signed()..own.len().cast_signed() - 1
 }
 
-/// The first rows, or columns, of the two imprints that meet at a shift.
+/// Returns the first rows, or columns, of the two imprints that meet at a shift.
 fn starts(shift: isize) -> (usize, usize) {
     let start = |shift: isize| shift.max(0).unsigned_abs();
     (start(shift), start(-shift))
 }
 
-/// The most taxels that two imprints can have in common at a shift, by the rows or columns that meet there.
+/// Returns the most taxels that two imprints can have in common at a shift, by the rows or columns that meet there.
 fn in_common(own: &[u32], other: &[u32], shift: isize) -> u32 {
     let (first, skipped) = starts(shift);
     let length = (own.len() - first).min(other.len() - skipped) - 1;
@@ -147,7 +148,7 @@ mod tests {
             );
             assert_eq!(one.distance(&other, u32::MAX), expected);
             assert_eq!(other.distance(&one, u32::MAX), expected);
-            // Never more than the given bound.
+            // The result never exceeds the given bound.
             assert_eq!(one.distance(&other, expected + 1), expected);
             assert_eq!(one.distance(&other, expected), expected);
             assert_eq!(one.distance(&other, 0), 0);
@@ -158,7 +159,7 @@ mod tests {
         assert_eq!(nothing.distance(&nothing, 9), 0);
     }
 
-    /// Against all shifts one by one, each taxel by itself.
+    /// Compares with all shifts one by one, taxel by taxel.
     #[test]
     fn no_shift_is_missed() {
         let mut word = 0x9E37_79B9_7F4A_7C15_u64;

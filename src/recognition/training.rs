@@ -13,7 +13,7 @@ use crate::recognition::model::{
 use crate::sensor::Sensor;
 use crate::sweep::{CountedImprints, Shard, Sweep};
 
-/// The smallest side of a sensor that a training chooses by itself: that of the paper's sensor.
+/// The smallest side of a sensor that a training chooses by itself: the side of the paper's sensor.
 pub const LEAST_SIDE: u8 = 16;
 
 /// A training to run: shapes, a sensor and the poses in which each shape touches it.
@@ -56,7 +56,7 @@ impl fmt::Debug for Training<'_> {
     }
 }
 
-/// Why there is no model.
+/// The error of a training.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrainingError {
@@ -66,9 +66,9 @@ pub enum TrainingError {
     /// A shape that cannot be touched in these poses.
     #[error("{name}: {error}")]
     Grid {
-        /// The shape.
+        /// The name of the shape.
         name: String,
-        /// Why.
+        /// The problem with its poses.
         error: GridError,
     },
     /// Poses that the sensor cuts off, so that imprints depend on its rim.
@@ -77,33 +77,33 @@ pub enum TrainingError {
         grouped(*cut), grouped(*poses)
     )]
     Cut {
-        /// The first shape with such poses.
+        /// The name of the first shape with such poses.
         name: String,
         /// Columns of the sensor.
         columns: u8,
         /// Rows of the sensor.
         rows: u8,
-        /// How many poses are cut.
+        /// The number of poses that are cut off.
         cut: u64,
-        /// How many poses there are.
+        /// The number of poses of the shape.
         poses: u64,
     },
     /// Shapes that no sensor holds in every angle.
     #[error("the shapes do not fit on 64 × 64 taxels in every angle")]
     Large,
-    /// Half a step has too many decimals.
+    /// A grid of which half a step has too many decimals.
     #[error("half a step of this grid has more decimals than a range can have")]
     Steps,
-    /// It was stopped.
+    /// The training was stopped.
     #[error("stopped before the end")]
     Stopped,
 }
 
 impl<'a> Training<'a> {
-    /// A training over a whole grid of poses, the same for each shape.
+    /// Creates a training over a whole grid of poses, the same for each shape.
     ///
     /// # Errors
-    /// If a name is missing or given twice, a weight is 0, or a pose is out of range for a shape.
+    /// Returns an error if a name is missing or given twice, a weight is 0, or a pose is out of range for a shape.
     pub fn new(
         shapes: impl IntoIterator<Item = NamedShape>,
         sensor: Sensor,
@@ -129,8 +129,8 @@ impl<'a> Training<'a> {
         })
     }
 
-    /// A training in which each shape has its own grid, all with the same number of poses. Its model has the sensor and
-    /// the poses of the first.
+    /// Creates a training in which each shape has its own grid, all with the same number of poses. Its model has the
+    /// sensor and the poses of the first grid.
     pub(super) fn of_grids(shapes: Vec<NamedShape>, grids: Vec<PoseGrid>) -> Self {
         Self {
             grids,
@@ -163,7 +163,7 @@ impl<'a> Training<'a> {
         self
     }
 
-    /// Returns the number of poses of all shapes together in its shard.
+    /// Returns the number of poses of all shapes together in this shard.
     pub fn poses(&self) -> u64 {
         let rows = |grid: &PoseGrid| self.shard.rows(grid.rows());
         let own = self.grids.iter();
@@ -184,7 +184,8 @@ impl<'a> Training<'a> {
     /// Runs the training.
     ///
     /// # Errors
-    /// [`TrainingError::Cut`] if the sensor cuts off a pose and that is not allowed; [`TrainingError::Stopped`].
+    /// Returns [`TrainingError::Cut`] if the sensor cuts off a pose and that is not allowed, or
+    /// [`TrainingError::Stopped`].
     pub fn run(self) -> Result<Model, TrainingError> {
         let mut gathered = Gathered::default();
         let mut cut = Vec::new();
@@ -218,7 +219,7 @@ impl<'a> Training<'a> {
     }
 }
 
-/// The keys of imprints, and in how many poses each occurs.
+/// Returns the keys of imprints, and in how many poses each occurs.
 fn keys_of(counted: &CountedImprints) -> (KeyTable, Vec<u64>) {
     const CHUNK: usize = 4096;
     let chunks: Vec<Vec<(ImprintKey, u64)>> = (0..counted.len().div_ceil(CHUNK))
