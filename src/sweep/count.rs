@@ -12,7 +12,7 @@ pub struct CountedImprints {
     counter: ImprintCounter,
     /// Number of poses.
     pub poses: u64,
-    /// Number of these that reach beyond the sensor.
+    /// The number of poses that reach beyond the sensor.
     pub partly_off: u64,
 }
 
@@ -22,15 +22,15 @@ impl CountedImprints {
         self.counter.len()
     }
 
-    /// Whether there is none.
+    /// Returns true if there is no imprint.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Returns an imprint, counted from 0, and in how many poses it occurs.
+    /// Returns an imprint, counted from 0, and the number of poses in which it occurs.
     ///
     /// # Panics
-    /// If there are not that many.
+    /// Panics if there are not that many imprints.
     pub fn get(&self, index: usize) -> (Imprint, u64) {
         let imprint = self.layout.imprint(self.counter.key(index));
         (imprint, self.counter.tallies()[index].count)
@@ -42,21 +42,21 @@ impl CountedImprints {
     }
 }
 
-/// Neighbouring poses of one row that leave the same imprint.
+/// A run of neighbouring poses of one row that leave the same imprint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct PoseRun {
-    /// The number of the first of them in the grid.
+    /// The number of the first pose in the grid.
     pub first: u64,
-    /// How many there are.
+    /// The number of poses.
     pub poses: u64,
-    /// How many orientations show the same because of symmetry, including this one; the numbers of the others are not
-    /// given.
+    /// The number of orientations that show the same because of symmetry, including this one; the numbers of the
+    /// others are not given.
     pub orientations: u64,
 }
 
 impl Sweep<'_> {
-    /// Counts the imprints without describing them. `rows` is not called. None if it was stopped.
+    /// Counts the imprints without describing them. Does not call `rows`. Returns None if the sweep was stopped.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -100,9 +100,9 @@ impl Sweep<'_> {
         complete.then_some(counted)
     }
 
-    /// Finds the poses whose imprint satisfies `wanted`. None if it was stopped.
+    /// Finds the poses whose imprint satisfies `wanted`. Returns None if the sweep was stopped.
     ///
-    /// They come in an order that does not depend on the number of threads.
+    /// The order of the runs does not depend on the number of threads.
     pub fn poses_where(self, wanted: &(dyn Fn(&Imprint) -> bool + Sync)) -> Option<Vec<PoseRun>> {
         let (width, height) = (self.grid.row_length(), self.grid.rows_per_orientation());
         let sensor = self.grid.sensor();

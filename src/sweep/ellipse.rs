@@ -1,12 +1,13 @@
 //! Spans of ellipses, solid or with one ellipse as their hole, row by row of the grid.
 //!
-//! **Method.** With `O` and `I` the areas of the outer and the inner ellipse in the cell, a taxel is active where `O −
-//! I` reaches the threshold `t`. `O` does so between one rising and one falling passage ([`crate::sweep::track`]), and
-//! outside of these nothing is active. If the cell lies inside the outer ellipse (`O = 1`), it matters where `I`
-//! exceeds `1 − t`: again between one rising and one falling passage. What remains are places where the cell reaches
-//! both the hole and the outside. There, `O` rises from its value at the first touch of the hole, `I` rises to its
-//! value at the last touch of the outside, and usually the difference of these two values stays above `t`. Whenever one
-//! of these conditions does not hold, the band is computed from scratch ([`crate::sweep::isolate`]).
+//! **Method.** Let `O` and `I` be the areas of the outer and the inner ellipse in the cell. A taxel is active where
+//! `O − I` reaches the threshold `t`. `O` reaches it between one rising and one falling passage
+//! ([`crate::sweep::track`]), and outside of these nothing is active. If the cell lies inside the outer ellipse
+//! (`O = 1`), it matters where `I` exceeds `1 − t`: again between one rising and one falling passage. What remains
+//! are places where the cell reaches both the hole and the outside. There, `O` rises from its value at the first
+//! touch of the hole, `I` rises to its value at the last touch of the outside, and usually the difference of these
+//! two values stays above `t`. Whenever one of these conditions does not hold, the band is computed from scratch
+//! ([`crate::sweep::isolate`]).
 
 use crate::geometry::{Ellipse, Side};
 use crate::sensor::MAX_SIDE;
@@ -23,12 +24,12 @@ type Tracks = [Track; 4];
 pub(crate) struct Elliptic {
     /// The ellipses, cut to the band at hand.
     ring: Ring,
-    /// For each row of the sensor where the passages were in the rows of the grid before.
+    /// For each row of the sensor, where the passages were in the previous rows of the grid.
     tracks: Box<[Tracks]>,
 }
 
 impl Elliptic {
-    /// None unless the shape is one ellipse with at most one hole.
+    /// Prepares a shape; None unless it is one ellipse with at most one hole.
     pub(crate) fn new(ellipses: &[(Ellipse<f64>, Side)]) -> Option<Self> {
         let (outer, inner) = match ellipses {
             [(outer, Side::Inside)] => (outer, None),
@@ -47,13 +48,13 @@ impl Elliptic {
         })
     }
 
-    /// The spans at which the coverage of the cells from `top` to `top + 1` reaches the threshold. `row` is the row of
-    /// the sensor: the previous passages of the same row predict where to look.
+    /// Finds the spans at which the coverage of the cells from `top` to `top + 1` reaches the threshold. `row` is the
+    /// row of the sensor: the previous passages of the same row predict where to look.
     pub(crate) fn band(&mut self, top: f64, row: usize, threshold: f64, spans: &mut Spans) {
         spans.clear();
         self.ring.threshold = threshold;
         let outer = &mut self.ring.outer;
-        // Where no section is high enough no cell is covered enough.
+        // If no section is high enough, no cell is covered enough.
         if !outer.cut(top) || outer.highest() < threshold - 2.0 * DOUBT {
             return;
         }
@@ -76,17 +77,17 @@ impl Elliptic {
     }
 }
 
-/// A span of activity, and the gap in it that the hole makes.
+/// A span of activity, and the gap that the hole makes in it.
 struct Passages {
-    /// Where it begins: x of the shape's anchor, in cell sides.
+    /// Where it begins: the column of the cell relative to the shape's anchor, in cell sides.
     from: f64,
     /// Where it ends.
     to: f64,
-    /// From where to where the hole makes the taxel inactive.
+    /// The places between which the hole makes the taxel inactive.
     hole: Option<(f64, f64)>,
 }
 
-/// Follows the passages from those of the rows before; None if something is not certain.
+/// Follows the passages from the previous rows; None if something is not certain.
 fn follow(ring: &Ring, tracks: &mut Tracks) -> Option<Passages> {
     let [from, to, hole, end] = tracks;
     let (outer, threshold) = (&ring.outer, ring.threshold);

@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_4;
 use crate::geometry::Ellipse;
 use crate::geometry::circle::angle;
 
-/// Bounds of sections are widened by this much.
+/// The amount by which bounds of sections are widened.
 const SLACK: f64 = 1e-12;
 
 /// An ellipse prepared for bands; see `geometry::ellipse_cuts` for the formulas.
@@ -22,28 +22,28 @@ pub(crate) struct EllipseBand {
     pub(crate) reach_x: f64,
     /// Half of the extent along y.
     reach_y: f64,
-    /// Slopes of the lines through the middles of the vertical and of the horizontal sections.
+    /// The slope, y by x, of the line through the middles of the vertical sections.
     middle_y: f64,
-    /// The second of these: x by y.
+    /// The slope, x by y, of the line through the middles of the horizontal sections.
     middle_x: f64,
     /// Half of the vertical section at distance d from the centre is this times the root of `reach_x`² − d².
     scale_y: f64,
-    /// The same of horizontal sections.
+    /// The same factor for horizontal sections.
     scale_x: f64,
-    /// The band, relative to the centre, and what is known of it.
+    /// The top of the band, relative to the centre.
     top: f64,
     /// The closed forms from left to right, of which `count` are in use.
     stretches: [EllipseStretch; 5],
-    /// At most five: the band's lines cross the ellipse at up to four places.
+    /// The number of stretches in use, at most five: the band's lines cross the ellipse at up to four places.
     count: usize,
-    /// From where to where the section is highest, and how high.
+    /// The places between which the section is highest; `highest` is its height there.
     peak: (f64, f64),
     highest: f64,
     /// The area of the ellipse in the band.
     total: f64,
 }
 
-/// `W = area + linear·d + square·d² + round·Φ(d)` between two places, relative to the centre.
+/// A closed form `W = area + linear·d + square·d² + round·Φ(d)` between two places, relative to the centre.
 #[derive(Clone, Copy, Debug, Default)]
 struct EllipseStretch {
     /// Where it begins.
@@ -59,12 +59,12 @@ struct EllipseStretch {
 /// The section at a place: its height, the area on the left of it, and half of the ellipse's own section.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Section {
-    /// How high the shape is here, inside of the band.
+    /// The height of the shape here, inside the band.
     pub(crate) height: f64,
-    /// The area on the left of it.
+    /// The area on the left of the place.
     area: f64,
     half: f64,
-    /// The stretch that it lies in; None outside the ellipse.
+    /// The index of its stretch; None outside the ellipse.
     stretch: Option<usize>,
 }
 
@@ -92,12 +92,12 @@ impl EllipseBand {
         }
     }
 
-    /// Half of the height at a distance from the centre, over `scale_y`.
+    /// Returns half of the height at a distance from the centre, divided by `scale_y`.
     fn half(&self, d: f64) -> f64 {
         ((self.reach_x - d) * (self.reach_x + d)).max(0.0).sqrt()
     }
 
-    /// The integral of [`Self::half`] from the centre on, given its value.
+    /// Returns the integral of [`Self::half`] from the centre on; `half` is its value at `d`.
     fn round(&self, d: f64, half: f64) -> f64 {
         let reach = self.reach_x;
         0.5 * (d * half + reach * reach * angle(d / reach, half / reach))
@@ -156,7 +156,8 @@ impl EllipseBand {
         if upper >= bottom || lower <= top {
             return;
         }
-        // A line that does not cross the ellipse may touch it right here, so the middle tells nothing of it.
+        // A line that does not cross the ellipse may touch it right here; then the middle does not show on which side
+        // it lies.
         let (upper, lower) = (
             top <= -self.reach_y || upper > top,
             bottom >= self.reach_y || lower < bottom,
@@ -177,8 +178,8 @@ impl EllipseBand {
         };
         stretch.area = self.total - stretch.grown(left, round);
         self.total = stretch.area + stretch.grown(right, next);
-        // Between two lines the section is as high as can be all along, otherwise highest above or below an extreme
-        // point of the ellipse, or at an end. `skew` is the place of the lowest point.
+        // Between two lines the section has its full height all along; otherwise it is highest above or below an
+        // extreme point of the ellipse, or at an end. `skew` is the place of the lowest point.
         let skew = self.middle_x * self.reach_y;
         let (from, to) = match (upper, lower) {
             (true, true) => (0.0, 0.0),
@@ -202,13 +203,13 @@ impl EllipseBand {
         }
     }
 
-    /// The height of the section, given half of the ellipse's own.
+    /// Returns the height of the section inside the band, given half of the ellipse's own section.
     fn clipped(&self, d: f64, half: f64) -> f64 {
         let (middle, half) = (self.middle_y * d, self.scale_y * half);
         ((middle + half).min(self.top + 1.0) - (middle - half).max(self.top)).max(0.0)
     }
 
-    /// The height of the section at a place.
+    /// Returns the height of the section at a place.
     pub(crate) fn height(&self, x: f64) -> f64 {
         let d = x - self.x;
         if d.abs() >= self.reach_x {
@@ -217,7 +218,7 @@ impl EllipseBand {
         self.clipped(d, self.half(d))
     }
 
-    /// The height of the section at a place, the area on the left of it, and what goes with them.
+    /// Returns the section at a place: its height, the area on its left, and the values that go with them.
     pub(crate) fn at(&self, x: f64) -> Section {
         let d = x - self.x;
         let stretches = &self.stretches[..self.count];
@@ -249,7 +250,7 @@ impl EllipseBand {
         }
     }
 
-    /// The area inside of the cell between two places that are a cell apart.
+    /// Returns the area inside the cell between two sections that are a cell apart.
     pub(crate) fn coverage(&self, left: &Section, right: &Section) -> f64 {
         match (left.stretch, right.stretch) {
             // Between the lines all along: full, without any rounding.
@@ -258,11 +259,11 @@ impl EllipseBand {
         }
     }
 
-    /// How much `w` may change within `way` of a place.
+    /// Returns how much `w` may change within `way` of a place.
     ///
     /// Half of the ellipse's own section is `√((R − d)(R + d))`, with slope `d / half`; within `way` of `d` it stays
     /// above 0.7 of itself where `half² ≥ 4·R·way`. Near an end of the ellipse it changes by the root of `2·R·way` at
-    /// most. Clipping by the band's lines makes a change smaller only.
+    /// most. Clipping by the band's lines only makes a change smaller.
     pub(crate) fn change(&self, place: &Section, way: f64) -> f64 {
         let reach = self.reach_x;
         let half = if place.half * place.half >= 4.0 * reach * way {
@@ -273,7 +274,7 @@ impl EllipseBand {
         2.0 * self.scale_y * half + self.middle_y.abs() * way
     }
 
-    /// Bounds of `w` from `x` to `end`: it is concave where it is not 0, so least at an end.
+    /// Returns bounds of `w` from `x` to `end`: it is concave where it is not 0, so it is least at an end.
     pub(crate) fn bounds(&self, x: f64, end: f64) -> (f64, f64) {
         if self.count == 0 {
             return (0.0, 0.0);
@@ -284,19 +285,19 @@ impl EllipseBand {
         } else {
             one.max(other)
         };
-        // Nothing and full are so without any rounding; elsewhere the roundings count.
+        // 0 and 1 are exact; elsewhere rounding errors count.
         let least = one.min(other);
         let least = if least < 1.0 { least - SLACK } else { least };
         let most = if most > 0.0 { most + SLACK } else { most };
         (least.max(0.0), most.min(1.0))
     }
 
-    /// Whether it reaches the band at all.
+    /// Returns true if the ellipse reaches the band.
     pub(crate) fn is_here(&self) -> bool {
         self.count > 0
     }
 
-    /// From where to where it reaches in the band.
+    /// Returns the places between which the ellipse reaches in the band.
     pub(crate) fn reach(&self) -> (f64, f64) {
         let stretches = &self.stretches[..self.count];
         match (stretches.first(), stretches.last()) {
@@ -305,12 +306,12 @@ impl EllipseBand {
         }
     }
 
-    /// The height of the highest section.
+    /// Returns the height of the highest section.
     pub(crate) fn highest(&self) -> f64 {
         self.highest
     }
 
-    /// The places between which a cell is full; None if no cell is.
+    /// Returns the places between which a cell is full; None if no cell is.
     pub(crate) fn full(&self) -> Option<(f64, f64)> {
         let full =
             |stretch: &&EllipseStretch| stretch.round == 0.0 && stretch.right - stretch.left > 1.0;
@@ -320,7 +321,7 @@ impl EllipseBand {
 }
 
 impl EllipseStretch {
-    /// `W` without its constant.
+    /// Returns `W` without its constant.
     fn grown(&self, d: f64, round: f64) -> f64 {
         (self.linear + self.square * d) * d + self.round * round
     }

@@ -6,41 +6,41 @@
 use crate::atlas::Layout;
 use crate::index::{index, narrow, wide};
 
-/// Which taxels are active at first, and which switch at which step.
+/// The events of a row: which taxels are active at first, and which switch at which step.
 #[derive(Clone, Debug)]
 pub(crate) struct Events<'a> {
     pub(crate) layout: &'a Layout,
-    /// How many steps the row has.
+    /// The number of steps in the row.
     count: u64,
     /// The imprint at the first step, packed.
     key: Vec<u64>,
-    /// Its hash.
+    /// The hash of that imprint.
     hash: u64,
-    /// A bit per step, whether something happens there, and the last event of it, or none.
+    /// A bit for each step: whether it has events. `last` is the last event of each step, or `NONE`.
     marked: Vec<u64>,
     last: Vec<u32>,
-    /// All events; those of a step are chained.
+    /// All events; the events of a step are chained.
     list: Vec<Event>,
 }
 
 /// A taxel that switches between active and inactive.
 #[derive(Clone, Copy, Debug)]
 struct Event {
-    /// Its bit.
+    /// The bit of the taxel in its word.
     mask: u64,
-    /// The hash of that taxel alone: the hash of an imprint is that of its taxels, joined by exclusive or.
+    /// The hash of this taxel alone. The hash of an imprint joins the hashes of its taxels by exclusive or.
     number: u64,
     /// The word of the key that the bit is in.
     word: u32,
-    /// The one before it at the same step, or none.
+    /// The event before it at the same step, or `NONE`.
     before: u32,
 }
 
-/// No event.
+/// The index that means no event.
 const NONE: u32 = u32::MAX;
 
 impl<'a> Events<'a> {
-    /// A row without events.
+    /// Creates a row without events.
     pub(crate) fn new(layout: &'a Layout, count: u64) -> Self {
         let steps = index(count);
         Self {
@@ -73,7 +73,8 @@ impl<'a> Events<'a> {
         }
     }
 
-    /// Gives key, hash, first step and the step after the last of each run in turn, and forgets the marks.
+    /// Calls `run` with the key, the hash, the first step and the step after the last of each run in turn, and clears
+    /// the marks.
     pub(crate) fn play(&mut self, mut run: impl FnMut(&[u64], u64, u64, u64)) {
         let mut from = 0;
         for (place, marked) in self.marked.iter_mut().enumerate() {
@@ -98,27 +99,27 @@ impl<'a> Events<'a> {
 /// The events of one row of the sensor.
 pub(crate) struct RowEvents<'e, 'a> {
     row: usize,
-    /// The word of the key that it is in, and by how much it is shifted there.
+    /// The index of the key's word that holds the row; `shift` is the row's first bit in it.
     word: u32,
     shift: usize,
-    /// The hash of each of its taxels alone.
+    /// The hash of each taxel of the row alone.
     numbers: &'a [u64],
     events: &'e mut Events<'a>,
 }
 
 impl RowEvents<'_, '_> {
-    /// The number of its taxels.
+    /// Returns the number of taxels in the row.
     pub(crate) fn columns(&self) -> usize {
         self.numbers.len()
     }
 
-    /// Taxels that are active at the first step; a bit each.
+    /// Marks taxels that are active at the first step; a bit for each.
     pub(crate) fn start(&mut self, taxels: u64) {
         self.events.key[wide(self.word)] ^= taxels << self.shift;
         self.events.hash ^= self.events.layout.hash(self.row, taxels);
     }
 
-    /// A taxel switches at a step, from 1 to the last.
+    /// Marks that a taxel switches at a step, from 1 to the last.
     #[inline]
     pub(crate) fn turn_over(&mut self, column: usize, step: u32) {
         let events = &mut *self.events;

@@ -11,23 +11,21 @@ use crate::index::index;
 use crate::pose::{Boundary, PoseGrid};
 use crate::touch::least;
 
-/// How many values of x0 and of y0 are kept as positions.
+/// The number of values of x0 and of y0 whose positions are kept.
 const REMEMBERED: usize = 128;
 
 /// The shape of one orientation, ready for exact decisions.
 #[derive(Debug)]
 pub(crate) struct Exact<'a> {
-    /// The grid.
     grid: &'a PoseGrid,
-    /// The number of the orientation.
     orientation: u64,
     /// Drawn when first needed: in most orientations nothing is in doubt.
     boundary: Option<Boundary<Double>>,
-    /// Where the anchor lies for the values of x0 and of y0 asked for last.
+    /// The positions of the anchor for the last values of x0 and y0.
     positions: Box<[(Option<u64>, Double)]>,
-    /// Adds up the area in one cell.
+    /// The area in one cell, added up piece by piece.
     cell: Overlap<Double>,
-    /// The coverage that counts as the threshold.
+    /// The least coverage that reaches the threshold.
     least: Double,
 }
 
@@ -43,7 +41,7 @@ impl<'a> Exact<'a> {
         }
     }
 
-    /// Whether the taxel is active when the shape lies at value `x` of x0 and value `y` of y0.
+    /// Returns true if the taxel is active when the shape lies at value `x` of x0 and value `y` of y0.
     #[cold]
     #[expect(clippy::cast_precision_loss, reason = "a column or a row")]
     pub(crate) fn active(&mut self, column: usize, row: usize, x: u64, y: u64) -> bool {
@@ -60,7 +58,8 @@ impl<'a> Exact<'a> {
         self.cell.grid().first() >= self.least
     }
 
-    /// Where the anchor lies at a value of x0, or of y0. Reading a decimal takes longer than looking it up.
+    /// Returns the position of the anchor at a value of x0, or of y0 if `down`. Looking it up is faster than reading
+    /// a decimal.
     fn position(&mut self, number: u64, down: bool) -> Double {
         let slot = index(number) % REMEMBERED;
         let (known, position) = &mut self.positions[2 * slot + usize::from(down)];

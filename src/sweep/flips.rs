@@ -1,4 +1,4 @@
-//! From the spans of a band to the events of a row of the grid.
+//! Turns the spans of a band into the events of a row of the grid.
 //!
 //! A taxel in column `i` inside of a span from `a` to `b` is active while `i − b ≤ x0 ≤ i − a`. If a value of x0 lies
 //! within [`NEAR`] of the end of a span, or in a span that is in doubt, [`Exact`] decides for that taxel and pose.
@@ -14,13 +14,13 @@ use crate::sweep::span::{NEAR, Span, Spans};
 pub(crate) struct Steps {
     /// The place of the first value, in cell sides.
     pub(crate) first: f64,
-    /// How many steps a cell has.
+    /// The number of steps per cell.
     pub(crate) per_cell: f64,
-    /// How many values there are.
+    /// The number of values.
     pub(crate) count: i32,
 }
 
-/// The largest whole number not above a place that is counted in steps; kept within a thousand ranges' length.
+/// Rounds a place that is counted in steps down to a whole number, kept within ±1e9.
 fn floor(place: f64) -> i32 {
     Real::floor(place.clamp(-1e9, 1e9))
 }
@@ -31,9 +31,9 @@ pub(crate) struct FlipWriter<'s, 'e, 'a> {
     pub(crate) steps: Steps,
     /// The row of the sensor.
     pub(crate) row: usize,
-    /// The number of the value of y0.
+    /// The index of the value of y0.
     pub(crate) y: u64,
-    /// Where events go.
+    /// The events that are written.
     pub(crate) events: RowEvents<'s, 'e>,
     /// Decides for taxels in doubt.
     pub(crate) exact: &'s mut Exact<'a>,
@@ -42,7 +42,7 @@ pub(crate) struct FlipWriter<'s, 'e, 'a> {
 impl FlipWriter<'_, '_, '_> {
     /// Marks all spans of a row of the sensor.
     pub(crate) fn spans(&mut self, spans: &Spans) {
-        // Fast path only if span ends are known more precisely than the grid step.
+        // The fast path needs span ends that are known more precisely than the grid step.
         if spans.sharp() && NEAR * self.steps.per_cell < 0.25 {
             for span in spans.all() {
                 self.span(span);
@@ -52,7 +52,7 @@ impl FlipWriter<'_, '_, '_> {
         }
     }
 
-    /// Marks what a span that is sharp at both ends does to all columns.
+    /// Marks the events that a span with two sharp ends causes in all columns.
     fn span(&mut self, span: &Span) {
         let left = self.end(span.from, false);
         let right = self.end(span.to, true);
@@ -62,8 +62,8 @@ impl FlipWriter<'_, '_, '_> {
         }
     }
 
-    /// Marks where the taxels of the row pass the end of a span: they leave it on its left and enter on its right. The
-    /// result is the first taxel that does so after the first x0, or the number of columns.
+    /// Marks where the taxels of the row pass the end of a span: they leave the span at its left end and enter it at
+    /// its right end. Returns the first taxel that does so after the first x0, or the number of columns.
     fn end(&mut self, at: f64, right: bool) -> usize {
         let columns = self.events.columns();
         let start = at + self.steps.first;
@@ -89,8 +89,8 @@ impl FlipWriter<'_, '_, '_> {
         first.unwrap_or(columns)
     }
 
-    /// The first step at which a taxel is past an end, which it passes at a place that is counted in steps, at most
-    /// [`NEAR`] before the first of them or after the last.
+    /// Returns the first step at which a taxel is past an end. `place` is where it passes the end, counted in steps;
+    /// it is at most [`NEAR`] before the first step or after the last.
     fn passing(&mut self, column: usize, place: f64, right: bool) -> i32 {
         let nearest = nearest(place);
         let after = place - f64::from(nearest);
@@ -100,18 +100,18 @@ impl FlipWriter<'_, '_, '_> {
         if nearest < 0 || nearest >= self.steps.count {
             return nearest;
         }
-        // At that very step the taxel is active on the near side of the end only.
+        // At exactly this step: past a right end the taxel is active, past a left end it is not.
         let active = self.active(column, nearest);
         nearest + i32::from(active != right)
     }
 
-    /// Whether a taxel is active at a step, which is not negative; computed exactly.
+    /// Returns true if a taxel is active at a step, which is not negative; computed exactly.
     fn active(&mut self, column: usize, step: i32) -> bool {
         let x = step.unsigned_abs().into();
         self.exact.active(column, self.row, x, self.y)
     }
 
-    /// The slow way, for spans that are in doubt or close to each other.
+    /// Marks the spans taxel by taxel: slowly, for spans that are in doubt or close to each other.
     #[cold]
     #[expect(clippy::cast_precision_loss, reason = "a column")]
     fn each_taxel(&mut self, spans: &[Span]) {
@@ -160,16 +160,16 @@ impl FlipWriter<'_, '_, '_> {
 
 /// A taxel that moves along the range of x0.
 struct Taxel {
-    /// Its column.
+    /// The column of the taxel.
     column: usize,
-    /// Whether it is active, as far as is decided.
+    /// Whether it is active after the steps that are done.
     active: bool,
     /// Steps below this one are done.
     next: i32,
 }
 
 impl Taxel {
-    /// Sets whether it is active from a step on, which is not negative.
+    /// Sets whether the taxel is active from a step on, which is not negative.
     fn set(&mut self, step: i32, active: bool, events: &mut RowEvents<'_, '_>) {
         if active == self.active {
             return;

@@ -18,7 +18,7 @@ pub(crate) struct Ideal {
 }
 
 impl Ideal {
-    /// Of a figure.
+    /// Computes the ideal of a figure; None for a picture.
     pub(crate) fn of(source: &Source) -> Option<Self> {
         let Source::Figure(figure) = source else {
             return None;
@@ -28,7 +28,7 @@ impl Ideal {
         Some(ideal)
     }
 
-    /// The value of the feature of that name.
+    /// Returns the value of the feature of that name, if it has one.
     pub(crate) fn get(&self, key: &str) -> Option<f64> {
         match key {
             "na" => Some(self.area),
@@ -52,7 +52,7 @@ impl Ideal {
 }
 
 impl Pen<f64> for Ideal {
-    /// Figures draw rings and ellipses only.
+    /// Does nothing: figures draw rings and ellipses only.
     fn edge(&mut self, _from: Point<f64>, _to: Point<f64>) {}
 
     fn ring(&mut self, points: &[Point<f64>], material: Side) {
@@ -72,7 +72,7 @@ impl Pen<f64> for Ideal {
     }
 }
 
-/// The perimeter of an ellipse by the arithmetic-geometric mean (Gauss): with `c² = a² − b²` at each step,
+/// Returns the perimeter of an ellipse by the arithmetic-geometric mean (Gauss): with `c² = a² − b²` at each step,
 /// `2π·(a₀² − Σ 2ⁿ⁻¹·cₙ²) / M`.
 fn perimeter(one: f64, other: f64) -> f64 {
     let (mut a, mut b) = (one.max(other), one.min(other));

@@ -13,7 +13,7 @@
 use crate::sweep::ellipse_band::EllipseBand;
 use crate::sweep::span::{DOUBT, Level, NEAR, Spans};
 
-/// Intervals are not halved below this width, in cells. What lies in a narrower one is decided with more digits.
+/// The width, in cells, below which intervals are not halved. Narrower ones are decided with more digits.
 const NARROW: f64 = 1e-6;
 
 /// An ellipse and perhaps a hole, both cut to the band.
@@ -23,7 +23,7 @@ pub(crate) struct Ring {
     pub(crate) threshold: f64,
     /// The ellipse.
     pub(crate) outer: EllipseBand,
-    /// Its hole.
+    /// The hole, if there is one.
     pub(crate) inner: Option<EllipseBand>,
 }
 
@@ -39,7 +39,7 @@ impl Ring {
         spans.turn(right, Level::Below);
     }
 
-    /// The coverage at a place, minus the threshold.
+    /// Returns the coverage at a place, minus the threshold.
     fn excess(&self, u: f64) -> f64 {
         let covered = |band: &EllipseBand| band.coverage(&band.at(u), &band.at(u + 1.0));
         let outer = covered(&self.outer);
@@ -51,7 +51,7 @@ impl Ring {
         outer - inner - self.threshold
     }
 
-    /// Bounds of the coverage's slope between two places.
+    /// Returns bounds of the coverage's slope between two places.
     fn slopes(&self, from: f64, to: f64) -> (f64, f64) {
         let (low, high) = self.outer.bounds(from, to);
         let (low_ahead, high_ahead) = self.outer.bounds(from + 1.0, to + 1.0);
@@ -121,7 +121,7 @@ impl Ring {
         }
     }
 
-    /// Where the excess reaches a height, by Newton's method kept inside of a bracket.
+    /// Returns where the excess reaches a height, by Newton's method kept inside a bracket.
     fn solve(&self, from: Sample, to: Sample, height: f64, precision: f64) -> f64 {
         let rising = to.1 > from.1;
         let (mut low, mut high) = (from.0, to.0);

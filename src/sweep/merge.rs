@@ -33,9 +33,9 @@ pub struct SweepMerge(Option<Begun>);
 #[derive(Debug)]
 struct Begun {
     grid: PoseGrid,
-    /// How many shards there are.
+    /// The number of shards.
     of: u32,
-    /// The number of the last one.
+    /// The number of the last shard that was added.
     last: u32,
     atlas: Atlas,
     variance_parts: VarianceParts,
@@ -44,7 +44,7 @@ struct Begun {
 }
 
 impl Begun {
-    /// An empty merge for the study that this shard belongs to.
+    /// Creates an empty merge for the sweep that this shard belongs to.
     fn of(first: &SweepResult) -> Self {
         let (grid, sensor) = (first.grid.clone(), first.grid.sensor());
         Self {
@@ -63,7 +63,8 @@ impl SweepMerge {
     /// Adds the next shard: the first, then the second, and so on.
     ///
     /// # Errors
-    /// If it is incomplete, not the next one, or of another grid than the first. The merge then stays unchanged.
+    /// Returns an error if it is incomplete, not the next one, or of another grid than the first. The merge then
+    /// stays unchanged.
     pub fn add(&mut self, result: SweepResult) -> Result<(), MergeError> {
         let (shard, of) = (result.shard, result.shard.of());
         // Everything is checked before anything changes: after a refusal, the right shard can still be added.
@@ -93,7 +94,7 @@ impl SweepMerge {
     /// Returns the result of all shards together.
     ///
     /// # Errors
-    /// If some are missing.
+    /// Returns an error if some are missing.
     pub fn finish(self) -> Result<SweepResult, MergeError> {
         let Begun {
             grid,
@@ -123,11 +124,11 @@ impl SweepMerge {
 }
 
 impl SweepResult {
-    /// Merges all shards of a grid into one result, equal to that of a single sweep of the whole grid. [`SweepMerge`]
-    /// needs less memory.
+    /// Merges all shards of a grid into the result that a single sweep of the whole grid gives. [`SweepMerge`] needs
+    /// less memory.
     ///
     /// # Errors
-    /// If a shard is missing, given twice, incomplete, or of another grid.
+    /// Returns an error if a shard is missing, given twice, incomplete, or of another grid.
     pub fn merge(results: impl IntoIterator<Item = Self>) -> Result<Self, MergeError> {
         let mut results: Vec<Self> = results.into_iter().collect();
         results.sort_by_key(|result| result.shard.number());
@@ -167,7 +168,7 @@ pub enum MergeError {
     /// A missing shard.
     #[error("shard {number}/{of} is missing")]
     Missing {
-        /// Which, from 1.
+        /// The number of the missing shard, from 1.
         number: u32,
         /// The number of shards.
         of: u32,

@@ -1,4 +1,5 @@
-//! Every pose of a grid: runs of equal imprints, an atlas of the distinct ones, statistics of their descriptors.
+//! Sweeps every pose of a grid: finds runs of equal imprints, an atlas of the distinct ones, and statistics of their
+//! descriptors.
 //!
 //! The paper wanted "almost all possible imprints" of a shape and could only sample them. A sweep finds all of them.
 //! Instead of touching pose by pose, it finds where along a range of positions the imprint changes; the result is
@@ -14,10 +15,10 @@
 //! -> atlas            each imprint counted once per run, and described once per sweep
 //! ```
 //!
-//! **What is skipped.** If the shape looks the same at several angles, only one of them is swept ([`crate::pose`]). If
-//! the shape at one angle is the mirror image of itself at another, the spans of one are those of the other with right
-//! and left exchanged. If a half turn of the plane maps the poses of an angle onto each other, only half of their rows
-//! are swept (`point_symmetry`, `reflected_rows`). Exact decimals decide all of this.
+//! **What is skipped.** If the shape looks the same at several angles, only one of them is swept ([`crate::pose`]).
+//! If the shape at one angle is the mirror image of itself at another, the spans of one follow from those of the
+//! other, with right and left exchanged. If a half turn of the plane maps the poses of an angle onto each other, only
+//! half of their rows are swept (`point_symmetry`, `reflected_rows`). Exact decimals decide all of this.
 //!
 //! Sums are whole numbers, so the statistics are the same to the last digit for any number of threads or shards.
 

@@ -1,4 +1,4 @@
-//! How a grid is divided: into shards for several machines, and into tasks for the threads of one.
+//! Divides a grid: into shards for several machines, and into tasks for the threads of one.
 //!
 //! A shard is a contiguous part of the list of rows. Orientations (an angle and a pair of zooms) at which the shape
 //! looks the same form a *group*, and only one of them is swept. A task is some rows of a group, together with the
@@ -14,7 +14,7 @@ use crate::pose::{AngleClasses, Axis, PoseGrid};
 use crate::quote::shortened;
 use crate::sweep::point_symmetry::PointSymmetry;
 
-/// One of `of` nearly equal pieces of a grid, `number` from 1.
+/// A shard of a grid: piece `number` of `of` nearly equal pieces, counted from 1.
 ///
 /// ```
 /// use taxel::sweep::Shard;
@@ -29,13 +29,13 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// The only piece.
+    /// The whole grid as the only piece.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Piece `number` of `of`, counted from 1.
+    /// Creates piece `number` of `of`, counted from 1.
     ///
     /// # Errors
-    /// If `number` is not from 1 to `of`.
+    /// Returns an error if `number` is not from 1 to `of`.
     pub fn new(number: u32, of: u32) -> Result<Self, ShardError> {
         if (1..=of).contains(&number) {
             Ok(Self { number, of })
@@ -46,17 +46,17 @@ impl Shard {
         }
     }
 
-    /// The number of the shard, from 1.
+    /// Returns the number of the shard, from 1.
     pub fn number(&self) -> u32 {
         self.number
     }
 
-    /// The number of shards.
+    /// Returns the number of shards.
     pub fn of(&self) -> u32 {
         self.of
     }
 
-    /// The rows of this shard, of a grid with `rows` rows. The shards of a grid differ by one row at most.
+    /// Returns the rows of this shard in a grid with `rows` rows. The shards of a grid differ by one row at most.
     pub fn rows(&self, rows: u64) -> Range<u64> {
         let cut = |piece: u32| {
             // rows · piece / of, rounded down, without a product beyond 64 bits.
@@ -98,30 +98,31 @@ pub struct ShardError {
 /// Some rows of a group of orientations, and of the group of their mirror images.
 #[derive(Clone, Debug)]
 pub(crate) struct Task {
-    /// One group, or two of which one shows the mirror images of the other, right and left exchanged.
+    /// One group, or two groups that are mirror images of each other, with right and left exchanged.
     pub(crate) groups: Arc<[Arc<[u64]>]>,
     /// The indices of the values of y0.
     pub(crate) rows: Range<u64>,
 }
 
 impl Task {
-    /// The number of orientations.
+    /// Returns the number of orientations.
     pub(crate) fn orientations(&self) -> u64 {
         self.groups.iter().map(|group| group.len() as u64).sum()
     }
 }
 
-/// The usual number of poses in a task: enough to outweigh the cost of starting it, few enough to share the work among
-/// threads.
+/// The usual number of poses in a task: enough to outweigh the cost of starting it, few enough to share the work
+/// among threads.
 const TASK_POSES: u64 = 20_000;
-/// The most poses in a task with rows that are images of each other. Both rows of a pair must be in the same task.
+/// The largest number of poses in a task with rows that are images of each other. Both rows of a pair must be in the
+/// same task.
 const HALVED_TASK_POSES: u64 = 1_000_000;
-/// A block is cut into at least this many tasks, if it has as many rows.
+/// The least number of tasks of a block, if it has as many rows.
 const TASKS: u64 = 16;
 
-/// The tasks of one block (all angles at one pair of zooms) within the rows of a shard, in the order of the first of
-/// their orientations. They are made one at a time, because a large grid has millions. If `mirrored`, groups that are
-/// mirror images share tasks; rows then come far out of order.
+/// Iterates over the tasks of one block (all angles at one pair of zooms) within the rows of a shard, in the order of
+/// the first of their orientations. They are made one at a time, because a large grid has millions. If `mirrored`,
+/// groups that are mirror images share tasks; rows then come far out of order.
 pub(crate) fn tasks(
     grid: &PoseGrid,
     shard: &Range<u64>,
@@ -154,8 +155,8 @@ pub(crate) fn tasks(
 /// One or two groups of angles, and the values of y0 to sweep for them.
 type Piece = (Vec<Vec<u64>>, Range<u64>);
 
-/// The angles of a block, gathered by the symmetries of the shape; `rows` are those of the block that a shard holds.
-/// Angles that it holds only a part of are pieces of their own.
+/// Gathers the angles of a block by the symmetries of the shape. `rows` are the rows of the block that a shard holds.
+/// Angles of which it holds only a part are pieces of their own.
 fn pieces(grid: &PoseGrid, rows: Range<u64>, mirrored: bool) -> Vec<Piece> {
     let height = grid.rows_per_orientation();
     let full = rows.start.div_ceil(height)..rows.end / height;
@@ -172,7 +173,7 @@ fn pieces(grid: &PoseGrid, rows: Range<u64>, mirrored: bool) -> Vec<Piece> {
         pieces.push(partial(full.start - 1));
     }
     let classes = AngleClasses::of(grid.source(), grid.ranges()[Axis::Angle]);
-    // The piece that the group of a class belongs to, and its place there.
+    // The piece that the group of a class belongs to, and the group's index in it.
     let mut places: HashMap<i128, (usize, usize)> = HashMap::new();
     for angle in full.clone() {
         let class = classes.class(angle);
@@ -199,7 +200,7 @@ fn pieces(grid: &PoseGrid, rows: Range<u64>, mirrored: bool) -> Vec<Piece> {
     pieces
 }
 
-/// How many rows make a task of a block with `count` pieces.
+/// Returns the number of rows in a task of a block with `count` pieces.
 fn task_rows(grid: &PoseGrid, count: u64) -> u64 {
     let (width, height) = (grid.row_length(), grid.rows_per_orientation());
     // Rows can be images of each other only within a task.

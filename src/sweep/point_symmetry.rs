@@ -5,16 +5,17 @@
 //! ranges of x0 and y0 cover whole cells, and contain with every centre its image up to whole cells, then each row of
 //! an orientation is the image of another one, and only half of the rows need to be swept.
 //!
-//! **Exactly.** Positions are compared as decimals, so what is mapped is equal in real arithmetic, ties included. Twice
-//! the distance from anchor to centre must be a decimal for that: it is 0 with the anchor at the centre, and the sides
-//! of the bounding rectangle of ellipses, rectangles and pictures that are not zoomed; those of a regular polygon are
-//! none. What the sensor cuts off has no image, so the shape must lie inside of it in all poses of the turn.
+//! **Exactly.** Positions are compared as decimals, so what is mapped is equal in real arithmetic, ties included. For
+//! that, twice the distance from anchor to centre must be a decimal. It is 0 with the anchor at the centre. Otherwise
+//! it is the sides of the bounding rectangle, which are decimals for ellipses, rectangles and pictures that are not
+//! zoomed, but not for regular polygons. What the sensor cuts off has no image, so the shape must lie inside the
+//! sensor in all poses of the orientation.
 
 use crate::figure::FigureKind;
 use crate::pose::{Anchor, Axis, DecimalRange, PoseGrid, period};
 use crate::source::Source;
 
-/// How the poses of an orientation are mapped onto each other.
+/// A half turn that maps the poses of an orientation onto each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PointSymmetry {
     pub(crate) x: IndexReflection,
@@ -22,8 +23,8 @@ pub(crate) struct PointSymmetry {
 }
 
 impl PointSymmetry {
-    /// None if the shape or the ranges are not mapped onto themselves. The caller must check that the shape lies inside
-    /// the sensor in every pose.
+    /// Returns the symmetry of a grid; None if the shape or the ranges are not mapped onto themselves. The caller
+    /// must check that the shape lies inside the sensor in every pose.
     pub(crate) fn of(grid: &PoseGrid) -> Option<Self> {
         if period(grid.source()).is_some_and(|period| 180 % period != 0) {
             return None;
@@ -36,7 +37,8 @@ impl PointSymmetry {
     }
 }
 
-/// Twice the distance from the anchor to the centre along x and along y, in cells; None if it is not a decimal.
+/// Returns twice the distance from the anchor to the centre along x and along y, in cells; None if it is not a
+/// decimal.
 fn twice_to_centre(grid: &PoseGrid) -> Option<[f64; 2]> {
     if grid.anchor() == Anchor::Centre {
         return Some([0.0; 2]);
@@ -69,7 +71,7 @@ fn twice_to_centre(grid: &PoseGrid) -> Option<[f64; 2]> {
     }
 }
 
-/// How the values of a range are mapped onto each other: value `i` to value `last − i`, or to `last − i + count` if
+/// A mapping of the values of a range onto each other: value `i` to value `last − i`, or to `last − i + count` if
 /// that would be negative, so that it wraps around.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct IndexReflection {
@@ -80,7 +82,8 @@ pub(crate) struct IndexReflection {
 }
 
 impl IndexReflection {
-    /// Of a range whose values lie `extent / 2` before the centre.
+    /// Returns the reflection of a range whose values lie `extent / 2` before the centre; None if the values are not
+    /// mapped onto each other.
     fn of(range: &DecimalRange, extent: f64) -> Option<Self> {
         // The shortest decimal that reads back as the number is the one that was given.
         let extent: DecimalRange = extent.to_string().parse().ok()?;
@@ -109,7 +112,7 @@ impl IndexReflection {
         })
     }
 
-    /// The value whose image this one is, and whether this one comes after `last`.
+    /// Returns the value whose image this one is, and whether this one comes after `last`.
     pub(crate) fn image(&self, index: u64) -> (u64, bool) {
         if index <= self.last {
             (self.last - index, false)
@@ -118,7 +121,7 @@ impl IndexReflection {
         }
     }
 
-    /// The sum of the coordinates of a centre and its image, in cells, for values up to `last` or after it.
+    /// Returns the sum of the coordinates of a centre and its image, in cells, for values up to `last` or after it.
     pub(crate) fn cells(&self, after: bool) -> i32 {
         self.cells[usize::from(after)]
     }
@@ -169,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_a_half_turn_maps_onto_itself_has_images() {
+    fn only_shapes_that_a_half_turn_maps_onto_themselves_have_images() {
         let halved = |kind: FigureKind, anchor| {
             has_images(
                 Source::Figure(Figure::default_of(kind, &Sensor::default())),
@@ -192,7 +195,8 @@ mod tests {
 
     #[test]
     fn other_ranges_have_no_image() {
-        // A step more or less than whole cells; a width between the steps; no decimal.
+        // A step more or less than whole cells; a width between the steps; a position off the half cells; not a
+        // decimal.
         for (range, extent) in [
             ("5:6:0.01", 6.0),
             ("5:5.98:0.01", 6.0),

@@ -21,34 +21,34 @@ struct Edge {
     top: f64,
     /// y of the lower end.
     bottom: f64,
-    /// x at the upper end, and by how much it grows downwards.
+    /// x of the upper end.
     x: f64,
-    /// By how much x grows a cell downwards.
+    /// The growth of x per cell downwards.
     slope: f64,
     /// The smaller x of both ends.
     low: f64,
     /// The larger x.
     high: f64,
-    /// +1 upwards.
+    /// +1 for an edge that goes upwards, −1 downwards.
     sign: f64,
 }
 
 impl Edge {
-    /// Where the edge is at a height between its ends.
+    /// Returns x at a height between the ends.
     fn x_at(&self, y: f64) -> f64 {
-        // Kept between the ends: the slope of an edge that is horizontal up to a rounding means nothing.
+        // Kept between the ends: the slope of an edge that is horizontal up to a rounding is meaningless.
         within(self.x + (y - self.top) * self.slope, self.low, self.high)
     }
 }
 
-/// A part of an edge inside of the band.
+/// A part of an edge inside the band.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     /// Where it begins.
     left: f64,
-    /// Where it ends; `left` for one that is upright.
+    /// Where it ends; `left` for an upright piece.
     right: f64,
-    /// How far it climbs, -1 to 1; positive where the material is on its right.
+    /// The height that it climbs, −1 to 1; positive where the material is on its right.
     rise: f64,
     /// The slope of `w` that it adds between its ends: the rise over the width.
     steepness: f64,
@@ -61,18 +61,19 @@ struct Stretch {
     left: f64,
     /// Where it ends.
     right: f64,
-    /// `w` at the left end, and by how much it grows to the right.
+    /// `w` at the left end.
     from: f64,
-    /// By how much `w` grows a cell to the right.
+    /// The growth of `w` per cell to the right.
     slope: f64,
     /// `W` at `left`.
     area: f64,
-    /// No piece lies here: `w` is a whole number.
+    /// Whether no piece lies here, so that `w` is a whole number.
     flat: bool,
 }
 
 impl Stretch {
-    /// Left of the shape, where `area` is 0, or right of it, where it is all there is.
+    /// Creates the stretch left of the shape, where `area` is 0, or right of it, where `area` is the area of the
+    /// whole band.
     fn far(left: f64, right: f64, area: f64) -> Self {
         Self {
             left,
@@ -84,7 +85,7 @@ impl Stretch {
         }
     }
 
-    /// `w` and `W` at a place inside.
+    /// Returns `w` and `W` at a place inside.
     fn at(&self, x: f64) -> (f64, f64) {
         let way = within(x - self.left, 0.0, self.right - self.left);
         let height = self.from + self.slope * way;
@@ -92,18 +93,18 @@ impl Stretch {
     }
 }
 
-/// A shape of straight edges, and room to work in.
+/// A shape of straight edges, with working memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Polygonal {
-    /// All edges that are not level, by their upper ends.
+    /// All edges that are not level, sorted by their upper ends.
     edges: Vec<Edge>,
-    /// Where edges lie that are level, which cut nothing.
+    /// The heights of the level edges, which have no pieces.
     levels: Vec<f64>,
-    /// Those of this band.
+    /// The pieces of this band.
     pieces: Vec<Piece>,
     /// Where `w` has a corner, from left to right.
     corners: Vec<f64>,
-    /// What lies between these.
+    /// The stretches between the corners.
     stretches: Vec<Stretch>,
 }
 
@@ -141,12 +142,12 @@ impl Polygonal {
         }
     }
 
-    /// The spans at which the coverage of the cells from `top` to `top + 1` reaches the threshold.
+    /// Finds the spans at which the coverage of the cells from `top` to `top + 1` reaches the threshold.
     pub(crate) fn band(&mut self, top: f64, threshold: f64, spans: &mut Spans) {
         spans.clear();
         self.cut(top);
         self.stretch();
-        // A threshold of 1 is reached by a full cell just so. Where no edge comes near, it is full without any doubt.
+        // A full cell just reaches a threshold of 1. Where no level edge comes near, it is full without any doubt.
         let inside = |level: &f64| *level > top - DOUBT && *level < top + 1.0 + DOUBT;
         let certain = threshold > 1.0 - 2.0 * DOUBT && !self.levels.iter().any(inside);
         self.walk(threshold, certain, spans);
@@ -183,14 +184,14 @@ impl Polygonal {
         sort(&mut self.corners, |&corner| corner);
     }
 
-    /// The section's height and area from corner to corner, with nothing before and after.
+    /// Computes the section's height and area from corner to corner, with nothing before and after.
     fn stretch(&mut self) {
         self.stretches.clear();
         let (Some(&first), Some(&last)) = (self.corners.first(), self.corners.last()) else {
             return;
         };
         self.stretches.push(Stretch::far(first - 2.0, first, 0.0));
-        // Pieces come from left to right; what those before `open` have climbed, which are all behind, is `climbed`.
+        // Pieces come from left to right. All pieces before `open` are behind; together they have climbed `climbed`.
         let (mut open, mut climbed) = (0, 0.0);
         let mut area = 0.0;
         for ends in self.corners.windows(2) {
@@ -231,7 +232,7 @@ impl Polygonal {
         self.stretches.push(Stretch::far(last, f64::INFINITY, area));
     }
 
-    /// Follows the coverage from left to right.
+    /// Follows the coverage from left to right and notes its levels.
     fn walk(&self, threshold: f64, certain: bool, spans: &mut Spans) {
         let Some(first) = self.stretches.get(1) else {
             return;
@@ -289,14 +290,14 @@ impl Polygonal {
     }
 }
 
-/// The place between `low` and `high` that is nearest to `value`, `low` for NaN: two instructions, where `f64::max` and
-/// `f64::min` take ten, because they never choose a NaN.
+/// Returns the place between `low` and `high` that is nearest to `value`, or `low` for NaN. This takes two
+/// instructions, where `f64::max` and `f64::min` take ten, because they never choose a NaN.
 fn within(value: f64, low: f64, high: f64) -> f64 {
     let above = if value > low { value } else { low };
     if above < high { above } else { high }
 }
 
-/// Insertion sort: the lists are short and nearly in order.
+/// Sorts by insertion: the lists are short and nearly in order.
 fn sort<T: Copy>(list: &mut [T], place: impl Fn(&T) -> f64) {
     for end in 1..list.len() {
         let value = list[end];
@@ -333,7 +334,7 @@ fn quadratic(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
     }
 }
 
-/// The same for a quadratic whose slope does not change sign.
+/// Notes the levels of a quadratic whose slope does not change sign.
 fn monotone(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
     let ((start, first, slope), (end, last, final_slope)) = (from, to);
     let (before, after) = (Level::of(first), Level::of(last));
@@ -341,11 +342,11 @@ fn monotone(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
     if before == after {
         return;
     }
-    // In shares of the way: at share `t` the quadratic is `first + rise * t + bend * t²`.
+    // In shares of the way: at share `t`, the quadratic is `first + rise * t + bend * t²`.
     let way = end - start;
     let (rise, bend) = (slope * way, (final_slope - slope) * 0.5 * way);
     let sense = if last > first { 1.0 } else { -1.0 };
-    // Where the quadratic is at a height, and its slope there, times the way.
+    // The place where the quadratic reaches a height, and its slope there, times the way.
     let passage = |height: f64| {
         let gap = first - height;
         let root = (rise * rise - 4.0 * bend * gap).max(0.0).sqrt();
@@ -359,7 +360,7 @@ fn monotone(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
             return spans.turn(at, after);
         }
     }
-    // Through the doubtful levels: entered at one height, left at another.
+    // Through the doubtful levels, which are entered at one height and left at another.
     if before != Level::Doubtful {
         spans.turn(passage(-sense * DOUBT).0, Level::Doubtful);
     }

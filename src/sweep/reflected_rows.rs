@@ -1,4 +1,4 @@
-//! Rows that are images of rows swept before ([`crate::sweep::point_symmetry`]): their runs, read backwards.
+//! The runs of rows that are images of rows swept before ([`crate::sweep::point_symmetry`]), read backwards.
 //!
 //! The image of a row has the same runs in reverse order, cut in two where the range of x0 wraps around. The imprint of
 //! each run is turned by 180° and shifted by whole cells. The counts and their order are the same as if the row had
@@ -12,7 +12,7 @@ use crate::sweep::point_symmetry::PointSymmetry;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Runs {
     list: Vec<(u32, u32)>,
-    /// Where each row begins.
+    /// The index of each row's first run.
     starts: Vec<usize>,
 }
 
@@ -26,7 +26,7 @@ impl Runs {
         self.list.push((narrow(index), narrow(length)));
     }
 
-    /// The runs of a row, counted from 0; empty for a row that does not exist.
+    /// Returns the runs of a row, counted from 0; empty for a row that does not exist.
     pub(crate) fn row(&self, row: usize) -> &[(u32, u32)] {
         let start = self.starts.get(row).copied().unwrap_or(self.list.len());
         let end = self.starts.get(row + 1).copied();
@@ -39,10 +39,10 @@ impl Runs {
 pub(crate) struct ReflectedRows<'a> {
     layout: &'a Layout,
     half_turn: PointSymmetry,
-    /// For each index in the counter: the indices of its images, by whether x0 and y0 wrap around.
+    /// For each index in the counter, the indices of its images, by whether x0 and y0 wrap around.
     known: Vec<[Option<u32>; 4]>,
     key: Vec<u64>,
-    /// The runs of the row being made. They are added when it is complete, because it is made from the others.
+    /// The runs of the row being made. They are added when it is complete, because it is made from the rows before.
     row: Vec<(usize, u64)>,
 }
 
@@ -57,7 +57,7 @@ impl<'a> ReflectedRows<'a> {
         }
     }
 
-    /// The row whose image this one is, and whether y0 wraps around on the way.
+    /// Returns the row whose image this one is, and whether y0 wraps around on the way.
     pub(crate) fn source(&self, y: u64) -> (u64, bool) {
         self.half_turn.y.image(y)
     }
@@ -73,7 +73,7 @@ impl<'a> ReflectedRows<'a> {
         let x = self.half_turn.x;
         self.row.clear();
         let mut pose = first;
-        // Backwards from `last` to 0, then from the end to the one after `last`.
+        // Backwards from `last` to 0, then from the end to the value after `last`.
         for (part, after) in [(0..x.last + 1, false), (x.last + 1..x.count, true)] {
             let mut end = x.count;
             for &(index, length) in runs.row(source).iter().rev() {
@@ -94,7 +94,7 @@ impl<'a> ReflectedRows<'a> {
         }
     }
 
-    /// The index of an imprint's image. If it is new, pose `first` is its first one.
+    /// Returns the index of an imprint's image. If the image is new, pose `first` is its first one.
     fn image(
         &mut self,
         counter: &mut ImprintCounter,

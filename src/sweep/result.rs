@@ -1,5 +1,5 @@
-//! What a sweep found: the atlas of distinct imprints, the statistics of their features, and the numbers that a file of
-//! it holds.
+//! The result of a sweep: the atlas of distinct imprints, the statistics of their features, and the numbers that its
+//! file holds.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use crate::sweep::ideal::Ideal;
 use crate::sweep::plan::{Shard, Task};
 use crate::sweep::runs;
 
-/// Everything that a sweep found.
+/// The result of a sweep.
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -37,7 +37,7 @@ pub struct SweepResult {
     pub shard: Shard,
     /// The number of poses swept. If the sweep was stopped, it is less than the number of poses of the shard.
     pub poses: u64,
-    /// Poses that reach beyond the sensor.
+    /// The number of poses that reach beyond the sensor.
     pub partly_off: u64,
     /// The distinct imprints.
     pub atlas: Atlas,
@@ -47,7 +47,7 @@ pub struct SweepResult {
 }
 
 impl SweepResult {
-    /// Whether every pose of the shard was swept.
+    /// Returns true if every pose of the shard was swept.
     pub fn complete(&self) -> bool {
         let rows = self.shard.rows(self.grid.rows());
         self.poses == (rows.end - rows.start) * self.grid.row_length()
@@ -75,8 +75,8 @@ impl SweepResult {
         }
     }
 
-    /// The atlas numbers of the poses with these indices of x0 and y0, row after row, at the angle and the zooms of
-    /// `orientation` (its x0 and y0 do not matter).
+    /// Returns the atlas numbers of the poses with these indices of x0 and y0, row after row, at the angle and the
+    /// zooms of `orientation` (its x0 and y0 do not matter).
     ///
     /// A number is None if the atlas does not have the imprint, because the sweep was stopped before. The result is
     /// empty if a range leaves the grid. It takes as long as sweeping these poses.
@@ -124,7 +124,7 @@ impl SweepResult {
         runs.collect()
     }
 
-    /// The numbers that it is made of.
+    /// Returns the numbers that the result consists of.
     pub(crate) fn parts(&self) -> Parts {
         let mut parts = Parts {
             poses: self.poses,
@@ -140,10 +140,10 @@ impl SweepResult {
         parts
     }
 
-    /// The result that such numbers make.
+    /// Creates a result from its numbers.
     ///
     /// # Errors
-    /// If they contradict each other or the grid.
+    /// Returns an error if they contradict each other or the grid.
     pub(crate) fn from_parts(
         grid: PoseGrid,
         shard: Shard,
@@ -201,24 +201,24 @@ impl SweepResult {
     }
 }
 
-/// The numbers of a result.
+/// The numbers that a result consists of.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Parts {
     /// The number of poses swept.
     pub(crate) poses: u64,
-    /// Poses that reach beyond the sensor.
+    /// The number of poses that reach beyond the sensor.
     pub(crate) partly_off: u64,
     /// The imprints one after another, a word per row of the sensor, bit `i` for column `i`.
     pub(crate) rows: Vec<u64>,
     /// How often each imprint occurs.
     pub(crate) counts: Vec<u64>,
-    /// The number of the first pose of each.
+    /// The number of the first pose of each imprint.
     pub(crate) first_poses: Vec<u64>,
     /// Sums over the orientations, in a form that may change between versions.
     pub(crate) variance_words: Vec<u64>,
 }
 
-/// The error for numbers that are not those of a result.
+/// The error for numbers that do not make a result.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct PartsError(&'static str);
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_swept_has_no_number() {
+    fn poses_that_were_not_swept_have_no_number() {
         let source = Source::Figure(Figure::default_of(
             FigureKind::Rectangle,
             &Sensor::default(),

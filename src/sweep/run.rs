@@ -19,7 +19,7 @@ use crate::sweep::plan::{Shard, Task, tasks};
 use crate::sweep::result::SweepResult;
 use crate::sweep::runs::{self, Found};
 
-/// Takes a row: its number in the grid, and the atlas number of each of its poses.
+/// A function that takes a row: its number in the grid, and the atlas number of each of its poses.
 pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
 
 /// A sweep to run: a grid of poses, and options.
@@ -57,7 +57,7 @@ impl fmt::Debug for Sweep<'_> {
 }
 
 impl<'a> Sweep<'a> {
-    /// A sweep of a whole grid, to its end.
+    /// Creates a sweep of a whole grid, to its end.
     pub fn new(grid: &'a PoseGrid) -> Self {
         Self {
             grid,
@@ -67,7 +67,7 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Sweeps one shard of the grid only.
+    /// Sweeps only one shard of the grid.
     #[must_use]
     pub fn shard(mut self, shard: Shard) -> Self {
         self.shard = shard;
@@ -90,8 +90,8 @@ impl<'a> Sweep<'a> {
         self
     }
 
-    /// Runs the sweep. If it is stopped early, the result holds what is complete: whole orientations or parts of them,
-    /// with everything about these. Unfinished work is lost, a few seconds at most.
+    /// Runs the sweep. If it is stopped early, the result holds what is complete: whole orientations or parts of
+    /// them, with all their numbers. Unfinished work is lost, a few seconds at most.
     pub fn run(mut self) -> SweepResult {
         let (grid, shard) = (self.grid, self.shard);
         let sensor = grid.sensor();
@@ -122,8 +122,9 @@ impl<'a> Sweep<'a> {
         result
     }
 
-    /// Sweeps portion after portion. `take` receives the results of each portion while the next one is being swept; if
-    /// runs are kept, in the order of the grid. If a portion is stopped, its results are lost and `false` is returned.
+    /// Sweeps portion after portion. `take` receives the results of each portion while the next one is being swept;
+    /// if runs are kept, the portions come in the order of the grid. If a portion is stopped, its results are lost
+    /// and `false` is returned.
     pub(super) fn each_portion(
         self,
         layout: &Layout,
@@ -169,11 +170,11 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// What the groups of some tasks found.
+/// The results of the groups of some tasks.
 pub(super) type Portion = Vec<Found>;
 
-/// The next tasks that run side by side: enough to keep all threads busy to the end, few enough for the memory that
-/// their results take. `width` is the number of poses in a row.
+/// Takes the next tasks that run side by side: enough to keep all threads busy to the end, few enough for the memory
+/// that their results take. `width` is the number of poses in a row.
 fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec<Task> {
     const POSES: u64 = 4_000_000;
     let threads = rayon::current_num_threads();
@@ -187,7 +188,7 @@ fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec<Task> {
     portion
 }
 
-/// What a sweep has found so far.
+/// The results of a sweep so far.
 struct Done<'a, 'w> {
     grid: &'a PoseGrid,
     atlas: Atlas,
@@ -232,7 +233,7 @@ impl Done<'_, '_> {
     }
 }
 
-/// Spells out the runs of a group, for each of its orientations.
+/// Calls `show` for each row of a group, in each of its orientations.
 fn show_rows(grid: &PoseGrid, found: &Found, ids: &[u32], show: &mut TakeRow<'_>) {
     let (width, height) = (grid.row_length(), grid.rows_per_orientation());
     let mut row = Vec::with_capacity(index(width));

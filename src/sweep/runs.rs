@@ -1,8 +1,8 @@
-//! The imprints of the rows of one orientation, run by run instead of pose by pose.
+//! Finds the imprints of the rows of one orientation, run by run instead of pose by pose.
 //!
-//! From the spans of a band ([`crate::sweep::span`]) [`crate::sweep::flips`] makes events; between two of them the
-//! imprint is the same: one *run*. Rows that are images of rows swept before ([`crate::sweep::point_symmetry`]) follow
-//! from those.
+//! [`crate::sweep::flips`] turns the spans of a band ([`crate::sweep::span`]) into events; between two events the
+//! imprint is the same: one *run*. Rows that are images of rows swept before ([`crate::sweep::point_symmetry`])
+//! follow from those rows.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -30,7 +30,7 @@ pub(crate) struct Found {
     pub(crate) orientations: Arc<[u64]>,
     /// The indices of the values of y0.
     pub(crate) rows: Range<u64>,
-    /// Its imprints, counted once per pose of one of its orientations.
+    /// The imprints of one orientation, with the number of their poses.
     pub(crate) counter: ImprintCounter,
     /// The number of poses of one orientation that reach beyond the sensor.
     pub(crate) partly_off: u64,
@@ -40,11 +40,13 @@ pub(crate) struct Found {
 
 /// The number of poses of an orientation between two reports of progress, for a shape with few edges.
 const REPORT_EVERY: u64 = 4_000;
-/// This many more edges double the time per pose. A picture may have thousands, and must report as often.
+/// The number of edges that doubles the time per pose. A picture may have thousands of edges, and must report as
+/// often.
 const EDGES: usize = 64;
 
-/// Sweeps the rows of a task. `progress` receives the number of poses done since the last call, of all orientations; if
-/// it returns `false`, the sweep stops and the result is None. There is a result for each group of the task.
+/// Sweeps the rows of a task. `progress` receives the number of poses done since the last call, of all orientations;
+/// if it returns `false`, the sweep stops and the result is None. Otherwise there is a result for each group of the
+/// task.
 pub(crate) fn go(
     grid: &PoseGrid,
     layout: &Layout,
@@ -95,9 +97,8 @@ impl Shape {
     }
 }
 
-/// The orientations of a task on their way through the values of y0.
+/// Sweeps the orientations of a task, one value of y0 after another.
 struct Sweeper<'a> {
-    /// The grid.
     grid: &'a PoseGrid,
     /// The shape in the first orientation of the first group, at the origin.
     shape: Shape,
@@ -109,11 +110,10 @@ struct Sweeper<'a> {
     steps: Steps,
     /// The spans of the current band; the memory is reused.
     spans: Spans,
-    /// The same of the mirror image.
+    /// The spans of the mirror image.
     mirrored: Spans,
-    /// The x of a place and of its mirror image sum up to this; cell sides, the anchor at the origin.
+    /// The sum of the x of a place and of its mirror image, in cell sides, with the anchor at the origin.
     mirror_sum: f64,
-    /// The groups.
     groups: Vec<Group<'a>>,
 }
 
@@ -135,7 +135,7 @@ impl<'a> Sweeper<'a> {
             height: boundary.extent().map(|extent| [extent.top, extent.bottom]),
             steps: Steps {
                 first,
-                // Any value will do for a range of one value.
+                // For a range of one value, any number will do.
                 per_cell: if count > 1 {
                     f64::from(count - 1) / (last - first)
                 } else {
@@ -189,7 +189,7 @@ impl<'a> Sweeper<'a> {
         }
     }
 
-    /// What was found.
+    /// Returns what was found, for each group.
     fn finish(self, keep_runs: bool) -> Vec<Found> {
         let groups = self.groups.into_iter();
         let found = groups.map(|group| Found {
@@ -204,19 +204,18 @@ impl<'a> Sweeper<'a> {
     }
 }
 
-/// A group of orientations, of which the first is swept.
+/// A group of orientations, of which only the first is swept.
 struct Group<'a> {
-    /// The grid.
     grid: &'a PoseGrid,
     /// The number of values of x0 for which the shape reaches beyond the left or right side.
     beyond: u64,
-    /// The values of y0, by number, that put it beyond neither the upper nor the lower side.
+    /// The indices of the values of y0 at which the shape reaches beyond neither the upper nor the lower side.
     rows_inside: Range<u64>,
     /// The events of the current row.
     events: Events<'a>,
     /// Whether the current row must be swept, because it is not the image of one that was.
     due: bool,
-    /// Decides where `f64` cannot.
+    /// Decides taxels that `f64` cannot decide.
     exact: Exact<'a>,
     /// Rows that are images of others, if there are any.
     images: Option<ReflectedRows<'a>>,
@@ -266,12 +265,12 @@ impl<'a> Group<'a> {
         }
     }
 
-    /// The orientation that is swept.
+    /// Returns the orientation that is swept.
     fn orientation(&self) -> u64 {
         self.found.orientations[0]
     }
 
-    /// The number of the first pose of a row.
+    /// Returns the number of the first pose of a row.
     fn first(&self, y: u64) -> u64 {
         (self.orientation() * self.grid.rows_per_orientation() + y) * self.grid.row_length()
     }
@@ -294,7 +293,7 @@ impl<'a> Group<'a> {
         self.due
     }
 
-    /// Marks what happens in a row of the sensor.
+    /// Marks the events in a row of the sensor.
     fn add_flips(&mut self, steps: Steps, row: usize, y: u64, spans: &Spans) {
         if !self.due {
             return;
@@ -330,8 +329,8 @@ impl<'a> Group<'a> {
     }
 }
 
-/// Whether a shape lies inside the sensor in every pose of an orientation, without touching its rim. `extent` is its own
-/// at the origin.
+/// Returns true if a shape lies inside the sensor in every pose of an orientation, without touching its rim. `extent`
+/// is the shape's extent at the origin.
 fn lies_inside(grid: &PoseGrid, orientation: u64, extent: &Extent) -> bool {
     let (ranges, sensor) = (grid.ranges(), grid.sensor());
     let place = |x, y| grid.offset::<f64>(orientation, x, y);

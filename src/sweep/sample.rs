@@ -13,13 +13,14 @@ const POSES: u64 = 20_000;
 pub struct TimingSample {
     /// The part: neighbouring poses at one angle and one pair of zooms, from the middle of their ranges.
     pub grid: PoseGrid,
-    /// How many times as many imprints as the part the whole grid may have. Its time is less than that multiple of the
-    /// part's: mirror images are swept together, and known imprints are not described again.
+    /// How many times as many poses as the part the whole grid has, counting only angles at which the shape looks
+    /// different. The time of the whole grid is less than that multiple of the part's: mirror images are swept
+    /// together, and known imprints are not described again.
     pub times: f64,
 }
 
 impl TimingSample {
-    /// The sample of a grid.
+    /// Returns the sample of a grid.
     #[expect(clippy::cast_precision_loss, reason = "an estimate")]
     pub fn of(grid: &PoseGrid) -> Self {
         let [width, height, angles, zooms_x, zooms_y] = grid.counts().into_array();
@@ -36,7 +37,7 @@ impl TimingSample {
     }
 }
 
-/// The number of angles at which the shape looks different.
+/// Returns the number of angles at which the shape looks different.
 fn distinct_angles(grid: &PoseGrid) -> u64 {
     let angles = grid.ranges()[Axis::Angle];
     let classes = AngleClasses::of(grid.source(), angles);

@@ -1,4 +1,4 @@
-//! Where along a band of the shape a taxel is active, as intervals of its place `u`.
+//! The places `u` along a band of the shape at which a taxel is active, as intervals.
 //!
 //! For one angle and one y0 the coverage of a taxel in row `j` depends only on `u = i − x0`, its column relative to the
 //! shape's anchor: it is the shape's area inside the unit square whose top left corner is (`u`, `j − y0`). So one
@@ -7,29 +7,29 @@
 
 use crate::touch::DOUBTFUL;
 
-/// A coverage this near to the threshold is not decided in `f64`; a share of a cell.
+/// The distance from the threshold below which a coverage is not decided in `f64`, as a share of a cell.
 pub(crate) const DOUBT: f64 = DOUBTFUL;
 
-/// An end of a sharp span lies this near to its true place; cell sides. Where the coverage passes the threshold
-/// with a slope of [`STEEP`] or more, [`DOUBT`] is left after this way.
+/// The distance within which the ends of a sharp span lie from their true places, in cell sides. Where the coverage
+/// passes the threshold with a slope of [`STEEP`] or more, it is out of [`DOUBT`] after this distance.
 pub(crate) const NEAR: f64 = 1e-8;
 
-/// See [`NEAR`]; the factor of two leaves room for the curvature.
+/// The least slope at a sharp end, see [`NEAR`]; the factor of two leaves room for the curvature.
 pub(crate) const STEEP: f64 = 2.0 * DOUBT / NEAR;
 
-/// How the coverage at a place compares with the threshold.
+/// The comparison of the coverage at a place with the threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Level {
-    /// Short of the threshold.
+    /// Below the threshold by more than [`DOUBT`].
     Below,
-    /// Within [`DOUBT`] of it.
+    /// Within [`DOUBT`] of the threshold.
     Doubtful,
-    /// Above it.
+    /// Above the threshold by more than [`DOUBT`].
     Above,
 }
 
 impl Level {
-    /// The level of a coverage; `excess` is the coverage minus the threshold.
+    /// Returns the level of a coverage; `excess` is the coverage minus the threshold.
     pub(crate) fn of(excess: f64) -> Self {
         if excess > DOUBT {
             Self::Above
@@ -67,7 +67,7 @@ impl Spans {
         self.level = None;
     }
 
-    /// Notes that the level is this one from `at` on. Places come in ascending order.
+    /// Notes the level from `at` on. Places come in ascending order.
     #[inline]
     pub(crate) fn turn(&mut self, at: f64, level: Level) {
         if level != self.level.map_or(Level::Below, |(_, level)| level) {
@@ -75,7 +75,7 @@ impl Spans {
         }
     }
 
-    /// Notes that the level is another one from `at` on.
+    /// Notes a level that differs from the one before, from `at` on.
     fn change(&mut self, at: f64, level: Level) {
         if let Some((from, old)) = self.level {
             let doubtful = old == Level::Doubtful;
@@ -105,7 +105,7 @@ impl Spans {
         self.level = (level != Level::Below).then_some((at, level));
     }
 
-    /// Writes the spans as they are when right and left are exchanged: a place and its image sum up to `sum`.
+    /// Writes the mirror image of the spans, with right and left exchanged: a place and its image sum up to `sum`.
     pub(crate) fn mirror(&self, sum: f64, image: &mut Self) {
         let mirrored = |span: &Span| Span {
             from: sum - span.to,
@@ -117,7 +117,7 @@ impl Spans {
         (image.sharp, image.level) = (self.sharp, None);
     }
 
-    /// The level before the span that begins at `from`.
+    /// Returns the level before the span that begins at `from`.
     fn side_before(&self, from: f64) -> Level {
         match self.list.last() {
             Some(last) if last.to == from => {
@@ -136,7 +136,7 @@ impl Spans {
             span.sharp = false;
         }
         if let Some(last) = self.list.last() {
-            // A gap too narrow to be certain.
+            // A gap that is too narrow to be certain.
             if span.from > last.to && span.from - last.to <= 4.0 * NEAR {
                 let gap = Span {
                     from: last.to,
@@ -151,12 +151,12 @@ impl Spans {
         self.list.push(span);
     }
 
-    /// Whether all of them are sharp.
+    /// Returns true if all spans are sharp.
     pub(crate) fn sharp(&self) -> bool {
         self.sharp
     }
 
-    /// The spans, from left to right.
+    /// Returns the spans, from left to right.
     pub(crate) fn all(&self) -> &[Span] {
         &self.list
     }

@@ -1,4 +1,4 @@
-//! Where the coverage of an ellipse passes through a level, followed from one row of the grid to the next.
+//! Follows where the coverage of an ellipse passes through a level, from one row of the grid to the next.
 //!
 //! The area of a convex set in a moving cell rises to a plateau and falls again: its root is concave where it is not 0
 //! (Brunn and Minkowski). So the coverage passes a level at most twice: there is at most one rising and one falling
@@ -12,7 +12,7 @@
 use crate::sweep::ellipse_band::EllipseBand;
 use crate::sweep::span::{NEAR, STEEP};
 
-/// Where a passage was in the last rows.
+/// The positions of a passage in the last rows.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Track {
     positions: [f64; 3],
@@ -20,7 +20,7 @@ pub(crate) struct Track {
 }
 
 impl Track {
-    /// Where to expect it next, by extrapolation; None for a new one.
+    /// Extrapolates the next position; None for a new track.
     fn expected(&self) -> Option<f64> {
         let [last, before, first] = self.positions;
         match self.known {
@@ -40,7 +40,7 @@ impl Track {
         self.known = 0;
     }
 
-    /// The passage through a level in the present band, rising or falling; None if it is not certain.
+    /// Finds the passage through a level in the present band, rising or falling; None if it is not certain.
     pub(crate) fn follow(&mut self, band: &EllipseBand, level: f64, rising: bool) -> Option<f64> {
         let mut u = self.expected()?;
         for _ in 0..4 {
