@@ -1,10 +1,10 @@
-//! How every file is written: under a temporary name in the same folder, synced, renamed into place, and the folder
-//! synced.
+//! Writes files so that none is ever half-written: under a temporary name in the same folder, synced, renamed into
+//! place, and the folder synced.
 //!
-//! Whenever the program dies or the power fails, the old file or the new one is there whole. The stages are types:
-//! content goes into an [`UnfinishedFile`]; a [`FinishedFile`] is on disk and lacks only its name. Either one removes
-//! its temporary file when it is dropped, so an error or an early return leaves nothing behind. If a program is
-//! killed, the next writer removes what it left: see [`crate::storage::temporary`] for files from
+//! Whenever the program dies or the power fails, the old file or the new one is there as a whole. The stages are
+//! types: content goes into an [`UnfinishedFile`]; a [`FinishedFile`] is on disk and lacks only its name. Either one
+//! removes its temporary file when it is dropped, so an error or an early return leaves nothing behind. If a program
+//! is killed, the next writer removes the file that it left: see [`crate::storage::temporary`] for files from
 //! [`UnfinishedFile::new`]; the name given to [`UnfinishedFile::with_temporary`] is taken over by the next caller.
 
 use std::fs::{self, File, Metadata, TryLockError};
@@ -15,13 +15,13 @@ use std::time::{Duration, Instant};
 use crate::storage::error::FileError;
 use crate::storage::temporary::{OldFile, TemporaryFile};
 
-/// What happens to a file that is there already.
+/// The treatment of a file that is there already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Existing {
-    /// It is replaced if it is a regular file. A folder, a device or a link never is.
+    /// The file is replaced if it is a regular file. A folder, a device or a link is never replaced.
     Replaced,
-    /// It stays, and nothing is written.
+    /// The file stays, and nothing is written.
     Kept,
 }
 
@@ -30,16 +30,16 @@ pub enum Existing {
 pub struct UnfinishedFile {
     path: PathBuf,
     existing: Existing,
-    /// Takes the content.
+    /// The writer for the content.
     pub(super) output: BufWriter<TemporaryFile>,
 }
 
 impl UnfinishedFile {
-    /// Begins the file at `path`, without a name or under a random one.
+    /// Begins the file at `path`, under no name or a random one.
     ///
     /// # Errors
-    /// [`ErrorKind::AlreadyExists`] if there is a file and it is to be kept; [`ErrorKind::Other`] if what is there is
-    /// no regular file; else what the system reports.
+    /// Returns [`ErrorKind::AlreadyExists`] if there is a file and it is to be kept, [`ErrorKind::Other`] if what is
+    /// there is not a regular file, or the system's error.
     pub fn new(path: &Path, existing: Existing) -> Result<Self, FileError> {
         Self::begin(path, existing, || TemporaryFile::new(folder_of(path)))
     }
@@ -48,7 +48,7 @@ impl UnfinishedFile {
     /// name was left by a program that died, and is removed.
     ///
     /// # Errors
-    /// As for [`UnfinishedFile::new`].
+    /// Returns the errors of [`UnfinishedFile::new`].
     pub fn with_temporary(path: &Path, temporary: &Path) -> Result<Self, FileError> {
         Self::begin(path, Existing::Replaced, || {
             match TemporaryFile::at(temporary) {
@@ -87,15 +87,15 @@ impl UnfinishedFile {
         })
     }
 
-    /// The path that the file will have.
+    /// Returns the path that the file will have.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The same open file, for what is still to be changed in it before it has its name.
+    /// Returns another handle of the open file, for changes before the file has its name.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub fn handle(&self) -> Result<File, FileError> {
         let handle = self.output.get_ref().file().try_clone();
         handle.map_err(|error| FileError::new("open it", &self.path, error))
@@ -104,7 +104,7 @@ impl UnfinishedFile {
     /// Writes a part of the content.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub fn write(&mut self, content: &[u8]) -> Result<(), FileError> {
         let written = self.output.write_all(content);
         written.map_err(|error| FileError::new("write it", &self.path, error))
@@ -113,7 +113,7 @@ impl UnfinishedFile {
     /// Writes out and syncs the content.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub fn finish(self) -> Result<FinishedFile, FileError> {
         let path = &self.path;
         let refuse = |doing| move |error| FileError::new(doing, path, error);
@@ -150,12 +150,12 @@ impl FinishedFile {
         file.finish()
     }
 
-    /// The path that the file will have.
+    /// Returns the path that the file will have.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The same file, with what happens to a file that has its name by then.
+    /// Returns the same file, with another treatment of a file that has its name by then.
     #[must_use]
     pub fn with_existing(self, existing: Existing) -> Self {
         Self { existing, ..self }
@@ -164,26 +164,26 @@ impl FinishedFile {
     /// Gives the file its name and syncs the folder.
     ///
     /// # Errors
-    /// [`ErrorKind::AlreadyExists`] if a file that is to be kept has come meanwhile; else what the system reports. The
-    /// old file is there as before, unless syncing the folder failed ([`FileError::is_in_place`]).
+    /// Returns [`ErrorKind::AlreadyExists`] if a file that is to be kept has come meanwhile, or the system's error.
+    /// The old file is there as before, unless syncing the folder failed ([`FileError::is_in_place`]).
     pub fn persist(self) -> Result<(), FileError> {
         let folder = folder_of(&self.path).to_owned();
         self.take_name()?;
         sync_folder(&folder)
     }
 
-    /// Whether it replaces a file.
+    /// Returns true if it replaces a file.
     ///
     /// # Errors
-    /// If what is there is to be kept, or is no regular file.
+    /// Returns an error if the existing file is to be kept, or is not a regular file.
     fn is_replaced(&self) -> Result<bool, FileError> {
         Ok(replaced(&self.path, self.existing)?.is_some())
     }
 
-    /// Gives the file its name. Returns the open file, for what is written into it from now on.
+    /// Gives the file its name. Returns the open file, for further writing.
     ///
     /// # Errors
-    /// As for [`Self::persist`].
+    /// Returns the errors of [`Self::persist`].
     fn take_name(self) -> Result<File, FileError> {
         let folder = folder_of(&self.path);
         let replace = self.existing == Existing::Replaced;
@@ -192,10 +192,10 @@ impl FinishedFile {
     }
 }
 
-/// What there is of the file that is to be replaced; None if there is none.
+/// Returns the metadata of the file that is to be replaced; None if there is none.
 ///
 /// # Errors
-/// If it is to be kept, or is no regular file.
+/// Returns an error if it is to be kept, or is not a regular file.
 fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileError> {
     let old = path.symlink_metadata().ok();
     match (existing, &old) {
@@ -211,19 +211,19 @@ fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileErr
     }
 }
 
-/// Gives two files that belong together their names: both, or neither. Whenever the program dies, there is never one of
-/// these beside an older one of the other: what stands under the second name is moved away first, and the second is named
-/// last. Of two programs that name such files in one folder at once, one waits for the other. Returns the first file, open,
-/// for what is written into it from now on.
+/// Gives two files that belong together their names: both, or neither. If the program dies, a new file never stands
+/// beside an old version of the other one: the file that has the second name is moved away first, and the second name
+/// is given last. Of two programs that name such files in one folder at once, one waits for the other. Returns the
+/// first file, open, for further writing.
 ///
 /// # Errors
-/// As for [`FinishedFile::persist`]. If one of them got no name, what was there is there again; the message says what
-/// could not be brought back.
+/// Returns the errors of [`FinishedFile::persist`]. If one of the files got no name, the old files are there again;
+/// the message says what could not be brought back.
 pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, FileError> {
     let _lock = lock_folder(folder_of(&first.path));
     let (path, beside) = (first.path.clone(), second.path.clone());
     let is_replaced = first.is_replaced()?;
-    // Where the file system has no links, it goes without.
+    // On a file system without links, nothing is kept.
     let kept = is_replaced.then(|| OldFile::linked(folder_of(&path), &path));
     let kept = kept.and_then(Result::ok);
     let moved = if second.is_replaced()? {
@@ -236,10 +236,10 @@ pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, F
         Ok(file) => file,
         Err(error) => return Err(error.and(put_back(moved))),
     };
-    // Before the second gets its name: a power cut keeps their order, too.
+    // Before the second file gets its name, so that a power cut keeps their order, too.
     let synced = sync_folder(folder_of(&path));
     if let Err(error) = second.take_name() {
-        // The new first file would be taken for complete alone.
+        // The new first file would be taken for complete on its own.
         let lost = if kept.is_some() {
             put_back(kept)
         } else {
@@ -264,9 +264,9 @@ fn move_away(path: &Path) -> Result<OldFile, FileError> {
     }
 }
 
-/// Waits until no other program names files that belong together in a folder, for two seconds at most; the others wait as
-/// long as the file that is returned is open. The folder itself is locked, so nothing is left in it. None on a system that
-/// cannot lock a folder: the files are named all the same.
+/// Locks a folder, so that two programs do not rename pairs of files in it at the same time. Waits for two seconds at
+/// most; others wait as long as the file that is returned is open. The folder itself is locked, so nothing is left in
+/// it. None if the wait is over, or on a system that cannot lock a folder: the files are named all the same.
 fn lock_folder(folder: &Path) -> Option<File> {
     const PATIENCE: Duration = Duration::from_secs(2);
     const PAUSE: Duration = Duration::from_millis(2);
@@ -284,10 +284,10 @@ fn lock_folder(folder: &Path) -> Option<File> {
 }
 
 /// Writes a file that replaces `path`: under a temporary name that only the holder of a lock uses, or without a lock
-/// under a name of its own.
+/// as [`UnfinishedFile::new`] does.
 ///
 /// # Errors
-/// As for [`UnfinishedFile::new`] and [`FinishedFile::persist`].
+/// Returns the errors of [`UnfinishedFile::new`] and [`FinishedFile::persist`].
 #[cfg(feature = "library")]
 pub(crate) fn write(
     path: &Path,
@@ -302,7 +302,7 @@ pub(crate) fn write(
     file.finish()?.persist()
 }
 
-/// The folder that a file is in.
+/// Returns the folder that contains a file.
 fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -310,16 +310,16 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Syncs a folder, so that what was renamed in it stays renamed.
+/// Syncs a folder, so that files renamed in it stay renamed.
 ///
 /// # Errors
-/// What the system reports; [`FileError::is_in_place`] is true of it.
+/// Returns the system's error, for which [`FileError::is_in_place`] is true.
 pub(crate) fn sync_folder(folder: &Path) -> Result<(), FileError> {
     sync(folder).map_err(|error| FileError::syncing(folder, error))
 }
 
 fn sync(folder: &Path) -> io::Result<()> {
-    // Elsewhere a folder cannot be opened, and renaming is all that can be done.
+    // On other systems a folder cannot be opened, and renaming is all that can be done.
     if !cfg!(unix) {
         return Ok(());
     }
@@ -329,7 +329,7 @@ fn sync(folder: &Path) -> io::Result<()> {
         opened => opened,
     };
     match opened.and_then(|folder| folder.sync_all()) {
-        // Nor can those of some file systems.
+        // Some file systems cannot sync a folder.
         Err(error)
             if matches!(
                 error.kind(),

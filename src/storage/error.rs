@@ -1,4 +1,4 @@
-//! What can go wrong with files and with a library: which file, which operation, what was expected.
+//! The errors of files and of a library: which file, which operation, what was expected.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -8,16 +8,16 @@ use crate::formats::name::NameError;
 #[cfg(feature = "library")]
 use crate::formats::shape::ShapeError;
 
-/// The system refused to do something with a file.
+/// The error for an operation on a file that the system refused.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[error("{}: cannot {doing}: {error}", path.display())]
 pub struct FileError {
-    /// What was to be done, after "cannot".
+    /// The operation, in words that follow "cannot".
     pub doing: &'static str,
     /// The file or folder.
     pub path: PathBuf,
-    /// What the system reports.
+    /// The error that the system reports.
     pub error: io::Error,
     /// Whether the new file is in its place.
     is_in_place: bool,
@@ -33,7 +33,8 @@ impl FileError {
         }
     }
 
-    /// That the folder was not synced: the last step of writing a file, when it is already in its place.
+    /// Creates the error for a folder that was not synced: the last step of writing a file, when the file is already
+    /// in its place.
     pub(crate) fn syncing(folder: &Path, error: io::Error) -> Self {
         let doing = "sync the folder; it was changed, but a power cut may undo that";
         Self {
@@ -42,7 +43,7 @@ impl FileError {
         }
     }
 
-    /// The same error; its message says this, too.
+    /// Adds a note to the message, if there is one.
     #[must_use]
     pub(crate) fn and(self, note: Option<String>) -> Self {
         let Some(note) = note else { return self };
@@ -50,17 +51,17 @@ impl FileError {
         Self { error, ..self }
     }
 
-    /// Whether there is a file already, which was to be kept.
+    /// Returns true if there is a file already, which was to be kept.
     pub fn exists(&self) -> bool {
         self.error.kind() == io::ErrorKind::AlreadyExists
     }
 
-    /// Whether the new file is in its place, though a power cut may undo that.
+    /// Returns true if the new file is in its place, though a power cut may undo that.
     pub fn is_in_place(&self) -> bool {
         self.is_in_place
     }
 
-    /// Whether there is no such file, nor a folder where one is expected.
+    /// Returns true if there is no such file, or if a file is where a folder is expected.
     pub fn is_missing(&self) -> bool {
         matches!(
             self.error.kind(),
@@ -68,7 +69,7 @@ impl FileError {
         )
     }
 
-    /// The error for a message that names the file itself.
+    /// Returns the system's error, for a message that names the file itself.
     #[must_use]
     pub fn into_io(self) -> io::Error {
         if self.is_in_place {
@@ -81,7 +82,7 @@ impl FileError {
     }
 }
 
-/// Why something was not done to a library. No shape was lost.
+/// The error of an operation on a library. No shape was lost.
 #[cfg(feature = "library")]
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -92,28 +93,28 @@ pub enum LibraryError {
     /// No shape has that name.
     #[error("no shape is called {name:?}")]
     Unknown {
-        /// The name asked for.
+        /// The given name.
         name: String,
     },
     /// No shape in the trash has that name.
     #[error("nothing called {name:?} is in the trash")]
     NotInTrash {
-        /// The name asked for.
+        /// The given name.
         name: String,
     },
-    /// No shape was deleted.
+    /// The trash is empty.
     #[error("the trash is empty")]
     TrashEmpty,
     /// The shape comes with the program and cannot be changed.
     #[error("{name:?} comes with the program; it can be copied under another name")]
     Shipped {
-        /// Its name.
+        /// The name of the shape.
         name: String,
     },
     /// The shape comes with the program and cannot be deleted.
     #[error("{name:?} is shipped with taxel and cannot be deleted")]
     NotDeletable {
-        /// Its name.
+        /// The name of the shape.
         name: String,
     },
     /// The name is taken.
@@ -121,7 +122,7 @@ pub enum LibraryError {
     Exists {
         /// The name as the file has it.
         name: String,
-        /// The stamp of what the file holds now.
+        /// The stamp of the file's present content.
         stamp: u64,
     },
     /// Another program has written the file since it was loaded.
@@ -129,7 +130,7 @@ pub enum LibraryError {
     Changed {
         /// The name.
         name: String,
-        /// The stamp of what the file holds now.
+        /// The stamp of the file's present content.
         stamp: u64,
     },
     /// The path is taken by something other than a file or folder.
@@ -137,9 +138,9 @@ pub enum LibraryError {
     InTheWay {
         /// The path.
         path: PathBuf,
-        /// What is there.
+        /// The kind of thing that is there.
         what: &'static str,
-        /// What should be there.
+        /// The kind of thing that is expected.
         expected: &'static str,
     },
     /// The file does not hold a shape.
@@ -147,13 +148,13 @@ pub enum LibraryError {
     Broken {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The problem with the content.
         error: ShapeError,
     },
     /// The system refused.
     #[error(transparent)]
     System(#[from] FileError),
-    /// The system does not say where a user's data belong.
+    /// No folder was named, and the system does not say where a user's data belong.
     #[error("no home folder: name a folder for the library with --library DIR or TAXEL_LIBRARY")]
     NoPlace,
 }

@@ -3,21 +3,21 @@
 use std::io::{self, Seek, SeekFrom, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Writes until something goes wrong or it is to stop; from then on it only takes note of what would have been written,
-/// since a zip whose writer fails complains on standard error, where the screen is.
+/// A writer that stops writing at the first error, or when it is to stop. From then on it only counts what would have
+/// been written, since a zip whose writer fails complains on standard error, where the screen is.
 pub(crate) struct FirstErrorWriter<'a, W> {
     output: W,
     stopped: &'a AtomicBool,
-    /// What went wrong first.
+    /// The first error.
     error: Option<io::Error>,
     place: u64,
     end: u64,
-    /// No more bytes are written.
+    /// The largest number of bytes that are written.
     most: u64,
 }
 
 impl<'a, W: Write + Seek> FirstErrorWriter<'a, W> {
-    /// A writer of a file of at most `most` bytes; a longer one is an error.
+    /// Creates a writer of a file of at most `most` bytes; a longer file is an error.
     pub(crate) fn new(output: W, most: u64, stopped: &'a AtomicBool) -> Self {
         Self {
             output,

@@ -10,14 +10,14 @@ use crate::formats::shape::MAX_BYTES;
 use crate::storage::atomic_file::sync_folder;
 use crate::storage::error::{FileError, LibraryError};
 
-/// A hash of a file's content. Two contents with the same stamp count as equal.
+/// Returns a hash of a file's content. Two contents with the same stamp count as equal.
 pub(crate) fn stamp(content: &[u8]) -> u64 {
     let mut hasher = DefaultHasher::new();
     content.hash(&mut hasher);
     hasher.finish()
 }
 
-/// The metadata of a regular file. A link is refused too: what it leads to is not the library's.
+/// Returns the metadata of a regular file. Refuses a link too: its target does not belong to the library.
 pub(crate) fn regular(path: &Path) -> Result<Metadata, LibraryError> {
     let found = path.symlink_metadata();
     let found = found.map_err(|error| FileError::new("look at it", path, error))?;
@@ -47,12 +47,12 @@ fn in_the_way(path: &Path, what: &'static str, expected: &'static str) -> Librar
     }
 }
 
-/// A regular file's content, at most one byte more than a shape may have.
+/// Reads the content of a regular file, at most one byte more than a shape may have.
 ///
-/// Four system calls, because a library may have 100,000 files: open, look, read, close.
+/// Uses four system calls (open, look, read, close), because a library may have 100,000 files.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, LibraryError> {
     let file = open(path)?;
-    // Of the open file: another may have taken its name since.
+    // The metadata of the open file: another file may have taken its name since.
     let found = file.metadata();
     let found = found.map_err(|error| FileError::new("look at it", path, error))?;
     check_regular(path, &found)?;
@@ -67,7 +67,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, LibraryError> {
     Ok(content)
 }
 
-/// Opens a file, but follows no link and waits for no writer of a pipe.
+/// Opens a file, but does not follow a link or wait for the writer of a pipe.
 fn open(path: &Path) -> Result<File, LibraryError> {
     let refused = |error| FileError::new("open it", path, error).into();
     #[cfg(unix)]
@@ -93,8 +93,8 @@ fn open(path: &Path) -> Result<File, LibraryError> {
     File::open(path).map_err(refused)
 }
 
-/// The names of what is in a folder; empty if the folder does not exist, or if a file is where a folder above it would
-/// be.
+/// Returns the names of everything in a folder; empty if the folder does not exist, or if a file is where a folder
+/// above it would be.
 pub(crate) fn names(folder: &Path) -> Result<Vec<OsString>, FileError> {
     let refuse = |error| FileError::new("read the folder", folder, error);
     let files = loop {
@@ -115,14 +115,14 @@ pub(crate) fn names(folder: &Path) -> Result<Vec<OsString>, FileError> {
         .collect()
 }
 
-/// The file that is where a folder above `path` would be, if there is one.
+/// Returns the file that is where a folder above `path` would be, if there is one.
 pub(crate) fn file_above(path: &Path) -> Option<&Path> {
     let above = path.ancestors().skip(1);
     let mut found = above.filter(|above| !above.as_os_str().is_empty() && above.exists());
     found.next().filter(|above| !above.is_dir())
 }
 
-/// Makes a folder and those above it, and syncs them. A link to a folder counts as a folder.
+/// Makes a folder and the folders above it, and syncs them. A link to a folder counts as a folder.
 pub(crate) fn make(path: &Path) -> Result<(), LibraryError> {
     if path.as_os_str().is_empty() || path.is_dir() {
         return Ok(());
@@ -146,7 +146,7 @@ pub(crate) fn make(path: &Path) -> Result<(), LibraryError> {
     Ok(sync_folder(parent)?)
 }
 
-/// As [`make`], for a folder inside the library, which must not lead out of it.
+/// Does the same as [`make`] for a folder inside the library, which must not lead out of it.
 pub(crate) fn make_inner(path: &Path) -> Result<(), LibraryError> {
     let found = path.symlink_metadata();
     if found.is_ok_and(|found| found.file_type().is_symlink()) {

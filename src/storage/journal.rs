@@ -16,24 +16,24 @@ use crate::storage::folder;
 use crate::storage::library::Library;
 use crate::storage::lock::{Lock, LockAttempt};
 
-/// How many journals are offered at once. Each keeps a file open, and a program may have about a thousand; the others
-/// wait for the next start.
+/// The largest number of journals that are offered at once. Each keeps a file open, and a program may have about a
+/// thousand; the others wait for the next start.
 const MOST_ORPHANS: usize = 100;
 
 /// The name of unsaved work that has none.
 pub const UNNAMED: &str = "unsaved";
 
 /// The journal of a running program. Nothing is written before there is something to keep, and what is kept stays
-/// until it is cleared: a program that ends without doing so, for whatever reason, has lost nothing.
+/// until it is cleared: a program that ends without clearing it has lost nothing.
 #[derive(Debug)]
 pub struct Journal {
     folder: PathBuf,
-    /// Its file with the lock, where there are locks.
+    /// The journal's file, with the lock if the file system has locks.
     open: Option<(PathBuf, Option<Lock>)>,
 }
 
 impl Journal {
-    /// A journal in a library.
+    /// Creates a journal in a library.
     pub fn new(library: &Library) -> Self {
         Self {
             folder: folder_in(library),
@@ -44,7 +44,7 @@ impl Journal {
     /// Keeps a shape in place of the one kept before; durable on return.
     ///
     /// # Errors
-    /// What the system refuses. The shape kept before is still there.
+    /// Returns the system's error. The shape kept before is still there.
     pub fn keep(&mut self, shape: &StoredShape) -> Result<(), LibraryError> {
         match self.write(shape) {
             // The folder was removed meanwhile: it is made again.
@@ -66,7 +66,7 @@ impl Journal {
         )?)
     }
 
-    /// The journal's file; its name is chosen at the first use.
+    /// Returns the journal's file; its name is chosen at the first use.
     fn file(&mut self) -> Result<PathBuf, LibraryError> {
         if let Some((path, _)) = &self.open {
             return Ok(path.clone());
@@ -75,15 +75,15 @@ impl Journal {
         let process = std::process::id();
         for number in 0..1000 {
             let path = self.folder.join(format!("{process}-{number}.json"));
-            // Left by a dead program that had the same number.
+            // Left by a dead program with the same process number.
             if path.exists() {
                 continue;
             }
             let lock = match Lock::attempt(&lock_of(&path))? {
                 LockAttempt::Free(lock) => Some(lock),
                 LockAttempt::Held => continue,
-                // What is kept can be found in the folder; whether its program still runs cannot be known, so it is
-                // not offered.
+                // What is kept can be found in the folder. It is not offered, because nobody can tell whether its
+                // program still runs.
                 LockAttempt::Unsupported => None,
             };
             self.open = Some((path.clone(), lock));
@@ -93,7 +93,7 @@ impl Journal {
         Err(FileError::new("create a journal", &self.folder, none).into())
     }
 
-    /// Forgets what was kept: it is saved, or given up.
+    /// Forgets the shape that was kept, because it is saved or given up.
     pub fn clear(&mut self) {
         if let Some((path, lock)) = self.open.take() {
             remove(&path, lock);
@@ -101,18 +101,19 @@ impl Journal {
     }
 }
 
-/// Work that a program left behind when it died. While this lives, no other program offers it.
+/// Work that a program left behind when it died. While this value lives, no other program offers the work.
 #[derive(Debug)]
 pub struct Orphan {
-    /// What was on its matrix.
+    /// The shape that was on the program's matrix.
     pub shape: StoredShape,
     path: PathBuf,
     lock: Lock,
 }
 
 impl Orphan {
-    /// The newest that wait in a library, at most 100, the oldest of them first. Work identical to the saved shape of its
-    /// name is removed. A journal that cannot be read is left alone: it may be one of a later version.
+    /// Returns the newest journals that wait in a library, at most 100, the oldest of them first. Removes work that
+    /// is identical to the saved shape of its name. Leaves a journal alone if it cannot be read: it may be of a later
+    /// version.
     pub fn all(library: &Library) -> Vec<Self> {
         let journals = folder_in(library);
         // A folder that cannot be read must not keep the program from starting.
@@ -122,7 +123,7 @@ impl Orphan {
         let mut paths: Vec<PathBuf> = names.into_iter().map(|name| journals.join(name)).collect();
         paths.sort_by_cached_key(|path| {
             let changed = fs::symlink_metadata(path).and_then(|file| file.modified());
-            // Of those of the same moment, `1-10.json` comes after `1-9.json`.
+            // Of files with the same time, `1-10.json` comes after `1-9.json`.
             (changed.ok(), path.as_os_str().len(), path.clone())
         });
         let newest = paths.into_iter().rev();
@@ -131,7 +132,7 @@ impl Orphan {
                 let journal = path.with_extension("json");
                 match path.extension()?.to_str()? {
                     "json" => Self::of(library, path),
-                    // Left of a journal that was begun, or being cleared, when its program died.
+                    // Left by a program that died while it began or cleared a journal.
                     "lock" if !journal.exists() => {
                         if let Some(lock) = Lock::if_free(&path)
                             && !journal.exists()
@@ -149,10 +150,10 @@ impl Orphan {
         found
     }
 
-    /// The work in a journal, if its program is dead and it would be lost.
+    /// Returns the work in a journal, if its program is dead and the work would be lost.
     fn of(library: &Library, path: PathBuf) -> Option<Self> {
         let lock = Lock::if_free(&lock_of(&path))?;
-        // Half-written; the one before is whole.
+        // This file is half-written; the one before is whole.
         let _ = fs::remove_file(temporary_of(&path));
         let content = match folder::read(&path) {
             // Its program has cleared it just now.
@@ -170,19 +171,20 @@ impl Orphan {
         Some(Self { shape, path, lock })
     }
 
-    /// How long ago it was written; None where the system does not say, or its clock was set back since.
+    /// Returns how long ago the work was written; None if the system does not say, or if its clock was set back
+    /// since.
     pub fn age(&self) -> Option<Duration> {
         let written = fs::symlink_metadata(&self.path).ok()?.modified().ok()?;
         written.elapsed().ok()
     }
 
-    /// The work is elsewhere now, or is not wanted.
+    /// Removes the work, because it is stored elsewhere now or is not wanted.
     pub fn discard(self) {
         remove(&self.path, Some(self.lock));
     }
 }
 
-/// Whether a library holds just this under its name, or there is nothing to hold.
+/// Returns true if a library holds exactly this work under its name, or if there is nothing to hold.
 fn is_saved(library: &Library, shape: &StoredShape) -> bool {
     let same = |saved: &StoredShape| {
         (saved.sensor, saved.imprint, &saved.source) == (shape.sensor, shape.imprint, &shape.source)
@@ -205,7 +207,7 @@ fn temporary_of(path: &Path) -> PathBuf {
     path.with_extension("tmp")
 }
 
-/// The lock goes last, so that nobody finds the file without it.
+/// Removes a journal. The lock goes last, so that nobody finds the file without it.
 fn remove(path: &Path, lock: Option<Lock>) {
     // What cannot be removed is offered again: better twice than never.
     let _ = fs::remove_file(temporary_of(path));

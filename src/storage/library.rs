@@ -25,7 +25,7 @@ use crate::storage::shipped;
 use crate::storage::temporary::is_temporary;
 use crate::storage::trash::Trash;
 
-/// Where a shape comes from.
+/// The origin of a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum ShapeOrigin {
@@ -39,9 +39,9 @@ pub enum ShapeOrigin {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct LibraryEntry {
-    /// The shape's name: its file's, without `.json`.
+    /// The name of the shape: the name of its file without `.json`.
     pub name: String,
-    /// Where it comes from.
+    /// The origin of the shape.
     pub origin: ShapeOrigin,
 }
 
@@ -55,11 +55,11 @@ pub struct LoadedShape {
     pub written_name: Name,
     /// A hash of the file's content.
     pub stamp: u64,
-    /// Where it comes from.
+    /// The origin of the shape.
     pub origin: ShapeOrigin,
 }
 
-/// What the writer expects to replace.
+/// The content that a writer expects to replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Expected {
@@ -72,13 +72,13 @@ pub enum Expected {
 /// The name of a file that is being written. Its writer holds the lock, so one name is enough.
 const TEMPORARY: &str = ".taxel-tmp";
 
-/// The file with the commands that were typed.
+/// The name of the file with the commands that were typed.
 pub(super) const COMMANDS: &str = ".commands";
 
-/// The file with the set of shapes that was recognised last.
+/// The name of the file with the set of shapes that was recognised last.
 pub(super) const RECOGNISED_SET: &str = ".recognise";
 
-/// The file with the values that forms were accepted with.
+/// The name of the file with the values that forms were accepted with.
 pub(super) const FORMS: &str = ".forms";
 
 /// A library in a folder. The folder is made when the first shape is saved.
@@ -117,7 +117,7 @@ pub struct Library {
 }
 
 impl Library {
-    /// Opens the library in a folder, and removes what a program that died left half-written there.
+    /// Opens the library in a folder, and removes a half-written file that a program left there when it died.
     pub fn open(folder: PathBuf) -> Self {
         let temporary = folder.join(TEMPORARY);
         if fs::symlink_metadata(&temporary).is_ok()
@@ -133,19 +133,19 @@ impl Library {
         }
     }
 
-    /// Whether a change, on another thread, waits because another program holds the lock. A change waits for at most
-    /// five seconds.
+    /// Returns true if a change, on another thread, waits because another program holds the lock. A change waits for
+    /// at most five seconds.
     pub fn waits_for_lock(&self) -> bool {
         self.waits.load(Ordering::Relaxed)
     }
 
-    /// The file that is where a folder above its own would be, if there is one: then only shapes that come with the
-    /// program can be loaded, and none can be saved.
+    /// Returns the file that is where a folder above the library's own would be, if there is one. Then only shapes
+    /// that come with the program can be loaded, and none can be saved.
     pub fn file_above(&self) -> Option<&Path> {
         folder::file_above(&self.folder)
     }
 
-    /// Its folder.
+    /// Returns the folder of the library.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
@@ -154,11 +154,11 @@ impl Library {
         self.folder.join(".trash")
     }
 
-    /// All shapes by name, the user's first, without opening any file. Files not called `NAME.json` are skipped, and a
-    /// shape that comes with the program is, if the user has one of the same name.
+    /// Lists all shapes by name, the user's first, without opening any file. Skips files that are not called
+    /// `NAME.json`, and shapes that come with the program if the user has one of the same name.
     ///
     /// # Errors
-    /// If the folder exists but cannot be read.
+    /// Returns an error if the folder exists but cannot be read.
     pub fn list(&self) -> Result<Vec<LibraryEntry>, LibraryError> {
         let own = |name| LibraryEntry {
             name,
@@ -184,7 +184,7 @@ impl Library {
         Ok(files.filter_map(own).collect())
     }
 
-    /// The user's shape of that name, in the case its file has.
+    /// Returns the name of the user's shape, spelled as in its file; None if the user has none of that name.
     fn own_name(&self, name: &Name) -> Result<Option<String>, LibraryError> {
         // The usual case needs no search.
         let path = self.path(name.as_str());
@@ -197,15 +197,16 @@ impl Library {
         self.names.find(&self.folder, name, || self.own_names())
     }
 
-    /// The path of the user's shape of that name. A name cannot lead out of the folder.
+    /// Returns the path of the user's shape of that name. A name cannot lead out of the folder.
     fn path(&self, name: &str) -> PathBuf {
         self.folder.join(format!("{name}.json"))
     }
 
-    /// Loads the shape of that name, regardless of case; the user's before one that comes with the program.
+    /// Loads the shape of that name, regardless of case. The user's shape comes before one that comes with the
+    /// program.
     ///
     /// # Errors
-    /// If there is none, or its file is broken or cannot be read.
+    /// Returns an error if there is no such shape, or if its file is broken or cannot be read.
     pub fn load(&self, name: &str) -> Result<LoadedShape, LibraryError> {
         let name = Name::new(name)?;
         // The usual case needs no search, and no look at the file before it is read.
@@ -242,10 +243,11 @@ impl Library {
         })
     }
 
-    /// The name under which a shape of that name is or would be stored: its file's, which may differ in case.
+    /// Returns the name under which a shape of that name is or would be stored: the name of its file, which may
+    /// differ in case.
     ///
     /// # Errors
-    /// If the folder cannot be read.
+    /// Returns an error if the folder cannot be read.
     pub fn stored_name(&self, name: &Name) -> Result<String, LibraryError> {
         Ok(self.own_name(name)?.unwrap_or_else(|| name.to_string()))
     }
@@ -253,8 +255,8 @@ impl Library {
     /// Saves a shape under its name, and returns the stamp of its file.
     ///
     /// # Errors
-    /// [`LibraryError::Exists`] if the name is taken, [`LibraryError::Changed`] if the file's stamp is not the expected
-    /// one, [`LibraryError::Shipped`] for the name of a shipped shape, or what the system refuses.
+    /// Returns [`LibraryError::Exists`] if the name is taken, [`LibraryError::Changed`] if the file's stamp is not
+    /// the expected one, [`LibraryError::Shipped`] for the name of a shipped shape, or the system's error.
     pub fn save(&self, shape: &StoredShape, expected: Expected) -> Result<u64, LibraryError> {
         let name = &shape.name;
         folder::make(&self.folder)?;
@@ -279,7 +281,7 @@ impl Library {
         Ok(stamp(content.as_bytes()))
     }
 
-    /// Refuses to replace a file that is read-only or holds something other than expected.
+    /// Refuses to replace a file that is read-only or has another content than expected.
     fn check_replaceable(&self, own: &str, expected: Expected) -> Result<(), LibraryError> {
         let path = self.path(own);
         let now = stamp(&folder::read(&path)?);
@@ -295,10 +297,10 @@ impl Library {
         }
     }
 
-    /// Returns the name of a shape that can be deleted as its file has it.
+    /// Returns the name of a shape that can be deleted, spelled as in its file.
     ///
     /// # Errors
-    /// If there is none of that name, it comes with the program, or the folder cannot be read.
+    /// Returns an error if there is no shape of that name, it comes with the program, or the folder cannot be read.
     pub fn deletable(&self, name: &str) -> Result<String, LibraryError> {
         let name = Name::new(name)?;
         if self.folder.is_dir()
@@ -315,12 +317,12 @@ impl Library {
         })
     }
 
-    /// Moves a shape into the trash without reading its file, and returns its name as the file had it.
+    /// Moves a shape into the trash without reading its file, and returns its name, spelled as in its file.
     ///
     /// # Errors
-    /// If there is none of that name, it comes with the program, or the system refuses.
+    /// Returns an error if there is no shape of that name, it comes with the program, or the system refuses.
     pub fn delete(&self, name: &str) -> Result<String, LibraryError> {
-        // Before the lock, which is a file in the folder.
+        // Checked before the lock is taken: the lock is a file in the folder, which may not exist.
         self.deletable(name)?;
         let _lock = Lock::wait(&self.folder, &self.waits)?;
         let own = self.deletable(name)?;
@@ -336,11 +338,10 @@ impl Library {
         Ok(own)
     }
 
-    /// Puts a shape that was never saved into the trash, under its name with a number that is free, and returns that
-    /// name.
+    /// Puts a shape that was never saved into the trash, under its name with a free number, and returns that name.
     ///
     /// # Errors
-    /// What the system refuses; then the shape is stored nowhere.
+    /// Returns the system's error; then the shape is stored nowhere.
     pub fn throw_away(&self, shape: &StoredShape) -> Result<String, LibraryError> {
         folder::make(&self.folder)?;
         let _lock = Lock::wait(&self.folder, &self.waits)?;
@@ -354,7 +355,7 @@ impl Library {
             let name = format!("{} {number}", shape.name);
             Name::new(&name).ok()
         });
-        // If all are taken: in the trash a name may stand twice.
+        // If all numbers are taken, the name is used without one: in the trash a name may occur twice.
         let name = numbered.find(free);
         let name = name.unwrap_or_else(|| shape.name.clone());
         let thrown = shape.clone().renamed(name.clone());
@@ -365,8 +366,8 @@ impl Library {
         Ok(name.to_string())
     }
 
-    /// The end of a message about a name that no shape has, or none in the trash: one that is much like it; empty if there is
-    /// none, and for other errors.
+    /// Returns the end of a message about the unknown name of a shape, or of a shape in the trash: a suggestion of a
+    /// similar name. Empty if there is none, and for other errors.
     #[cfg(feature = "tui")]
     pub(crate) fn suggestion(&self, error: &LibraryError) -> String {
         match error {
@@ -382,10 +383,10 @@ impl Library {
         }
     }
 
-    /// The names of the shapes in the trash, the one deleted last first, each once.
+    /// Returns the names of the shapes in the trash, the last deleted first, each once.
     ///
     /// # Errors
-    /// If the folder exists but cannot be read.
+    /// Returns an error if the folder exists but cannot be read.
     pub fn in_trash(&self) -> Result<Vec<String>, LibraryError> {
         let mut met = HashSet::new();
         let trash = Trash::read(self.trash())?;
@@ -396,10 +397,10 @@ impl Library {
             .collect())
     }
 
-    /// Restores the shape of that name that was deleted last, and returns its name.
+    /// Restores the last deleted shape of that name, and returns its name.
     ///
     /// # Errors
-    /// If none of that name is in the trash, the name is taken again, or the system refuses.
+    /// Returns an error if no shape of that name is in the trash, the name is taken again, or the system refuses.
     pub fn restore(&self, name: &str) -> Result<String, LibraryError> {
         let name = Name::new(name)?;
         let missing = || LibraryError::NotInTrash {
@@ -408,10 +409,10 @@ impl Library {
         self.restore_newest(|deleted| name.same(deleted), missing)
     }
 
-    /// Restores the shape that was deleted last, by this program or another, and returns its name.
+    /// Restores the last deleted shape, whether this program deleted it or another one, and returns its name.
     ///
     /// # Errors
-    /// If the trash is empty, the name is taken again, or the system refuses.
+    /// Returns an error if the trash is empty, the name is taken again, or the system refuses.
     pub fn restore_last(&self) -> Result<String, LibraryError> {
         self.restore_newest(|_| true, || LibraryError::TrashEmpty)
     }
@@ -442,11 +443,11 @@ impl Library {
         Ok(deleted.name.clone())
     }
 
-    /// Everything in the folder and its journal that is not a shape nor the library's own, by path, with what it is:
-    /// files of others, half-written ones, unsaved work. None of it does harm.
+    /// Lists everything in the folder and its journal that is neither a shape nor one of the library's own files, by
+    /// path, each with a description: files of others, half-written ones, unsaved work. None of them does harm.
     ///
     /// # Errors
-    /// If the folder exists but cannot be read.
+    /// Returns an error if the folder exists but cannot be read.
     pub fn leftovers(&self) -> Result<Vec<(PathBuf, &'static str)>, LibraryError> {
         let mut found = Vec::new();
         for name in folder::names(&self.folder)? {
@@ -480,7 +481,7 @@ impl Library {
     }
 }
 
-/// The name of the shape in a file of this name; None if it is not `NAME.json`.
+/// Returns the name of the shape in a file with this name; None if it is not `NAME.json`.
 fn name_of(file: &str) -> Option<&str> {
     let name = file.strip_suffix(".json")?;
     Name::new(name).is_ok().then_some(name)

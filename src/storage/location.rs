@@ -1,17 +1,17 @@
-//! Where the library is.
+//! The location of the library.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
 
 use crate::storage::LibraryError;
 
-/// The variable that names the folder.
+/// The environment variable that names the folder.
 pub const VARIABLE: &str = "TAXEL_LIBRARY";
 
-/// The folder: the one asked for, else that of the variable, else `taxel/library` in the user's data folder.
+/// Returns the folder: the one asked for, else that of the variable, else `taxel/library` in the user's data folder.
 ///
 /// # Errors
-/// Where there is none of these.
+/// Returns [`LibraryError::NoPlace`] if there is none of these.
 pub fn folder(asked: Option<PathBuf>, variable: Option<OsString>) -> Result<PathBuf, LibraryError> {
     let named = asked.or_else(|| {
         variable
@@ -24,7 +24,7 @@ pub fn folder(asked: Option<PathBuf>, variable: Option<OsString>) -> Result<Path
     named.or_else(own).ok_or(LibraryError::NoPlace)
 }
 
-/// A path that may start with `~/`, which stands for the user's home; none where that is not known.
+/// Replaces `~/` at the start of a path by the user's home folder; None if that is not known.
 pub fn below_home(path: &str) -> Option<PathBuf> {
     match path.strip_prefix("~/") {
         Some(rest) => directories::BaseDirs::new().map(|own| own.home_dir().join(rest)),

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use crate::storage::error::{FileError, LibraryError};
 use crate::storage::folder::regular;
 
-/// How long a writer waits for another program. Writing takes milliseconds, unless that program is stopped.
+/// The time that a writer waits for another program. Writing takes milliseconds, unless that program is stopped.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// The pause between two attempts.
@@ -24,10 +24,10 @@ pub(crate) struct Lock {
 }
 
 impl Drop for Lock {
-    /// Closing the file would release the lock only when every copy is closed, and a child that is just being started
-    /// has a copy until its program runs.
+    /// Unlocks the file, because closing it would release the lock only when every copy is closed, and a child
+    /// process that is just being started has a copy until its program runs.
     fn drop(&mut self) {
-        // Where this fails, closing the file is what remains.
+        // If this fails, closing the file is what remains.
         let _ = self.file.unlock();
     }
 }
@@ -48,7 +48,7 @@ impl Lock {
     /// locks.
     ///
     /// # Errors
-    /// If another program holds it for [`PATIENCE`], or the system refuses.
+    /// Returns an error if another program holds it for [`PATIENCE`], or the system refuses.
     pub(crate) fn wait(folder: &Path, waits: &AtomicBool) -> Result<Option<Self>, LibraryError> {
         let path = path_in(folder);
         let file = open(&path)?;
@@ -73,18 +73,18 @@ impl Lock {
     /// Tries once to take the lock at a path.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(crate) fn attempt(path: &Path) -> Result<LockAttempt, LibraryError> {
         let file = open(path)?;
         Ok(match try_lock(&file, path)? {
-            // The program that held it may have removed the file: then this locks nothing.
+            // The program that held it may have removed the file: then this lock protects nothing.
             Some(true) if is_at(&file, path) => LockAttempt::Free(Self { file }),
             Some(_) => LockAttempt::Held,
             None => LockAttempt::Unsupported,
         })
     }
 
-    /// The lock at a path; None if it cannot be had for any reason.
+    /// Takes the lock at a path; None if this fails for any reason.
     pub(crate) fn if_free(path: &Path) -> Option<Self> {
         match Self::attempt(path) {
             Ok(LockAttempt::Free(lock)) => Some(lock),
@@ -93,7 +93,7 @@ impl Lock {
     }
 }
 
-/// Whether the lock was free, and is held now; None on a file system without locks.
+/// Tries to lock a file. Returns true if the lock was free and is held now; None on a file system without locks.
 fn try_lock(file: &File, path: &Path) -> Result<Option<bool>, FileError> {
     loop {
         match file.try_lock() {
@@ -106,11 +106,12 @@ fn try_lock(file: &File, path: &Path) -> Result<Option<bool>, FileError> {
     }
 }
 
-/// Whether the file system has no locks. NFS without its lock daemon reports that none are left (`ENOLCK`); some that are
-/// mounted by a program of the user's report that it is not permitted (`EPERM`) or makes no sense (`EINVAL`). That the
-/// user may not open the file is another error, and reported before.
+/// Returns true if an error means that the file system has no locks. NFS without its lock daemon reports that no
+/// locks are left (`ENOLCK`); some file systems that are mounted by a program of the user's report that locking is
+/// not permitted (`EPERM`) or invalid (`EINVAL`). If the user may not open the file, that is another error, reported
+/// before.
 fn is_unsupported(error: &io::Error) -> bool {
-    // The standard library has no kind for the first.
+    // The standard library has no kind for `ENOLCK`.
     #[cfg(unix)]
     let none_left = error.raw_os_error() == Some(rustix::io::Errno::NOLCK.raw_os_error());
     #[cfg(not(unix))]
@@ -122,12 +123,12 @@ fn is_unsupported(error: &io::Error) -> bool {
         )
 }
 
-/// The path of a folder's lock.
+/// Returns the path of a folder's lock.
 pub(crate) fn path_in(folder: &Path) -> PathBuf {
     folder.join(".lock")
 }
 
-/// Opens the lock's file and makes it if it does not exist. One that another user has made is opened for reading.
+/// Opens the lock's file, and makes it if it does not exist. A file that another user has made is opened for reading.
 fn open(path: &Path) -> Result<File, LibraryError> {
     if fs::symlink_metadata(path).is_ok() {
         // Checked before opening: opening a pipe waits.
@@ -157,7 +158,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     matches!((opened, found), (Ok(opened), Ok(found)) if opened == found)
 }
 
-/// Here an open file cannot be removed.
+/// Returns true: on these systems an open file cannot be removed.
 #[cfg(not(unix))]
 fn is_at(_: &File, _: &Path) -> bool {
     true
@@ -167,7 +168,7 @@ fn is_at(_: &File, _: &Path) -> bool {
 mod tests {
     use super::*;
 
-    /// As a child has one that is just being started.
+    /// A child process that is just being started has such a copy.
     #[test]
     fn a_copy_of_the_file_does_not_keep_the_lock() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! What a user names to recognise shapes: a set of shapes that comes with the program, a stored model, or a file.
+//! The choice of a model for recognition: a set of shapes that comes with the program, a stored model, or a file.
 
 use std::ffi::OsStr;
 use std::fmt;
@@ -14,7 +14,7 @@ use crate::recognition::{
 };
 use crate::storage::shipped;
 
-/// A set of shapes.
+/// A set of shapes that can be chosen for recognition.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ModelChoice {
@@ -35,21 +35,21 @@ pub enum ModelChoice {
 const SHIPPED_STEPS: GridSteps = GridSteps::COARSE;
 
 impl ModelChoice {
-    /// Those that need no file.
+    /// The choices that need no file.
     pub const BUILT_IN: [Self; 3] = [Self::Figures, Self::EqualFigures, Self::Shipped];
 
-    /// The choice of that name: a built-in one, otherwise a stored model.
+    /// Returns the choice of that name: a built-in one, otherwise a stored model.
     pub fn from_name(name: Name) -> Self {
         let own = Self::BUILT_IN.into_iter().find(|own| name.same(own.name()));
         own.unwrap_or(Self::Stored(name))
     }
 
-    /// What stands after `:recognise`: the name of a set or model, otherwise the path of a file.
+    /// Reads the text after `:recognise`: the name of a set or model, otherwise the path of a file.
     pub fn from_text(text: &str) -> Self {
         Name::new(text).map_or_else(|_| Self::File(text.into()), Self::from_name)
     }
 
-    /// Its name after `:recognise`.
+    /// Returns the name that is used after `:recognise`.
     pub fn name(&self) -> &str {
         match self {
             Self::Figures => "figures",
@@ -60,10 +60,11 @@ impl ModelChoice {
         }
     }
 
-    /// The training of a built-in set; None of a stored model. How far its shapes reach is computed once.
+    /// Returns the training of a built-in set; None for a stored model or a file. How far its shapes reach is
+    /// computed once.
     ///
     /// # Errors
-    /// Why it cannot be trained.
+    /// Returns an error if the set cannot be trained.
     pub fn training(&self) -> Option<Result<Training<'static>, TrainingError>> {
         static FITTED: [OnceLock<Result<Training<'static>, TrainingError>>; 3] =
             [const { OnceLock::new() }; 3];
@@ -77,13 +78,13 @@ impl ModelChoice {
         Some(fitted.clone())
     }
 
-    /// Whether its model is read from a file of the user's rather than trained.
+    /// Returns true if the model is read from a file of the user's rather than trained.
     pub fn is_read(&self) -> bool {
         matches!(self, Self::Stored(_) | Self::File(_))
     }
 }
 
-/// That there is no set of a name, and which ones there are: the built-in ones and `stored` models.
+/// Returns the message for an unknown set; it lists the built-in sets and the stored models.
 #[cfg(feature = "tui")]
 pub(crate) fn unknown_set(name: &str, stored: &[Name]) -> String {
     let own = ModelChoice::BUILT_IN.iter().map(ModelChoice::name);
@@ -102,13 +103,13 @@ pub(crate) fn unknown_set(name: &str, stored: &[Name]) -> String {
 }
 
 impl fmt::Display for ModelChoice {
-    /// What it is, with its name after `:recognise`.
+    /// Writes "model" and the name that is used after `:recognise`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "model {}", self.name())
     }
 }
 
-/// The shapes that come with the program, as pictures.
+/// Returns the shapes that come with the program, as pictures.
 fn shipped_shapes() -> Vec<NamedShape> {
     let picture = |shape: StoredShape| {
         NamedShape::new(shape.name.to_string(), Picture::at_home(shape.imprint))

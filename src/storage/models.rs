@@ -1,5 +1,5 @@
-//! Models of shapes as files: the user's own, by name in a folder beside the library, and a cache of those that can be
-//! trained again.
+//! Models of shapes as files: the user's own, by name in a folder beside the library, and a cache of models that can
+//! be trained again.
 //!
 //! ```text
 //! taxel/library/washer.json      the library
@@ -25,13 +25,13 @@ use crate::sweep::Shard;
 /// The ending of a model's file.
 const ENDING: &str = "npz";
 
-/// No cached model takes more bytes.
+/// The largest size of a cached model, in bytes.
 const MAX_CACHED: u64 = 64 << 20;
 
 /// Reads a model from a file.
 ///
 /// # Errors
-/// What is wrong with it, with the file's name.
+/// Returns an error with the file's name if the file cannot be read or is not a model.
 pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
     let mut file = BufReader::new(open_archive(path)?);
     read_model(&mut file).map_err(|error| {
@@ -43,7 +43,7 @@ pub fn load_model(path: &Path) -> Result<Model, ArchiveFileError> {
     })
 }
 
-/// Whether a file begins like an object of JSON, as a set of shapes does.
+/// Returns true if a file begins like a JSON object, as a set of shapes does.
 fn is_json(file: &mut (impl Read + Seek)) -> bool {
     let mut start = Vec::new();
     let read = file
@@ -56,7 +56,8 @@ fn is_json(file: &mut (impl Read + Seek)) -> bool {
 /// Reads a whole model from a file, so that it can answer touches.
 ///
 /// # Errors
-/// Those of [`load_model`]; [`ArchiveError::PartOfModel`] for a shard, which knows some of the poses only.
+/// Returns the errors of [`load_model`], or [`ArchiveError::PartOfModel`] for a shard, which knows some of the poses
+/// only.
 pub fn load_whole_model(path: &Path) -> Result<Model, ArchiveFileError> {
     let model = load_model(path)?;
     let shard = model.shard();
@@ -69,10 +70,10 @@ pub fn load_whole_model(path: &Path) -> Result<Model, ArchiveFileError> {
     ))
 }
 
-/// Writes a model to a file: all of it or nothing; nothing either if `stopped` becomes true on the way.
+/// Writes a model to a file: all of it or nothing. Nothing is written if `stopped` becomes true on the way.
 ///
 /// # Errors
-/// Those of the system, with the file's name; if a file is there and is to be kept.
+/// Returns the system's error, with the file's name; also if a file is there and is to be kept.
 pub fn save_model(
     model: &Model,
     path: &Path,
@@ -92,7 +93,7 @@ pub fn save_model(
 pub struct ModelFolder(PathBuf);
 
 impl ModelFolder {
-    /// The folder `models` beside the folder of a library.
+    /// Returns the folder `models` beside the folder of a library.
     pub fn beside(library: &Path) -> Self {
         // `.` has no name that could be replaced by another one.
         let whole = match library.file_name() {
@@ -104,13 +105,13 @@ impl ModelFolder {
         Self(whole.with_file_name("models"))
     }
 
-    /// Returns its path; it may not exist yet.
+    /// Returns the path of the folder; it may not exist yet.
     pub fn path(&self) -> &Path {
         &self.0
     }
 
-    /// Returns the file of a model. Upper and lower case are the same, as for shapes, so a folder can move to a file
-    /// system that ignores case.
+    /// Returns the file of a model. Upper and lower case count as the same, as for shapes, so a folder can move to a
+    /// file system that ignores case.
     pub fn file(&self, name: &Name) -> PathBuf {
         self.path_of(&self.stored_name(name))
     }
@@ -119,7 +120,7 @@ impl ModelFolder {
         self.0.join(format!("{name}.{ENDING}"))
     }
 
-    /// A model's name as its file has it; the same where there is none.
+    /// Returns a model's name as its file has it; the given name if there is no file.
     fn stored_name(&self, name: &Name) -> Name {
         if self.path_of(name).exists() {
             return name.clone();
@@ -132,7 +133,7 @@ impl ModelFolder {
     /// Returns the names of all models, sorted; files that do not look like models are left out.
     ///
     /// # Errors
-    /// Those of the system, but for a folder that does not exist.
+    /// Returns the system's error, except if the folder does not exist.
     pub fn names(&self) -> Result<Vec<Name>, ArchiveFileError> {
         let files = folder::names(&self.0)?;
         let name = |file: &OsString| {
@@ -149,7 +150,7 @@ impl ModelFolder {
     /// Writes a model under a name, and makes the folder for it.
     ///
     /// # Errors
-    /// Those of [`save_model`].
+    /// Returns the errors of [`save_model`].
     pub fn save(
         &self,
         model: &Model,
@@ -166,7 +167,7 @@ impl ModelFolder {
     /// Removes a model for good. Returns its name as it was stored.
     ///
     /// # Errors
-    /// Those of the system, with the file's name.
+    /// Returns the system's error, with the file's name.
     pub fn delete(&self, name: &Name) -> Result<Name, ArchiveFileError> {
         let stored = self.stored_name(name);
         let path = self.path_of(&stored);
@@ -175,28 +176,29 @@ impl ModelFolder {
     }
 }
 
-/// The folder of models that are made again when they are missing.
+/// A cache of models, which are trained again when they are missing.
 ///
-/// A file's name is a hash of what was trained, so another set or grid is another file. A damaged file, one of an older
-/// version or one of something else is not used.
+/// The name of a file is a hash of what was trained, so another set or grid has another file. A file that is damaged,
+/// of an older version, or of something else is not used.
 #[derive(Clone, Debug)]
 pub struct ModelCache(PathBuf);
 
 impl ModelCache {
-    /// The user's cache folder; None if the user has no home.
+    /// Returns the user's cache; None if the user has no home folder.
     pub fn of_user() -> Option<Self> {
         let own = directories::ProjectDirs::from("", "", "taxel")?;
         Some(Self(own.cache_dir().join("models")))
     }
 
-    /// A cache in any folder.
+    /// Returns a cache in any folder.
     pub fn in_folder(folder: impl Into<PathBuf>) -> Self {
         Self(folder.into())
     }
 
     /// Returns the file that holds the model of a training.
     fn file(&self, training: &Training<'_>) -> PathBuf {
-        // All that the model depends on, and the version of the program, in a text that differs where these do.
+        // Everything that the model depends on, and the version of the program, as a text that differs whenever these
+        // differ.
         let mut text = format!("{} {:?}", env!("CARGO_PKG_VERSION"), training);
         for grid in training.grids() {
             text.push_str(&format!("{grid:?}"));
@@ -205,7 +207,7 @@ impl ModelCache {
             .join(format!("{:032x}.{ENDING}", xxh3_128(text.as_bytes())))
     }
 
-    /// Returns the model of a training if its file is there and whole.
+    /// Returns the model of a training if its file is there and complete.
     fn load(path: &Path, training: &Training<'_>) -> Option<Model> {
         let model = load_model(path).ok()?;
         let same = training.grids().iter().zip(model.shapes());
@@ -217,8 +219,8 @@ impl ModelCache {
         (training.grids().len() == model.shapes().len() && same.all(|same| same)).then_some(model)
     }
 
-    /// Keeps a model. A cache that cannot be written to is not an error: the model is trained again next time. One that
-    /// takes more than 64 MB is not kept.
+    /// Keeps a model. A cache that cannot be written to is not an error: the model is trained again next time. A
+    /// model that takes more than 64 MiB is not kept.
     fn keep(&self, path: &Path, model: &Model) {
         self.keep_up_to(MAX_CACHED, path, model);
     }
@@ -236,11 +238,11 @@ impl ModelCache {
     }
 }
 
-/// Returns the model of a training: that of the cache, otherwise the one that `train` makes of it, which is then kept there.
-/// Without a cache it is trained each time.
+/// Returns the model of a training from the cache. If the cache does not have it, `train` makes it, and it is kept
+/// there. Without a cache it is trained each time.
 ///
 /// # Errors
-/// Those of `train`.
+/// Returns the errors of `train`.
 pub fn cached_or_trained<'a, E>(
     cache: Option<&ModelCache>,
     training: Training<'a>,
@@ -258,10 +260,10 @@ pub fn cached_or_trained<'a, E>(
     Ok(model)
 }
 
-/// A short text that differs between models with other contents: 32 hexadecimal digits.
+/// Returns a short text that differs between models with different contents: 32 hexadecimal digits.
 ///
 /// # Errors
-/// Never in practice: a model is written to memory.
+/// Never returns an error in practice: the model is written to memory.
 pub fn model_hash(model: &Model) -> Result<String, ArchiveFileError> {
     let mut bytes = Cursor::new(Vec::new());
     write_model(model, &mut bytes)
@@ -311,10 +313,10 @@ mod tests {
     }
 
     #[test]
-    fn a_cache_gives_what_was_trained_and_nothing_else() {
+    fn a_cache_returns_only_models_of_the_same_training() {
         let folder = tempfile::tempdir().expect("a folder");
         let cache = ModelCache::in_folder(folder.path().join("cache"));
-        // Whether a model is trained, and the model.
+        // Returns whether a model was trained, and the model.
         let model = |side: f64| {
             let mut is_trained = false;
             let model = cached_or_trained(Some(&cache), training(side), |training| {
@@ -325,7 +327,7 @@ mod tests {
         };
         let trained = training(4.0).run().expect("not stopped");
         let path = cache.file(&training(4.0));
-        // One that is too large is not written.
+        // A model that is too large is not written.
         cache.keep_up_to(99, &path, &trained);
         assert!(!folder.path().join("cache").exists());
         assert!(model(4.0).0);
@@ -334,7 +336,7 @@ mod tests {
         assert!(!is_trained);
         assert_eq!(Evaluation::of(&cached), Evaluation::of(&trained));
         assert!(model(4.1).0);
-        // A damaged one is trained again, and one that was stopped is not kept.
+        // After damage the model is trained again, and a training that was stopped is not kept.
         let mut bytes = fs::read(&path).expect("it is there");
         bytes.truncate(bytes.len() / 2);
         fs::write(&path, bytes).expect("written");
@@ -348,14 +350,14 @@ mod tests {
     }
 
     #[test]
-    fn of_names_that_differ_in_case_the_very_one_is_meant() {
+    fn an_exact_name_comes_before_one_that_differs_in_case() {
         let folder = tempfile::tempdir().expect("a folder");
         let models = ModelFolder::beside(&folder.path().join("library"));
         fs::create_dir_all(models.path()).expect("made");
         for name in ["SET", "set"] {
             fs::write(models.path().join(format!("{name}.npz")), "").expect("written");
         }
-        // Only one of them where the file system ignores case.
+        // There is only one of them if the file system ignores case.
         for name in models.names().expect("there") {
             let file = models.path().join(format!("{name}.npz"));
             assert_eq!(models.file(&name), file);
@@ -363,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_of_fewer_shapes_is_none_of_a_training() {
+    fn a_model_of_fewer_shapes_is_not_taken_for_that_of_a_training() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("fewer.npz");
         let whole = training(4.0);

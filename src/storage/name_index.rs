@@ -1,7 +1,7 @@
 //! The names of a library's files by their folded form, read once while the folder does not change.
 //!
-//! A shape is usually called as its file is, and looking for that file needs no list. A name that differs in case, or is
-//! that of no file, would need the whole folder each time.
+//! Usually a shape is called exactly as its file is, and that file is found without a list. A name that differs in
+//! case, or that no file has, would need a list of the whole folder each time.
 
 use std::collections::HashMap;
 use std::io::ErrorKind;
@@ -12,8 +12,8 @@ use std::time::{Duration, SystemTime};
 use crate::formats::name::{Name, folded};
 use crate::storage::error::LibraryError;
 
-/// How long ago a folder must have changed for its list to be kept: a later change within one step of the file system's
-/// clock would leave the same time. The coarsest clocks have steps of two seconds.
+/// The age that a folder's last change must have for its list to be kept: a later change within one step of the file
+/// system's clock would leave the same time. The coarsest clocks have steps of two seconds.
 const SETTLED: Duration = Duration::from_secs(3);
 
 /// The list of a folder, if it could be kept.
@@ -26,15 +26,16 @@ pub(crate) struct NameIndex {
 #[derive(Debug)]
 struct KeptNames {
     changed: SystemTime,
-    /// By their folded form.
+    /// The names, by their folded form.
     names: HashMap<String, String>,
 }
 
 impl NameIndex {
-    /// The name in the folder that is the same as `name`, as its file has it. `list` reads the folder's names.
+    /// Returns the name in the folder that is the same as `name`, as its file has it. `list` reads the folder's
+    /// names.
     ///
     /// # Errors
-    /// Those of `list`.
+    /// Returns the errors of `list`.
     pub(crate) fn find(
         &self,
         folder: &Path,

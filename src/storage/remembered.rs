@@ -8,35 +8,34 @@ use std::path::PathBuf;
 use crate::storage::library::{COMMANDS, FORMS, RECOGNISED_SET};
 use crate::storage::{Existing, FinishedFile, Library};
 
-/// No longer file is read: a hundred commands of the longest kind are shorter.
+/// The size, in bytes, beyond which a file is not read: a hundred commands of the longest kind are shorter.
 const MOST_BYTES: u64 = 1 << 17;
 
-/// One of the files.
+/// A file of lines that the screen remembers.
 #[derive(Clone, Debug)]
 pub struct RememberedFile {
-    /// Its path.
     path: PathBuf,
-    /// The most lines that it keeps.
+    /// The largest number of lines that the file keeps.
     most: usize,
 }
 
 impl RememberedFile {
-    /// The commands that were typed.
+    /// Returns the file with the commands that were typed.
     pub fn commands(library: &Library) -> Self {
         Self::of(library, COMMANDS, 100)
     }
 
-    /// The set of shapes that was recognised last, by its name.
+    /// Returns the file with the name of the set of shapes that was recognised last.
     pub fn recognised_set(library: &Library) -> Self {
         Self::of(library, RECOGNISED_SET, 1)
     }
 
-    /// The values that forms were accepted with.
+    /// Returns the file with the values that forms were accepted with.
     pub fn forms(library: &Library) -> Self {
         Self::of(library, FORMS, 20)
     }
 
-    /// The file of that name in the folder of a library.
+    /// Returns the file of that name in the folder of a library.
     fn of(library: &Library, name: &str, most: usize) -> Self {
         Self {
             path: library.folder().join(name),
@@ -44,8 +43,8 @@ impl RememberedFile {
         }
     }
 
-    /// Returns its lines, the last one last, without empty ones and such as have control characters; none if there is no
-    /// such file.
+    /// Returns the lines, the newest last, without empty lines and lines with control characters; empty if there is
+    /// no such file.
     pub fn read(&self) -> Vec<String> {
         let small = fs::symlink_metadata(&self.path)
             .is_ok_and(|found| found.is_file() && found.len() <= MOST_BYTES);
@@ -59,10 +58,11 @@ impl RememberedFile {
         lines[first..].iter().map(|&line| line.to_owned()).collect()
     }
 
-    /// Puts lines in place of those that it has, as many of the last ones as it keeps; in a new folder if there is none.
+    /// Replaces the lines of the file, and keeps only the last ones if there are too many. Makes the folder if there
+    /// is none.
     pub fn write(&self, lines: &[String]) {
         if let Some(folder) = self.path.parent() {
-            // Without it nothing can be written, which does no harm.
+            // Without the folder nothing can be written, which does no harm.
             let _ = fs::create_dir_all(folder);
         }
         let kept = &lines[lines.len().saturating_sub(self.most)..];

@@ -10,7 +10,7 @@ macro_rules! shapes {
     };
 }
 
-/// Name and file of each, by name.
+/// The name and the file of each shape, by name.
 const SHIPPED: [(&str, &str); 28] = shapes![
     "arrow",
     "bar",
@@ -42,17 +42,17 @@ const SHIPPED: [(&str, &str); 28] = shapes![
     "washer",
 ];
 
-/// Their names, by alphabet.
+/// Iterates over their names, in alphabetical order.
 pub fn names() -> impl Iterator<Item = &'static str> {
     SHIPPED.iter().map(|&(name, _)| name)
 }
 
-/// Whether a shape of that name comes with the program, regardless of case.
+/// Returns true if a shape of that name comes with the program, regardless of case.
 pub(crate) fn has(name: &Name) -> bool {
     SHIPPED.iter().any(|(shipped, _)| name.same(shipped))
 }
 
-/// The shape of that name with its stamp; None if no shape of that name comes with the program.
+/// Returns the shape of that name with its stamp; None if no shape of that name comes with the program.
 pub(crate) fn load(name: &Name) -> Option<Result<(StoredShape, u64), LibraryError>> {
     let &(name, text) = SHIPPED.iter().find(|(shipped, _)| name.same(shipped))?;
     let broken = |error| LibraryError::Broken {
@@ -67,7 +67,7 @@ pub(crate) fn load(name: &Name) -> Option<Result<(StoredShape, u64), LibraryErro
     )
 }
 
-/// All of them, by name.
+/// Iterates over all shapes, by name.
 pub fn all() -> impl Iterator<Item = StoredShape> {
     names().filter_map(|name| {
         let (shape, _) = load(&Name::new(name).ok()?)?.ok()?;

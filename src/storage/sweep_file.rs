@@ -1,4 +1,5 @@
-//! The files that a sweep writes: its atlas, in the format of the name's extension, and the atlas number of every pose.
+//! The files that a sweep writes: its atlas, in the format given by the extension of the name, and the atlas number
+//! of every pose.
 //!
 //! At any time, either the complete new file or the old one is there ([`crate::storage::atomic_file`]).
 
@@ -16,14 +17,14 @@ use crate::storage::error::FileError;
 use crate::storage::first_error::FirstErrorWriter;
 use crate::sweep::SweepResult;
 
-/// Why a file was not written.
+/// The error for a file of a sweep or a model that cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[error("{name}: {error}")]
 pub struct ArchiveFileError {
     /// The file's name.
     pub name: String,
-    /// What went wrong.
+    /// The problem.
     pub error: ArchiveError,
 }
 
@@ -35,7 +36,7 @@ impl From<FileError> for ArchiveFileError {
 }
 
 impl ArchiveFileError {
-    /// An error about a file.
+    /// Creates an error about a file.
     pub(crate) fn new(path: &Path, error: impl Into<ArchiveError>) -> Self {
         Self {
             name: path.to_string_lossy().into_owned(),
@@ -43,18 +44,18 @@ impl ArchiveFileError {
         }
     }
 
-    /// Whether there is no such file.
+    /// Returns true if there is no such file.
     pub fn is_missing(&self) -> bool {
         matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::NotFound)
     }
 
-    /// Whether a file of that name is there already, and was to be kept.
+    /// Returns true if a file of that name is there already, and was to be kept.
     pub fn exists(&self) -> bool {
         matches!(&self.error, ArchiveError::Io(error) if error.kind() == io::ErrorKind::AlreadyExists)
     }
 }
 
-/// Where an atlas goes.
+/// The file for an atlas: its path and its format.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AtlasFile {
     path: PathBuf,
@@ -68,17 +69,17 @@ enum AtlasFormat {
     Archive,
 }
 
-/// The error for a name that ends in none of the endings of an atlas.
+/// The error for a name without the ending of an atlas format.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("expected a name that ends in .csv, .jsonl or .npz")]
 #[non_exhaustive]
 pub struct AtlasEndingError;
 
 impl AtlasFile {
-    /// A file of that name.
+    /// Takes a path, whose extension gives the format. Creates nothing yet.
     ///
     /// # Errors
-    /// If no format has this extension.
+    /// Returns an error if no format has this extension.
     pub fn new(path: impl Into<PathBuf>) -> Result<Self, AtlasEndingError> {
         let path = path.into();
         let ending = path.extension().and_then(|ending| ending.to_str());
@@ -92,12 +93,12 @@ impl AtlasFile {
         Ok(Self { path, format })
     }
 
-    /// Whether it is an archive, which can be read again.
+    /// Returns true if it is an archive, which can be read again.
     pub fn is_archive(&self) -> bool {
         self.format == AtlasFormat::Archive
     }
 
-    /// Returns its path.
+    /// Returns the path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -105,16 +106,16 @@ impl AtlasFile {
     /// Checks whether a file can be begun there, so that an error comes before the work rather than after it.
     ///
     /// # Errors
-    /// Those of the system, with the file's name; where one is there and is to be kept.
+    /// Returns the system's error, with the file's name; also if a file is there and is to be kept.
     pub fn check(&self, existing: Existing) -> Result<(), ArchiveFileError> {
         UnfinishedFile::new(&self.path, existing)?;
         Ok(())
     }
 
-    /// Writes the atlas of a result; nothing of it is left where `stopped` becomes true on the way.
+    /// Writes the atlas of a result. Leaves nothing behind if `stopped` becomes true on the way.
     ///
     /// # Errors
-    /// Those of the system, with the file's name.
+    /// Returns the system's error, with the file's name.
     pub fn write(
         &self,
         result: &SweepResult,
@@ -124,10 +125,10 @@ impl AtlasFile {
         Ok(self.prepare(result, existing, stopped)?.persist()?)
     }
 
-    /// The same without its name yet, so that several files can appear together.
+    /// Writes the atlas without giving the file its name yet, so that several files can appear together.
     ///
     /// # Errors
-    /// Those of the system, with the file's name.
+    /// Returns the system's error, with the file's name.
     pub fn prepare(
         &self,
         result: &SweepResult,
@@ -150,17 +151,17 @@ impl AtlasFile {
 /// Reads the atlas of an archive.
 ///
 /// # Errors
-/// What is wrong with it, with the file's name.
+/// Returns an error with the file's name if the file cannot be read or is not an atlas.
 pub fn load_atlas(path: &Path) -> Result<SweepResult, ArchiveFileError> {
     let file = open_archive(path)?;
     archive::read(BufReader::new(file)).map_err(|error| ArchiveFileError::new(path, error))
 }
 
-/// Opens the file of an atlas or of a model. Anything but a regular file is refused: opening a pipe waits for a writer,
-/// and there may never be one.
+/// Opens the file of an atlas or of a model. Refuses anything except a regular file, because opening a pipe waits for
+/// a writer that may never come.
 ///
 /// # Errors
-/// Those of the system, with the file's name.
+/// Returns the system's error, with the file's name.
 pub fn open_archive(path: &Path) -> Result<File, ArchiveFileError> {
     let opened = path.metadata().and_then(|metadata| {
         if metadata.is_file() {
@@ -175,20 +176,21 @@ pub fn open_archive(path: &Path) -> Result<File, ArchiveFileError> {
     })
 }
 
-/// Whether a file of that name can hold the atlas number of every pose: it ends in `.npy`, in capitals or not.
+/// Returns true if a file of that name can hold the atlas number of every pose: it ends in `.npy`, in upper or lower
+/// case.
 pub fn is_poses(name: impl AsRef<Path>) -> bool {
     name.as_ref()
         .extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"))
 }
 
-/// The atlas number of every pose, `uint32` in an array shaped angles × y0 × x0, before that zooms (y, then x) where
-/// there are several.
+/// A file with the atlas number of every pose: `uint32` in an array shaped angles × y0 × x0, preceded by the zooms
+/// (y, then x) if there are several.
 #[derive(Debug)]
 pub struct PoseFile {
     file: UnfinishedFile,
     start: u64,
-    /// What went wrong first.
+    /// The first error.
     error: Option<io::Error>,
     bytes: Vec<u8>,
 }
@@ -197,7 +199,7 @@ impl PoseFile {
     /// Begins a file for the poses of a grid.
     ///
     /// # Errors
-    /// Those of the system, with the file's name.
+    /// Returns the system's error, with the file's name.
     pub fn new(
         path: impl Into<PathBuf>,
         grid: &PoseGrid,
@@ -219,8 +221,8 @@ impl PoseFile {
         })
     }
 
-    /// Takes a row: its number in the grid and the atlas numbers of its poses, which are as many for each. Where it
-    /// cannot be written, `stopped` becomes true.
+    /// Writes a row: its number in the grid and the atlas numbers of its poses. All rows have the same length. If the
+    /// row cannot be written, `stopped` becomes true.
     pub fn take(&mut self, row: u64, ids: &[u32], stopped: &AtomicBool) {
         if self.error.is_some() {
             return;
@@ -239,10 +241,11 @@ impl PoseFile {
         }
     }
 
-    /// The file without its name yet, when all rows were taken. Dropped in place of this, nothing is left of it.
+    /// Completes the file when all rows were taken, without giving it its name yet. If it is dropped instead, nothing
+    /// is left of it.
     ///
     /// # Errors
-    /// What went wrong first, with the file's name.
+    /// Returns the first error, with the file's name.
     pub fn finish(self) -> Result<FinishedFile, ArchiveFileError> {
         match self.error {
             Some(error) => Err(ArchiveFileError::new(self.file.path(), error)),
@@ -339,7 +342,7 @@ mod tests {
 
     /// Programs that replace one pair at once take turns.
     #[test]
-    fn a_pair_is_of_one_program_though_several_write_it_at_once() {
+    fn a_pair_comes_from_one_program_even_if_several_write_it_at_once() {
         let folder = tempfile::tempdir().expect("a folder");
         let paths = [folder.path().join("a.csv"), folder.path().join("a.npy")];
         let write = |number: u32| {
@@ -363,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_whose_second_file_gets_no_name_leaves_none() {
+    fn a_pair_whose_second_file_cannot_be_named_leaves_neither() {
         let folder = tempfile::tempdir().expect("a folder");
         let (atlas, elsewhere) = (folder.path().join("a.csv"), folder.path().join("gone"));
         let (result, going) = (result(), AtomicBool::new(false));
@@ -381,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_that_gets_no_names_is_what_it_was() {
+    fn a_pair_that_cannot_be_named_leaves_the_old_files() {
         let (result, going) = (result(), AtomicBool::new(false));
         for (first, second) in [("gone/a.csv", "a.npy"), ("a.csv", "gone/a.npy")] {
             let folder = tempfile::tempdir().expect("a folder");

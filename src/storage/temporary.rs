@@ -1,9 +1,9 @@
 //! A file that does not have its final name yet.
 //!
-//! Where the file system has files without a name (`O_TMPFILE`, on Linux), it has none until it is whole: a program that
-//! is killed leaves nothing behind. Elsewhere it is `.taxel-XXXXXX`, with a random ending, in the folder that it is for,
-//! and its writer holds a lock on it. Such a file without a lock is one of a program that died; the next program that
-//! writes into the folder removes it ([`remove_left_over`]).
+//! If the file system has files without a name (`O_TMPFILE`, on Linux), the file has none until it is complete: a
+//! program that is killed leaves nothing behind. Elsewhere it is called `.taxel-XXXXXX`, with a random ending, in the
+//! folder that it is for, and its writer holds a lock on it. Such a file without a lock was left by a program that
+//! died; the next program that writes into the folder removes it ([`remove_left_over`]).
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -14,32 +14,32 @@ use std::time::{Duration, Instant, SystemTime};
 
 use tempfile::{Builder, NamedTempFile, TempPath};
 
-/// What the name of a temporary file begins with.
+/// The beginning of the name of a temporary file.
 const PREFIX: &str = ".taxel-";
 
-/// How many random characters follow it.
+/// The number of random characters that follow the prefix.
 const RANDOM: usize = 6;
 
-/// A file without a lock may be one that was made just now: it is removed only when nothing was written to it for so
-/// long.
+/// The age at which a file without a lock is removed, since its last change: a younger one may have been made just
+/// now.
 const FRESH: Duration = Duration::from_secs(60);
 
-/// The same where the file system has no locks, so that nothing shows whether its writer still runs.
+/// The same age on a file system without locks, where nothing shows whether the writer still runs.
 const FRESH_WITHOUT_LOCKS: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// A file that lacks its name. Dropped, nothing is left of it.
+/// A file without its final name. If it is dropped, nothing is left of it.
 #[derive(Debug)]
 pub(crate) struct TemporaryFile {
     file: File,
-    /// Its temporary name; None while it has none.
+    /// The temporary name; None if the file has no name.
     path: Option<TempPath>,
 }
 
 impl TemporaryFile {
-    /// A new file in a folder, readable for whom the user's other files are.
+    /// Creates a file in a folder, with the permissions that the user's files usually have.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(crate) fn new(folder: &Path) -> io::Result<Self> {
         remove_left_over(folder);
         let made = match unnamed(folder) {
@@ -51,10 +51,10 @@ impl TemporaryFile {
         Ok(made)
     }
 
-    /// A new file of this path. Only for a caller who holds a lock on the folder.
+    /// Creates a file with this path. Only for a caller that holds a lock on the folder.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(crate) fn at(path: &Path) -> io::Result<Self> {
         Ok(Self {
             file: File::options().write(true).create_new(true).open(path)?,
@@ -62,10 +62,10 @@ impl TemporaryFile {
         })
     }
 
-    /// A new file under a random name.
+    /// Creates a file under a random name.
     fn named(folder: &Path) -> io::Result<Self> {
-        // Not by the builder's own way: its permissions are tighter, and its error names the temporary file in place of
-        // the system's message.
+        // Not with the builder's own method: its permissions are tighter, and its error names the temporary file
+        // instead of giving the system's message.
         let mut options = File::options();
         options.read(true).write(true).create_new(true);
         let made = builder().make_in(folder, |path| options.open(path))?;
@@ -76,16 +76,17 @@ impl TemporaryFile {
         })
     }
 
-    /// The open file.
+    /// Returns the open file.
     pub(crate) fn file(&self) -> &File {
         &self.file
     }
 
-    /// Gives the file its name, in place of the file that has it if `replace`. Returns the open file that has the name:
-    /// a copy, where the file system does not link a file without one.
+    /// Gives the file its name, in place of the file that has it if `replace`. Returns the open file that has the
+    /// name: a copy if the file system cannot link a file without a name.
     ///
     /// # Errors
-    /// [`ErrorKind::AlreadyExists`] if there is a file of that name and it is to be kept; else what the system reports.
+    /// Returns [`ErrorKind::AlreadyExists`] if there is a file of that name and it is to be kept, or the system's
+    /// error.
     pub(crate) fn persist(self, folder: &Path, path: &Path, replace: bool) -> io::Result<File> {
         let (file, named) = match self.path {
             Some(named) => (self.file, named),
@@ -124,13 +125,13 @@ impl Seek for TemporaryFile {
     }
 }
 
-/// A file that is being replaced, under a temporary name. Dropped, it is gone.
+/// A file that is being replaced, under a temporary name. If it is dropped, the file is deleted.
 #[derive(Debug)]
 pub(crate) struct OldFile {
-    /// Its own name.
+    /// The file's own name.
     path: PathBuf,
     temporary: TempPath,
-    /// Keeps other writers from removing it; without locks it goes without.
+    /// The lock that keeps other writers from removing the file. Without locks there is no such protection.
     _lock: Option<File>,
 }
 
@@ -138,7 +139,7 @@ impl OldFile {
     /// Gives a regular file a temporary name in its folder, beside its own.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(crate) fn linked(folder: &Path, path: &Path) -> io::Result<Self> {
         Self::named(folder, path, |temporary| fs::hard_link(path, temporary))
     }
@@ -146,7 +147,7 @@ impl OldFile {
     /// Gives a regular file a temporary name in its folder, in place of its own.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(crate) fn moved(folder: &Path, path: &Path) -> io::Result<Self> {
         Self::named(folder, path, |temporary| {
             match temporary.symlink_metadata() {
@@ -176,7 +177,7 @@ impl OldFile {
     /// Gives the file its own name again, in place of the file that has it.
     ///
     /// # Errors
-    /// Where it stays if the system refuses.
+    /// Returns a message that says where the file stays if the system refuses.
     pub(crate) fn put_back(self) -> Result<(), String> {
         self.temporary.persist(&self.path).map_err(|failed| {
             let mut temporary = failed.path;
@@ -189,14 +190,14 @@ impl OldFile {
     }
 }
 
-/// Random names for temporary files.
+/// Returns a builder of random names for temporary files.
 fn builder() -> Builder<'static, 'static> {
     let mut builder = Builder::new();
     builder.prefix(PREFIX).rand_bytes(RANDOM);
     builder
 }
 
-/// The system's own message, without the path that a library adds.
+/// Returns the system's own message, without the path that a library adds.
 fn plain(error: &io::Error) -> io::Error {
     match error.raw_os_error() {
         Some(code) => io::Error::from_raw_os_error(code),
@@ -214,7 +215,7 @@ fn rename(from: TempPath, path: &Path, replace: bool) -> io::Result<()> {
     let Err(failed) = renamed else {
         return Ok(());
     };
-    // A file system with neither links nor a renaming that keeps the other file: an empty file takes the name first.
+    // The file system has neither links nor a renaming that keeps the other file: an empty file takes the name first.
     let unsupported = !replace
         && matches!(
             failed.error.kind(),
@@ -230,7 +231,7 @@ fn rename(from: TempPath, path: &Path, replace: bool) -> io::Result<()> {
     })
 }
 
-/// The content under a random name, for a file system that does not link a file without a name.
+/// Copies the content to a file with a random name, for a file system that cannot link a file without a name.
 fn copied(mut file: File, folder: &Path) -> io::Result<(File, TempPath)> {
     let mut copy = TemporaryFile::named(folder)?;
     file.rewind()?;
@@ -242,7 +243,7 @@ fn copied(mut file: File, folder: &Path) -> io::Result<(File, TempPath)> {
     Ok((copy.file, path))
 }
 
-/// A file without a name; None where the system has no such files, or could not name it later.
+/// Creates a file without a name; None if the system has no such files, or could not name the file later.
 #[cfg(target_os = "linux")]
 fn unnamed(folder: &Path) -> Option<File> {
     use rustix::fs::{Mode, OFlags, open};
@@ -266,14 +267,14 @@ fn link(file: &File, path: &Path) -> io::Result<()> {
     )?)
 }
 
-/// Where the system lists an open file.
+/// Returns the path under which the system lists an open file.
 #[cfg(target_os = "linux")]
 fn of_descriptor(file: &File) -> String {
     use std::os::fd::AsRawFd;
     format!("/proc/self/fd/{}", file.as_raw_fd())
 }
 
-/// Elsewhere every file has a name.
+/// Returns None: on other systems every file has a name.
 #[cfg(not(target_os = "linux"))]
 fn unnamed(_: &Path) -> Option<File> {
     None
@@ -285,22 +286,22 @@ fn link(_: &File, _: &Path) -> io::Result<()> {
     Err(ErrorKind::Unsupported.into())
 }
 
-/// A folder that only its owner can look into, removed with this. Its program holds the lock on the file `.lock` in it:
-/// a folder whose lock is free was left by a program that died, and the next one removes it.
+/// A folder that only its owner can look into, removed when this is dropped. Its program holds the lock on the file
+/// `.lock` in it: a folder whose lock is free was left by a program that died, and the next program removes it.
 #[cfg(feature = "tui")]
 #[derive(Debug)]
 pub(crate) struct ScratchFolder {
     folder: tempfile::TempDir,
-    /// Closing it releases the lock.
+    /// The file with the lock; closing it releases the lock.
     _lock: File,
 }
 
 #[cfg(feature = "tui")]
 impl ScratchFolder {
-    /// A new folder where the system keeps temporary ones.
+    /// Creates a folder where the system keeps temporary ones.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(crate) fn new() -> io::Result<Self> {
         let place = std::env::temp_dir();
         for path in temporaries(&place) {
@@ -320,13 +321,13 @@ impl ScratchFolder {
         })
     }
 
-    /// Its path.
+    /// Returns the path of the folder.
     pub(crate) fn path(&self) -> &Path {
         self.folder.path()
     }
 }
 
-/// The file in a temporary folder that its program holds the lock of.
+/// The name of the file in a temporary folder on which its program holds a lock.
 #[cfg(feature = "tui")]
 const LOCK: &str = ".lock";
 
@@ -344,7 +345,7 @@ fn remove_left_over(folder: &Path) {
     }
 }
 
-/// Whether this program has searched a folder in the last minute; from now on it has.
+/// Returns true if this program has searched a folder in the last minute; notes that it has from now on.
 fn was_searched(folder: &Path) -> bool {
     static SEARCHED: Mutex<BTreeMap<PathBuf, Instant>> = Mutex::new(BTreeMap::new());
     let mut searched = SEARCHED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -356,14 +357,14 @@ fn was_searched(folder: &Path) -> bool {
     !is_new
 }
 
-/// The paths in a folder that have the name of something temporary.
+/// Iterates over the paths in a folder that are named like something temporary.
 fn temporaries(folder: &Path) -> impl Iterator<Item = PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let named = entries.filter(|entry| entry.file_name().to_str().is_some_and(is_temporary));
     named.map(|entry| entry.path())
 }
 
-/// Whether a file's name is one of ours: `.taxel-` and six letters or digits.
+/// Returns true if a name is that of a temporary file: `.taxel-` and six letters or digits.
 pub(crate) fn is_temporary(name: &str) -> bool {
     let random = name.strip_prefix(PREFIX);
     random.is_some_and(|random| {
@@ -371,14 +372,14 @@ pub(crate) fn is_temporary(name: &str) -> bool {
     })
 }
 
-/// Whether the program that held the lock of a regular file has died.
+/// Returns true if the program that held the lock of a regular file has died.
 fn is_left_over(path: &Path) -> io::Result<bool> {
     let found = path.symlink_metadata()?;
     if !found.file_type().is_file() {
         return Ok(false);
     }
     let age = SystemTime::now().duration_since(found.modified()?);
-    // One from the future: a clock was changed.
+    // A time in the future: a clock was changed.
     let Ok(age) = age else { return Ok(false) };
     Ok(age > FRESH
         && match File::open(path)?.try_lock() {
@@ -436,7 +437,7 @@ mod tests {
             "taxel-AbC123",
         ];
         assert_eq!(left, stays);
-        // It was searched just now.
+        // The folder was searched just now.
         aged(folder.path(), ".taxel-Later1", hour);
         drop(TemporaryFile::new(folder.path()).expect("made"));
         assert!(folder.path().join(".taxel-Later1").exists());
@@ -444,7 +445,7 @@ mod tests {
 
     #[cfg(all(unix, feature = "tui"))]
     #[test]
-    fn a_scratch_folder_is_its_owners_alone() {
+    fn only_its_owner_can_look_into_a_scratch_folder() {
         use std::os::unix::fs::PermissionsExt;
         let folder = ScratchFolder::new().expect("made");
         let path = folder.path().to_owned();
@@ -455,7 +456,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_has_its_name_whichever_way_it_was_made() {
+    fn a_file_gets_its_name_however_it_was_made() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a");
         let ways: [fn(&Path) -> io::Result<TemporaryFile>; 2] =

@@ -14,19 +14,19 @@ pub const TRASH_KEPT: usize = 50;
 /// can put a file there.
 const LAST_NUMBER: u64 = 9_999_999_999;
 
-/// A deleted shape's file.
+/// The file of a deleted shape.
 pub(crate) struct DeletedShape {
     number: u64,
-    /// The name it had.
+    /// The name of the shape.
     pub(crate) name: String,
-    /// Its file in the trash.
+    /// The path of its file in the trash.
     pub(crate) path: PathBuf,
 }
 
-/// The shapes in a trash when its folder was read.
+/// The shapes that were in a trash when its folder was read.
 pub(crate) struct Trash {
     folder: PathBuf,
-    /// The oldest first.
+    /// The shapes, the oldest first.
     shapes: Vec<DeletedShape>,
 }
 
@@ -40,15 +40,15 @@ impl Trash {
         Ok(Self { folder, shapes })
     }
 
-    /// The shapes, the one deleted last first.
+    /// Iterates over the shapes, the last deleted first.
     pub(crate) fn newest_first(&self) -> impl Iterator<Item = &DeletedShape> {
         self.shapes.iter().rev()
     }
 
-    /// The path for the next shape. If the highest number is taken, the shapes are renumbered from 1.
+    /// Returns the path for the next shape. If the highest number is taken, the shapes are renumbered from 1.
     ///
     /// # Errors
-    /// What the system reports of a file that could not be renamed.
+    /// Returns the system's error for a file that could not be renamed.
     pub(crate) fn next_path(&mut self, name: &str) -> Result<PathBuf, FileError> {
         let last = self.shapes.last().map_or(0, |last| last.number);
         if last >= LAST_NUMBER {
@@ -79,7 +79,7 @@ impl Trash {
         Ok(())
     }
 
-    /// Removes the oldest shapes, so that with the one just added [`TRASH_KEPT`] are left.
+    /// Removes the oldest shapes, so that [`TRASH_KEPT`] are left, together with the one just added.
     pub(crate) fn forget_oldest(self) {
         let excess = self.shapes.len().saturating_sub(TRASH_KEPT - 1);
         for old in &self.shapes[..excess] {
@@ -90,7 +90,7 @@ impl Trash {
 }
 
 impl DeletedShape {
-    /// None if the file's name is not that of a deleted shape.
+    /// Returns the deleted shape at a path; None if the file's name is not that of a deleted shape.
     fn at(path: &Path) -> Option<Self> {
         let name = path.file_name()?.to_str()?.strip_suffix(".json")?;
         let (number, name) = name.split_once(' ')?;
