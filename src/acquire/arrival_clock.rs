@@ -1,30 +1,30 @@
-//! Times of frames: their own, which go on growing over a gap in their source, or those of their arrival.
+//! Gives frames times: their own, which go on growing over a gap in their source, or those of their arrival.
 
 use std::time::Instant;
 
 use crate::formats::seconds::to_nanoseconds;
 
-/// How far a source's clock may run ahead of this machine's across a gap, in seconds: the last frame before the gap may have
-/// come late.
+/// How many seconds a source's clock may run ahead of this machine's across a gap: the last frame before the gap may
+/// have come late.
 const LATE: f64 = 1.0;
 
-/// Continues the frames' own times over gaps.
+/// A clock that continues the frames' own times over gaps.
 #[derive(Debug, Default)]
 struct ContinuedTime {
     /// The time of the last frame that had one of its own, and when it came.
     given: Option<(f64, Instant)>,
     /// Whether there was a gap since then.
     rejoined: bool,
-    /// What is added to the frames' own times after the source's clock restarted.
+    /// The seconds added to the frames' own times after the source's clock restarted.
     shift: Option<f64>,
 }
 
-/// Gives each frame a time: its own, else that of its arrival since the first that had none.
+/// A clock that gives each frame a time: its own, else that of its arrival since the first frame without one.
 #[derive(Debug, Default)]
 pub(super) struct ArrivalClock {
-    /// The times of frames that have one of their own.
+    /// The clock for frames with a time of their own.
     own: ContinuedTime,
-    /// When the first frame without one arrived.
+    /// The arrival of the first frame without a time of its own.
     first: Option<Instant>,
 }
 
@@ -34,7 +34,8 @@ impl ArrivalClock {
         self.own.rejoin();
     }
 
-    /// The time of a frame that came now, given its own; None of a frame without one that arrived at some other time.
+    /// Returns the time of a frame that came now, given its own; None for a frame without one that arrived at some
+    /// other time.
     pub(super) fn time(&mut self, own: Option<f64>, arrives: bool) -> Option<f64> {
         let now = Instant::now();
         if let Some(own) = own {
@@ -51,8 +52,8 @@ impl ContinuedTime {
         self.rejoined = true;
     }
 
-    /// The time of a frame, given its own. After a gap the source's clock may have restarted or been set; then the time of the
-    /// gap is taken from this machine's clock, so that times keep growing.
+    /// Returns the time of a frame, given its own. After a gap the source's clock may have restarted or been set;
+    /// then the length of the gap is taken from this machine's clock, so that times keep growing.
     fn of(&mut self, own: f64, now: Instant) -> f64 {
         let mut time = self.shifted(own);
         if std::mem::take(&mut self.rejoined)

@@ -1,4 +1,4 @@
-//! Bytes of a source, read without waiting longer than a moment.
+//! Reads the bytes of a source without waiting longer than a moment.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
@@ -17,32 +17,32 @@ use crate::acquire::growing_file::{GrowingFile, ReadAnew};
 use crate::acquire::serial;
 use crate::acquire::source::{FrameSource, check_address};
 
-/// How long a read waits for bytes.
+/// The time that a read waits for bytes.
 const MOMENT: Timespec = Timespec {
     tv_sec: 0,
     tv_nsec: 100_000_000,
 };
 
-/// How often to check whether a connection is still wanted.
+/// The time between two checks whether a connection is still wanted.
 const ASKED: Duration = Duration::from_millis(100);
 
-/// How long a connection may take.
+/// The time that making a connection may take.
 const CONNECTING: Duration = Duration::from_secs(5);
 
-/// How long a connection may be silent before the system probes its other end, how long an answer may take, and how
-/// many answers may be missing.
+/// The silence of a connection after which the system probes its other end; below, the time that an answer may take,
+/// and the number of answers that may be missing.
 const SILENT: Duration = Duration::from_secs(15);
 const BETWEEN_PROBES: Duration = Duration::from_secs(5);
 const PROBES: u32 = 3;
 
-/// What a read has brought.
+/// The outcome of a read.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum ReadOutcome {
-    /// How many bytes were read; 0 if none have come yet.
+    /// The number of bytes that were read; 0 if none have come yet.
     Bytes(usize),
-    /// Nothing yet: what comes now is from the start of a file again.
+    /// No bytes yet: the next ones are from the start of a file again.
     Anew(ReadAnew),
-    /// The end.
+    /// The end of the source.
     End,
 }
 
@@ -53,18 +53,18 @@ pub(super) enum ByteInput {
     Tcp(TcpStream),
     /// A serial line or a pipe.
     Device(File),
-    /// A file, to its end.
+    /// A file that is read to its end.
     File(File),
-    /// A file that is waited for when it ends.
+    /// A file that is waited for at its end.
     Growing(GrowingFile),
 }
 
 impl ByteInput {
-    /// Opens a source; on request, a file is read only to its present end. `waiting` is called ten times a second while
-    /// opening takes long; None if it breaks.
+    /// Opens a source. If `once`, a file is read only to its end. `waiting` is called ten times a second while
+    /// opening takes long; returns None if it breaks.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(super) fn open(
         source: &FrameSource,
         baud: u32,
@@ -84,7 +84,7 @@ impl ByteInput {
         }))
     }
 
-    /// What is waited for; none where bytes are read at once.
+    /// Returns the descriptor to wait for; None if bytes are read at once.
     fn fd(&self) -> Option<BorrowedFd<'_>> {
         match self {
             Self::Standard(input) => Some(input.as_fd()),
@@ -94,10 +94,10 @@ impl ByteInput {
         }
     }
 
-    /// Reads what is there; waits a moment where there is nothing.
+    /// Reads the bytes that are there; waits a moment if there are none.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(super) fn read(&mut self, bytes: &mut [u8]) -> io::Result<ReadOutcome> {
         if let Some(fd) = self.fd() {
             let mut fds = [PollFd::from_borrowed_fd(fd, PollFlags::IN)];
@@ -108,7 +108,7 @@ impl ByteInput {
             }
         }
         let read = match self {
-            // Not through the buffer of the standard library, which would be polled past.
+            // Not through the buffer of the standard library: `poll` would not see the bytes in it.
             Self::Standard(input) => rustix::io::read(&*input, bytes).map_err(io::Error::from),
             Self::Tcp(stream) => stream.read(bytes),
             Self::Device(file) | Self::File(file) => file.read(bytes),
@@ -136,11 +136,11 @@ fn open_fifo(path: &Path) -> io::Result<File> {
     Ok(open(path, flags, Mode::empty())?.into())
 }
 
-/// Connects on a thread of its own, which is abandoned if the connection is no longer wanted: finding the addresses of a name
-/// and waiting for an answer cannot be interrupted.
+/// Connects on a thread of its own. The thread is abandoned if the connection is no longer wanted, because looking up
+/// the addresses of a name and waiting for an answer cannot be interrupted.
 ///
 /// # Errors
-/// As of [`connect`].
+/// Returns the errors of [`connect`].
 fn connect_unless(
     address: &str,
     waiting: &mut dyn FnMut() -> ControlFlow<()>,
@@ -156,7 +156,7 @@ fn connect_unless(
             Ok(stream) => return stream.map(Some),
             Err(RecvTimeoutError::Timeout) if waiting().is_break() => return Ok(None),
             Err(RecvTimeoutError::Timeout) => {}
-            // It does not panic.
+            // The thread does not panic.
             Err(RecvTimeoutError::Disconnected) => return Err(ErrorKind::NotConnected.into()),
         }
     }
@@ -165,7 +165,7 @@ fn connect_unless(
 /// Connects to the first address of a name that answers.
 ///
 /// # Errors
-/// What the system reports.
+/// Returns the system's error.
 fn connect(address: &str) -> io::Result<TcpStream> {
     use std::net::ToSocketAddrs;
     check_address(address)?;
@@ -180,12 +180,12 @@ fn connect(address: &str) -> io::Result<TcpStream> {
     Err(failure)
 }
 
-/// Lets the system probe the other end when nothing comes. Nothing is ever sent to a sensor, so a loss of its power
-/// would not be noticed otherwise. Without an answer, reading fails after half a minute, and the connection is made
-/// again.
+/// Lets the system probe the other end when nothing comes. Nothing is ever sent to a sensor, so without probes a loss
+/// of its power would not be noticed. Without an answer, reading fails after half a minute, and the connection is
+/// made again.
 ///
 /// # Errors
-/// What the system reports.
+/// Returns the system's error.
 fn kept_alive(stream: &TcpStream) -> io::Result<()> {
     sockopt::set_socket_keepalive(stream, true)?;
     sockopt::set_tcp_keepidle(stream, SILENT)?;

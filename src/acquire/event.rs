@@ -1,4 +1,4 @@
-//! The options of an acquisition, what it reports, and why it ends.
+//! The options of an acquisition, its reports, and its errors.
 
 use std::io;
 use std::time::Duration;
@@ -8,11 +8,11 @@ use crate::formats::recording::{ChannelInfo, RecordingError, RecordingNote};
 use crate::formats::stream::{StreamCounts, StreamFormat};
 use crate::frame::Frame;
 
-/// How a source is read.
+/// The options of an acquisition: how a source is read.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AcquireOptions {
-    /// The format of a stream; detected if not given. If it is given, a file is a stream, not a recording.
+    /// The format of a stream; None to detect it. If it is given, a file is a stream, not a recording.
     pub format: Option<StreamFormat>,
     /// Rows and columns of streams, and of recordings that do not state them.
     pub shape: Option<(u16, u16)>,
@@ -25,9 +25,9 @@ pub struct AcquireOptions {
     pub baud: u32,
     /// Whether a connection or a serial line that cannot be opened yet is tried again each second.
     pub waits: bool,
-    /// Read to the end as fast as possible, then stop.
+    /// Whether to read to the end as fast as possible, and then stop.
     pub once: bool,
-    /// Begin a recording again at its end.
+    /// Whether to begin a recording again at its end.
     pub repeat: bool,
     /// The speed at which a recording is played, relative to its own; 1 if it is not above 0.
     pub speed: f64,
@@ -49,7 +49,7 @@ impl Default for AcquireOptions {
     }
 }
 
-/// What an acquisition reports.
+/// A report of an acquisition.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum AcquireEvent<'a> {
@@ -59,9 +59,9 @@ pub enum AcquireEvent<'a> {
     Frame {
         /// The frame.
         frame: &'a Frame,
-        /// Its time in seconds: its own, or that of its arrival since the first frame that arrived; None of a frame that was in
-        /// a file already. After a gap the time goes on growing, even if the source's own clock restarted; if a recording is
-        /// repeated, times begin again.
+        /// The time in seconds: the frame's own, or that of its arrival since the first frame that arrived. None for
+        /// a frame without a time of its own that was in a file already. After a gap the time goes on growing, even
+        /// if the source's own clock restarted; if a recording is repeated, times begin again.
         time: Option<f64>,
     },
     /// A frame that is shown but not kept, until what follows it confirms it.
@@ -70,14 +70,14 @@ pub enum AcquireEvent<'a> {
     Withdrawn,
     /// Something odd in a recording.
     Note(&'a RecordingNote),
-    /// What has come so far. Reported at least ten times a second, with or without frames, unless a source is read as
-    /// fast as possible.
+    /// The counts so far. Reported about ten times a second, with or without frames, unless a source is read as fast
+    /// as possible.
     Tick(&'a StreamCounts),
     /// No frame for two seconds.
     Silent {
-        /// Bytes a second that came meanwhile.
+        /// Bytes per second that came meanwhile.
         bytes_per_second: f64,
-        /// What has come so far.
+        /// The counts so far.
         counts: &'a StreamCounts,
     },
     /// The source cannot be opened yet; it is tried again each second.
@@ -86,27 +86,27 @@ pub enum AcquireEvent<'a> {
     Lost(&'a io::Error),
     /// The source is there, or is back.
     Back {
-        /// How long it was waited for.
+        /// The time that it was waited for.
         gap: Duration,
     },
     /// A recording begins again.
     Again,
     /// A growing file is read from its start again.
     Anew(ReadAnew),
-    /// The end of a stream, with all that has come.
+    /// The end of a stream, with its counts.
     Ended(&'a StreamCounts),
 }
 
-/// Why an acquisition has ended.
+/// The error that ended an acquisition.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AcquireError {
     /// The source cannot be opened, or read on.
     #[error("cannot {doing}: {error}")]
     Io {
-        /// What was to be done.
+        /// The operation, in words that follow "cannot".
         doing: &'static str,
-        /// What the system reports.
+        /// The error that the system reports.
         error: io::Error,
     },
     /// The recording is damaged.
@@ -115,13 +115,13 @@ pub enum AcquireError {
 }
 
 impl AcquireError {
-    /// A source that cannot be opened.
+    /// Creates the error for a source that cannot be opened.
     pub(super) fn opening(error: io::Error) -> Self {
         let doing = "open it";
         Self::Io { doing, error }
     }
 
-    /// A source that cannot be read on.
+    /// Creates the error for a source that cannot be read any further.
     pub(super) fn reading(error: io::Error) -> Self {
         let doing = "read it";
         Self::Io { doing, error }

@@ -12,26 +12,26 @@ use std::time::{Duration, SystemTime};
 
 use crate::acquire::growing_file::{GrowingFile, ReadAnew};
 
-/// A file that was not changed for this long, and has not grown since it was opened, is complete.
+/// The time without a change after which a file is complete, if it has not grown since it was opened.
 const UNCHANGED: Duration = Duration::from_secs(2);
 
-/// Whether a file grows.
+/// The growth of a file.
 #[derive(Debug)]
 pub(super) struct Growth {
     file: File,
-    /// Its bytes when it was opened.
+    /// The length of the file in bytes when it was opened.
     length: u64,
     has_grown: Cell<bool>,
     has_caught_up: Cell<bool>,
 }
 
 impl Growth {
-    /// Whether all that was in it has been read, so that what comes now arrives.
+    /// Returns true if everything that was in the file has been read, so that frames now arrive as they are written.
     pub(super) fn has_caught_up(&self) -> bool {
         self.has_caught_up.get()
     }
 
-    /// Whether it has become longer since it was opened, or is another file by now.
+    /// Returns true if the file has become longer since it was opened, or is another file by now.
     pub(super) fn has_grown(&self) -> bool {
         if !self.has_grown.get() {
             let found = self.file.metadata();
@@ -41,7 +41,7 @@ impl Growth {
         self.has_grown.get()
     }
 
-    /// Whether it may be about to grow.
+    /// Returns true if the file was changed just now, so that it may be about to grow.
     fn was_just_changed(&self) -> bool {
         let changed = self.file.metadata().and_then(|found| found.modified());
         let age = changed.map(|changed| SystemTime::now().duration_since(changed));
@@ -49,12 +49,12 @@ impl Growth {
     }
 }
 
-/// Why reading a followed file ended, other than by its end.
+/// The reason why reading a followed file ended before its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FollowEnd {
     /// No more is wanted.
     Stopped,
-    /// It is to be read from its start.
+    /// The file is to be read from its start.
     Anew(ReadAnew),
 }
 
@@ -62,15 +62,15 @@ pub(super) enum FollowEnd {
 pub(super) struct FollowedFile<'a> {
     file: GrowingFile,
     growth: &'a Growth,
-    /// Called while more is waited for; breaks if no more is wanted.
+    /// The function that is called while more is waited for; it breaks if no more is wanted.
     waiting: &'a mut dyn FnMut() -> ControlFlow<()>,
     end: Option<FollowEnd>,
 }
 
-/// Opens a file. Returns also whether it grows.
+/// Opens a file. Also returns its growth.
 ///
 /// # Errors
-/// What the system reports.
+/// Returns the system's error.
 pub(super) fn open(path: &Path) -> io::Result<(GrowingFile, Growth)> {
     let file = File::open(path)?;
     let growth = Growth {
@@ -86,7 +86,7 @@ impl<'a> FollowedFile<'a> {
     /// Follows a file from its start.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(super) fn new(
         mut file: GrowingFile,
         growth: &'a Growth,
@@ -101,7 +101,7 @@ impl<'a> FollowedFile<'a> {
         })
     }
 
-    /// The file, and why reading it has ended if not by its end.
+    /// Returns the file, and why reading it ended before its end, if it did.
     pub(super) fn into_parts(self) -> (GrowingFile, Option<FollowEnd>) {
         (self.file, self.end)
     }
@@ -137,7 +137,7 @@ impl Seek for FollowedFile<'_> {
         if to != SeekFrom::Start(0) {
             return Err(io::ErrorKind::Unsupported.into());
         }
-        // What is read again did not arrive just now.
+        // Bytes that are read again did not arrive just now.
         self.growth.has_caught_up.set(false);
         self.file.rewind().map(|()| 0)
     }

@@ -1,4 +1,4 @@
-//! How often frames come, by their times.
+//! Measures how often frames come, from their times.
 //!
 //! Frames often come several at once: a read brings what has gathered in a pipe, or a program sends in bursts. The times
 //! between such frames say nothing about the rate, so frames within a tenth of a second count as one burst, and a burst
@@ -12,25 +12,25 @@ use std::collections::VecDeque;
 
 use crate::formats::seconds::to_nanoseconds;
 
-/// Frames within this many seconds count as one burst.
+/// The number of seconds within which frames count as one burst.
 const TOGETHER: f64 = 0.1;
 
-/// A burst that lasts longer than this is followed by a gap, as where a connection was lost, unless most bursts last about
-/// as long.
+/// A burst that lasts longer than this many seconds is followed by a gap, such as a lost connection, unless most
+/// bursts last about as long.
 const GAP: f64 = 1.0;
 
-/// The rate of the last frames.
+/// A measurement of the rate of the last frames.
 #[derive(Clone, Debug)]
 pub(crate) struct FrameRate {
     /// The last bursts, each followed by another one.
     bursts: VecDeque<Burst>,
-    /// No more than these are kept.
+    /// The largest number of bursts that are kept.
     most: usize,
-    /// The time of the first frame of the burst that has not ended, and how many frames it has.
+    /// The burst that has not ended: the time of its first frame, and its number of frames.
     open: Option<(f64, u32)>,
 }
 
-/// Frames that came at about the same time.
+/// A burst: frames that came at about the same time.
 #[derive(Clone, Copy, Debug)]
 struct Burst {
     frames: u32,
@@ -39,7 +39,7 @@ struct Burst {
 }
 
 impl FrameRate {
-    /// The rate over the last bursts, at most this many; each lasts a tenth of a second or longer.
+    /// Measures the rate over the last bursts, at most this many; each lasts a tenth of a second or longer.
     pub(crate) fn over(most: usize) -> Self {
         Self {
             bursts: VecDeque::new(),
@@ -48,7 +48,8 @@ impl FrameRate {
         }
     }
 
-    /// Adds the time of the next frame, in seconds. After a time that goes back, counting begins anew.
+    /// Adds the time of the next frame, in seconds. If it is earlier than the open burst, that burst is dropped and a
+    /// new one begins.
     pub(crate) fn add(&mut self, time: f64) {
         if let Some((start, frames)) = &mut self.open {
             let seconds = time - *start;
@@ -67,8 +68,8 @@ impl FrameRate {
         self.open = Some((time, 1));
     }
 
-    /// The mean time from a frame to the next, without gaps. None if all frames have come in one burst: their times do not
-    /// tell it.
+    /// Returns the mean time from a frame to the next, in seconds, without gaps. None if all frames have come in one
+    /// burst: their times do not show the rate.
     pub(crate) fn seconds_per_frame(&self) -> Option<f64> {
         let mut lengths: Vec<f64> = self.bursts.iter().map(|burst| burst.seconds).collect();
         lengths.sort_by(f64::total_cmp);
@@ -86,14 +87,14 @@ impl FrameRate {
 mod tests {
     use super::*;
 
-    /// The time from a frame to the next, given the times of frames.
+    /// Returns the time from a frame to the next, given the times of frames.
     fn step(times: impl IntoIterator<Item = f64>) -> Option<f64> {
         let mut rate = FrameRate::over(4096);
         times.into_iter().for_each(|time| rate.add(time));
         rate.seconds_per_frame()
     }
 
-    /// `frames` at once, in two reads, each `period` seconds.
+    /// Returns the times of `count` bursts, one every `period` seconds: `frames` frames at once, in two reads.
     fn bursts(frames: u32, period: f64, count: u32) -> impl Iterator<Item = f64> {
         (0..count).flat_map(move |burst| {
             let start = f64::from(burst) * period;
@@ -104,7 +105,7 @@ mod tests {
     #[test]
     fn frames_that_come_at_once_are_not_mistaken_for_fast_ones() {
         assert_eq!(step(bursts(100, 0.25, 9)), Some(0.0025));
-        // A pause of a second and more between bursts is no gap.
+        // A pause of more than a second between bursts is no gap.
         assert_eq!(step(bursts(500, 1.5, 4)), Some(0.003));
         assert_eq!(step(bursts(500, 1.5, 2)), Some(0.003));
         // 16 frames a read.
@@ -124,7 +125,7 @@ mod tests {
     fn gaps_and_times_that_go_back_do_not_count() {
         let usual = [0.0, 0.125, 98.25, 98.375, 96.0, 96.125];
         assert_eq!(step(usual), Some(0.125));
-        // None of those after it come at once, though they are before the frame that was open.
+        // Times go back, and frames that are earlier than the open burst do not count as one burst.
         assert_eq!(step([1.0, 1.5, 0.0, 0.5, 1.0, 1.5, 2.0]), Some(0.5));
         let mut with_gap: Vec<f64> = bursts(3, 0.3, 20).collect();
         with_gap.extend(bursts(3, 0.3, 2).map(|time| 11.0 + time));

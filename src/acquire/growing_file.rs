@@ -7,17 +7,17 @@ use std::os::unix::fs::{FileExt, MetadataExt};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-/// How long a file that ends is left alone until it may have grown.
+/// The time that a file is left alone at its end, until it may have grown.
 const GROWTH: Duration = Duration::from_millis(50);
 
-/// How many of the last bytes that were read are compared with the file, to find out whether it was rewritten.
+/// The number of last bytes that are compared with the file, to find out whether it was rewritten.
 const REMEMBERED: usize = 1 << 12;
 
-/// Why a file is read from its start again.
+/// The reason why a file is read from its start again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ReadAnew {
-    /// It is shorter than it was, or holds something else.
+    /// The file is shorter than it was, or holds something else.
     Cut,
     /// Another file has its name.
     Replaced,
@@ -32,31 +32,31 @@ impl fmt::Display for ReadAnew {
     }
 }
 
-/// A file with a name, read up to its end so far.
+/// A file with a name, read up to its present end.
 #[derive(Debug)]
 pub(super) struct GrowingFile {
     path: PathBuf,
     file: File,
-    /// How many bytes were read.
+    /// The number of bytes that were read.
     offset: u64,
-    /// The last of them.
+    /// The last of these bytes.
     last: Vec<u8>,
-    /// Whether all that was there has been read.
+    /// Whether everything that was there has been read.
     at_end: bool,
-    /// Its modification time when it was last checked.
+    /// The modification time of the file when it was last checked.
     changed: Option<SystemTime>,
 }
 
 impl GrowingFile {
-    /// Opens it.
+    /// Opens a file.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(super) fn open(path: &Path) -> io::Result<Self> {
         Ok(Self::new(path, File::open(path)?))
     }
 
-    /// One that is open, before its first byte.
+    /// Takes an open file, before its first byte.
     pub(super) fn new(path: &Path, file: File) -> Self {
         Self {
             path: path.to_owned(),
@@ -68,10 +68,10 @@ impl GrowingFile {
         }
     }
 
-    /// Goes back to its first byte.
+    /// Goes back to the first byte.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(super) fn rewind(&mut self) -> io::Result<()> {
         self.file.rewind()?;
         (self.offset, self.at_end, self.changed) = (0, false, None);
@@ -79,10 +79,10 @@ impl GrowingFile {
         Ok(())
     }
 
-    /// Reads what has come; waits a moment where there is nothing.
+    /// Reads the bytes that have come; waits a moment if there are none.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(super) fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         let count = match self.file.read(bytes) {
             Err(error) if error.kind() == ErrorKind::Interrupted => 0,
@@ -100,10 +100,11 @@ impl GrowingFile {
         Ok(count)
     }
 
-    /// Begins at the start again if necessary. Must be called before each read.
+    /// Goes back to the start of the file if it was rewritten or replaced, and returns which. Must be called before
+    /// each read.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(super) fn anew(&mut self) -> io::Result<Option<ReadAnew>> {
         if !self.at_end {
             return Ok(None);
@@ -125,7 +126,8 @@ impl GrowingFile {
         self.switched(Self::open(&self.path))
     }
 
-    /// Goes on with the file that has its name now. One that has vanished again since it was looked at is waited for.
+    /// Goes on with the file that has the name now. If that has vanished since it was looked at, waits for another
+    /// one.
     fn switched(&mut self, opened: io::Result<Self>) -> io::Result<Option<ReadAnew>> {
         match opened {
             Ok(file) => {
@@ -137,7 +139,7 @@ impl GrowingFile {
         }
     }
 
-    /// Whether what was read is no longer there.
+    /// Returns true if what was read is no longer there.
     fn was_cut(&mut self) -> io::Result<bool> {
         let found = self.file.metadata()?;
         if found.len() < self.offset {
@@ -151,7 +153,7 @@ impl GrowingFile {
         let mut bytes = vec![0; self.last.len()];
         let start = self.offset - self.last.len() as u64;
         match self.file.read_exact_at(&mut bytes, start) {
-            // Cut between the two looks.
+            // The file was truncated between the two looks.
             Err(error) if error.kind() == ErrorKind::UnexpectedEof => Ok(true),
             read => read.map(|()| bytes != self.last),
         }
@@ -168,7 +170,7 @@ mod tests {
         let path = folder.path().join("growing");
         fs::write(&path, "1 2").expect("written");
         let mut growing = GrowingFile::open(&path).expect("opened");
-        // Gone between the look at its name and its opening.
+        // The file was removed between the look at its name and its opening.
         let vanished = GrowingFile::open(&folder.path().join("vanished"));
         assert!(matches!(growing.switched(vanished), Ok(None)));
         let mut bytes = [0; 8];

@@ -1,4 +1,5 @@
-//! A recording, played back at its own rate, at another rate, or as fast as possible; or followed while it is written.
+//! Plays a recording back at its own rate, at another rate, or as fast as possible; or follows it while it is
+//! written.
 
 use std::cell::RefCell;
 use std::fs::File;
@@ -19,16 +20,16 @@ use crate::formats::recording::{
 use crate::formats::stream::StreamCounts;
 use crate::frame::Frame;
 
-/// The rate of a recording that does not state one: ten frames a second.
+/// The seconds per frame of a recording that does not state them: ten frames a second.
 const STEP: f64 = 0.1;
 
-/// Waits are divided into pieces of this length, so that they can be interrupted.
+/// The length of the pieces into which waits are divided, so that they can be interrupted.
 const MOMENT: Duration = Duration::from_millis(100);
 
-/// No frame is waited for longer than a day.
+/// The longest wait for a frame, in seconds: a day.
 const LONGEST: f64 = 86_400.0;
 
-/// Why a file that was followed is not read on: a recording of another kind has taken its place.
+/// Creates the error for a followed file whose place a recording of another kind has taken.
 fn replaced_by(format: RecordingFormat) -> RecordingError {
     RecordingError::damaged(format!(
         "replaced by a recording in the format {}, whose end cannot be followed",
@@ -36,21 +37,22 @@ fn replaced_by(format: RecordingFormat) -> RecordingError {
     ))
 }
 
-/// When the next frame is due.
+/// The pace of a recording: when its next frame is due.
 struct Pace<'a> {
     begun: Instant,
-    /// Seconds from one frame to the next, where frames have no time.
+    /// Seconds from one frame to the next, if frames have no time.
     step: f64,
     speed: f64,
-    /// The frames of the channel so far.
+    /// The number of frames of the channel so far.
     frames: u32,
-    /// When the first and the last of them were due, in seconds of the recording.
+    /// The times when the first and the last of them were due, in seconds of the recording.
     span: Option<(f64, f64)>,
-    /// The channel that sets the pace. Frames of others, which come before it, between its own or after it, wait for nothing.
+    /// The channel that sets the pace. Frames of other channels, before, between or after its own, are not waited
+    /// for.
     channel: ChannelChoice,
-    /// How many values a frame of it has, if nothing says their rows and columns.
+    /// The number of values in a frame of the channel, if its rows and columns are unknown.
     unshaped: Option<u64>,
-    /// Whether the file grows: then no frame is waited for.
+    /// The growth of a file that is followed: once it has grown, no frame is waited for.
     growth: Option<&'a Growth>,
 }
 
@@ -77,12 +79,12 @@ impl Pace<'_> {
         }
     }
 
-    /// Whether a frame is one of the channel that is watched, and has no rows and columns.
+    /// Returns true if a frame is one of the watched channel, and has no rows and columns.
     fn has_no_shape(&self, frame: &Frame) -> bool {
         self.unshaped.is_some() && self.channel.takes(frame.channel)
     }
 
-    /// Waits until a frame is due; `Break` if no more is wanted.
+    /// Waits until a frame is due. Returns `Break` if no more is wanted.
     fn wait(
         &mut self,
         frame: &Frame,
@@ -101,7 +103,7 @@ impl Pace<'_> {
         self.until(due - first, stop, consumer)
     }
 
-    /// Waits for as long after the last frame as one frame lasts, so that a recording that is repeated keeps its pace.
+    /// Waits after the last frame as long as one frame lasts, so that a repeated recording keeps its pace.
     fn last_frame(&self, stop: &AtomicBool, consumer: &mut Consumer<'_>) -> ControlFlow<()> {
         let Some((first, last)) = self.span else {
             return ControlFlow::Continue(());
@@ -139,7 +141,8 @@ impl Pace<'_> {
     }
 }
 
-/// Plays a recording. One that grows meanwhile is followed: what is in it is given at once, then each frame as it comes.
+/// Plays a recording. If it grows meanwhile, it is followed: its present frames are given at once, then each frame as
+/// it comes.
 pub(super) fn run(
     path: &Path,
     options: &AcquireOptions,
@@ -165,13 +168,13 @@ pub(super) fn run(
     }
 }
 
-/// What plays a recording.
+/// A player of a recording.
 struct Player<'a, 'b> {
     options: &'a AcquireOptions,
     stop: &'a AtomicBool,
-    /// What lies beside it.
+    /// The description beside the recording.
     description: Option<RecordingMetadata>,
-    /// Takes what is read, and a tick now and then while more is waited for.
+    /// The consumer of what is read, and of a tick now and then while more is waited for.
     consumer: RefCell<&'a mut Consumer<'b>>,
 }
 
@@ -184,24 +187,25 @@ struct KnownChannel {
     next: u64,
 }
 
-/// How a recording is read from its beginning once more.
+/// The state of one reading of a recording from its beginning to its end.
 #[derive(Default)]
 struct Round<'a> {
     /// The channels of all rounds, in the order in which they were reported.
     channels: Vec<KnownChannel>,
-    /// The place among them of each channel of this round: a file that takes the place of another may begin with another one.
+    /// For each channel of this round, its index in `channels`: a file that takes the place of another may begin with
+    /// another channel.
     order: Vec<usize>,
-    /// The times of its frames.
+    /// The times of the frames.
     times: ArrivalClock,
-    /// Whether the file grows, if it is followed.
+    /// The growth of the file, if it is followed.
     growth: Option<&'a Growth>,
 }
 
 impl Round<'_> {
-    /// Adds the next channel of this round. Returns whether no round had it before.
+    /// Adds the next channel of this round. Returns true if no round had it before.
     fn add(&mut self, info: &ChannelInfo) -> bool {
         let mut known = self.channels.iter().enumerate();
-        // Several may have the same name, or none.
+        // Several channels may have the same name, or none.
         let known = known
             .position(|(index, channel)| channel.name == info.name && !self.order.contains(&index));
         self.order.push(known.unwrap_or(self.channels.len()));
@@ -215,7 +219,7 @@ impl Round<'_> {
         known.is_none()
     }
 
-    /// The channel and the number, over all rounds, of a frame of this one.
+    /// Returns the channel and the number, over all rounds, of a frame of this round.
     fn place(&mut self, frame: &Frame) -> (usize, u64) {
         let own = (frame.channel, frame.number);
         let Some(&index) = self.order.get(frame.channel) else {
@@ -229,7 +233,7 @@ impl Round<'_> {
         (index, number)
     }
 
-    /// Begins the next round, whose frames are counted on if it has another file.
+    /// Begins the next round. Its frames are counted on if it has another file.
     fn begin(&mut self, counts_on: bool) {
         self.order.clear();
         for channel in &mut self.channels {
@@ -245,7 +249,7 @@ impl Player<'_, '_> {
         let mut round = Round::default();
         loop {
             let (pace, read) = self.round(format, &mut file, &mut round);
-            // What has no frame is not repeated: it would be read again and again without a pause.
+            // A recording without frames is not repeated: it would be read again and again without a pause.
             let ends = read?.is_break() || !self.options.repeat || pace.frames == 0;
             let consumer = &mut **self.consumer.borrow_mut();
             if ends
@@ -258,7 +262,7 @@ impl Player<'_, '_> {
         }
     }
 
-    /// Plays a file, and what is written at its end meanwhile.
+    /// Plays a file, and follows what is written at its end.
     fn follow(&self, path: &Path, mut format: RecordingFormat) -> Result<(), AcquireError> {
         let (mut file, growth) = followed_file::open(path).map_err(AcquireError::opening)?;
         let mut round = Round {
@@ -275,7 +279,7 @@ impl Player<'_, '_> {
             let how = match end {
                 None => return read.map(drop).map_err(AcquireError::from),
                 Some(FollowEnd::Stopped) => return Ok(()),
-                // What was torn by that is not an error.
+                // An error in the end that was torn by the change does not count.
                 Some(FollowEnd::Anew(how)) => how,
             };
             if (self.consumer.borrow_mut())(AcquireEvent::Anew(how)).is_break() {
@@ -283,7 +287,7 @@ impl Player<'_, '_> {
             }
             round.begin(true);
             round.times.rejoin();
-            // Its beginning may not be written yet.
+            // The beginning of the new content may not be written yet.
             format = loop {
                 match File::open(path).and_then(recognised_input) {
                     Ok(Some(format)) if format.is_appended_to() => break format,
@@ -295,7 +299,7 @@ impl Player<'_, '_> {
         }
     }
 
-    /// Says that time goes by; `Break` if no more is wanted.
+    /// Reports a tick. Returns `Break` if no more is wanted.
     fn tick(&self) -> ControlFlow<()> {
         if self.stop.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
@@ -303,7 +307,8 @@ impl Player<'_, '_> {
         (self.consumer.borrow_mut())(AcquireEvent::Tick(&StreamCounts::default()))
     }
 
-    /// Reads a recording from its beginning to its end. Returns how far it was played, and whether no more is wanted.
+    /// Reads a recording from its beginning to its end. Returns the pace that it reached, and whether no more is
+    /// wanted.
     fn round<'r>(
         &self,
         format: RecordingFormat,
@@ -333,7 +338,7 @@ impl Player<'_, '_> {
                 RecordingEvent::Frame(mut frame) => {
                     let given_up =
                         !self.options.once && pace.wait(frame, self.stop, consumer).is_break();
-                    // What is in a file already has arrived at some other time.
+                    // The present content of a file has arrived at some other time.
                     let arrives = round.growth.is_some_and(Growth::has_caught_up);
                     let time = round.times.time(frame.time, arrives);
                     let (channel, number) = round.place(frame);
@@ -361,8 +366,8 @@ impl Player<'_, '_> {
     }
 }
 
-/// The description beside a recording. If something is wrong with it, that is noted, and it is left out; `Break` if no
-/// more is wanted.
+/// Reads the description beside a recording. If something is wrong with it, that is reported as a note, and the
+/// description is left out. Returns `Break` if no more is wanted.
 fn description_of(
     path: &Path,
     consumer: &mut Consumer<'_>,
@@ -386,7 +391,7 @@ mod tests {
     fn only_frames_of_the_channel_that_is_watched_are_waited_for() {
         let mut pace = Pace::new(&AcquireOptions {
             channel: Some("right".to_owned()),
-            // Counts as 1.
+            // A speed of 0 counts as 1.
             speed: 0.0,
             ..AcquireOptions::default()
         });
@@ -401,7 +406,7 @@ mod tests {
         }
         let mut frame = Frame::new(1, 1);
         let mut waits = |frame: &Frame| {
-            // It stops at the first wait.
+            // The consumer stops it at the first wait.
             let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
             pace.wait(frame, &AtomicBool::new(false), consumer)
                 .is_break()
@@ -414,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_frame_is_not_waited_for_whatever_its_time_is() {
+    fn the_first_frame_is_not_waited_for_even_if_its_time_is_late() {
         let mut pace = Pace::new(&AcquireOptions::default());
         pace.channel.add(&ChannelInfo::default());
         let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
@@ -445,7 +450,7 @@ mod tests {
     fn the_last_frame_of_a_round_lasts_as_long_as_the_others() {
         let with = |times: &[Option<f64>]| {
             let mut pace = Pace::new(&AcquireOptions::default());
-            // All are due.
+            // All frames are due.
             pace.begun = Instant::now()
                 .checked_sub(Duration::from_hours(2))
                 .expect("later");
@@ -461,14 +466,14 @@ mod tests {
         };
         assert!(with(&[None, None]), "until 8,000 s, and 7,200 are gone");
         assert!(!with(&[None]), "until 4,000 s");
-        // From the first one on, whose own time does not matter.
+        // Counted from the first frame, whose own time does not matter.
         assert!(with(&[Some(1000.0), Some(5000.0)]), "until 8,000 s");
         let often = [1000.0, 2000.0, 3000.0, 4000.0, 5000.0, 6000.0].map(Some);
         assert!(!with(&often), "until 6,000 s: they are not 4,000 s apart");
         assert!(!with(&[]), "there is none");
     }
 
-    /// The times of the five frames of a file and of the three that then take their place.
+    /// Returns the times of the five frames of a file and of the three that then take their place.
     fn times_of_a_rewritten(path: &Path, [before, after]: &[String; 2]) -> Vec<f64> {
         std::fs::write(path, before).expect("written");
         let (options, stop) = (AcquireOptions::default(), AtomicBool::new(false));

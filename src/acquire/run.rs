@@ -7,8 +7,8 @@ use crate::acquire::source::FrameSource;
 use crate::acquire::stream::Consumer;
 use crate::acquire::{playback, stream};
 
-/// Reads a source until it ends, `stop` is set, or the consumer breaks off. A file that is a recording is played back, and
-/// followed if it grows meanwhile; any other file, or one for which the format of a stream is given, is read as it grows.
+/// Reads a source until it ends, `stop` is set, or the consumer breaks off. A recording is played back, and followed
+/// if it grows meanwhile. Any other file, or one for which the format of a stream is given, is read as it grows.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -43,7 +43,8 @@ use crate::acquire::{playback, stream};
 /// ```
 ///
 /// # Errors
-/// If the source cannot be opened at first, cannot be read on and does not come back, or is a damaged recording.
+/// Returns an error if the source cannot be opened at first, cannot be read on and does not come back, or is a
+/// damaged recording.
 pub fn acquire(
     source: &FrameSource,
     options: &AcquireOptions,

@@ -15,8 +15,9 @@ use rustix::termios::{
 /// are discarded.
 ///
 /// # Errors
-/// [`io::ErrorKind::ResourceBusy`] if another program has it open; [`io::ErrorKind::InvalidInput`] if it is another kind of
-/// device, which it will be next time, too; else what the system reports.
+/// Returns an error of the kind [`io::ErrorKind::ResourceBusy`] if another program has it open, or of the kind
+/// [`io::ErrorKind::InvalidInput`] if it is another kind of device, which trying again does not change; otherwise the
+/// system's error.
 pub(super) fn open_line(path: &Path, baud: u32) -> io::Result<File> {
     let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
     let busy = || io::Error::new(io::ErrorKind::ResourceBusy, "another program has it open");
@@ -29,7 +30,7 @@ pub(super) fn open_line(path: &Path, baud: u32) -> io::Result<File> {
         return Err(busy());
     }
     let mut settings = match tcgetattr(&line) {
-        // Devices that know no such request say one or the other.
+        // Devices that do not know this request report one or the other.
         Err(Errno::NOTTY | Errno::INVAL) => {
             let reason = "it is not a serial line; 'taxel watch -' reads it from standard input";
             return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));

@@ -11,25 +11,25 @@ use crate::acquire::event::{AcquireError, AcquireOptions};
 use crate::acquire::recorder::RecorderError;
 use crate::formats::recording::{ReadOptions, RecordingError, format_of};
 
-/// Where frames come from.
+/// A source of frames.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum FrameSource {
-    /// Standard input, `-`.
+    /// Standard input, named `-`.
     Standard,
-    /// A connection to `HOST:PORT`, `tcp://HOST:PORT`.
+    /// A connection to `HOST:PORT`, named `tcp://HOST:PORT`.
     Tcp(String),
     /// A serial line.
     Serial(PathBuf),
-    /// A pipe with a name.
+    /// A named pipe.
     Fifo(PathBuf),
-    /// A file: a recording, or bytes that may become more.
+    /// A file: a recording, or bytes that may grow.
     File(PathBuf),
 }
 
 impl FrameSource {
-    /// The source of that name. A path that does not exist counts as a file, but in `/dev` and `/dev/serial` as a serial
-    /// line, which may be plugged in later.
+    /// Returns the source of that name. A path that does not exist counts as a file, except in `/dev` and
+    /// `/dev/serial`: there it counts as a serial line, which may be plugged in later.
     pub fn new(name: &OsStr) -> Self {
         if name == "-" {
             return Self::Standard;
@@ -46,11 +46,11 @@ impl FrameSource {
         }
     }
 
-    /// Returns the file if it is played as a recording: of a known format, and no format of a stream was asked for. A file of
-    /// another kind, such as an image, is returned, too, and refused when it is played.
+    /// Returns the file if it is played as a recording: if it has a known format, and `options` names no format of a
+    /// stream. A file of another kind, such as an image, is returned, too, and refused when it is played.
     ///
     /// # Errors
-    /// If the file cannot be read.
+    /// Returns an error if the file cannot be read.
     pub fn recording(&self, options: &AcquireOptions) -> io::Result<Option<&Path>> {
         let (Self::File(path), None) = (self, options.format) else {
             return Ok(None);
@@ -62,7 +62,7 @@ impl FrameSource {
         }
     }
 
-    /// Its name in messages.
+    /// Returns the name for messages.
     pub fn name(&self) -> String {
         match self {
             Self::Standard => "standard input".to_owned(),
@@ -73,11 +73,11 @@ impl FrameSource {
         }
     }
 
-    /// Refuses a source that cannot be read however long one waits: a file that cannot be opened, an address without a
+    /// Refuses a source that cannot be read even if one waits: a file that cannot be opened, an address without a
     /// port.
     ///
     /// # Errors
-    /// [`AcquireError::Io`].
+    /// Returns [`AcquireError::Io`].
     pub fn check(&self) -> Result<(), AcquireError> {
         let checked = match self {
             Self::File(path) => File::open(path)
@@ -89,7 +89,8 @@ impl FrameSource {
         checked.map_err(|error| self.not_opened(error))
     }
 
-    /// That it cannot be opened. A name that looks like that of a connection says how one is written.
+    /// Creates the error for a source that cannot be opened. If the name looks like a connection, the message says
+    /// how one is written.
     pub(super) fn not_opened(&self, error: io::Error) -> AcquireError {
         let name = self.name();
         let is_connection = matches!(self, Self::File(_))
@@ -103,10 +104,10 @@ impl FrameSource {
         AcquireError::opening(io::Error::new(error.kind(), text))
     }
 
-    /// Refuses to record in the file that is watched, whatever its path, or to describe a recording in it.
+    /// Refuses to record in the file that is watched, under any path, or to describe a recording in it.
     ///
     /// # Errors
-    /// [`RecorderError::IsSource`].
+    /// Returns [`RecorderError::IsSource`].
     pub fn refuse_as_target(&self, target: &Path) -> Result<(), RecorderError> {
         let identity = |file: fs::Metadata| (file.dev(), file.ino());
         let source = match self {
@@ -117,7 +118,7 @@ impl FrameSource {
             Self::File(path) => fs::metadata(path),
             Self::Tcp(_) | Self::Serial(_) | Self::Fifo(_) => return Ok(()),
         };
-        // What is not there is nothing that can be lost.
+        // A source that does not exist cannot be overwritten.
         let Ok(source) = source.map(identity) else {
             return Ok(());
         };
@@ -130,13 +131,13 @@ impl FrameSource {
         Ok(())
     }
 
-    /// Whether it comes back after it was lost, so that it is tried again.
+    /// Returns true if the source may come back after it was lost, so that it is tried again.
     pub(super) fn comes_back(&self) -> bool {
         matches!(self, Self::Tcp(_) | Self::Serial(_))
     }
 }
 
-/// Whether a path is one where a device appears when it is plugged in.
+/// Returns true if a device may appear at a path when it is plugged in.
 fn is_for_devices(path: &Path) -> bool {
     path.parent() == Some(Path::new("/dev")) || path.starts_with("/dev/serial")
 }
@@ -144,7 +145,7 @@ fn is_for_devices(path: &Path) -> bool {
 /// Refuses an address that is not a host with a port.
 ///
 /// # Errors
-/// [`io::ErrorKind::InvalidInput`].
+/// Returns an error of the kind [`io::ErrorKind::InvalidInput`].
 pub(super) fn check_address(address: &str) -> io::Result<()> {
     let parts = address.rsplit_once(':');
     match parts.filter(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok()) {
@@ -161,7 +162,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_that_is_not_plugged_in_is_a_line_all_the_same() {
+    fn a_serial_line_that_is_not_plugged_in_is_still_a_serial_line() {
         for (name, is_line) in [
             ("/dev/ttyUSB9999", true),
             ("/dev/serial/by-id/usb-none", true),

@@ -1,4 +1,5 @@
-//! A source of bytes, decoded until it ends; if it may come back, taxel tries to open it again each second.
+//! Reads a source of bytes and decodes it until it ends. If it may come back, taxel tries to open it again each
+//! second.
 
 use std::io;
 use std::ops::ControlFlow;
@@ -11,29 +12,29 @@ use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
 use crate::acquire::source::FrameSource;
 use crate::formats::stream::{StreamDecoder, StreamEvent, StreamOptions, StreamSink};
 
-/// Bytes read at a time.
+/// The number of bytes read at a time.
 const CHUNK: usize = 1 << 16;
 
-/// A stream without a frame for this long is said to be silent.
+/// The time without a frame after which a stream is reported as silent.
 const SILENCE: Duration = Duration::from_secs(2);
 
-/// A source that is gone is tried again after this time.
+/// The time after which a lost source is tried again.
 const RETRY: Duration = Duration::from_secs(1);
 
 /// The time between two ticks.
 const TICK: Duration = Duration::from_millis(100);
 
-/// What is measured while a stream is read.
+/// The times and counts that are measured while a stream is read.
 struct StreamClock {
-    /// Whether frames arrive while they are read; not those of a source that is read as fast as possible.
+    /// Whether frames arrive while they are read; false for a source that is read as fast as possible.
     is_live: bool,
-    /// Whether a frame without a time of its own has that of its arrival.
+    /// Whether a frame without a time of its own gets the time of its arrival.
     timed: bool,
     last_frame: Instant,
     last_tick: Instant,
-    /// Whether a frame has come since then.
+    /// Whether a frame has come since the last tick.
     frame_came: bool,
-    /// Bytes until the last frame or the last message of silence.
+    /// The number of bytes up to the last frame or the last message of silence.
     bytes: u64,
     /// The times of frames.
     times: ArrivalClock,
@@ -44,7 +45,7 @@ impl StreamClock {
         let now = Instant::now();
         Self {
             is_live: !options.once,
-            // What is in a file already has arrived at some other time.
+            // The present content of a file has arrived at some other time.
             timed: !options.once && !matches!(source, FrameSource::File(_)),
             last_frame: now,
             last_tick: now,
@@ -55,7 +56,7 @@ impl StreamClock {
     }
 }
 
-/// Takes what is reported.
+/// A consumer of reports; it breaks off the acquisition by returning `Break`.
 pub(super) type Consumer<'a> = dyn FnMut(AcquireEvent<'_>) -> ControlFlow<()> + 'a;
 
 /// Reads a source of bytes.
@@ -103,7 +104,7 @@ pub(super) fn run(
             Err(error) if source.comes_back() && !options.once => error,
             Err(error) => return Err(broken(&mut decoder, &mut clock, consumer, error)),
         };
-        // What comes next may begin inside of a frame.
+        // The next bytes may begin inside a frame.
         if step(&mut decoder, StreamDecoder::restart, &mut clock, consumer).is_break() {
             return Ok(());
         }
@@ -119,7 +120,7 @@ pub(super) fn run(
     Ok(())
 }
 
-/// Reports the frames that are still in the decoder, and the end; a source that is left has not come to its end.
+/// Reports the frames that are still in the decoder, and the end, unless the acquisition was stopped before it.
 fn finish(
     decoder: &mut StreamDecoder,
     clock: &mut StreamClock,
@@ -132,10 +133,11 @@ fn finish(
     }
 }
 
-/// Opens the source. While that takes long, it calls its argument now and then, and gives up with None when that breaks.
+/// A function that opens the source. While that takes long, it calls its argument now and then, and returns None if
+/// the argument breaks.
 type Open<'a> = dyn Fn(&mut dyn FnMut() -> ControlFlow<()>) -> io::Result<Option<ByteInput>> + 'a;
 
-/// Says that time goes by while a source is opened or waited for; `Break` if no more is wanted.
+/// Reports a tick while a source is opened or waited for. Returns `Break` if no more is wanted.
 fn wait(
     stop: &AtomicBool,
     decoder: &StreamDecoder,
@@ -147,7 +149,7 @@ fn wait(
     consumer(AcquireEvent::Tick(decoder.counts()))
 }
 
-/// Opens a source, and waits for one that is not there yet if that is wanted; none if no more is wanted.
+/// Opens a source; waits for it if it is not there yet and that is wanted. None if no more is wanted.
 fn first_input(
     source: &FrameSource,
     options: &AcquireOptions,
@@ -158,7 +160,7 @@ fn first_input(
 ) -> Result<Option<ByteInput>, AcquireError> {
     match open(&mut || wait(stop, decoder, consumer)) {
         Ok(input) => Ok(input),
-        // What is no such source now will not be one later.
+        // Waiting does not make an invalid source valid.
         Err(error)
             if options.waits
                 && source.comes_back()
@@ -171,7 +173,7 @@ fn first_input(
     }
 }
 
-/// Has a decoder take a step, and reports its events until no more are wanted.
+/// Calls one step of a decoder, and reports its events until no more are wanted.
 fn step(
     decoder: &mut StreamDecoder,
     how: impl FnOnce(&mut StreamDecoder, &mut StreamSink<'_>),
@@ -187,7 +189,7 @@ fn step(
     flow
 }
 
-/// What has come before a source failed is given or counted. Returns the error.
+/// Reports or counts what came before a source failed. Returns the error.
 fn broken(
     decoder: &mut StreamDecoder,
     clock: &mut StreamClock,
@@ -198,7 +200,7 @@ fn broken(
     AcquireError::reading(error)
 }
 
-/// Reports why a source is waited for and opens it again, each second, until it is there; none if no more is wanted.
+/// Reports why a source is waited for, and tries to open it each second until it is there. None if no more is wanted.
 fn again(
     open: &Open<'_>,
     event: AcquireEvent<'_>,
@@ -227,21 +229,21 @@ fn again(
     }
 }
 
-/// Decodes bytes, perhaps none, and reports what they bring and that time goes by.
+/// Decodes bytes, perhaps none, and reports their frames and a tick.
 fn decode(
     decoder: &mut StreamDecoder,
     bytes: &[u8],
     clock: &mut StreamClock,
     consumer: &mut Consumer<'_>,
 ) -> ControlFlow<()> {
-    // All that was in a file has been read.
+    // If no bytes came, the content that was in a file has been read.
     clock.timed |= clock.is_live && bytes.is_empty();
     let push = |decoder: &mut StreamDecoder, sink: &mut StreamSink<'_>| decoder.push(bytes, sink);
     step(decoder, push, clock, consumer)?;
     tick(decoder, clock, consumer)
 }
 
-/// Reports an event of the decoder; a frame without a time of its own has that of its arrival.
+/// Reports an event of the decoder. A frame without a time of its own gets that of its arrival.
 fn report(
     event: StreamEvent<'_>,
     clock: &mut StreamClock,
@@ -260,7 +262,7 @@ fn report(
     }
 }
 
-/// Reports that time has gone by, and whether a stream is silent.
+/// Reports a tick if one is due, and whether the stream is silent.
 fn tick(
     decoder: &StreamDecoder,
     clock: &mut StreamClock,
@@ -305,7 +307,7 @@ mod tests {
         let mut decoder = StreamDecoder::new(StreamOptions::default());
         let mut clock = StreamClock::new(&source, &options);
         let mut said = Vec::new();
-        // Junk, looked at before two seconds have gone by and after.
+        // Junk, checked before two seconds have gone by and after.
         for seconds in [1, 2] {
             decoder.push(&[b'?'; 100], &mut |_| ());
             let now = Instant::now();
@@ -326,9 +328,9 @@ mod tests {
         assert_eq!(said, [100.0]);
     }
 
-    /// Two connections: the first ends with the last byte of a frame, the second one byte behind it.
+    /// Two connections: the first ends with the last byte of a frame, the second one byte later.
     #[test]
-    fn what_a_lost_connection_leaves_is_given_counted_or_withdrawn() {
+    fn the_rest_of_a_lost_connection_is_reported_counted_or_withdrawn() {
         const FRAME: [u8; 6] = [0xaa, 0x55, 1, 2, 3, 4];
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let address = listener.local_addr().expect("its address").to_string();
@@ -370,7 +372,7 @@ mod tests {
         assert_eq!(dropped, 1);
     }
 
-    /// The times of the first five frames of two connections, of which each loses its first line.
+    /// Returns the times of the first five frames of two connections, of which each loses its first line.
     fn times_over_a_gap(connections: [String; 2]) -> Vec<Option<f64>> {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let address = listener.local_addr().expect("its address").to_string();

@@ -1,4 +1,4 @@
-//! The description beside an array, `touch.json` of `touch.npy`.
+//! The description beside an array: `touch.json` for `touch.npy`.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -8,27 +8,27 @@ use crate::acquire::recorder::error::{RecorderError, refused};
 use crate::formats::recording::RecordingMetadata;
 use crate::storage::{Existing, FinishedFile};
 
-/// No description is longer.
+/// The largest size of a description, in bytes.
 const LARGEST_DESCRIPTION: u64 = 1 << 22;
 
-/// What the description is to say. Writing it takes as long as the disk does, and needs no recorder: frames can be added to
-/// that meanwhile.
+/// A description that is to be written. Writing it takes as long as the disk does, and needs no recorder: meanwhile,
+/// frames can be added to the recorder.
 /// ```text
 /// set_view -> DescriptionDraft -> prepare -> take_description -> name_description
 /// ```
 #[derive(Debug)]
 pub(crate) struct DescriptionDraft {
-    /// The array.
+    /// The path of the array.
     pub(super) path: PathBuf,
     pub(super) metadata: RecordingMetadata,
 }
 
 impl DescriptionDraft {
-    /// Writes it, on disk but without its name. What lies under that name does not matter yet: the array may get its own
-    /// meanwhile, and the description before this one with it.
+    /// Writes the description to the disk, without its name. A file under that name does not matter yet: meanwhile,
+    /// the array may get its own name, and the description before this one with it.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(crate) fn prepare(&self) -> Result<FinishedFile, RecorderError> {
         prepared(&self.path, Existing::Replaced, &self.metadata)
     }
@@ -37,15 +37,15 @@ impl DescriptionDraft {
 /// Gives a description its name.
 ///
 /// # Errors
-/// What the system reports.
+/// Returns the system's error.
 pub(crate) fn name_description(file: FinishedFile) -> Result<(), RecorderError> {
     file.persist().map_err(refused)
 }
 
-/// The description, on disk but without its name.
+/// Writes a description to the disk, without its name.
 ///
 /// # Errors
-/// What the system reports.
+/// Returns the system's error.
 pub(super) fn prepared(
     array: &Path,
     existing: Existing,
@@ -59,17 +59,17 @@ pub(super) fn prepared(
     FinishedFile::new(&path, &json, existing).map_err(refused)
 }
 
-/// Writes the description over the old one, where a full disk has no room for both.
+/// Writes the description over the old one, if a full disk has no room for both.
 ///
 /// # Errors
-/// What the system reports.
+/// Returns the system's error.
 pub(super) fn overwrite(array: &Path, metadata: &RecordingMetadata) -> io::Result<()> {
     let text = metadata.text()?;
     let path = array.with_extension("json");
     let mut file = File::options().write(true).open(path)?;
     let old = file.seek(SeekFrom::End(0))?;
     let missing = (text.len() as u64).saturating_sub(old);
-    // Blanks change nothing. The text is replaced only if there is room for them.
+    // Blanks after the text change nothing. The text is replaced only if there is room for them.
     if let Err(error) = io::copy(&mut io::repeat(b' ').take(missing), &mut file) {
         file.set_len(old)?;
         return Err(error);
@@ -80,17 +80,17 @@ pub(super) fn overwrite(array: &Path, metadata: &RecordingMetadata) -> io::Resul
     file.sync_all()
 }
 
-/// Whether a path ends as the file of an array does.
+/// Returns true if a path ends like the file of an array.
 pub(super) fn is_array(path: &Path) -> bool {
     path.extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"))
 }
 
-/// The description beside an array, `touch.json` of `touch.npy`. None where there is none, or what is there is something
-/// else.
+/// Reads the description beside an array: `touch.json` for `touch.npy`. None if there is none, or if the file is
+/// something else.
 ///
 /// # Errors
-/// What is wrong with it, or why it cannot be read, headed by its path.
+/// Returns a message, headed by the path, if the description is invalid or cannot be read.
 pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, String>> {
     if !is_array(path) {
         return None;
@@ -98,7 +98,7 @@ pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, Strin
     let beside = path.with_extension("json");
     let content = || {
         let mut bytes = Vec::new();
-        // To open a pipe would wait for its writer.
+        // Opening a pipe would wait for its writer.
         if beside.metadata()?.is_file() {
             let file = File::open(&beside)?;
             file.take(LARGEST_DESCRIPTION).read_to_end(&mut bytes)?;

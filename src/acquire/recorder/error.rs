@@ -1,11 +1,11 @@
-//! Why frames cannot be recorded.
+//! The error for frames that cannot be recorded.
 
 use std::io;
 use std::path::PathBuf;
 
 use crate::storage::FileError;
 
-/// Why frames cannot be recorded.
+/// The error for frames that cannot be recorded.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecorderError {
@@ -14,7 +14,7 @@ pub enum RecorderError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system reports.
+        /// The error that the system reports.
         error: io::Error,
     },
     /// There is a file already.
@@ -29,7 +29,7 @@ pub enum RecorderError {
         /// The file.
         path: PathBuf,
     },
-    /// The file is not named as an array.
+    /// The name of the file does not end like that of an array.
     #[error("{}: expected a file that ends in .npy", path.display())]
     Ending {
         /// The file.
@@ -43,7 +43,7 @@ pub enum RecorderError {
     },
 }
 
-/// What the system refuses of a file.
+/// Converts the error of a file.
 pub(super) fn refused(error: FileError) -> RecorderError {
     let path = error.path.clone();
     match error.into_io() {

@@ -1,8 +1,8 @@
 //! Writes frames to a file that numpy and taxel can open at any moment, even after the program was killed.
 //!
 //! Beside `touch.npy`, an array of records, lies `touch.json`, which says where the frames are from and how they were
-//! looked at. The two get their names together, so there is never one of these beside an older one of the other.
-//! `touch.json` says whether the recording was ended; that of a killed program does not.
+//! looked at. The two get their names together, so a new file never stands beside an old version of the other one.
+//! `touch.json` says whether the recording was ended: it was not if the program was killed.
 //!
 //! No file appears or is replaced until the first frame arrives. A disk that is full ends a recording after its last
 //! whole record, and the description says why.
@@ -33,13 +33,13 @@ use crate::formats::recording::RecordingMetadata;
 use crate::frame::Frame;
 use crate::storage::{Existing, FinishedFile, UnfinishedFile, persist_pair};
 
-/// The rate is that of the last bursts, this many at most: several minutes.
+/// The largest number of bursts over which the rate is measured: several minutes.
 const MOST_BURSTS: usize = 4096;
 
-/// Writes frames to a file, until [`Self::finish`] ends the recording and says what went wrong.
+/// A recorder that writes frames to a file, until [`Self::finish`] ends the recording and reports errors.
 ///
-/// Dropped without that, it writes out the frames that wait, as far as the system lets it, and the description does not say
-/// that the recording was ended.
+/// If it is dropped without that, it writes out the frames that wait, as far as the system lets it, and the
+/// description does not say that the recording was ended.
 ///
 /// ```
 /// use taxel::acquire::{FrameRecorder, description_beside};
@@ -59,7 +59,7 @@ const MOST_BURSTS: usize = 4096;
 #[derive(Debug)]
 pub struct FrameRecorder {
     path: PathBuf,
-    /// What happens to files that are there when they get their names.
+    /// The treatment of files that are there when the recording gets its names.
     existing: Existing,
     metadata: RecordingMetadata,
     names: Names,
@@ -67,32 +67,32 @@ pub struct FrameRecorder {
     /// The numbers of the first and the last frame that were recorded. The first is 0 once numbers have begun again, as
     /// where a recording is played in a loop.
     numbers: Option<(u64, u64)>,
-    /// Frames of another size than the first one.
+    /// The number of frames of another size than the first one.
     left_out: u64,
-    /// What went wrong first.
+    /// The message of the first error.
     reason: Option<String>,
-    /// How often frames come.
+    /// The measurement of the rate of frames.
     rate: FrameRate,
 }
 
-/// Whether array and description have their names.
+/// The state of the names of array and description.
 #[derive(Debug)]
 enum Names {
-    /// They get them with the first frame.
+    /// They get their names with the first frame.
     Waiting(FinishedFile, FinishedFile),
-    /// They have them.
+    /// They have their names.
     Given,
-    /// They did not get them. What lies there is not of this recording, and stays as it is.
+    /// They did not get their names. The files there are not of this recording, and stay as they are.
     Refused,
 }
 
 impl FrameRecorder {
-    /// Creates the file, whose name ends in `.npy`, and `.json` beside it: both, or none. They appear with the first frame,
-    /// and what is to be replaced stays until then.
+    /// Creates the file, whose name ends in `.npy`, and the `.json` file beside it: both, or neither. They appear
+    /// with the first frame; files that they replace stay until then.
     ///
     /// # Errors
-    /// If the name ends otherwise, if one of the two is there and is to be kept, if what is there under the second name is no
-    /// description, or if they cannot be created.
+    /// Returns an error if the name ends otherwise, if one of the two is there and is to be kept, if the file under
+    /// the second name is not a description, or if they cannot be created.
     pub fn create(
         path: &Path,
         existing: Existing,
@@ -132,7 +132,7 @@ impl FrameRecorder {
     /// Writes the description beside the file anew.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub fn describe(&mut self, metadata: &RecordingMetadata) -> Result<(), RecorderError> {
         self.metadata.clone_from(metadata);
         self.metadata.ended = Some(false);
@@ -140,7 +140,7 @@ impl FrameRecorder {
         self.noted(written)
     }
 
-    /// Replaces threshold, tare and marks, and returns the description that says so, for the caller to write.
+    /// Replaces threshold, tare and marks, and returns the description with them, for the caller to write.
     #[cfg(feature = "tui")]
     pub(crate) fn set_view(&mut self, view: RecordedView) -> DescriptionDraft {
         let RecordedView { rule, tare, marks } = view;
@@ -149,14 +149,14 @@ impl FrameRecorder {
         self.draft()
     }
 
-    /// Leaves out marks of frames that came before the first one that was recorded.
+    /// Leaves out marks of frames before the first one that was recorded.
     fn leave_out_marks(&mut self) {
         if let Some((first, _)) = self.numbers {
             self.metadata.marks.retain(|mark| mark.number >= first);
         }
     }
 
-    /// Keeps the reason of the first failure for the description.
+    /// Keeps the message of the first failure for the description. Returns the result.
     fn noted<T>(&mut self, result: Result<T, RecorderError>) -> Result<T, RecorderError> {
         if let Err(error) = &result {
             self.note_failure(error);
@@ -164,7 +164,7 @@ impl FrameRecorder {
         result
     }
 
-    /// Keeps the reason of a failure for the description, if it is the first.
+    /// Keeps the message of a failure for the description, if it is the first.
     pub(crate) fn note_failure(&mut self, error: &RecorderError) {
         self.reason.get_or_insert_with(|| match error {
             RecorderError::Io { error, .. } => error.to_string(),
@@ -179,8 +179,8 @@ impl FrameRecorder {
         }
     }
 
-    /// Takes a description that is on the disk, to give it its name together with the array. Returns it if the array has its
-    /// name already: it is to be given its own at once.
+    /// Takes a description that is on the disk, to give it its name together with the array. If the array has its
+    /// name already, returns the description, which is to be given its name at once.
     pub(crate) fn take_description(&mut self, file: FinishedFile) -> Option<FinishedFile> {
         match &mut self.names {
             Names::Waiting(_, description) => *description = file.with_existing(self.existing),
@@ -195,25 +195,26 @@ impl FrameRecorder {
         self.take_description(file).map_or(Ok(()), name_description)
     }
 
-    /// Number of frames that were recorded.
+    /// Returns the number of frames that were recorded.
     pub fn frames(&self) -> u64 {
         self.array.records()
     }
 
-    /// Number of frames that were not, since they are of another size than the first one: an array has one size.
+    /// Returns the number of frames that were left out because their size is not that of the first one: an array has
+    /// one size.
     pub fn left_out(&self) -> u64 {
         self.left_out
     }
 
-    /// Rows and columns of the frames that are recorded; None before the first one.
+    /// Returns rows and columns of the frames that are recorded; None before the first one.
     pub fn size(&self) -> Option<(u16, u16)> {
         self.array.size()
     }
 
-    /// Records a frame, with its time in seconds; one of another size than the first is left out and counted.
+    /// Records a frame, with its time in seconds. A frame of another size than the first is left out and counted.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// Returns an error if the frame cannot be written.
     pub fn add(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), RecorderError> {
         let added = self.take(frame, time);
         self.noted(added)
@@ -250,20 +251,20 @@ impl FrameRecorder {
         added.map_err(|error| self.refused(error))
     }
 
-    /// Writes out what waits for too long; to be called now and then.
+    /// Writes out the frames if they have waited too long; to be called now and then.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub fn tick(&mut self) -> Result<(), RecorderError> {
         let written = self.array.tick();
         let written = written.map_err(|error| self.refused(error));
         self.noted(written)
     }
 
-    /// Writes out everything that waits, and waits until it is synced; for a source that pauses, perhaps for ever.
+    /// Writes out all frames that wait, and waits until they are synced; for a source that pauses, perhaps for ever.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub fn flush(&mut self) -> Result<(), RecorderError> {
         if !matches!(self.names, Names::Given) {
             return Ok(());
@@ -278,11 +279,12 @@ impl FrameRecorder {
         RecorderError::Io { path, error }
     }
 
-    /// Writes out everything, and syncs the file. Without a frame nothing appears, and what was to be replaced is there as
-    /// before.
+    /// Writes out everything, syncs the file, and returns the number of frames. Without a frame nothing appears, and
+    /// the files that would be replaced are there as before.
     ///
     /// # Errors
-    /// What the system reports. What is in the file then is whole all the same, and the description says why it ends there.
+    /// Returns the system's error. Even then the records in the file are whole, and the description says why it ends
+    /// there.
     pub fn finish(mut self) -> Result<u64, RecorderError> {
         if !matches!(self.names, Names::Given) {
             return Ok(0);
@@ -300,7 +302,7 @@ impl FrameRecorder {
         let described = self
             .write_description()
             .or_else(|error| overwrite(&self.path, &self.metadata).map_err(|_| error));
-        // What could not be written is not tried again.
+        // Frames that could not be written are not tried again.
         self.array.give_up();
         written.and(synced).and(described)?;
         Ok(self.array.records())
@@ -443,14 +445,14 @@ mod tests {
         assert_eq!(bytes.len(), 256 + 3 * 24);
         let beside = description_beside(&path).expect("there").expect("read");
         assert_eq!(beside.ended, Some(false));
-        // Before its first frame, none of it is there.
+        // Before its first frame, none of its files is there.
         let path = folder.path().join("b.npy");
         drop(begun(&path));
         assert_eq!(std::fs::read_dir(folder.path()).expect("read").count(), 2);
     }
 
     #[test]
-    fn what_others_have_put_there_is_not_replaced_by_a_later_description() {
+    fn a_later_description_does_not_replace_the_file_of_another_program() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.npy");
         let mut recorder = begun(&path);
@@ -485,7 +487,7 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_is_named_as_an_array() {
+    fn the_name_of_a_recording_must_end_like_that_of_an_array() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("touch.json");
         let metadata = RecordingMetadata::default();

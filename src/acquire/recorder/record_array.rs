@@ -14,19 +14,19 @@ use crate::acquire::recorder::syncer::Syncer;
 use crate::frame::{Frame, LARGEST_VALUE};
 use crate::index::index;
 
-/// Bytes of the header's text: with the ten before it, 256. The longest has about 150.
+/// The number of bytes in the header's text; with the ten bytes before it, 256. The longest text has about 150.
 const HEADER_TEXT: u16 = 246;
 
-/// Bytes before the first record.
+/// The number of bytes before the first record.
 const HEADER: u64 = 256;
 
-/// Bytes of time and number before the values of a record.
+/// The number of bytes of time and number before the values of a record.
 const RECORD_HEAD: u64 = 16;
 
-/// Records are written out after this time at the latest.
+/// The time after which records are written out at the latest.
 const WRITTEN_OUT: Duration = Duration::from_millis(400);
 
-/// Bytes that wait at most; with this many, records are written out at once.
+/// The number of waiting bytes at which records are written out at once.
 const BUFFER: usize = 1 << 18;
 
 /// An array in a file, and the records that wait to be written into it.
@@ -36,16 +36,16 @@ pub(super) struct RecordArray {
     /// Rows and columns of the frames; None before the first one.
     size: Option<(u16, u16)>,
     buffer: Vec<u8>,
-    /// Records in the file and in the buffer.
+    /// The number of records in the file and in the buffer.
     records: u64,
-    /// Records in the file.
+    /// The number of records in the file.
     in_file: u64,
     written: Instant,
     syncer: Syncer,
 }
 
 impl RecordArray {
-    /// An array without records, in a file that holds [`empty`].
+    /// Creates an array without records, in a file that holds [`empty`].
     pub(super) fn new(file: File) -> Self {
         Self {
             size: None,
@@ -58,37 +58,37 @@ impl RecordArray {
         }
     }
 
-    /// Writes into this file from now on. It has the same content.
+    /// Continues in another file with the same content.
     pub(super) fn move_to(&mut self, file: File) {
         self.syncer = Syncer::new(&file);
         self.file = file;
     }
 
-    /// Rows and columns of the frames; None before the first one.
+    /// Returns rows and columns of the frames; None before the first one.
     pub(super) fn size(&self) -> Option<(u16, u16)> {
         self.size
     }
 
-    /// Notes the size of the first frame, which is that of all.
+    /// Notes the size of the first frame, which all frames have.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(super) fn begin(&mut self, size: (u16, u16)) -> io::Result<()> {
         self.size = Some(size);
         self.count()
     }
 
-    /// The number of records.
+    /// Returns the number of records.
     pub(super) fn records(&self) -> u64 {
         self.records
     }
 
-    /// Whether nothing waits to be written out.
+    /// Returns true if no record waits to be written out.
     pub(super) fn is_written_out(&self) -> bool {
         self.buffer.is_empty()
     }
 
-    /// Gives up what waits to be written out.
+    /// Drops the records that wait to be written out.
     pub(super) fn give_up(&mut self) {
         self.buffer.clear();
     }
@@ -96,12 +96,12 @@ impl RecordArray {
     /// Adds a frame of the size of all frames, with its time in seconds.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(super) fn add(&mut self, frame: &Frame, time: Option<f64>) -> io::Result<()> {
         let time = time.unwrap_or(f64::NAN);
         self.buffer.extend(time.to_le_bytes());
         self.buffer.extend(frame.number.to_le_bytes());
-        // Readers refuse infinite values; here they count as none.
+        // Readers refuse infinite values and too large ones; they are written as NaN.
         let written = |&value: &f64| {
             if value.abs() <= LARGEST_VALUE {
                 value
@@ -118,10 +118,10 @@ impl RecordArray {
         self.tick()
     }
 
-    /// Writes out what waits for too long.
+    /// Writes out the records if they have waited too long.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(super) fn tick(&mut self) -> io::Result<()> {
         if self.buffer.is_empty() || self.written.elapsed() < WRITTEN_OUT {
             return Ok(());
@@ -129,10 +129,10 @@ impl RecordArray {
         self.write_out()
     }
 
-    /// Writes out all records, then their count. What the disk has no room for stays in the buffer.
+    /// Writes out all records, then their count. Records for which the disk has no room stay in the buffer.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(super) fn write_out(&mut self) -> io::Result<()> {
         let size = self.record_bytes();
         let start = HEADER + self.in_file * size;
@@ -155,16 +155,16 @@ impl RecordArray {
     /// Waits until everything that was written out is on the disk.
     ///
     /// # Errors
-    /// What the system reports, or has reported to the thread that syncs.
+    /// Returns the system's error, from this call or from the thread that syncs.
     pub(super) fn end(&mut self) -> io::Result<()> {
         let earlier = self.syncer.end();
         earlier.and(self.file.sync_all())
     }
 
-    /// The same, but the thread goes on: more records may come.
+    /// Waits until everything that was written out is on the disk, but lets the thread go on: more records may come.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the system's error.
     pub(super) fn sync(&self) -> io::Result<()> {
         self.file.sync_data()
     }
@@ -181,7 +181,7 @@ impl RecordArray {
         self.count()
     }
 
-    /// Bytes of a record.
+    /// Returns the number of bytes of a record.
     fn record_bytes(&self) -> u64 {
         let (rows, columns) = self.size.unwrap_or((1, 1));
         RECORD_HEAD + 8 * u64::from(rows) * u64::from(columns)
@@ -195,12 +195,12 @@ impl RecordArray {
     }
 }
 
-/// What a file holds before the first frame comes: no records of one cell, which numpy opens too.
+/// Returns the content of a file before the first frame comes: no records of one cell, which numpy opens too.
 pub(super) fn empty() -> Vec<u8> {
     header(None, 0)
 }
 
-/// The header of an array of records.
+/// Returns the header of an array of records.
 pub(super) fn header(size: Option<(u16, u16)>, records: u64) -> Vec<u8> {
     let (rows, columns) = size.unwrap_or((1, 1));
     let text = format!(

@@ -6,20 +6,21 @@ use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// The file is synced after this time.
+/// The time after which the file is synced again.
 const SYNCED: Duration = Duration::from_millis(900);
 
-/// Syncs a file on a thread of its own.
+/// A thread that syncs a file.
 #[derive(Debug)]
 pub(super) struct Syncer {
     ask: Option<SyncSender<()>>,
-    /// Ends at the first error. The system reports an error of the disk once only, to whoever asks first.
+    /// The thread, which ends at the first error. The system reports an error of the disk only once, to whoever asks
+    /// first.
     thread: Option<JoinHandle<io::Result<()>>>,
     last: Instant,
 }
 
 impl Syncer {
-    /// Syncs this file from now on.
+    /// Starts a thread that syncs this file.
     pub(super) fn new(file: &File) -> Self {
         let (ask, asked) = sync_channel::<()>(1);
         let thread = file.try_clone().and_then(|file| {
@@ -30,7 +31,7 @@ impl Syncer {
                 Ok(())
             })
         });
-        // Without it the file is synced at its end.
+        // Without the thread, the file is synced at its end.
         let thread = thread.ok();
         Self {
             ask: thread.is_some().then_some(ask),
@@ -39,15 +40,15 @@ impl Syncer {
         }
     }
 
-    /// Has the file synced if that was long ago, and does not wait for it.
+    /// Asks the thread to sync the file if the last sync was long ago, and does not wait for it.
     ///
     /// # Errors
-    /// What an earlier one has failed with.
+    /// Returns the error of an earlier sync.
     pub(super) fn tick(&mut self) -> io::Result<()> {
         if self.last.elapsed() >= SYNCED {
             self.last = Instant::now();
             let asked = self.ask.as_ref().map(|ask| ask.try_send(()));
-            // If it is full, the last sync still runs.
+            // If the channel is full, the last sync still runs.
             if let Some(Err(TrySendError::Disconnected(()))) = asked {
                 return self.end();
             }
@@ -58,18 +59,18 @@ impl Syncer {
     /// Waits until no sync runs any more.
     ///
     /// # Errors
-    /// What one of them has failed with.
+    /// Returns the error of a sync that failed.
     pub(super) fn end(&mut self) -> io::Result<()> {
         self.ask = None;
         let ended = self.thread.take().map(JoinHandle::join);
-        // It does not panic.
+        // The thread does not panic.
         ended.and_then(Result::ok).unwrap_or(Ok(()))
     }
 }
 
 impl Drop for Syncer {
     fn drop(&mut self) {
-        // An error was reported by the end of the recording; one that is given up says nothing.
+        // The end of the recording has reported an error; a recording that is given up reports none.
         let _ = self.end();
     }
 }
@@ -80,7 +81,7 @@ mod tests {
 
     #[test]
     fn an_error_of_a_sync_is_not_lost() {
-        // Nothing there can be synced.
+        // This file cannot be synced.
         let mut syncer = Syncer::new(&File::open("/dev/null").expect("opened"));
         syncer.last = Instant::now().checked_sub(SYNCED).expect("later than that");
         assert!(syncer.tick().is_ok(), "it does not wait");
