@@ -3,8 +3,8 @@
 //! ```text
 //! P(imprint | s) = Σ over keys k and shifts of  n[s, k] · e^d (1 − e)^(cells − d)  / T[s]
 //! ```
-//! where d is the number of taxels in which the imprint and the shifted key differ, and T[s] the number of touches of
-//! s: its poses, times the shifts of the key on the matrix. So the prior is uniform over every pose in every place on
+//! where d is the number of taxels in which the imprint and the shifted key differ, and `T[s]` the number of touches
+//! of `s`: its poses, times the shifts of the key on the matrix. So the prior is uniform over every pose in every place on
 //! the matrix. Taxels that are known to be dead are left out of d and of `cells`.
 //!
 //! The sums are of integers: for each shape, how many touches lie at each distance. So one scan serves any e, and

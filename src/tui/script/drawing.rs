@@ -2,7 +2,7 @@
 //!
 //! A character is 9 × 18 units. Block characters are drawn as rectangles, so that taxels join in any font. Everything
 //! else is text: a run of one style is one element that is stretched to its columns, so that columns stay aligned in
-//! any font, too. Colours are those of a theme with [`ColorDepth::True`]; without colours the text is black, or light
+//! any font, too. Colours are those of a theme of `ColorDepth::True`; without colours the text is black, or light
 //! on the dark palette.
 
 use std::fmt::Write as _;
