@@ -1,10 +1,10 @@
 //! The heat map: the values of all taxels in shades or as numbers, and the edge of the imprint.
 //!
 //! ```text
-//! ░░▒▒▒•▓•        two columns a taxel: the second one of a taxel at the edge of the imprint has a mark; or two lines of
-//!                 four columns, and so on
-//! ░▒▓•            half a character a taxel: the larger of two; with colours, each has its own. The mark stands beside the
-//!                 imprint, so that no value of a touch is hidden
+//! ░░▒▒▒•▓•        two columns a taxel: the second column of a taxel at the edge of the imprint has a mark; or two
+//!                 lines of four columns, and so on
+//! ░▒▓•            half a character a taxel: the larger of two is drawn; with colours, both are. The mark stands beside
+//!                 the imprint, so that no value of a touch is hidden
 //!      6     7
 //! 12  12   45•    numbers, with rulers
 //! ```
@@ -25,19 +25,19 @@ use crate::tui::widget::heat;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, below, right_of};
 
-/// What is drawn.
+/// The heat map of a frame.
 pub(super) struct HeatMap<'a> {
     theme: &'a Theme,
     reading: &'a LiveReading,
     layer: HeatLayer,
-    /// The values that the first and the last shade stand for.
+    /// The values of the first and of the last shade.
     range: (f64, f64),
-    /// Which taxels are visible, and in which form.
+    /// The visible taxels, and their form.
     grid: HeatGrid,
 }
 
 impl<'a> HeatMap<'a> {
-    /// The heat map of a frame in an area.
+    /// Creates the heat map of a frame in an area.
     pub(super) fn of(live: &Live, reading: &'a LiveReading, theme: &'a Theme, area: Rect) -> Self {
         let size = (reading.values.columns(), reading.values.rows());
         Self {
@@ -49,12 +49,12 @@ impl<'a> HeatMap<'a> {
         }
     }
 
-    /// The taxel to look at to see others in a direction; None where there are none.
+    /// Returns the taxel to look at to see hidden ones in a direction; None if none are hidden there.
     pub(super) fn beyond(&self, towards: Arrow, live: &Live) -> Option<(u8, u8)> {
         self.grid.beyond(towards, looked_at(live, self.reading))
     }
 
-    /// What the mark on taxels says; None where none can have one.
+    /// Returns the legend of the mark on taxels; None if no taxel can have one.
     pub(super) fn legend(&self) -> Option<String> {
         let marked = match (self.layer, self.grid.form) {
             (_, CellForm::Number) => "active taxel",
@@ -67,7 +67,7 @@ impl<'a> HeatMap<'a> {
         any.then(|| format!("{} {marked}", heat::edge(self.theme)))
     }
 
-    /// Which columns and rows are visible, counted from 0, at length and in short; None where all are.
+    /// Returns the visible columns and rows, counted from 0, as a long and a short text; None if all are visible.
     pub(super) fn window(&self) -> Option<[String; 2]> {
         let span = |axis: AxisWindow| {
             let last = axis.first + axis.count.saturating_sub(1);
@@ -84,7 +84,7 @@ impl<'a> HeatMap<'a> {
         (!is_whole && columns.count > 0 && rows.count > 0).then(text)
     }
 
-    /// Draws it.
+    /// Draws the heat map.
     pub(super) fn draw(&self, buffer: &mut Buffer, area: Rect) {
         let area = area.intersection(*buffer.area());
         self.draw_rulers(buffer, area);
@@ -107,11 +107,11 @@ impl<'a> HeatMap<'a> {
         }
     }
 
-    /// Draws the numbers of columns and rows, where there are rulers.
+    /// Draws the numbers of columns and rows, if there are rulers.
     fn draw_rulers(&self, buffer: &mut Buffer, area: Rect) {
         let (left, above) = self.grid.rulers;
         if above > 0 {
-            // A column's number ends where its values do.
+            // The number of a column ends where its values end.
             let width = usize::from(NUMBER - 2);
             let columns = self.grid.columns.visible();
             let columns = columns.map(|(_, column)| format!("{column:>width$}  "));
@@ -128,14 +128,14 @@ impl<'a> HeatMap<'a> {
         }
     }
 
-    /// How much of the range a value is; NaN where there is no cell.
+    /// Returns the value of a taxel as a share of the range; NaN if there is no cell.
     fn share(&self, column: u8, row: u8) -> f64 {
         let value = self.reading.values.get(column, row);
         let (low, high) = self.range;
         value.map_or(f64::NAN, |value| (value - low) / (high - low))
     }
 
-    /// The character and the style of a taxel.
+    /// Returns the character and the style of a taxel.
     fn taxel(&self, column: u8, row: u8) -> (char, Style) {
         let share = self.share(column, row);
         match (self.layer, &self.reading.imprint) {
@@ -156,14 +156,14 @@ impl<'a> HeatMap<'a> {
         }
     }
 
-    /// Whether a taxel is marked as one at the edge of the imprint. The layer of the imprint needs no marks.
+    /// Returns true if a taxel is marked because it is at the edge of the imprint. The imprint layer has no marks.
     fn is_marked(&self, column: u8, row: u8) -> bool {
         let imprint = self.reading.imprint.as_ref();
         self.layer != HeatLayer::Imprint
             && imprint.is_some_and(|imprint| is_edge(imprint, column, row))
     }
 
-    /// Whether two taxels, one above the other, are not active but next to one that is.
+    /// Returns true if two taxels, this one and the one below, are not active but next to an active one.
     fn is_beside(&self, column: u8, row: u8) -> bool {
         let Some(imprint) = &self.reading.imprint else {
             return false;
@@ -183,8 +183,9 @@ impl<'a> HeatMap<'a> {
         near && !both(Some(column))
     }
 
-    /// Draws a taxel of two columns, or of several lines of more. All are the same sign, but the mark of the edge stands in
-    /// the middle, and of a low taxel there is a single sign, so that a field of nothing is not as dense as one of something.
+    /// Draws a taxel that is two columns wide, or a multiple of that in several lines. All characters are the same,
+    /// except the mark of the edge in the middle. A low taxel is a single character, so that an area without touch
+    /// looks less dense than a touch.
     fn wide(
         &self,
         buffer: &mut Buffer,
@@ -208,7 +209,8 @@ impl<'a> HeatMap<'a> {
         }
     }
 
-    /// Whether a taxel is a single sign, as one of nothing.
+    /// Returns true if a taxel counts as low: not active in the imprint layer, otherwise at most at the lower end of
+    /// the range.
     fn is_low(&self, column: u8, row: u8) -> bool {
         match (self.layer, &self.reading.imprint) {
             (HeatLayer::Imprint, Some(imprint)) => !imprint.get(column, row),
@@ -216,8 +218,8 @@ impl<'a> HeatMap<'a> {
         }
     }
 
-    /// Draws two taxels in one character: with colours one above the other, otherwise the larger of the two, so that no
-    /// touch disappears. With an odd number of rows the last character has an upper taxel only.
+    /// Draws two taxels in one character: one above the other with colours; without colours only the larger one, so
+    /// that no touch disappears. With an odd number of rows, the last character has an upper taxel only.
     fn half(&self, buffer: &mut Buffer, area: Rect, at: (u16, u16), (column, row): (u8, u8)) {
         let has_lower = row + 1 < self.reading.values.rows();
         let upper = self.share(column, row);
@@ -261,7 +263,7 @@ impl<'a> HeatMap<'a> {
         put(buffer, area, at, sign, style);
     }
 
-    /// Draws a taxel as a number. One too wide for its columns becomes arrows, up or down by its sign; a cell without a
+    /// Draws a taxel as a number. A number that is too wide becomes arrows, up or down by its sign; a cell without a
     /// value stays empty.
     fn number(&self, buffer: &mut Buffer, area: Rect, at: (u16, u16), (column, row): (u8, u8)) {
         let Some(value) = self.reading.values.get(column, row) else {
@@ -289,12 +291,12 @@ impl<'a> HeatMap<'a> {
     }
 }
 
-/// The taxel that is to be visible.
+/// Returns the taxel that must be visible.
 fn looked_at(live: &Live, reading: &LiveReading) -> (u8, u8) {
     live.display.looked_at.unwrap_or_else(|| near(reading))
 }
 
-/// A taxel near which there is contact: the middle of the main region, or the largest value.
+/// Returns a taxel near the contact: the middle of the main region, or the largest value.
 fn near(reading: &LiveReading) -> (u8, u8) {
     let middle = reading.main.bounds().map(|bounds| {
         let of = |side: std::ops::Range<u8>| side.start.midpoint(side.end);
@@ -304,7 +306,7 @@ fn near(reading: &LiveReading) -> (u8, u8) {
     middle.or_else(largest).map_or((0, 0), |at| at)
 }
 
-/// Whether a taxel is active and one of its four neighbours is not.
+/// Returns true if a taxel is active and one of its four neighbours is not.
 fn is_edge(imprint: &Imprint, column: u8, row: u8) -> bool {
     let is_inside = column > 0
         && row > 0
@@ -315,7 +317,7 @@ fn is_edge(imprint: &Imprint, column: u8, row: u8) -> bool {
     imprint.get(column, row) && !is_inside
 }
 
-/// Sets a character, at a place counted from the corner of the area; nothing outside of the area.
+/// Sets a character at a place counted from the corner of the area; does nothing outside of the area.
 fn put(buffer: &mut Buffer, area: Rect, (x, y): (u16, u16), sign: char, style: Style) {
     let position = Position::new(area.x.saturating_add(x), area.y.saturating_add(y));
     if area.contains(position) {
@@ -323,13 +325,13 @@ fn put(buffer: &mut Buffer, area: Rect, (x, y): (u16, u16), sign: char, style: S
     }
 }
 
-/// Shades from the lower to the upper end of the range, with these.
+/// Returns the scale of the shades: the lower end of the range, the shades, the upper end and the unit.
 pub(super) fn scale(theme: &Theme, (low, high): (f64, f64), unit: &str) -> String {
     let shades: String = heat::shades(theme).iter().skip(1).collect();
     format!("{} {shades} {}{unit}", measured(low, 7), measured(high, 7))
 }
 
-/// How many cells have values.
+/// Returns the number of cells that have values.
 pub(super) fn cells(values: &Matrix<f64>) -> usize {
     values
         .values()

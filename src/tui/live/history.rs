@@ -6,18 +6,18 @@ use std::sync::Arc;
 use crate::acquire::FrameRate;
 use crate::frame::Frame;
 
-/// The memory for values, in bytes, unless another one is set.
+/// The memory for frames, in bytes, unless another size is set.
 pub const HISTORY_BYTES: usize = 32 << 20;
 
-/// Bursts that the rate is computed from, at most: two seconds of a fast source.
+/// The maximum number of bursts that the rate is computed from: two seconds of a fast source.
 const RATED: usize = 20;
 
-/// The bytes that a frame counts for.
+/// Returns the memory that a frame takes, in bytes.
 pub(in crate::tui) fn bytes_of(frame: &Frame) -> usize {
     size_of::<Frame>() + size_of_val(frame.values())
 }
 
-/// Whether two frames are one: a frame that is confirmed has the values that it was shown with before.
+/// Returns true if two frames are the same one: a confirmed frame has the values that it had before it was confirmed.
 pub(super) fn is_same(one: &Frame, other: &Frame) -> bool {
     let values = one.values().iter().zip(other.values());
     let size = |frame: &Frame| (frame.columns(), frame.rows());
@@ -27,23 +27,23 @@ pub(super) fn is_same(one: &Frame, other: &Frame) -> bool {
             .all(|(one, other)| one.to_bits() == other.to_bits())
 }
 
-/// Frames, each with a number of its own that counts on over all that have come.
+/// The most recent frames. Each has a number in the history, which counts all frames that have come.
 #[derive(Clone, Debug)]
 pub struct FrameHistory {
-    /// The oldest first.
+    /// The frames, the oldest first.
     frames: VecDeque<Arc<Frame>>,
-    /// The number of the first one that is still here.
+    /// The number of the oldest frame that is still here.
     first: u64,
-    /// The memory that they take.
+    /// The memory that the frames take, in bytes.
     bytes: usize,
-    /// No more than these are kept, but for the newest frame.
+    /// The memory that they may take, in bytes; the newest frame is kept even if it takes more.
     most: usize,
-    /// How often frames come.
+    /// The frame rate.
     rate: FrameRate,
 }
 
 impl FrameHistory {
-    /// A history of frames that takes at most `most` bytes.
+    /// Creates an empty history that takes at most `most` bytes.
     pub fn new(most: usize) -> Self {
         Self {
             frames: VecDeque::new(),
@@ -54,7 +54,8 @@ impl FrameHistory {
         }
     }
 
-    /// Adds the newest frame; the oldest ones go where there is no memory for them. The newest one always stays.
+    /// Adds the newest frame, and removes the oldest ones if there is no memory for them. The newest one always
+    /// stays.
     pub fn push(&mut self, frame: Arc<Frame>) {
         match frame.time {
             Some(time) => self.rate.add(time),
@@ -70,35 +71,36 @@ impl FrameHistory {
         }
     }
 
-    /// The number of the newest frame; None before the first one.
+    /// Returns the number of the newest frame; None before the first one.
     pub fn newest(&self) -> Option<u64> {
         let length = self.frames.len() as u64;
         (length > 0).then(|| self.first + length - 1)
     }
 
-    /// The number that the next frame will have.
+    /// Returns the number that the next frame will have.
     pub fn next_number(&self) -> u64 {
         self.first + self.frames.len() as u64
     }
 
-    /// The number of the oldest frame that is still here; None before the first one.
+    /// Returns the number of the oldest frame that is still here; None before the first one.
     pub fn oldest(&self) -> Option<u64> {
         (!self.frames.is_empty()).then_some(self.first)
     }
 
-    /// The frame of a number; None if it is not here any more, or not yet.
+    /// Returns the frame of a number; None if it is not here any more, or not yet.
     pub fn get(&self, number: u64) -> Option<&Arc<Frame>> {
         let index = number.checked_sub(self.first)?;
         self.frames.get(usize::try_from(index).ok()?)
     }
 
-    /// At most `count` frames that end with the one of a number, the last one first.
+    /// Returns at most `count` frames that end with the given one, the last one first.
     pub fn back_from(&self, number: u64, count: usize) -> impl Iterator<Item = &Arc<Frame>> {
         let numbers = (self.first..=number).rev().take(count);
         numbers.filter_map(|number| self.get(number))
     }
 
-    /// Frames a second, by the times of the last ones; None if they have no times, or came all at once.
+    /// Returns the frames per second, by the times of the last frames; None if they have no times, or came all at
+    /// once.
     pub fn rate(&self) -> Option<f64> {
         self.rate.seconds_per_frame().map(f64::recip)
     }
@@ -109,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_oldest_frames_go_where_there_is_no_memory() {
+    fn the_oldest_frames_are_dropped_when_memory_is_full() {
         let mut history = FrameHistory::new(HISTORY_BYTES);
         assert_eq!((history.oldest(), history.newest()), (None, None));
         let each = bytes_of(&Frame::new(512, 512));
@@ -130,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rate_is_that_of_the_last_times() {
+    fn the_rate_follows_the_last_times() {
         let mut history = FrameHistory::new(HISTORY_BYTES);
         let mut push = |time| {
             let mut frame = Frame::new(2, 2);

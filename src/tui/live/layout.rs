@@ -1,13 +1,13 @@
-//! Where the taxels of the heat map and the numbers beside it stand.
+//! The places of the taxels of the heat map, and of the numbers beside it.
 //!
 //! ```text
 //! title                                       what is shown
 //! taxels               numbers                beside each other, or on a narrow screen one above the other, unless that
 //!                                             hides taxels
 //! ```
-//! A taxel has two columns where all fit so, or a multiple of these; else half a character, so that two stand above each
-//! other. Where not all fit even so, a window follows the contact until keys move it. Numbers have rulers, as their window
-//! rarely shows all.
+//! A taxel is two columns wide, or a multiple of that, if all fit; otherwise it is half a character, so that two
+//! stand above each other. If not all fit even then, a window follows the contact until keys move it. Numbers have
+//! rulers, as their window rarely shows all.
 
 use ratatui::layout::Rect;
 
@@ -15,28 +15,28 @@ use crate::tui::keys::key::Arrow;
 use crate::tui::matrix::layout::{AxisWindow, RULER};
 use crate::tui::widget::write::{below, right_of};
 
-/// Columns of the numbers beside the heat map, at least.
+/// The minimum number of columns for the numbers beside the heat map.
 const PANEL: u16 = 26;
 
-/// The same on a narrow screen, where they are cut short.
+/// The minimum number of columns for the numbers on a narrow screen, where they are shortened.
 const NARROW_PANEL: u16 = 18;
 
-/// The same before taxels are made larger.
+/// The number of columns for the numbers that must remain if taxels are enlarged.
 const WIDE_PANEL: u16 = 44;
 
-/// Columns between the heat map and the numbers.
+/// The number of columns between the heat map and the numbers.
 const GAP: u16 = 2;
 
-/// Lines of the numbers below the heat map; at most half of all lines.
+/// The number of lines for the numbers below the heat map; at most half of all lines.
 const LOW_PANEL: u16 = 7;
 
-/// Columns of a taxel that is shown as a number, with its mark and a space.
+/// The number of columns of a taxel that is shown as a number, with its mark and a space.
 pub(super) const NUMBER: u16 = 6;
 
 /// How a taxel is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CellForm {
-    /// Two columns of one row, or this many times that, both across and down.
+    /// Two columns and one line, or this many times that, both across and down.
     Wide(u16),
     /// Two taxels, one above the other, in one character.
     Half,
@@ -45,7 +45,8 @@ pub(super) enum CellForm {
 }
 
 impl CellForm {
-    /// Columns of the screen that a taxel has, and lines; of two that share a character, one each.
+    /// Returns the columns and lines of the screen that a taxel takes; one each for two taxels that share a
+    /// character.
     fn size(self) -> (u16, u16) {
         match self {
             Self::Wide(times) => (2 * times, times),
@@ -58,16 +59,17 @@ impl CellForm {
 /// The visible taxels.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeatGrid {
-    /// The form of all taxels: it does not differ within a map.
+    /// The form of all taxels; it is the same within a map.
     pub(super) form: CellForm,
     pub(super) columns: AxisWindow,
     pub(super) rows: AxisWindow,
-    /// Columns of the row ruler and lines of the column ruler, before the first taxel; 0 without one.
+    /// The columns of the row ruler and the lines of the column ruler, before the first taxel; 0 without a ruler.
     pub(super) rulers: (u16, u16),
 }
 
 impl HeatGrid {
-    /// The taxels of a matrix in an area, as near to a taxel as the ends allow where not all are visible.
+    /// Computes the visible taxels of a matrix in an area. If not all fit, they are as close to `near` as the edges
+    /// allow.
     pub(super) fn of(area: Rect, (columns, rows): (u8, u8), numbers: bool, near: (u8, u8)) -> Self {
         let times = (area.width / (2 * u16::from(columns))).min(area.height / u16::from(rows));
         let form = match times {
@@ -84,7 +86,7 @@ impl HeatGrid {
         };
         let (width, lines) = (area.width - rulers.0, area.height - rulers.1);
         let columns = AxisWindow::new(columns, width / wide, near.0);
-        // Which two share a character does not change while the window moves.
+        // The same two taxels share a character while the window moves.
         let (step, lines) = match form {
             CellForm::Half => (2, lines.saturating_mul(2)),
             _ => (1, lines / high),
@@ -98,7 +100,7 @@ impl HeatGrid {
         }
     }
 
-    /// The hidden taxel that is next in a direction from one that is looked at; None where there is none.
+    /// Returns the nearest hidden taxel in a direction from a given one; None if there is none.
     pub(super) fn beyond(&self, towards: Arrow, (column, row): (u8, u8)) -> Option<(u8, u8)> {
         let next = |axis: AxisWindow| {
             let (before, after) = axis.hidden();
@@ -114,18 +116,19 @@ impl HeatGrid {
         }
     }
 
-    /// How many taxels are visible.
+    /// Returns the number of visible taxels.
     fn visible(&self) -> u16 {
         u16::from(self.columns.count) * u16::from(self.rows.count)
     }
 
-    /// The columns of the screen that the visible taxels have, with their ruler.
+    /// Returns the columns of the screen that the visible taxels and their ruler take.
     fn width(&self) -> u16 {
         self.rulers.0 + u16::from(self.columns.count) * self.form.size().0
     }
 }
 
-/// How much of a side of the screen a ruler takes: nothing where only the ruler would hide a taxel, or all of them.
+/// Returns the columns or lines that a ruler takes: 0 if the ruler alone would hide a taxel, or if no taxel would
+/// fit.
 fn ruler(taxels: u16, side: u16, ruler: u16, taxel: u16) -> u16 {
     let hides = taxels <= side && side < taxels + ruler;
     if hides || side < ruler + taxel {
@@ -138,16 +141,16 @@ fn ruler(taxels: u16, side: u16, ruler: u16, taxel: u16) -> u16 {
 /// The panes of the page.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LivePanes {
-    /// One line: the source and the frame.
+    /// The title line: the source and the frame.
     pub(super) title: Rect,
     /// The taxels.
     pub(super) map: Rect,
-    /// The numbers; on a low screen only those that there are lines for.
+    /// The numbers; a low screen shows only the first of them.
     pub(super) panel: Rect,
 }
 
 impl LivePanes {
-    /// The panes for a matrix of this many columns and rows; before the first frame there is none.
+    /// Computes the panes for a matrix of this size. Before the first frame there is no size.
     pub(super) fn of(area: Rect, size: Option<(u8, u8)>, numbers: bool) -> Self {
         let title = Rect {
             height: area.height.min(1),
@@ -199,7 +202,7 @@ impl LivePanes {
 mod tests {
     use super::*;
 
-    /// How many taxels of 16 x 16 are visible on a screen of that many columns and rows.
+    /// Returns the number of visible taxels of 16 x 16 on a screen of this many columns and rows.
     fn visible(columns: u16, rows: u16, numbers: bool) -> u16 {
         // Menu, notice and hints have a line each.
         let area = Rect::new(0, 1, columns, rows - 3);
@@ -213,16 +216,16 @@ mod tests {
         for (columns, rows) in [(40, 12), (40, 20), (60, 20), (80, 16), (80, 24), (200, 60)] {
             assert_eq!(visible(columns, rows, false), 256, "{columns} x {rows}");
         }
-        // Numbers in all rows.
+        // As numbers, all rows are visible.
         assert_eq!(visible(80, 24, true), 8 * 16);
         assert_eq!(visible(60, 20, true), 4 * 16);
-        // Larger ones where the numbers beside them keep their room.
+        // Taxels are larger if the numbers beside them keep their room.
         let map = |columns, rows: u16| {
             let area = Rect::new(0, 1, columns, rows - 3);
             LivePanes::of(area, Some((16, 16)), false).map.width
         };
         assert_eq!([map(80, 24), map(120, 40), map(200, 60)], [32, 64, 96]);
-        // The smallest of all.
+        // The smallest screen.
         assert!(visible(20, 6, false) >= 32);
     }
 

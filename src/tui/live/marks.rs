@@ -1,7 +1,7 @@
-//! Frames that were marked, by a key or in the recording itself.
+//! Marked frames: by a key, or in the recording itself.
 //!
-//! A key marks one frame of the history, by its number there: the source's own numbers begin at 0 again where it is watched
-//! anew, or where a recording is played in a loop.
+//! A key marks one frame of the history, by its number in the history: the numbers of the source begin at 0 again if
+//! it is watched anew, or if a recording is played in a loop.
 
 use crate::formats::recording::FrameMark;
 use crate::frame::Frame;
@@ -9,38 +9,38 @@ use crate::frame::Frame;
 /// The marks of a source.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrameMarks {
-    /// Those that a key has set, each with the frame's number in the history, in the order of these.
+    /// The marks set by keys, each with the frame's number in the history, in the order of these numbers.
     own: Vec<(u64, FrameMark)>,
-    /// Those that the recording itself has, by the labels of frames.
+    /// The marks of the recording itself, by the labels of frames.
     recorded: Vec<FrameMark>,
-    /// Whether a key's marks have changed since that was asked last.
+    /// Whether the marks set by keys have changed since [`FrameMarks::take_change`] was called last.
     is_changed: bool,
 }
 
 impl FrameMarks {
-    /// Those that a key has set, in the order in which their frames came.
+    /// Returns the marks set by keys, in the order in which their frames came.
     pub(super) fn own(&self) -> Vec<FrameMark> {
         self.own.iter().map(|(_, mark)| *mark).collect()
     }
 
-    /// Whether they have changed since this was asked last.
+    /// Returns true if the marks set by keys have changed since the last call.
     pub(super) fn take_change(&mut self) -> bool {
         std::mem::take(&mut self.is_changed)
     }
 
-    /// Takes those of the recording.
+    /// Takes the marks of the recording.
     pub(super) fn set_recorded(&mut self, recorded: &[FrameMark]) {
         self.recorded = recorded.to_vec();
     }
 
-    /// Whether the frame of a number in the history is marked.
+    /// Returns true if a frame, given with its number in the history, is marked.
     pub(super) fn has(&self, number: u64, frame: &Frame) -> bool {
         let label = frame.label.and_then(|label| u64::try_from(label).ok());
         let is_recorded = |label: u64| self.recorded.iter().any(|mark| mark.number == label);
         self.index(number).is_ok() || label.is_some_and(is_recorded)
     }
 
-    /// Marks the frame of a number in the history, or takes its mark off. Returns whether it is marked now.
+    /// Marks a frame, given with its number in the history, or removes its mark. Returns true if it is marked now.
     pub(super) fn switch(&mut self, number: u64, frame: &Frame) -> bool {
         let mark = FrameMark {
             number: frame.number,
@@ -55,7 +55,7 @@ impl FrameMarks {
         index.is_err()
     }
 
-    /// Takes the mark that a key has set off the frame of a number in the history.
+    /// Removes the mark that a key has set on a frame, given by its number in the history.
     pub(super) fn take_off(&mut self, number: u64) {
         if let Ok(index) = self.index(number) {
             self.own.remove(index);
@@ -63,12 +63,12 @@ impl FrameMarks {
         }
     }
 
-    /// Gives up those that a key has set.
+    /// Removes the marks set by keys.
     pub(super) fn clear(&mut self) {
         self.own.clear();
     }
 
-    /// Where the mark of a number in the history is, or would be.
+    /// Returns the index of a mark by its number in the history, or the index to insert it at.
     fn index(&self, number: u64) -> Result<usize, usize> {
         self.own.binary_search_by_key(&number, |own| own.0)
     }

@@ -11,126 +11,126 @@ use crate::tui::live::named_source::NamedSource;
 use crate::tui::live::naming::NamedImprint;
 use crate::tui::live::request::WatchRequest;
 
-/// What a key or a command asks for.
+/// A request by a key or a command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LiveMessage {
-    /// The page of the last source.
+    /// Opens the page of the last source.
     Open,
-    /// To watch a source.
+    /// Watches a source.
     Watch(Arc<WatchRequest>),
-    /// To watch a source that was named at the prompt, if it can be read.
+    /// Watches a source that was named at the prompt, if it can be read.
     Source(NamedSource),
-    /// To subtract the median of the frames up to the one that is shown.
+    /// Subtracts the median of the last frames up to the shown one.
     Tare,
-    /// To take nothing off.
+    /// Removes the tare.
     NoTare,
-    /// The threshold up or down.
+    /// Moves the threshold up or down.
     Threshold(i8),
-    /// A threshold in percent of the largest value, or in the sensor's unit.
+    /// Converts the threshold to percent of the largest value, or to the sensor's unit.
     Percent,
-    /// To stay at the frame that is shown, or to follow the source again.
+    /// Freezes the shown frame, or follows the source again.
     Freeze,
-    /// To show the largest value that each cell has had since then, or the present one.
+    /// Shows the largest value of each cell from now on, or the present values again.
     PeakHold,
-    /// The next of raw values, tared values and imprint.
+    /// Shows the next layer: raw values, tared values or imprint.
     NextLayer,
-    /// Values as numbers, or in shades.
+    /// Shows values as numbers, or in shades.
     Numbers,
-    /// Shades over the range of the frame that is shown, or over a fixed range.
+    /// Spreads the shades over the range of the shown frame, or over a fixed range.
     OwnRange,
-    /// To see taxels further in a direction, where not all are visible.
+    /// Shows taxels further in a direction, if not all are visible.
     Window(Arrow),
-    /// To see those of the contact again.
+    /// Shows the taxels of the contact again.
     FollowContact,
-    /// To begin a recording, or to end it.
+    /// Begins a recording, or ends it.
     Record,
-    /// To mark the frame that is shown, or to take its mark off.
+    /// Marks the shown frame, or removes its mark.
     Mark,
-    /// To name shapes by the next set of shapes, or by none.
+    /// Names imprints by the next set of shapes, or by none.
     NextModel,
 }
 
-/// What the source reports.
+/// A report from the source, from its recording or from the work that names imprints.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LiveEvent {
-    /// There are frames, or something else to report.
+    /// Frames or other news can be fetched.
     Waiting,
-    /// All that has come since the last time.
+    /// Everything that has come since the last time.
     Arrived(Arc<FrameBatch>),
     /// A recording has begun in this file.
     Recording(String),
-    /// It has ended; the file, and the number of frames in it.
+    /// The recording has ended; the file, and the number of frames in it.
     Recorded(String, u64),
-    /// It cannot be begun, and why.
+    /// The recording cannot be begun, and why.
     NotRecorded(String),
-    /// It could not be finished, and why.
+    /// The recording could not be finished, and why.
     NotFinished(String),
-    /// What a model says of an imprint; the number of the work that names.
+    /// The answer of a model about an imprint, with the number of the work that names imprints.
     Named(u64, Box<NamedImprint>),
-    /// There is no model, and why; the number of the work that would name.
+    /// There is no model, and why, with the number of the work that would name imprints.
     NotNamed(u64, String),
 }
 
-/// Frames that have come, and how the source is.
+/// New frames, and the state of the source.
 #[derive(Clone, Debug, Default)]
 pub struct FrameBatch {
-    /// The frames, the newest last. Their times are those of their arrival where they have none of their own.
+    /// The frames, the newest last. Frames without times of their own have the time of their arrival.
     pub frames: Vec<Arc<Frame>>,
-    /// What has become of a frame after these that is not confirmed yet.
+    /// The change of the frame after these, which is not confirmed yet.
     pub provisional: ProvisionalChange,
-    /// How the source is.
+    /// The state of the source.
     pub status: FeedStatus,
 }
 
 impl PartialEq for FrameBatch {
-    /// Whether they are one: they are never changed.
+    /// Returns true if both are the same object in memory; a batch never changes.
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self, other)
     }
 }
 
-/// What has become of a frame that is shown before it is confirmed. A change, not a state: a report that is about something
-/// else takes nothing off the screen.
+/// A change of the frame that is shown before it is confirmed. It is a change and not a state, so that a report about
+/// something else does not remove the frame from the screen.
 #[derive(Clone, Debug, Default)]
 pub enum ProvisionalChange {
-    /// It is as before.
+    /// The frame is as before.
     #[default]
     Unchanged,
-    /// There is one, or another one.
+    /// There is a new frame, or another one in its place.
     Shown(Arc<Frame>),
-    /// There is none: it was confirmed or withdrawn.
+    /// There is no frame any more: it was confirmed or withdrawn.
     Gone,
 }
 
-/// How a source is.
+/// The state of a source and of the recording of its frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FeedStatus {
     /// Whether frames come, and if not, why.
     pub state: SourceState,
-    /// The channel that is watched, once that is known.
+    /// The channel that is watched; None until it is known.
     pub channel: Option<Arc<ChannelInfo>>,
-    /// How many channels there are; 0 of a stream.
+    /// The number of channels; 0 for a stream.
     pub channels: usize,
-    /// Frames that were torn, short, long or garbled.
+    /// The number of lost frames: torn, short, long or garbled.
     pub lost: u64,
-    /// What the last of these looked like.
+    /// A sample of the last lost frame, up to 40 characters.
     pub sample: Option<String>,
-    /// Why the last of these is not a frame, where the format can tell.
+    /// Why the last lost frame is not a frame, if the format can tell.
     pub reason: Option<String>,
-    /// How often the source was lost and came back.
+    /// The gaps in which the source was lost and came back.
     pub gaps: SourceGaps,
-    /// Frames that came while nobody took them and there was no memory for more.
+    /// The number of frames that were dropped because nobody took them and there was no memory for more.
     pub overflowed: u64,
-    /// How many frames are in the recording; None without one.
+    /// The frames of the recording; None without a recording.
     pub recorded: Option<RecordedFrames>,
-    /// Why the recording has ended early.
+    /// Why the recording ended early.
     pub record_error: Option<String>,
-    /// What is odd in a recording that is played, the first of it.
+    /// The first oddity found in a recording that is played back.
     pub note: Option<String>,
 }
 
 impl FeedStatus {
-    /// Notes the frames that were dropped so far.
+    /// Takes the counts of lost frames so far.
     pub(in crate::tui) fn note_dropped(&mut self, counts: &StreamCounts) {
         self.lost = counts.dropped;
         self.sample.clone_from(&counts.sample);
@@ -141,16 +141,16 @@ impl FeedStatus {
 /// Gaps between the frames of a source that was lost and came back, such as a connection.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SourceGaps {
-    /// How many.
+    /// The number of gaps.
     pub count: u64,
-    /// The seconds of all until the source was back.
+    /// The total time until the source was back, in seconds.
     pub waited: f64,
-    /// The seconds of all between the last frame before and the first one after.
+    /// The total time between the last frame before each gap and the first one after it, in seconds.
     pub missing: f64,
 }
 
 impl SourceGaps {
-    /// Those of them that came after others.
+    /// Returns the gaps that came after the gaps of `before`.
     #[must_use]
     pub fn since(self, before: Self) -> Self {
         Self {
@@ -160,7 +160,7 @@ impl SourceGaps {
         }
     }
 
-    /// A sentence; None where there are none.
+    /// Returns a sentence about the gaps; None if there are none.
     pub fn sentence(self) -> Option<String> {
         let [waited, missing] = [self.waited, self.missing].map(|seconds| decimal(seconds, 1));
         let lost = match self.count {
@@ -174,35 +174,35 @@ impl SourceGaps {
     }
 }
 
-/// What has become of frames that are recorded.
+/// The number of frames that were recorded, and of those that were not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RecordedFrames {
-    /// How many are in the recording.
+    /// The number of frames in the recording.
     pub frames: u64,
-    /// How many are not, since they are of another size.
+    /// The number of frames that were left out because they are of another size.
     pub left_out: u64,
 }
 
 /// Whether frames come.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum SourceState {
-    /// None has come yet.
+    /// No frame has come yet.
     #[default]
     Waiting,
-    /// They come.
+    /// Frames come.
     Live,
-    /// None for two seconds, and what may be wrong.
+    /// No frame has come for two seconds, or since the source came back; the likely cause.
     Silent(String),
     /// The source is gone or not there yet, and why; it is tried again each second.
     Lost(String),
-    /// It has come to its end.
+    /// The source has come to its end.
     Ended,
-    /// It cannot be read, and why.
+    /// The source cannot be read, and why.
     Failed(String),
 }
 
 impl SourceState {
-    /// Whether no frame can come any more. A source that is lost is tried again, and a file that is followed may grow.
+    /// Returns true if no frame can come any more. A lost source is tried again, and a followed file may grow.
     pub fn is_final(&self) -> bool {
         matches!(self, Self::Ended | Self::Failed(_))
     }

@@ -1,25 +1,25 @@
 //! The live page: the frames of a sensor, live or played back, as a heat map with a description.
 //!
 //! ```text
-//! request          which source, and how its frames are looked at
-//! named_source     what stands after `:watch`: a source and flags
-//! message          what keys ask for, and what the source reports
-//! history          the frames that have come, as many as fit into some memory
-//! naming           what a model says of the imprint
-//! reading          what is read off one frame: values, imprint, descriptors
-//! marks            frames that were marked
-//! refusal          why something cannot be done with the frame that is shown
-//! tare             what is subtracted, and how it is made
-//! threshold        what keys make of a threshold
-//! range            between which values shades are spread
-//! display          how a frame is laid out, as keys choose
-//! recording_state  whether frames are recorded, and why not
-//! state            which frame is shown and how
-//! layout           where taxels and numbers stand
+//! request          the source to watch, and how its frames are processed
+//! named_source     the text after `:watch`: a source and flags
+//! message          requests by keys and commands, and reports from the source
+//! history          the most recent frames, as many as fit into a given amount of memory
+//! naming           what a model says about the imprint
+//! reading          values, imprint and descriptors of one frame
+//! marks            the marked frames
+//! refusal          why something cannot be done with the shown frame
+//! tare             the values that are subtracted, and how they are determined
+//! threshold        how keys change the threshold
+//! range            the range of values that the shades cover
+//! display          how a frame is laid out, as chosen by keys
+//! recording_state  whether frames are recorded, and if not, why
+//! state            the state of the page: which frame is shown, and how
+//! layout           the places of taxels and numbers on the screen
 //! heat             the heat map, with the edge of the imprint
-//! title            which frame of which source is shown, and how
-//! view             the page: heat map, and beside it what can be said of the frame
-//! update           what messages do
+//! title            the title: which frame of which source is shown, and how
+//! view             draws the page: the heat map, and beside it the numbers
+//! update           handles messages
 //! ```
 
 pub mod request;

@@ -1,4 +1,4 @@
-//! What stands after `:watch`: a source, then flags as on the command line.
+//! The text after `:watch`: a source, then flags as on the command line.
 //!
 //! ```text
 //! watch /dev/ttyACM0 --baud 921600
@@ -14,10 +14,10 @@ use crate::quote::shortened;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::prompt::flags;
 
-/// A source of frames and how to read it. What is not given is as the user's settings say.
+/// A source of frames and how to read it. The user's settings apply to what is not given.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NamedSource {
-    /// Its name: a path, `tcp://HOST:PORT`, or `-` for standard input.
+    /// The name: a path, `tcp://HOST:PORT`, or `-` for standard input.
     name: String,
     rows: Option<u16>,
     columns: Option<u16>,
@@ -41,7 +41,7 @@ impl NamedSource {
         "--percent",
     ];
 
-    /// A source without flags.
+    /// Creates a source without flags.
     pub fn new(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -52,7 +52,7 @@ impl NamedSource {
     /// Reads a name, and the flags after it, each followed by its value.
     ///
     /// # Errors
-    /// What is wrong with them, in a sentence.
+    /// Returns a sentence that says what is wrong with the text.
     pub fn read(text: &str) -> Result<Self, String> {
         let (name, rest) = text.split_at(flags_start(text).unwrap_or(text.len()));
         let mut source = Self::new(name.trim());
@@ -112,7 +112,7 @@ impl NamedSource {
         Ok(())
     }
 
-    /// The request for this source; `settings` says what is not given.
+    /// Returns the request for this source; `settings` provides what is not given.
     pub fn request(&self, settings: &WatchRequest) -> WatchRequest {
         let mut request = settings.for_source(&self.name);
         let options = &mut request.options;
@@ -130,7 +130,7 @@ impl NamedSource {
     }
 }
 
-/// Where the flags begin in what stands after `:watch`.
+/// Returns the index of the first flag in the text after `:watch`; None without flags.
 pub(in crate::tui) fn flags_start(text: &str) -> Option<usize> {
     text.find(" --").map(|blank| blank + 1)
 }

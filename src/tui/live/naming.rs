@@ -1,4 +1,4 @@
-//! What a model says about the imprint that is shown: the likeliest shape and the nearest imprint, while frames arrive.
+//! The answers of a model about the shown imprint: the likeliest shape and the nearest imprint, while frames arrive.
 //!
 //! A worker answers one imprint at a time, always the newest; neither its training nor its search delays drawing.
 
@@ -6,26 +6,26 @@ use crate::imprint::Imprint;
 use crate::recognition::{AnswerState, Evidence, Model, Noise, UnexplainedDifference};
 use crate::storage::ModelChoice;
 
-/// What a model says of an imprint.
+/// The answer of a model about an imprint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedImprint {
     /// The imprint.
     pub imprint: Imprint,
     /// How far the answer can be trusted.
     pub state: AnswerState,
-    /// The likeliest shapes: one, several of a tie, none of an imprint that no shape leaves.
+    /// The likeliest shapes: one, several in a tie, or none for an imprint that no shape leaves.
     pub names: Vec<String>,
-    /// How likely the first of these is.
+    /// The probability of the likeliest shape.
     pub probability: Option<f64>,
-    /// The shape whose imprint is nearest, and in how many taxels that differs.
+    /// The shape with the nearest imprint, and the number of taxels in which that imprint differs.
     pub nearest: Option<(String, u32)>,
-    /// That more taxels differ from it than the noise explains.
+    /// The difference to the nearest imprint, if the noise does not explain it.
     pub unexplained: Option<UnexplainedDifference>,
 }
 
 impl NamedImprint {
-    /// The answer of a model to an imprint, under a noise if one is given. One touch is all the evidence: frames of a source
-    /// may be of different shapes.
+    /// Computes the answer of a model about an imprint, under a noise if one is given. A single touch is the
+    /// evidence, because the frames of a source may show different shapes.
     pub fn new(model: &Model, imprint: &Imprint, noise: Option<&Noise>) -> Self {
         let touches = [*imprint];
         let evidence = Evidence::of(&touches).under(noise);
@@ -49,21 +49,21 @@ impl NamedImprint {
     }
 }
 
-/// Which model names the imprints of frames.
+/// A request to name the imprints of frames by a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamingRequest {
     /// The number of this request. Answers carry it, so late ones of an earlier model can be dropped.
     pub number: u64,
     /// The set of shapes.
     pub choice: ModelChoice,
-    /// How often a taxel flips.
+    /// The noise: how often a taxel flips.
     pub noise: Option<Noise>,
 }
 
 /// The model of the page, and its last answer.
 #[derive(Clone, Debug)]
 pub struct Naming {
-    /// What was asked for.
+    /// The request that is answered.
     pub request: NamingRequest,
     /// The last answer.
     pub answer: Option<Box<NamedImprint>>,
@@ -74,7 +74,7 @@ pub struct Naming {
 }
 
 impl Naming {
-    /// Names by a set of shapes. Nothing is known of any imprint yet.
+    /// Creates the state without any answer.
     pub fn new(request: NamingRequest) -> Self {
         Self {
             request,
@@ -84,7 +84,7 @@ impl Naming {
         }
     }
 
-    /// Whether an imprint is to be asked for now; notes that it is.
+    /// Returns true if an imprint is to be asked for now, and notes that it is.
     pub fn ask(&mut self, imprint: &Imprint) -> bool {
         let known = self
             .answer
@@ -101,14 +101,14 @@ impl Naming {
         self.answer = Some(Box::new(answer));
     }
 
-    /// Takes that there are none.
+    /// Notes why there are no answers.
     pub fn fail(&mut self, reason: String) {
         self.asked = false;
         self.failure = Some(reason);
     }
 }
 
-/// The next set of shapes to name imprints by: the one that was asked for, those that need no file, then none.
+/// Returns the next set of shapes to name imprints by: first the requested one, then the built-in ones, then none.
 pub(super) fn next_choice<'a>(
     asked: Option<&'a ModelChoice>,
     present: Option<&Naming>,

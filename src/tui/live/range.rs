@@ -3,21 +3,21 @@
 use crate::matrix::Matrix;
 use crate::tui::live::reading::{HeatLayer, LiveReading, round_up};
 
-/// The values so far, which the fixed range covers.
+/// The span of the values so far, which the fixed range covers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ShadeRange {
     raw: Span,
-    /// After tare and gain.
+    /// The values after tare and gain.
     tared: Span,
-    /// Whether shades are spread over the values of the frame that is shown only.
+    /// Whether the shades cover only the values of the shown frame.
     pub(super) is_own: bool,
 }
 
-/// What some values span; it only grows.
+/// The span of some values; it only grows.
 #[derive(Clone, Copy, Debug, Default)]
 struct Span {
-    /// The largest value in round numbers; None as long as nothing is above 0. No sensor has values of a known size: one may
-    /// measure thousands of pascals, another one parts of a newton.
+    /// The largest value, rounded up to a round number; None as long as no value is above 0. The size of values
+    /// depends on the sensor: one may measure thousands of pascals, another one fractions of a newton.
     top: Option<f64>,
     /// The least value, at most 0.
     bottom: f64,
@@ -36,14 +36,14 @@ impl Span {
         }
     }
 
-    /// The upper end of the fixed range.
+    /// Returns the upper end of the fixed range; 1 as long as no value is above 0.
     fn top(&self) -> f64 {
         self.top.unwrap_or(1.0)
     }
 }
 
 impl ShadeRange {
-    /// Takes the values of a new frame, raw ones and those after tare and gain.
+    /// Adds the values of a new frame, raw ones and those after tare and gain.
     pub(super) fn add(&mut self, [raw, tared]: [&Matrix<f64>; 2]) {
         self.raw.add(raw);
         self.tared.add(tared);
@@ -54,12 +54,13 @@ impl ShadeRange {
         (self.raw, self.tared) = (Span::default(), Span::default());
     }
 
-    /// The largest value so far after tare and gain, in round numbers: thresholds go by these values.
+    /// Returns the largest value so far after tare and gain, rounded up to a round number. Thresholds depend on these
+    /// values.
     pub(super) fn tared_top(&self) -> f64 {
         self.tared.top()
     }
 
-    /// The ends of the range for what is shown.
+    /// Returns the ends of the range for a layer.
     pub(super) fn ends(&self, layer: HeatLayer, reading: Option<&LiveReading>) -> (f64, f64) {
         let largest = reading
             .and_then(|reading| reading.max)
@@ -73,7 +74,7 @@ impl ShadeRange {
             Some(largest) if self.is_own && (largest > 0.0 || least < 0.0) => {
                 (least.min(0.0), largest.max(0.0))
             }
-            // What little a tare leaves below 0 is noise.
+            // Values a little below 0 are noise that the tare has left.
             _ if span.bottom < -span.top() / 20.0 => (-round_up(-span.bottom), span.top()),
             _ => (0.0, span.top()),
         }
@@ -85,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_top_is_that_of_the_values_however_small_they_are() {
+    fn the_top_follows_the_values_even_if_they_are_small() {
         let mut range = ShadeRange::default();
         let mut top = |value: f64| {
             let [raw, tared] = [10.0 * value, value].map(|value| Matrix::filled(2, 1, value));

@@ -1,4 +1,4 @@
-//! What the live page reads off the frame that it shows.
+//! What the live page computes from the shown frame: values, imprint, descriptors.
 
 use std::sync::Arc;
 
@@ -7,19 +7,19 @@ use crate::frame::{Frame, FrameError, Processing};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 
-/// What is shown of a frame.
+/// The layer of a frame that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeatLayer {
-    /// What the sensor has sent.
+    /// The values as the sensor has sent them.
     Raw,
-    /// The same after tare and gain.
+    /// The values after tare and gain.
     Tared,
-    /// Which taxels are active.
+    /// The active taxels.
     Imprint,
 }
 
 impl HeatLayer {
-    /// The one that is shown next.
+    /// Returns the layer that is shown next.
     pub(super) fn next(self) -> Self {
         match self {
             Self::Raw => Self::Tared,
@@ -30,7 +30,7 @@ impl HeatLayer {
 }
 
 impl HeatLayer {
-    /// Its name on the screen.
+    /// Returns the name on the screen.
     pub fn name(self) -> &'static str {
         match self {
             Self::Raw => "raw",
@@ -40,36 +40,36 @@ impl HeatLayer {
     }
 }
 
-/// What can be said of the frame that is shown.
+/// A frame, processed, with its imprint and description.
 #[derive(Clone, Debug)]
 pub struct LiveReading {
     /// The frame.
     pub frame: Arc<Frame>,
-    /// The values that are shown; NaN where there is no cell.
+    /// The shown values; NaN if there is no cell.
     pub values: Matrix<f64>,
     /// The sum of the raw values.
     pub sum: f64,
-    /// The largest of the values that are shown, and its column and row; None without cells.
+    /// The largest shown value, and its column and row; None without cells.
     pub max: Option<(f64, (u8, u8))>,
-    /// The largest of the values that the threshold goes by, which are those after tare and gain; None without cells.
+    /// The largest value after tare and gain, which the threshold applies to; None without cells.
     pub tared_max: Option<f64>,
-    /// The least of the values that are shown, at most 0.
+    /// The least shown value, at most 0.
     pub least: f64,
     /// The active taxels; None without a threshold.
     pub imprint: Option<Imprint>,
-    /// Those of the main region; empty where there is none.
+    /// The active taxels of the main region; empty if there is none.
     pub main: Imprint,
-    /// The main region.
+    /// The description of the main region.
     pub description: Option<Description>,
-    /// Number of pieces and holes.
+    /// The number of regions of the imprint: pieces and holes.
     pub regions: usize,
 }
 
 impl LiveReading {
-    /// Processes a frame, and shows that layer of it.
+    /// Processes a frame, and keeps the values of a layer.
     ///
     /// # Errors
-    /// If the processing does not fit the frame.
+    /// Returns an error if the processing does not fit the frame.
     pub(super) fn of(
         frame: Arc<Frame>,
         processing: &mut Processing,
@@ -99,7 +99,7 @@ impl LiveReading {
     }
 }
 
-/// The largest value and where it is, the first of equals; None without cells.
+/// Returns the largest value with its column and row, the first one of equals; None without cells.
 fn largest(values: &Matrix<f64>) -> Option<(f64, (u8, u8))> {
     let mut largest: Option<(f64, (u8, u8))> = None;
     for row in 0..values.rows() {
@@ -113,7 +113,7 @@ fn largest(values: &Matrix<f64>) -> Option<(f64, (u8, u8))> {
     largest
 }
 
-/// Lifts the values of a frame to those of another one where these are larger; takes the other one if its size differs.
+/// Raises the values of a frame to those of another one that are larger. Takes the other frame if its size differs.
 pub(super) fn hold(held: &mut Frame, frame: &Frame) {
     if (held.columns(), held.rows()) == (frame.columns(), frame.rows()) {
         for (own, &other) in held.values_mut().iter_mut().zip(frame.values()) {
@@ -127,8 +127,8 @@ pub(super) fn hold(held: &mut Frame, frame: &Frame) {
     }
 }
 
-/// The least of 1, 2, 5, 10, 20, 50 … and their tenths, hundredths … that is not below a value; 1 for none above 0, as for
-/// one so small that it has no tenth.
+/// Rounds up to 1, 2, 5, 10, 20, 50 … or a tenth, hundredth … of these. Returns 1 for values that are not above 0,
+/// not finite, or too small to have tenths.
 pub(super) fn round_up(value: f64) -> f64 {
     if value < f64::MIN_POSITIVE || !value.is_finite() {
         return 1.0;
@@ -136,7 +136,7 @@ pub(super) fn round_up(value: f64) -> f64 {
     let unit = libm::pow(10.0, libm::log10(value).floor());
     let steps = [1.0, 2.0, 5.0, 10.0];
     let fits = steps.map(|step| step * unit).into_iter();
-    // What rounding has made a little too large is not rounded up once more.
+    // A value that rounding has made slightly too large is not rounded up again.
     let mut fits = fits.filter(|step| *step >= value * (1.0 - 1e-12));
     fits.next().map_or(10.0 * unit, nine_digits)
 }

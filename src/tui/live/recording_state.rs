@@ -1,41 +1,41 @@
-//! Whether the frames of the live page are recorded, and why not.
+//! The state of a recording: whether the frames of the live page are recorded, and if not, why.
 
-/// The recording that runs, and what became of those that were asked for.
+/// The running recording, and what became of requested ones.
 #[derive(Clone, Debug, Default)]
 pub struct RecordingState {
-    /// The file that is written.
+    /// The file that is written; None if nothing is recorded.
     name: Option<String>,
-    /// Why there is none although one was asked for.
+    /// Why nothing is recorded although it was requested.
     refusal: Option<String>,
-    /// Why the recording that was asked for together with the source has failed.
+    /// Why the recording that was requested together with the source has failed.
     write_failure: Option<String>,
 }
 
 impl RecordingState {
-    /// The file that is recorded in; None without one.
+    /// Returns the file that is written; None if nothing is recorded.
     pub fn name(&self) -> Option<&str> {
         self.name.as_deref()
     }
 
-    /// Why nothing is recorded although it was asked for; None where it is, or was not asked for.
+    /// Returns why nothing is recorded although it was requested; None if it is recorded, or was not requested.
     pub fn refusal(&self) -> Option<&str> {
         self.refusal.as_deref()
     }
 
-    /// Why the recording that was asked for together with the source has failed; None where it has not. Later recordings
-    /// do not change that.
+    /// Returns why the recording that was requested together with the source has failed; None if it has not. Later
+    /// recordings do not change that.
     pub fn write_failure(&self) -> Option<&str> {
         self.write_failure.as_deref()
     }
 
-    /// Notes that a recording has begun, or ended.
+    /// Notes that a recording has begun in the file `name`, or has ended.
     pub(super) fn set(&mut self, name: Option<String>) {
         self.name = name;
         self.refusal = None;
     }
 
-    /// Notes that a recording has failed, or cannot be begun, and why. `asked` is the file that was asked for together with
-    /// the source.
+    /// Notes why a recording has failed, or why it cannot be begun. `asked` is the file that was requested together
+    /// with the source.
     pub(super) fn fail(&mut self, reason: String, asked: Option<&str>) {
         if asked.is_some() && self.name() == asked {
             self.write_failure = Some(reason.clone());

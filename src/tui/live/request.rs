@@ -1,4 +1,4 @@
-//! What to watch, and how to process its frames.
+//! A request to watch a source, and how its frames are processed.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -14,37 +14,37 @@ use crate::tui::live::history::HISTORY_BYTES;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct WatchRequest {
-    /// Its name: a path, `tcp://HOST:PORT`, or `-` for standard input.
+    /// The name of the source: a path, `tcp://HOST:PORT`, or `-` for standard input.
     pub source: OsString,
-    /// How it is read.
+    /// The options for reading the source.
     pub options: AcquireOptions,
-    /// Crop, flip, turn, mask and gain.
+    /// The processing of frames: crop, flip, turn, mask and gain.
     pub processing: Processing,
-    /// The threshold; without one that of the recording, if it has one.
+    /// The threshold; None takes the threshold of the recording, if it has one.
     pub rule: Option<SetRule>,
-    /// How many of the first frames a tare is made of; 0 for none.
+    /// The number of first frames that a tare is made of; 0 for no tare.
     pub tare: u64,
-    /// Whether the tare of a recording's own description is taken, where `tare` is 0.
+    /// Whether the tare in the recording's own description is used if `tare` is 0.
     pub own_tare: bool,
     /// The file that all frames are recorded in from the start.
     pub write: Option<(PathBuf, Existing)>,
     /// The set of shapes that imprints are compared with.
     pub model: Option<ModelChoice>,
-    /// How often a taxel flips, for that.
+    /// The noise for that comparison: how often a taxel flips.
     pub noise: Option<Noise>,
     /// The memory for the frames that can be scrubbed through, in bytes.
     pub history_bytes: usize,
 }
 
 impl PartialEq for WatchRequest {
-    /// Whether they are one: they are never changed.
+    /// Returns true if both are the same object in memory; a request never changes.
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self, other)
     }
 }
 
 impl WatchRequest {
-    /// A source, looked at as it is.
+    /// Creates a request for a source with default settings.
     pub fn new(source: impl Into<OsString>) -> Self {
         Self {
             source: source.into(),
@@ -60,7 +60,7 @@ impl WatchRequest {
         }
     }
 
-    /// The same settings for another source.
+    /// Returns a request with the same settings for another source.
     #[must_use]
     pub fn for_source(&self, source: impl Into<OsString>) -> Self {
         Self {
@@ -69,7 +69,7 @@ impl WatchRequest {
         }
     }
 
-    /// The noise, with the dead cells of the mask left out.
+    /// Returns the noise, without the dead cells of the mask.
     pub fn noise(&self) -> Option<Noise> {
         let noise = self.noise?;
         Some(match self.processing.view.mask {
@@ -78,7 +78,7 @@ impl WatchRequest {
         })
     }
 
-    /// The source's name for people, without the folders that it is in.
+    /// Returns the name of the source for display, without folders.
     pub fn name(&self) -> String {
         let name = self.source.to_string_lossy();
         match &*name {

@@ -22,62 +22,64 @@ use crate::tui::live::request::WatchRequest;
 use crate::tui::live::tare::{LiveTare, TareMark};
 use crate::tui::live::threshold;
 
-/// Frames that a tare by key is made of, at most.
+/// The maximum number of frames that a tare by key is made of.
 const TARED: usize = 30;
 
-/// Frames whose values make the range anew after a tare, at most: a key waits for it.
+/// The maximum number of frames that the range is computed from after a tare. It is limited because a key waits for
+/// it.
 const RANGED: usize = 1000;
 
 /// The state of the page.
 #[derive(Clone, Debug)]
 pub struct Live {
-    /// What is watched.
+    /// The source to watch, with its settings.
     request: Arc<WatchRequest>,
-    /// The number of the piece of work that watches it.
+    /// The number of the work that watches the source.
     number: u64,
-    /// What is done with a frame before it is shown: view, tare, threshold.
+    /// The processing of a frame before it is shown: view, tare, threshold.
     processing: Processing,
     /// The threshold, and whether the file, an option or a key set it.
     rule: Option<SetRule>,
-    /// The rule that `%` made last, and the one that it made it from.
+    /// The rule that `%` set last, and the rule that it was converted from.
     converted: Option<(Rule, Rule)>,
-    /// Whether threshold or tare have changed since they were last written into a recording.
+    /// Whether the threshold or the tare has changed since they were last written into a recording.
     is_viewed_anew: bool,
     history: FrameHistory,
-    /// The number in the history of the first frame since the source was watched again; 0 where it was not.
+    /// The number in the history of the first frame since the source was watched again; 0 if it was not watched
+    /// again.
     watched_from: u64,
-    /// The number in the history of the frame that is shown; None follows the source.
+    /// The number in the history of the shown frame; None if the page follows the source.
     frozen: Option<u64>,
     provisional: Option<Arc<Frame>>,
     status: FeedStatus,
-    /// The gaps between frames that the user knows of.
+    /// The gaps between frames that the user has already seen.
     seen_gaps: SourceGaps,
     /// Whether no more frames are taken from the source.
     stopped: bool,
     layer: HeatLayer,
-    /// How it is laid out.
+    /// How a frame is laid out.
     pub display: LiveDisplay,
-    /// Between which values shades are spread.
+    /// The range of values that the shades cover.
     range: ShadeRange,
-    /// The largest value that each cell has had, while that is shown.
+    /// The largest value of each cell since peak hold was switched on; None if it is off.
     held: Option<Arc<Frame>>,
-    /// How the tare is made.
+    /// How the tare was made, or is being made.
     tare: LiveTare,
-    /// Frames that came between two pictures of the screen and were never seen.
+    /// The number of frames that were never drawn, because others came before the screen was drawn again.
     not_drawn: u64,
     recording: RecordingState,
-    /// The frames that were marked.
+    /// The marked frames.
     marks: FrameMarks,
     /// The model that names imprints, and its last answer.
     naming: Option<Naming>,
-    /// The frame that is shown, processed; None before the first, and for one that cannot be processed.
+    /// The shown frame, processed; None before the first frame, and for a frame that cannot be processed.
     reading: Option<LiveReading>,
-    /// Why the frame that is shown cannot be processed, or not be made into an imprint.
+    /// Why the shown frame cannot be processed, or why it has no imprint.
     error: Option<FrameError>,
 }
 
 impl Live {
-    /// A page that waits for the first frame.
+    /// Creates a page that waits for the first frame.
     pub fn new(request: Arc<WatchRequest>, number: u64) -> Self {
         let mut live = Self {
             processing: request.processing.clone(),
@@ -110,49 +112,50 @@ impl Live {
         live
     }
 
-    /// What is watched.
+    /// Returns the source to watch, with its settings.
     pub fn request(&self) -> &Arc<WatchRequest> {
         &self.request
     }
 
-    /// The number of the piece of work that watches it.
+    /// Returns the number of the work that watches the source.
     pub fn number(&self) -> u64 {
         self.number
     }
 
-    /// How the source is.
+    /// Returns the state of the source.
     pub fn status(&self) -> &FeedStatus {
         &self.status
     }
 
-    /// How many frames have come since the source is watched.
+    /// Returns the number of frames that have come since the source was last watched anew.
     pub fn arrived(&self) -> u64 {
         self.history.next_number() - self.watched_from
     }
 
-    /// Whether no more frames are taken from the source.
+    /// Returns true if no more frames are taken from the source.
     pub fn stopped(&self) -> bool {
         self.stopped
     }
 
-    /// The frame that is shown; None before the first one.
+    /// Returns the shown frame; None before the first one.
     pub fn frame(&self) -> Option<Arc<Frame>> {
         let processed = self.reading.as_ref().map(|reading| &reading.frame);
         processed.cloned().or_else(|| Some(self.shown()?.1))
     }
 
-    /// What can be said of the frame that is shown; None before the first one, and for one that cannot be processed.
+    /// Returns the processed frame that is shown; None before the first one, and for a frame that cannot be
+    /// processed.
     pub fn reading(&self) -> Option<&LiveReading> {
         self.reading.as_ref()
     }
 
-    /// Why there is no tare although one was asked for; otherwise why the frame that is shown cannot be processed, or not
-    /// be made into an imprint.
+    /// Returns why a requested tare is missing; otherwise why the shown frame cannot be processed, or why it has no
+    /// imprint.
     pub fn error(&self) -> Option<&FrameError> {
         self.tare.error().or(self.error.as_ref())
     }
 
-    /// Why there is no imprint to take.
+    /// Returns the reason why there is no imprint to take.
     pub fn no_imprint(&self) -> LiveRefusal {
         match (&self.error, self.tare.progress()) {
             _ if self.reading.is_some() && self.rule.is_none() => LiveRefusal::NoThreshold,
@@ -164,7 +167,7 @@ impl Live {
         }
     }
 
-    /// Why there is no frame to do something with.
+    /// Returns the reason why no frame is available.
     fn no_frame(&self) -> LiveRefusal {
         match self.frozen {
             Some(_) => LiveRefusal::LeftHistory,
@@ -172,60 +175,60 @@ impl Live {
         }
     }
 
-    /// The threshold.
+    /// Returns the threshold.
     pub fn rule(&self) -> Option<SetRule> {
         self.rule
     }
 
-    /// What is shown of a frame.
+    /// Returns the layer of the frame that is shown.
     pub fn layer(&self) -> HeatLayer {
         self.layer
     }
 
-    /// Whether the largest value of each cell is shown.
+    /// Returns true if the largest value of each cell is shown.
     pub fn holds_peak(&self) -> bool {
         self.held.is_some()
     }
 
-    /// How many frames lie between the one that is shown and the newest; None if the source is followed.
+    /// Returns the number of frames from the shown one to the newest; None if the page follows the source.
     pub fn frozen(&self) -> Option<u64> {
         let newest = self.history.newest()?;
         self.frozen.map(|shown| newest - shown.min(newest))
     }
 
-    /// How the tare was made; None without one.
+    /// Returns how the tare was made; None without one.
     pub fn tare(&self) -> Option<TareMark> {
         self.tare.mark()
     }
 
-    /// How many of the first frames have come for the tare that was asked for, and how many it needs; None where it is not
-    /// being made.
+    /// Returns how many frames have come for the tare that was requested at the start, and how many it needs; None if
+    /// no tare is being made.
     pub fn tare_progress(&self) -> Option<(u64, u64)> {
         self.tare.progress()
     }
 
-    /// What is subtracted from each cell; None without a tare.
+    /// Returns the values that are subtracted from the cells; None without a tare.
     pub fn tare_values(&self) -> Option<&Tare> {
         self.processing.tare.as_ref()
     }
 
-    /// Number of frames that came while another one was drawn.
+    /// Returns the number of frames that were not drawn.
     pub fn not_drawn(&self) -> u64 {
         self.not_drawn + self.status.overflowed
     }
 
-    /// Whether frames are recorded.
+    /// Returns the state of the recording.
     pub fn recording(&self) -> &RecordingState {
         &self.recording
     }
 
-    /// Notes that the user has seen which frames are missing.
+    /// Notes that the user has seen the gaps so far.
     pub fn see_gaps(&mut self) {
         self.seen_gaps = self.status.gaps;
     }
 
-    /// Why frames are not recorded although that was asked for, why none come, and which are missing since the user looked
-    /// last; None where all is well.
+    /// Returns why a requested recording is missing, why no frames come, and which gaps the user has not seen yet;
+    /// None if all is well.
     pub fn trouble(&self) -> Option<String> {
         let source = match &self.status.state {
             SourceState::Silent(why) | SourceState::Lost(why) | SourceState::Failed(why) => {
@@ -239,13 +242,13 @@ impl Live {
         (!troubles.is_empty()).then(|| troubles.join("; "))
     }
 
-    /// The frames that were marked since the source is watched, in the order in which they came.
+    /// Returns the frames that were marked since the source was last watched anew, in the order in which they came.
     pub fn marks(&self) -> Vec<FrameMark> {
         self.marks.own()
     }
 
-    /// Threshold, tare and marks if they have changed and are to be written into a recording; afterwards they count as
-    /// written.
+    /// Returns threshold, tare and marks if frames are recorded and any of these has changed. They count as written
+    /// afterwards.
     pub fn take_changed_view(&mut self) -> Option<RecordedView> {
         self.recording.name()?;
         let is_changed = std::mem::take(&mut self.is_viewed_anew) | self.marks.take_change();
@@ -256,17 +259,17 @@ impl Live {
         })
     }
 
-    /// Whether the frame that is shown is marked.
+    /// Returns true if the shown frame is marked.
     pub fn is_marked(&self) -> bool {
         let shown = self.shown();
         shown.is_some_and(|(number, frame)| self.marks.has(number, &frame))
     }
 
-    /// Marks the frame that is shown, or takes its mark off. Returns its number and whether it is marked now.
+    /// Marks the shown frame, or removes its mark. Returns its number and whether it is marked now.
     ///
     /// # Errors
-    /// Before the first frame, and for a frame that came before the source was watched again: marks are those of one
-    /// recording, in which that frame is not.
+    /// Returns an error before the first frame, and for a frame that came before the source was watched again: marks
+    /// belong to one recording, and that frame is not in it.
     pub fn mark(&mut self) -> Result<(u64, bool), LiveRefusal> {
         let (number, frame) = self.shown().ok_or_else(|| self.no_frame())?;
         if number < self.watched_from {
@@ -275,18 +278,17 @@ impl Live {
         Ok((frame.number, self.marks.switch(number, &frame)))
     }
 
-    /// The model that names imprints, and its last answer; None without one.
+    /// Returns the model that names imprints, and its last answer; None if imprints are not named.
     pub fn naming(&self) -> Option<&Naming> {
         self.naming.as_ref()
     }
 
-    /// What is asked of whoever names imprints; None where they are not named.
+    /// Returns the request to name imprints; None if imprints are not named.
     pub fn naming_request(&self) -> Option<&NamingRequest> {
         self.naming.as_ref().map(|naming| &naming.request)
     }
 
-    /// Names imprints by a set of shapes, as a piece of work of this number; by none without one. What was said before is
-    /// forgotten.
+    /// Names imprints by a set of shapes, as the work of this number; None stops naming. Earlier answers are dropped.
     fn name_by(&mut self, choice: Option<ModelChoice>, number: u64) {
         let noise = self.request.noise();
         self.naming = choice.map(|choice| {
@@ -298,21 +300,22 @@ impl Live {
         });
     }
 
-    /// Names imprints by the next set of shapes: the one that was asked for, those that need no file, then none. It is a
-    /// piece of work of this number.
+    /// Names imprints by the next set of shapes: first the requested one, then the built-in ones, then none. `number`
+    /// is the number of this work.
     pub fn next_model(&mut self, number: u64) {
         let asked = self.request.model.as_ref();
         let next = next_choice(asked, self.naming.as_ref()).cloned();
         self.name_by(next, number);
     }
 
-    /// The imprint that is to be named now; None while an answer is on its way, or where nothing is active. Notes that it is.
+    /// Returns the imprint to name now, and notes that it was asked for. Returns None if an answer is still expected
+    /// or already known, or if no taxel is active.
     pub fn ask_name(&mut self) -> Option<Imprint> {
         let imprint = self.reading.as_ref()?.imprint?;
         self.naming.as_mut()?.ask(&imprint).then_some(imprint)
     }
 
-    /// Takes what a model says, or why there is none. What the model of another number says is dropped.
+    /// Takes the answer of a model, or the reason why there is none. Answers of work of another number are dropped.
     pub fn take_name(&mut self, number: u64, named: Result<NamedImprint, String>) {
         let naming = self.naming.as_mut();
         if let Some(naming) = naming.filter(|naming| naming.request.number == number) {
@@ -323,20 +326,20 @@ impl Live {
         }
     }
 
-    /// The unit of the values, with a space before it; empty if it is not known.
+    /// Returns the unit of the values, with a space before it; empty if it is not known.
     pub fn unit(&self) -> String {
         let channel = self.status.channel.as_deref();
         let unit = channel.and_then(|channel| channel.unit.as_deref());
         unit.map_or(String::new(), |unit| format!(" {unit}"))
     }
 
-    /// The values between which shades are spread.
+    /// Returns the ends of the range of values that the shades cover.
     pub fn range(&self) -> (f64, f64) {
         self.range.ends(self.layer, self.reading.as_ref())
     }
 
-    /// Frames a second, by the times of the last ones; what the recording says where they have none. None while the source
-    /// is silent or lost.
+    /// Returns the frames per second, computed from the times of the last frames or, if they have no times, as stated
+    /// in the recording. None while the source is silent or lost.
     pub fn rate(&self) -> Option<f64> {
         if matches!(
             self.status.state,
@@ -351,7 +354,7 @@ impl Live {
         self.history.rate().or_else(stated)
     }
 
-    /// Takes what has come.
+    /// Takes new frames, and the state of the source.
     pub fn take(&mut self, batch: &FrameBatch) {
         let had_channel = self.status.channel.is_some();
         self.status = batch.status.clone();
@@ -376,8 +379,8 @@ impl Live {
         }
     }
 
-    /// Takes what has become of a frame that is not confirmed yet, whose number in the history is or was to be this one.
-    /// Returns whether another frame, or none, is in its place.
+    /// Takes a change of the frame that is not confirmed yet. Its number in the history is `number`, now or once it
+    /// is confirmed. Returns true if the shown frame may have changed.
     fn take_provisional(&mut self, change: &ProvisionalChange, number: u64) -> bool {
         let next = match change {
             ProvisionalChange::Unchanged => return false,
@@ -385,19 +388,19 @@ impl Live {
             ProvisionalChange::Gone => None,
         };
         let before = std::mem::replace(&mut self.provisional, next);
-        // A frame that the history no longer holds can no longer be compared; its mark stays.
+        // A frame that has left the history cannot be compared any more; its mark stays.
         let has_left = self.history.oldest() > Some(number);
         if let Some(before) = before.as_ref().filter(|_| !has_left) {
             let present = self.history.get(number).or(self.provisional.as_ref());
             if !present.is_some_and(|present| is_same(present, before)) {
-                // Withdrawn: another frame has its number, or will have it.
+                // The frame was withdrawn: another frame has its number, or will have it.
                 self.marks.take_off(number);
             }
         }
         before.is_some() || self.provisional.is_some()
     }
 
-    /// Takes what a recording says of its channel: threshold, tare and marks.
+    /// Takes threshold, tare and marks from a recording's description of its channel.
     fn take_channel(&mut self, channel: &ChannelInfo) {
         if self.rule.is_none() {
             self.set_rule(channel.own_rule(self.processing.least));
@@ -406,7 +409,7 @@ impl Live {
         self.retare(|tare, processing| tare.take_own(channel, processing));
     }
 
-    /// Takes a new frame into the history, the held peak, the range and a tare being made.
+    /// Adds a new frame to the history, the held peak, the range and a tare that is being made.
     fn add(&mut self, frame: &Arc<Frame>) {
         if let Ok(values) = self.processing.values(frame) {
             self.range.add(values);
@@ -418,7 +421,7 @@ impl Live {
         self.retare(|tare, processing| tare.add(frame, processing));
     }
 
-    /// Does something about the tare. If another one is subtracted then, the range is that of the last frames after it.
+    /// Changes the tare. If another tare is subtracted afterwards, the range is computed again from the last frames.
     fn retare<T>(&mut self, act: impl FnOnce(&mut LiveTare, &mut Processing) -> T) -> T {
         let before = self.tare.mark();
         let done = act(&mut self.tare, &mut self.processing);
@@ -436,10 +439,11 @@ impl Live {
         done
     }
 
-    /// Subtracts the median of the frames up to the one that is shown. Returns of how many.
+    /// Subtracts the median of the last frames up to the shown one. Returns the number of these frames.
     ///
     /// # Errors
-    /// Before the first frame, for a frame that has left the history, and if the frames are of different sizes.
+    /// Returns an error before the first frame, for a frame that has left the history, and if the frames are of
+    /// different sizes.
     pub fn tare_now(&mut self) -> Result<u64, LiveRefusal> {
         let shown = self.frozen.or(self.history.newest());
         let shown = shown.ok_or(LiveRefusal::NoFrame)?;
@@ -452,21 +456,21 @@ impl Live {
         Ok(frames.len() as u64)
     }
 
-    /// Takes nothing off any more; `false` if there was no tare.
+    /// Removes the tare. Returns false if there was none.
     pub fn drop_tare(&mut self) -> bool {
         let any = self.retare(LiveTare::give_up);
         self.read();
         any
     }
 
-    /// Notes a rule with where it is from, and has frames read by it from now on.
+    /// Sets the threshold, together with its origin, and processes frames by it from now on.
     fn set_rule(&mut self, rule: Option<SetRule>) {
         self.is_viewed_anew |= self.rule != rule;
         self.rule = rule;
         SetRule::apply(rule, &mut self.processing);
     }
 
-    /// Takes a rule that a key leads to, and reads the frame again; a value out of range changes nothing.
+    /// Sets the rule that a key has produced, and reads the frame again. A rule out of range changes nothing.
     fn choose(&mut self, rule: &Result<Rule, FrameError>) {
         if let &Ok(rule) = rule {
             let (least, from) = (self.processing.least, RuleOrigin::Key);
@@ -475,16 +479,17 @@ impl Live {
         }
     }
 
-    /// The threshold up or down by a step, which goes by the largest value so far; without one, one is set.
+    /// Moves the threshold up or down by a step that depends on the largest value so far. Without a threshold, one is
+    /// set.
     pub fn step_threshold(&mut self, direction: i8) {
         let rule = self.rule.map(|set| set.rule);
         self.choose(&threshold::step(rule, direction, self.range.tared_top()));
     }
 
-    /// A threshold in percent in place of one in the sensor's unit, or the other way round: one that gives about the same
-    /// imprint of the frame that is shown. Twice in a row, it gives the former threshold, also if that was above all values.
+    /// Converts the threshold from the sensor's unit to percent, or back, such that the imprint of the shown frame
+    /// stays about the same. Two conversions in a row restore the former threshold, even if it was above all values.
     pub fn switch_unit(&mut self) {
-        // Rules go by the tared values, whichever are shown.
+        // Rules apply to the tared values, whichever layer is shown.
         let largest = self.reading.as_ref().and_then(|reading| reading.tared_max);
         let largest = largest.filter(|&largest| largest > 0.0);
         let largest = largest.unwrap_or(self.range.tared_top());
@@ -498,7 +503,7 @@ impl Live {
         self.converted = other.ok().zip(rule);
     }
 
-    /// Stays at the frame that is shown, or follows the source again. Returns whether it stays.
+    /// Freezes the shown frame, or follows the source again. Returns true if the frame is frozen.
     pub fn freeze(&mut self) -> bool {
         self.frozen = match self.frozen {
             Some(_) => None,
@@ -508,7 +513,7 @@ impl Live {
         self.frozen.is_some()
     }
 
-    /// Goes to another frame of the history and stays there.
+    /// Shows the frame that is `by` frames later in the history, or earlier if `by` is negative, and stays there.
     pub fn scrub(&mut self, by: i64) {
         if let (Some(oldest), Some(newest)) = (self.history.oldest(), self.history.newest()) {
             let shown = self.frozen.unwrap_or(newest).saturating_add_signed(by);
@@ -517,7 +522,7 @@ impl Live {
         }
     }
 
-    /// Goes to the oldest frame of the history and stays there.
+    /// Shows the oldest frame of the history, and stays there.
     pub fn to_oldest(&mut self) {
         self.frozen = self.history.oldest();
         self.read();
@@ -529,12 +534,13 @@ impl Live {
         self.read();
     }
 
-    /// Shows the largest value that each cell has from now on, or the present values again. Returns whether it does.
+    /// Shows the largest value of each cell from now on, or the present values again. Returns true if the largest are
+    /// shown.
     pub fn hold_peak(&mut self) -> bool {
         self.held = if self.held.is_some() {
             None
         } else {
-            // Not of one that may be withdrawn.
+            // Not of a frame that may be withdrawn.
             let confirmed = self.frozen.or_else(|| self.history.newest());
             confirmed.and_then(|number| self.history.get(number).cloned())
         };
@@ -542,28 +548,29 @@ impl Live {
         self.held.is_some()
     }
 
-    /// Shows the next of raw values, tared values and imprint.
+    /// Shows the next layer: raw values, tared values or imprint.
     pub fn next_layer(&mut self) -> HeatLayer {
         self.layer = self.layer.next();
         self.read();
         self.layer
     }
 
-    /// Spreads shades over the values of the frame, or over a fixed range. Returns whether over those of the frame.
+    /// Spreads the shades over the values of the shown frame, or over a fixed range. Returns true if over the frame's
+    /// values.
     pub fn switch_range(&mut self) -> bool {
         self.range.is_own = !self.range.is_own;
         self.range.is_own
     }
 
-    /// Notes that a recording has begun, or ended.
+    /// Notes that a recording has begun in the file `name`, or has ended.
     pub fn set_recording(&mut self, name: Option<String>) {
         self.recording.set(name);
-        // Those of the one before.
+        // These belong to the recording before.
         self.status.recorded = None;
         self.status.record_error = None;
     }
 
-    /// Notes that a recording has failed, or cannot be begun, and why.
+    /// Notes why a recording has failed, or why it cannot be begun.
     pub fn fail_recording(&mut self, reason: String) {
         let asked = self.request.write.as_ref();
         let asked = asked.map(|(path, _)| path.to_string_lossy());
@@ -576,8 +583,9 @@ impl Live {
         self.recording.stop();
     }
 
-    /// Takes frames again, those of a piece of work of this number; history, threshold and tare stay. The source counts
-    /// them from 0 again, so what goes by its numbers is given up: marks, the held peak, the age of the tare.
+    /// Takes frames again, from the work of this number; history, threshold and tare stay. The source counts its
+    /// frames from 0 again, so everything that refers to its numbers is given up: marks, the held peak, the age of
+    /// the tare.
     pub fn restart(&mut self, number: u64) {
         self.number = number;
         self.watched_from = self.history.next_number();
@@ -596,18 +604,18 @@ impl Live {
         self.name_by(choice, number);
     }
 
-    /// The frame that is shown, before anything is done with it, and its number in the history: of one that is not
-    /// confirmed yet the number that it will have.
+    /// Returns the shown frame, unprocessed, and its number in the history; a frame that is not confirmed yet has the
+    /// number that it will have.
     fn shown(&self) -> Option<(u64, Arc<Frame>)> {
         let Some(number) = self.frozen else {
-            // A held peak is that of confirmed frames.
+            // A held peak is made of confirmed frames.
             if let (Some(frame), None) = (&self.provisional, &self.held) {
                 return Some((self.history.next_number(), Arc::clone(frame)));
             }
             let number = self.history.newest()?;
             return Some((number, Arc::clone(self.history.get(number)?)));
         };
-        // One that has left the history stays as long as it is looked at.
+        // A frame that has left the history stays as long as it is shown.
         let looked_at = || self.reading.as_ref().map(|reading| &reading.frame);
         let frame = self.history.get(number).or_else(looked_at)?;
         Some((number, Arc::clone(frame)))
@@ -625,10 +633,10 @@ impl Live {
         };
     }
 
-    /// What can be said of a frame, and what is wrong with it.
+    /// Processes a frame. Returns the result, and the error if there is one.
     ///
-    /// Where a threshold by noise has no tare to go by, that is all but the imprint, and no error while the tare is being
-    /// made.
+    /// A threshold by noise needs a tare. Without one, the result lacks the imprint, and the error is omitted while
+    /// the tare is being made.
     fn read_frame(&mut self, frame: Arc<Frame>) -> (Option<LiveReading>, Option<FrameError>) {
         match LiveReading::of(Arc::clone(&frame), &mut self.processing, self.layer) {
             Ok(reading) => (Some(reading), None),

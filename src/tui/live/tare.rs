@@ -1,5 +1,5 @@
-//! The tare of the live page: made of the first frames if that is asked for at the start, otherwise that of the recording,
-//! and by a key of the last frames.
+//! The tare of the live page. At the start it is made of the first frames if that is requested, otherwise it is the
+//! tare of the recording. A key makes it of the last frames.
 
 use std::sync::Arc;
 
@@ -9,34 +9,35 @@ use crate::frame::{Frame, FrameError, Processing, TareFrames};
 use crate::matrix::Matrix;
 use crate::tui::live::request::WatchRequest;
 
-/// How a tare was made.
+/// The origin of a tare.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TareMark {
-    /// How many frames it was made of.
+    /// The number of frames that the tare was made of.
     pub frames: u64,
-    /// The number of the last of these; None where that is of another recording, or of the source as it was watched before.
+    /// The number of the last of these frames; None for a tare of another recording, or from before the source was
+    /// watched again.
     pub number: Option<u64>,
-    /// Its time.
+    /// The time of the last of these frames, in seconds.
     pub time: Option<f64>,
 }
 
-/// How the tare of the page is made. What is subtracted stands in the [`Processing`] of the page.
+/// How the tare of the page is made. The values to subtract are in the [`Processing`] of the page.
 #[derive(Clone, Debug)]
 pub(super) struct LiveTare {
-    /// Of how many of the first frames it is to be made, until a key has made or removed one; 0 for none.
+    /// The number of first frames that a tare was requested of, until a key makes or removes a tare; 0 for none.
     wanted: u64,
-    /// The first frames, until they are enough for the tare that was asked for.
+    /// The first frames, until there are enough for the requested tare.
     first: Option<TareFrames>,
-    /// How the tare was made; None if nothing is subtracted.
+    /// The origin of the tare; None if nothing is subtracted.
     mark: Option<TareMark>,
-    /// Whether the tare that a recording's own description names is taken once that is known.
+    /// Whether the tare in the recording's own description is used once that is known.
     takes_own: bool,
-    /// Why the tare that was asked for at the start is not there.
+    /// Why the tare that was requested at the start is missing.
     error: Option<FrameError>,
 }
 
 impl LiveTare {
-    /// The tare that is asked for at the start.
+    /// Creates the state at the start, with the requested tare.
     pub(super) fn new(request: &WatchRequest) -> Self {
         Self {
             wanted: request.tare,
@@ -47,23 +48,23 @@ impl LiveTare {
         }
     }
 
-    /// How it was made; None without one.
+    /// Returns the origin of the tare; None without one.
     pub(super) fn mark(&self) -> Option<TareMark> {
         self.mark
     }
 
-    /// How many of the first frames have come, and of how many it will be made; None where it is not being made.
+    /// Returns how many frames have come for the tare, and how many it needs; None if no tare is being made.
     pub(super) fn progress(&self) -> Option<(u64, u64)> {
         let first = self.first.as_ref()?;
         Some((first.wanted() - first.missing(), first.wanted()))
     }
 
-    /// Why the tare that was asked for at the start is not there.
+    /// Returns why the tare that was requested at the start is missing.
     pub(super) fn error(&self) -> Option<&FrameError> {
         self.error.as_ref()
     }
 
-    /// Takes what a recording says of its own tare, if none was asked for and it fits.
+    /// Uses the recording's own tare, if no other was requested and it fits.
     pub(super) fn take_own(&mut self, channel: &ChannelInfo, processing: &mut Processing) {
         let takes_own = std::mem::take(&mut self.takes_own);
         if let Some(tare) = channel.tare_for(&processing.view).filter(|_| takes_own) {
@@ -76,7 +77,7 @@ impl LiveTare {
         }
     }
 
-    /// Adds one of the first frames, and takes the tare into use with the last of them.
+    /// Adds one of the first frames, and uses the tare after the last of them.
     pub(super) fn add(&mut self, frame: &Frame, processing: &mut Processing) {
         let Some(mut first) = self.first.take() else {
             return;
@@ -94,7 +95,7 @@ impl LiveTare {
         self.error = ended.err();
     }
 
-    /// Notes that no more frames will come. Returns whether a tare was being made, which cannot be made any more.
+    /// Notes that no more frames will come. Returns true if a tare was being made, which cannot be finished any more.
     pub(super) fn end_of_source(&mut self) -> bool {
         let Some(first) = self.first.take() else {
             return false;
@@ -103,10 +104,10 @@ impl LiveTare {
         true
     }
 
-    /// Makes it of frames, the last one first. Without a frame it stays as it is.
+    /// Makes the tare of frames, the last one first. Without frames it stays as it is.
     ///
     /// # Errors
-    /// If they are of different sizes; then, too, it stays as it is.
+    /// Returns an error if the frames are of different sizes; the tare stays as it is then, too.
     pub(super) fn of_last(
         &mut self,
         frames: &[Arc<Frame>],
@@ -126,7 +127,7 @@ impl LiveTare {
         Ok(())
     }
 
-    /// Puts a tare into use, and notes of which frame it is, to say its age.
+    /// Uses a tare, and notes its last frame, by which its age is shown.
     fn end(
         &mut self,
         frames: TareFrames,
@@ -143,7 +144,7 @@ impl LiveTare {
         Ok(())
     }
 
-    /// Takes nothing off any more; `false` if there was no tare, and none was being made.
+    /// Removes the tare, and stops making one. Returns false if there was none and none was being made.
     pub(super) fn give_up(&mut self, processing: &mut Processing) -> bool {
         let was = self.mark.is_some() || self.first.is_some();
         (self.mark, self.first, self.error, self.wanted) = (None, None, None, 0);
@@ -151,8 +152,8 @@ impl LiveTare {
         was
     }
 
-    /// Notes that the source is watched again, which counts its frames from 0: a tare stays without its age, and one that
-    /// was being made, or for which there were too few frames, begins anew.
+    /// Notes that the source is watched again, which counts its frames from 0: an existing tare stays without its
+    /// age. A tare that was being made, or that lacked frames, begins anew.
     pub(super) fn restart(&mut self) {
         self.mark = self.mark.map(|mark| TareMark {
             number: None,
@@ -165,7 +166,7 @@ impl LiveTare {
     }
 }
 
-/// How many frames have come for a tare, and how many it needs: `3 of 30 frames`.
+/// Formats how many frames have come for a tare, and how many it needs: `3 of 30 frames`.
 pub(super) fn progress_text((taken, wanted): (u64, u64)) -> String {
     format!("{taken} of {}", counted(wanted, "frame"))
 }
@@ -175,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tare_for_which_frames_lacked_is_made_when_the_source_is_watched_again() {
+    fn a_tare_that_lacked_frames_is_made_when_the_source_is_watched_again() {
         let mut request = WatchRequest::new("none");
         request.tare = 2;
         let (mut tare, mut processing) = (LiveTare::new(&request), Processing::default());
@@ -188,7 +189,7 @@ mod tests {
             tare.add(&frame, &mut processing);
         }
         assert_eq!((tare.progress(), processing.tare.is_some()), (None, true));
-        // One that is there stays; one that was removed does not come back.
+        // An existing tare stays; a removed one does not come back.
         tare.restart();
         assert!(tare.progress().is_none() && processing.tare.is_some());
         assert!(tare.give_up(&mut processing));

@@ -1,13 +1,14 @@
-//! How keys change a threshold: a step up or down, another unit.
+//! How keys change a threshold: by a step up or down, or to another unit.
 
 use crate::frame::{FrameError, Rule};
 use crate::tui::live::reading::{nine_digits, round_up};
 
-/// The threshold up or down by a step, a hundredth of the top of the range, in round numbers; without one, a twentieth of
-/// that. In percent the step is 5 %, in deviations of the noise it is 1.
+/// Moves the threshold up or down by a step: a hundredth of the top of the range, in round numbers. In percent the
+/// step is 5 %, in deviations of the noise it is 1. Without a threshold, it becomes a twentieth of the top of the
+/// range.
 ///
 /// # Errors
-/// If it is out of range then.
+/// Returns an error if the threshold is out of range then.
 pub(super) fn step(rule: Option<Rule>, direction: i8, top: f64) -> Result<Rule, FrameError> {
     let by = f64::from(direction);
     let step = round_up(top / 100.0) * by;
@@ -22,8 +23,8 @@ pub(super) fn step(rule: Option<Rule>, direction: i8, top: f64) -> Result<Rule, 
     }
 }
 
-/// A value after a step within bounds. One that is beyond a bound already stays where the step would lead further away: a
-/// step down never goes up, and a step up never down.
+/// Returns a value after a step within bounds. A value already beyond a bound stays if the step would lead further
+/// away: a step down never goes up, and a step up never down.
 fn stepped(value: f64, step: f64, (least, most): (f64, f64)) -> f64 {
     let next = value + step;
     if step < 0.0 {
@@ -33,10 +34,10 @@ fn stepped(value: f64, step: f64, (least, most): (f64, f64)) -> f64 {
     }
 }
 
-/// A threshold in percent of the largest value in place of one in the sensor's unit, or the other way round.
+/// Converts a threshold from the sensor's unit to percent of the largest value, or back.
 ///
 /// # Errors
-/// If it is out of range then.
+/// Returns an error if the threshold is out of range then.
 pub(super) fn other_unit(rule: Option<Rule>, largest: f64) -> Result<Rule, FrameError> {
     match rule {
         Some(Rule::Percent(percent)) => Rule::at_least(nine_digits(Rule::share(percent, largest))),

@@ -8,13 +8,13 @@ use crate::tui::live::tare::progress_text;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Columns that the name of the source keeps in the title when something of rank 2 to 4 is left out, and when something of
-/// rank 1 is shortened. It is shortened first: the user knows what was typed.
+/// The columns that the name of the source keeps in the title when pieces of rank 2 to 4 are left out, and when
+/// pieces of rank 1 are shortened. The name is shortened first, because the user typed it and knows it.
 const SHORT_NAME: usize = 16;
 const SHORTEST_NAME: usize = 4;
 
-/// What is shown, and how; `window`: which part of the taxels, at length and in short.
-/// What is the usual state, such as following the source, is not said; a channel is named only where there are several.
+/// Returns the pieces of the title. `window` is the visible part of the taxels, as a long and a short text. Usual
+/// states, such as following the source, are omitted; a channel is named only if there are several.
 pub(super) fn title(live: &Live, window: Option<[String; 2]>) -> Vec<TitlePiece> {
     let mut pieces = vec![TitlePiece {
         text: live.request().name(),
@@ -32,7 +32,7 @@ pub(super) fn title(live: &Live, window: Option<[String; 2]>) -> Vec<TitlePiece>
     pieces
 }
 
-/// Which frame is shown, and of which channel.
+/// Returns the pieces about the frame and its channel.
 fn of_frame(live: &Live) -> Vec<TitlePiece> {
     let mut pieces = Vec::new();
     let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, &text, role));
@@ -58,7 +58,7 @@ fn of_frame(live: &Live) -> Vec<TitlePiece> {
     pieces
 }
 
-/// Whether it stays or follows the source, what is shown of it, and what is not as usual.
+/// Returns the pieces about the state: whether the frame is frozen, which layer is shown, and everything unusual.
 fn of_state(live: &Live) -> Vec<TitlePiece> {
     let mut pieces = Vec::new();
     let mut say = |rank, text: String, role| pieces.push(TitlePiece::new(rank, &text, role));
@@ -91,7 +91,7 @@ fn of_state(live: &Live) -> Vec<TitlePiece> {
         say(4, format!("tare: {}", progress_text(progress)), Role::Focus);
     }
     if live.holds_peak() {
-        // A frame that is frozen is shown as it came.
+        // A frozen frame is shown as it came, without the held peak.
         let rank = if live.frozen().is_none() { 1 } else { 4 };
         say(rank, "peak held".to_owned(), Role::Focus);
     }
@@ -101,19 +101,19 @@ fn of_state(live: &Live) -> Vec<TitlePiece> {
     pieces
 }
 
-/// A part of the title.
+/// A piece of the title.
 pub(super) struct TitlePiece {
-    /// What it says, after two blanks but for the name of the source.
+    /// The text; it begins with two blanks, except for the name of the source.
     pub(super) text: String,
-    /// The same in fewer columns; None where there is no such way.
+    /// A shorter text; None if there is none.
     short: Option<String>,
     pub(super) role: Role,
-    /// Where there is no room for all, those of the highest rank are left out first; the name never is.
+    /// The rank: pieces of the highest rank are left out first if there is no room for all; the name never is.
     rank: u8,
 }
 
 impl TitlePiece {
-    /// A part after the name of the source.
+    /// Creates a piece that follows the name of the source.
     fn new(rank: u8, text: &str, role: Role) -> Self {
         Self {
             text: format!("  {text}"),
@@ -124,8 +124,8 @@ impl TitlePiece {
     }
 }
 
-/// The title in a number of columns. What tells how to read the numbers, such as that they are frozen or maxima, and that
-/// they are recorded, stays longest; then the name is shortened.
+/// Shortens the title to a number of columns. Pieces that are needed to read the numbers correctly (frozen, peak
+/// held), and the note that they are recorded, stay longest; then the name is shortened.
 pub(super) fn fitting_title(
     mut pieces: Vec<TitlePiece>,
     room: usize,

@@ -1,5 +1,5 @@
-//! What messages do on the live page, and what its source reports. The source goes on while the imprint is on the matrix,
-//! and ends when the page is closed.
+//! How the live page handles messages and the reports of its source. The source keeps running while the imprint is on
+//! the matrix, and ends when the page is closed.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -26,8 +26,8 @@ use crate::tui::live::state::Live;
 use crate::tui::live::view;
 use crate::tui::runtime::effect::{Effect, FileRequest, Work};
 
-/// Handles what is asked for over the matrix.
-/// What concerns the open page only, such as a tare, does nothing here: there is no page to do it on.
+/// Handles a request over the matrix. Requests about the open page, such as a tare, do nothing here, because no page
+/// is open.
 pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
     match asked {
         LiveMessage::Watch(request) => Some(watch(app, request)),
@@ -37,14 +37,14 @@ pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> 
     }
 }
 
-/// Has a source looked at; it is watched if it can be read.
+/// Requests a check of a source; it is watched if it can be read.
 fn look(app: &App, source: &NamedSource) -> Effect {
     let request = source.request(&app.watch_settings);
     Effect::File(FileRequest::Source(Arc::new(request)))
 }
 
-/// Opens a page for a source, in place of the one before.
-/// What is still reported of the source before has its own number, and is dropped.
+/// Opens a page for a source, in place of the one before. Late reports of the source before have its own number, and
+/// are dropped.
 fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
     app.works += 1;
     let mut page = Live::new(Arc::clone(request), app.works);
@@ -75,9 +75,9 @@ fn begin(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
     })
 }
 
-/// Opens the page of the last source, which is watched again if it was left.
-/// Its history and settings are still there; frames that came while it was left are not. The recording that was asked for
-/// at the start is finished, and stays as it is.
+/// Opens the page of the last source. A source that was left is watched again: its history and settings are still
+/// there; frames that came meanwhile are not. The recording that was requested at the start is finished, and stays as
+/// it is.
 fn open(app: &mut App) -> Option<Effect> {
     let Some(mut page) = app.live.take() else {
         refuse(
@@ -96,8 +96,8 @@ fn open(app: &mut App) -> Option<Effect> {
     effect
 }
 
-/// Handles a message over the page.
-/// Closing ends the source and keeps the page; Enter keeps both, because one often comes back for the next imprint.
+/// Handles a message over the page. Closing ends the source and keeps the page; Enter keeps both, because users often
+/// come back for the next imprint.
 pub(in crate::tui) fn in_live(
     app: &mut App,
     mut page: Box<Live>,
@@ -129,9 +129,9 @@ pub(in crate::tui) fn in_live(
     effect
 }
 
-/// The imprint that is shown, as if it were drawn; None without one.
-/// The sensor has the size of the frame, and its pitch in mm where that is known and cells are square; otherwise the
-/// default pitch stands, with which lengths are shown in taxels only.
+/// Returns the shown imprint as a drawn one; None without one. The sensor has the size of the frame, and its pitch in
+/// mm if that is known and cells are square; otherwise the default pitch is kept, with which lengths are shown in
+/// taxels only.
 fn document(page: &Live) -> Option<Document> {
     let imprint = page.reading()?.imprint?;
     let sensor = Sensor::new(imprint.columns(), imprint.rows()).ok()?;
@@ -143,8 +143,8 @@ fn document(page: &Live) -> Option<Document> {
     Some(document)
 }
 
-/// Puts the imprint onto the matrix; the source goes on meanwhile. No source sends the same frame again, so the imprint
-/// counts as unsaved. Says why lengths are not in mm, if the recording gives the size of its cells.
+/// Puts the imprint onto the matrix; the source keeps running. The imprint counts as unsaved, because no source sends
+/// the same frame again. If the recording gives the size of its cells but lengths are not in mm, the notice says why.
 fn take(app: &mut App, page: Box<Live>, document: Document) {
     let number = page.reading().map(|reading| reading.frame.number);
     let channel = page.status().channel.as_deref();
@@ -161,7 +161,7 @@ fn take(app: &mut App, page: Box<Live>, document: Document) {
     inform(app, text);
 }
 
-/// Says why there is no imprint to take.
+/// Shows why there is no imprint to take.
 fn refuse_imprint(app: &mut App, page: &Live) {
     let key = app.keymap().label(Context::Live, &action::THRESHOLD_UP);
     let text = match page.no_imprint() {
@@ -171,7 +171,7 @@ fn refuse_imprint(app: &mut App, page: &Live) {
     refuse(app, text);
 }
 
-/// Changes how frames are looked at, or begins and ends a recording.
+/// Changes how frames are shown, or begins and ends a recording.
 fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect> {
     match asked {
         LiveMessage::Tare => match page.tare_now() {
@@ -231,7 +231,8 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
     None
 }
 
-/// Shows taxels further in a direction, where not all are visible. The first time says how to see the contact again.
+/// Shows taxels further in a direction, if not all are visible. The first time, a notice says how to see the contact
+/// again.
 fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
     if page.display.only_panel {
         let key = app.keymap().label(Context::Live, &action::PANEL);
@@ -260,7 +261,7 @@ fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
     page.display.looked_at = next;
 }
 
-/// Marks the frame that is shown, or takes its mark off.
+/// Marks the shown frame, or removes its mark.
 fn mark(app: &mut App, page: &mut Live) {
     let (number, marked) = match page.mark() {
         Ok(marked) => marked,
@@ -272,10 +273,10 @@ fn mark(app: &mut App, page: &mut Live) {
     inform(app, format!("frame {number}: {text}"));
 }
 
-/// A new description of the recording, if threshold, tare or marks have changed since the last one; otherwise the search for
-/// the name of the imprint that is shown.
+/// Returns the next work of the page: a new description of the recording if threshold, tare or marks have changed
+/// since the last one; otherwise the search for the name of the shown imprint.
 ///
-/// They change by keys, by frames that take a mark with them, and while the recording is being begun.
+/// They change by keys, by frames that are withdrawn with their marks, and while the recording is being begun.
 pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     let page = page(app).filter(|page| !page.stopped())?;
     if let Some(view) = page.take_changed_view() {
@@ -285,12 +286,11 @@ pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     Some(Effect::Work(Work::Name(Box::new(imprint))))
 }
 
-/// Begins a recording, or ends it.
-/// The description of the recording says how its frames were looked at last. The frames are written as they come, without
-/// view, tare or threshold.
+/// Begins a recording, or ends it. The frames are written as they come, without view, tare or threshold; the
+/// description of the recording says how they were looked at last.
 ///
 /// # Errors
-/// After the end of the source.
+/// Returns an error after the end of the source.
 fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
     if page.recording().name().is_some() {
         page.set_recording(None);
@@ -307,7 +307,7 @@ fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
         rule: page.rule(),
         tare: page.tare_values().cloned(),
         seconds_per_frame: channel.and_then(|channel| channel.seconds_per_frame),
-        // Frames that were marked before are not in it.
+        // Frames that were marked before are not in the recording.
         marks: Vec::new(),
         ended: None,
         ended_by: None,
@@ -315,7 +315,7 @@ fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
     Ok(Effect::Work(Work::Record(Box::new(metadata))))
 }
 
-/// The page of the source that was watched last, open or not.
+/// Returns the page of the source that was watched last, open or not.
 pub(in crate::tui) fn last_page(app: &App) -> Option<&Live> {
     let mut dialogs = app.dialogs.iter().rev();
     let open = dialogs.find_map(|dialog| match dialog {
@@ -325,7 +325,7 @@ pub(in crate::tui) fn last_page(app: &App) -> Option<&Live> {
     open.or(app.live.as_ref()).map(|page| &**page)
 }
 
-/// The same, to change it.
+/// Returns the page of the source that was watched last, open or not, to change it.
 fn page(app: &mut App) -> Option<&mut Live> {
     let mut dialogs = app.dialogs.iter_mut().rev();
     let open = dialogs.find_map(|dialog| match dialog {
@@ -335,9 +335,8 @@ fn page(app: &mut App) -> Option<&mut Live> {
     open.or(app.live.as_mut()).map(|page| &mut **page)
 }
 
-/// Takes what the source reports.
-/// Events of a source that is no longer watched are dropped, by their number; but not what became of a recording, which
-/// is finished after the source is left.
+/// Handles a report of the source. Reports of a source that is no longer watched are dropped, by their number; except
+/// reports of a finished recording, because a recording is finished after its source is left.
 pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
     match event {
         LiveEvent::Recorded(name, 0) => {
@@ -379,7 +378,7 @@ pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
     );
     let is_wrong = page.error().is_some() && page.error() != error.as_ref();
     if is_open && (is_wrong || now.0.is_some() && now.0 != trouble) {
-        // The page says it; an old notice, such as that of the beginning of a recording, is no longer true.
+        // The page shows the trouble; an old notice, such as that of the beginning of a recording, is no longer true.
         app.notice = None;
     } else if !is_open
         && let (_, Some(reason)) = now
@@ -396,7 +395,7 @@ mod tests {
     use crate::tui::live::message::FrameBatch;
 
     #[test]
-    fn small_pieces_are_dropped_by_a_threshold_that_a_key_sets() {
+    fn a_threshold_set_by_key_still_drops_small_pieces() {
         let mut request = WatchRequest::new("none");
         request.processing.least = 4;
         let mut page = Live::new(Arc::new(request), 7);

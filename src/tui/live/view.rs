@@ -1,4 +1,4 @@
-//! How the live page looks.
+//! The look of the live page.
 //!
 //! ```text
 //! mat.csv  frame 65 (label 66)  6.5 s  frozen, 3 frames behind
@@ -32,10 +32,10 @@ use crate::tui::live::title::{fitting_title, title};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Columns of the names of numbers.
+/// The number of columns for the labels of numbers.
 const LABEL: usize = 11;
 
-/// The descriptors that are shown.
+/// The keys of the shown descriptors.
 const SHOWN: [&str; 5] = ["na", "nae", "p", "f", "cg"];
 
 impl Page for Live {
@@ -105,14 +105,14 @@ impl Page for Live {
     }
 }
 
-/// The panes of the page.
+/// Returns the panes of the page.
 fn panes(live: &Live, area: Rect) -> LivePanes {
     let reading = live.reading().filter(|_| !live.display.only_panel);
     let size = reading.map(|reading| (reading.values.columns(), reading.values.rows()));
     LivePanes::of(area, size, live.display.numbers)
 }
 
-/// Whether not all taxels are visible on a page of this area, although they are not hidden altogether.
+/// Returns true if some taxels do not fit on a page of this area, although the heat map is shown.
 pub(super) fn hides_taxels(live: &Live, area: Rect) -> bool {
     let Some(reading) = live.reading().filter(|_| !live.display.only_panel) else {
         return false;
@@ -122,25 +122,26 @@ pub(super) fn hides_taxels(live: &Live, area: Rect) -> bool {
     (grid.columns.count, grid.rows.count) != size
 }
 
-/// The taxel to look at to see others in a direction, on a page of this area; None where there are none.
+/// Returns the taxel to look at to see hidden ones in a direction, on a page of this area; None if none are hidden
+/// there.
 pub(super) fn beyond(live: &Live, theme: &Theme, area: Rect, towards: Arrow) -> Option<(u8, u8)> {
     let reading = live.reading().filter(|_| !live.display.only_panel)?;
     let map = HeatMap::of(live, reading, theme, panes(live, area).map);
     map.beyond(towards, live)
 }
 
-/// A number with its name.
+/// A line of the panel: a number with its label.
 struct PanelLine {
-    /// Its name.
+    /// The label.
     label: &'static str,
     /// The number with its unit, or why there is none.
     text: String,
-    /// The same in fewer columns, longer ones first.
+    /// Shorter texts, longer ones first.
     shorter: Vec<String>,
 }
 
 impl PanelLine {
-    /// A line that has no shorter form.
+    /// Creates a line that has no shorter form.
     fn new(label: &'static str, text: String) -> Self {
         Self {
             label,
@@ -149,7 +150,7 @@ impl PanelLine {
         }
     }
 
-    /// A line in several forms, longer ones first; `none` if there are none.
+    /// Creates a line in several forms, longer ones first; its text is `none` if there are no forms.
     fn of_forms(label: &'static str, forms: Vec<String>, none: &str) -> Self {
         let mut forms = forms.into_iter();
         let text = forms.next().unwrap_or_else(|| none.to_owned());
@@ -160,7 +161,7 @@ impl PanelLine {
         }
     }
 
-    /// A line with a shorter form that leaves out what the whole says after its first `mark`.
+    /// Creates a line with a shorter form, which ends before the first `mark`.
     fn up_to(label: &'static str, text: String, mark: &str) -> Self {
         let shorter = text.split_once(mark).map(|(head, _)| head.to_owned());
         let shorter = shorter.into_iter().collect();
@@ -172,9 +173,8 @@ impl PanelLine {
     }
 }
 
-/// All numbers, the most important ones first.
-/// A low screen cuts them off at the foot: what the touch is like comes before what the source is like. `marks`: what a mark
-/// on taxels says.
+/// Returns all lines of the panel, the most important ones first. A low screen cuts them off at the bottom, so lines
+/// about the touch come before lines about the source. `marks` is the legend of the mark on taxels.
 fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> Vec<PanelLine> {
     let mut lines = Vec::new();
     if let Some(reading) = live.reading() {
@@ -212,8 +212,8 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> 
     lines
 }
 
-/// A descriptor of the imprint, a point with fewer decimals where they have no room.
-/// An imprint without active taxels has counts; where there is no imprint, there is nothing to count.
+/// Returns the line of a descriptor of the imprint; a point gets fewer decimals in its shorter forms. An imprint
+/// without active taxels has counts of 0; without an imprint there is no number.
 fn described(reading: &LiveReading, descriptor: &'static Descriptor, theme: &Theme) -> PanelLine {
     let of_nothing = reading.imprint.map(|_| descriptor.of_nothing);
     let described = reading.description.as_ref().map(descriptor.measure);
@@ -233,7 +233,7 @@ fn described(reading: &LiveReading, descriptor: &'static Descriptor, theme: &The
     line
 }
 
-/// What can be said of the values of a frame.
+/// Returns the lines about the values of a frame.
 fn of_values(
     live: &Live,
     reading: &LiveReading,
@@ -247,7 +247,7 @@ fn of_values(
     if let Some(marks) = marks {
         say("marks", marks);
     }
-    // What rounding leaves of large values is no measured one.
+    // Small sums of large values are rounding errors, not measured values.
     let is_small = live.range().1 < 0.1;
     let value = if is_small { measured } else { fitting };
     say("sum", format!("{}{unit}", value(reading.sum, 9)));
@@ -263,14 +263,15 @@ fn of_values(
     lines
 }
 
-/// How often the source was lost, and how many seconds of frames are missing; None where it was not.
+/// Returns how often the source was lost, and how many seconds of frames are missing; None if it was not lost.
 fn gaps(live: &Live) -> Option<String> {
     let gaps = live.status().gaps;
     let missing = value::decimal(gaps.missing, 1);
     (gaps.count > 0).then(|| format!("{}, {missing} s missing", grouped(gaps.count)))
 }
 
-/// The file that is recorded in, and how much; or why there is none although it was asked for.
+/// Returns the file that is written and the number of its frames, or why nothing is recorded although it was
+/// requested.
 fn recording(live: &Live) -> Option<String> {
     let Some(name) = live.recording().name() else {
         return live
@@ -292,8 +293,8 @@ fn recording(live: &Live) -> Option<String> {
     })
 }
 
-/// How many regions there are. If there are several, the largest is described, and the active taxels of all are
-/// counted.
+/// Returns the line with the number of regions. If there are several, the largest one is described above, and the
+/// line counts the active taxels of all.
 fn regions(reading: &LiveReading) -> PanelLine {
     let count = reading.regions.to_string();
     if reading.regions < 2 {
@@ -307,8 +308,8 @@ fn regions(reading: &LiveReading) -> PanelLine {
     }
 }
 
-/// The name of the shape, the nearest imprint, and by which model and noise; none where nothing is active. What is said
-/// of an earlier imprint ends in dots.
+/// Returns the lines with the name of the shape, the nearest imprint, and the model with its noise; no name where
+/// nothing is active. Answers about an earlier imprint end in dots.
 fn named(naming: &Naming, shown: Option<&Imprint>, theme: &Theme) -> [PanelLine; 3] {
     let name = naming.request.choice.name();
     let model = match naming.request.noise {
@@ -351,7 +352,7 @@ fn named(naming: &Naming, shown: Option<&Imprint>, theme: &Theme) -> [PanelLine;
     ]
 }
 
-/// The name of the shape and how sure that is, longer forms first.
+/// Returns the name of the shape and how certain it is, longer forms first.
 fn answered(answer: &NamedImprint) -> [String; 3] {
     let name = answer.names.join(" or ");
     match answer.state {
@@ -379,8 +380,8 @@ fn answered(answer: &NamedImprint) -> [String; 3] {
     }
 }
 
-/// The rule of the imprint, and where it is from.
-/// "of the file" marks one that came with a recording; one set by a key has no remark.
+/// Returns the line of the threshold. "of the file" marks a threshold that came with a recording; other origins have
+/// no remark.
 fn threshold(live: &Live, keymap: &Keymap) -> PanelLine {
     let label = "threshold";
     let Some(set) = live.rule() else {
@@ -409,9 +410,9 @@ fn threshold(live: &Live, keymap: &Keymap) -> PanelLine {
     }
 }
 
-/// How many frames the tare was made of, and how long ago.
-/// In seconds where the frames have times, otherwise in frames; no age for a tare made after the frame shown. Of a tare that
-/// is being made, how many of its frames have come.
+/// Returns how many frames the tare was made of, and its age: in seconds if the frames have times, otherwise in
+/// frames; no age for a tare made after the shown frame. For a tare that is being made, returns how many of its
+/// frames have come.
 fn tare(live: &Live) -> String {
     if let Some(progress) = live.tare_progress() {
         return progress_text(progress);
@@ -434,7 +435,7 @@ fn tare(live: &Live) -> String {
     age.map_or(frames.clone(), |age| frames + &age)
 }
 
-/// How many frames were lost, what the last one looked like, and why it is not a frame; then with less of this.
+/// Returns how many frames were lost, a sample of the last one, and why it is not a frame; then shorter forms.
 fn lost(live: &Live) -> Vec<String> {
     let status = live.status();
     let mut forms = vec![grouped(status.lost)];
@@ -447,7 +448,7 @@ fn lost(live: &Live) -> Vec<String> {
     forms
 }
 
-/// Draws the lines from the top; those below the area are left out.
+/// Draws the lines from the top; lines that do not fit into the area are left out.
 fn draw_lines(lines: &[PanelLine], theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let room = usize::from(area.width).saturating_sub(LABEL);
     for (index, line) in lines.iter().enumerate() {
