@@ -1,7 +1,7 @@
-//! What is on the matrix, from a file and to a file: `:open`, `:write` and `:export`.
+//! Reading the matrix from a file, and writing it to one: `:open`, `:write` and `:export`.
 //!
-//! The content of a file decides how it is read, its extension how it is written: an imprint as text, table, bitmap or
-//! array, a shape with what touched as JSON, a drawing as SVG or PNG.
+//! The content of a file decides how it is read, its extension how it is written: an imprint as text, table, bitmap
+//! or array, a shape with its source as JSON, a drawing as SVG or PNG.
 
 use std::path::Path;
 
@@ -17,11 +17,11 @@ use crate::tui::app::message::{FileEvent, Message, OpenedFile};
 use crate::tui::app::state::App;
 use crate::tui::runtime::effect::{Effect, FileRequest};
 
-/// What a name can end in.
+/// The extensions that the name of a file to write can have.
 const ENDINGS: &str = ".txt .csv .npy .pbm .json .svg .png";
 
-/// The request to write a file; None where there is nothing to write, or no format has that ending, which a
-/// notice says.
+/// Returns the request to write a file. Shows a notice and returns None if there is nothing to write, or if no format
+/// has that extension.
 pub(in crate::tui) fn write(app: &mut App, name: String) -> Option<Effect> {
     if app.reading().imprint.is_empty() {
         refuse(app, "nothing to write: the matrix is empty");
@@ -40,7 +40,7 @@ pub(in crate::tui) fn write(app: &mut App, name: String) -> Option<Effect> {
     }
 }
 
-/// What a file of that name holds.
+/// Returns the content of a file of that name, in the format of its extension.
 fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
     let ending = Path::new(name)
         .extension()
@@ -71,7 +71,7 @@ fn content(app: &App, name: &str) -> Result<Vec<u8>, String> {
     }
 }
 
-/// The drawing of what is on the matrix, with the outline of what touches.
+/// Returns the drawing of the matrix, with the outline of the source.
 fn drawing(app: &App) -> Drawing {
     let document = app.shown();
     let mut drawing = Drawing::new(&app.reading().imprint);
@@ -106,7 +106,7 @@ pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect
             app.dialogs.push(Dialog::Question(Question::new(text, yes)));
         }
         FileEvent::Failed(reason) => refuse(app, reason),
-        // Watched by its own page.
+        // Handled by the live page.
         FileEvent::Source(_) => {}
         FileEvent::Paths(paths) => {
             if let Some(Dialog::Command(command)) = app.dialogs.last_mut() {
@@ -117,7 +117,7 @@ pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect
     None
 }
 
-/// The document of a file: a shape with its own sensor, an imprint on a sensor of as many columns and rows.
+/// Returns the document of a file: a shape has its own sensor, an imprint gets a sensor of as many columns and rows.
 fn opened(app: &App, file: OpenedFile) -> Result<Document, String> {
     match file {
         OpenedFile::Shape(shape) => Ok(Document::of_shape(&shape)),
@@ -125,7 +125,8 @@ fn opened(app: &App, file: OpenedFile) -> Result<Document, String> {
     }
 }
 
-/// What a file of taxels does not say, such as pitch and threshold, is taken from the sensor in use.
+/// Returns the document of an imprint. What an imprint file does not say, such as pitch and threshold, is taken from
+/// the sensor in use.
 fn of_imprint(app: &App, imprint: &Imprint) -> Result<Document, String> {
     let sensor = app.history.present().sensor;
     let sensor = sensor

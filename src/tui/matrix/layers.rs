@@ -1,7 +1,7 @@
-//! Layers over the taxels: the true outline of what touches, and the circumscribed rectangle with CG and CD.
+//! Layers over the taxels: the true outline of the source, and the circumscribed rectangle with CG and CD.
 //!
-//! A line is drawn in dots finer than characters. Over an active taxel it is reversed, so the taxel stays told apart
-//! from an inactive one without any colour.
+//! Lines are drawn in dots finer than characters. Over an active taxel they are reversed, so that the taxel differs
+//! from an inactive one even without colour.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -15,13 +15,13 @@ use crate::tui::matrix::layout::{TaxelGrid, TaxelSize};
 use crate::tui::widget::dots::{DOTS, DotCanvas, DotPosition, glyph};
 use crate::tui::widget::theme::{Role, Theme};
 
-/// Straight pieces of an ellipse: on the largest matrix none strays by a dot.
+/// The number of straight pieces that an ellipse is drawn in: even on the largest matrix, none is off by a dot.
 const PIECES: u16 = 256;
 
-/// Lines between two cells are drawn this far on the side of the material, in dots.
+/// How far lines between two cells are shifted to the side of the material, in dots.
 const INSIDE: f64 = 0.25;
 
-/// Which layers are shown. None for what suits the room: shown where taxels are large.
+/// The layers that are shown. None shows a layer only where taxels are large.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Layers {
     /// The true outline.
@@ -31,26 +31,26 @@ pub struct Layers {
 }
 
 impl Layers {
-    /// Whether a layer is shown on a grid.
+    /// Returns true if a layer is shown on a grid.
     pub fn shown(layer: Option<bool>, grid: &TaxelGrid) -> bool {
         layer.unwrap_or(matches!(grid.size, TaxelSize::Square(2..)))
     }
 }
 
-/// Where the dots of the grid are.
+/// A canvas of dots over the grid of taxels.
 struct DotGrid<'a> {
-    /// Where the taxels are.
+    /// The places of the taxels.
     grid: &'a TaxelGrid,
     /// The dots set so far.
     canvas: DotCanvas,
-    /// By how many cells what is drawn is moved.
+    /// The offset of everything that is drawn, in cells.
     by: [f64; 2],
     /// Whether only some of the dots of a line are set.
     faint: bool,
 }
 
 impl<'a> DotGrid<'a> {
-    /// An empty canvas over the grid, nothing moved and lines drawn in full.
+    /// Creates an empty canvas over the grid, without offset and with full lines.
     fn new(grid: &'a TaxelGrid) -> Self {
         let (columns, lines) = grid.characters();
         Self {
@@ -61,23 +61,23 @@ impl<'a> DotGrid<'a> {
         }
     }
 
-    /// A line between two places, faint or not.
+    /// Draws a line between two places, faint or full.
     fn stroke(&mut self, from: DotPosition, to: DotPosition) {
         let faint = self.faint;
-        // By place, so that short pieces of a curve are as faint as a long line.
+        // Which dots are set depends on their place, so that short pieces of a curve are as faint as a long line.
         let start = from.0 + from.1;
         self.canvas.dashed(from, to, |step| {
             !faint || (start + f64::from(step)).rem_euclid(3.0) < 1.0
         });
     }
 
-    /// The dots of a taxel across and down.
+    /// Returns the number of dots of a taxel, across and down.
     fn dots(&self) -> (u16, u16) {
         let size = self.grid.size;
         (size.columns() * DOTS.0, size.half_lines() * DOTS.1 / 2)
     }
 
-    /// A place on the plane, in cell sides, among the dots.
+    /// Converts a place on the plane, in cell sides, to dots.
     fn position(&self, x: f64, y: f64) -> DotPosition {
         let (across, down) = self.dots();
         let (left, top) = (self.grid.columns.first, self.grid.rows.first);
@@ -123,9 +123,9 @@ impl Pen<f64> for DotGrid<'_> {
     }
 }
 
-/// What is drawn over the taxels of a grid.
+/// The layers over the taxels of a grid.
 pub(in crate::tui) struct Overlay<'a> {
-    /// What touches, to draw its outline.
+    /// The source whose outline is drawn.
     pub outline: Option<&'a Source>,
     /// The region whose rectangle, CG and CD are drawn.
     pub region: Option<Description>,
@@ -134,7 +134,7 @@ pub(in crate::tui) struct Overlay<'a> {
 }
 
 impl Overlay<'_> {
-    /// Draws it.
+    /// Draws the layers.
     pub(in crate::tui) fn draw(
         &self,
         grid: &TaxelGrid,
@@ -176,7 +176,7 @@ impl Overlay<'_> {
         }
     }
 
-    /// The letters of CG and CD, side by side where both are in one character.
+    /// Returns the letters of CG and CD with their places; side by side if both are in one character.
     fn centres(&self, dots: &DotGrid<'_>, screen: Rect) -> impl Iterator<Item = (Position, char)> {
         let at = |x: f64, y: f64| character_at(dots, (x, y), screen);
         let cg = self.region.map(|region| region.cg());
@@ -189,7 +189,7 @@ impl Overlay<'_> {
     }
 }
 
-/// The circumscribed rectangle of a region, in dashes.
+/// Draws the circumscribed rectangle of a region, in dashes.
 fn draw_rectangle(dots: &mut DotGrid<'_>, region: &Description) {
     let rect = region.rect;
     let (left, top) = dots.position(rect.left.into(), rect.top.into());
@@ -204,7 +204,7 @@ fn draw_rectangle(dots: &mut DotGrid<'_>, region: &Description) {
     }
 }
 
-/// The character of the screen at a place on the plane; None where that is not visible.
+/// Returns the position on the screen of a place on the plane; None if it is not visible.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -1,4 +1,4 @@
-//! Where the taxels are on the screen, and how large.
+//! The places of the taxels on the screen, and their size.
 //!
 //! ```text
 //! Square(2)   four columns, two lines     where the whole matrix fits enlarged
@@ -6,9 +6,9 @@
 //! Narrow      one column, one line        coverage of a matrix that is too wide for two
 //! Half        one column, half a line     a matrix that does not fit otherwise: two taxels a character
 //! ```
-//! A matrix that does not fit even so is seen through a window that follows the cursor, or the described region where that
-//! is what has changed, in steps of half its size: a move of the cursor changes a few characters, and only now and then all
-//! of them. Drawing and the mouse share this layout.
+//! If a matrix does not fit even then, a window shows a part of it. The window follows the cursor, or the described
+//! region if that was changed last. It moves in steps of half its size, so that a move of the cursor changes only a
+//! few characters, except when the window moves. Drawing and the mouse share this layout.
 
 use std::ops::Range;
 
@@ -17,23 +17,23 @@ use ratatui::layout::Rect;
 use crate::imprint::{Bounds, Imprint};
 use crate::tui::widget::number::{narrow, taxels};
 
-/// Columns of the row ruler.
+/// The number of columns of the row ruler.
 pub const RULER: u16 = 3;
 
-/// How large a taxel is drawn.
+/// The size at which taxels are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TaxelSize {
     /// The upper or the lower half of a character.
     Half,
     /// A character.
     Narrow,
-    /// Two characters side by side, or this many times that, both across and down.
+    /// Two characters side by side, or a multiple of that, both across and down.
     Square(u16),
 }
 
 impl TaxelSize {
-    /// The largest size at which all taxels fit beside their rulers. Where they do not fit in squares, two taxels share
-    /// a character if `halves` allows it; otherwise they are as wide as all columns allow.
+    /// Returns the largest size at which all taxels fit beside their rulers. If they do not fit as squares, two
+    /// taxels share a character if `halves` allows it; otherwise they are as wide as the number of columns allows.
     pub(in crate::tui) fn fitting(imprint: &Imprint, area: Rect, halves: bool) -> Self {
         let columns = u16::from(imprint.columns());
         let across = area.width.saturating_sub(RULER);
@@ -46,7 +46,7 @@ impl TaxelSize {
         }
     }
 
-    /// Columns of the screen that a taxel has.
+    /// Returns the number of columns of the screen that a taxel takes.
     pub(in crate::tui) fn columns(self) -> u16 {
         match self {
             Self::Half | Self::Narrow => 1,
@@ -54,7 +54,7 @@ impl TaxelSize {
         }
     }
 
-    /// Halves of a line that it has.
+    /// Returns the number of half lines of the screen that a taxel takes.
     pub(in crate::tui) fn half_lines(self) -> u16 {
         match self {
             Self::Half => 1,
@@ -63,35 +63,36 @@ impl TaxelSize {
         }
     }
 
-    /// The width of the whole matrix with its ruler.
+    /// Returns the width of the whole matrix with its ruler.
     pub(in crate::tui) fn matrix_width(self, imprint: &Imprint) -> u16 {
         RULER + self.columns() * u16::from(imprint.columns())
     }
 }
 
-/// Which part of one axis of the matrix is visible.
+/// The visible part of one axis of the matrix.
 #[derive(Clone, Copy, Debug)]
 pub struct AxisWindow {
-    /// The first cell.
+    /// The first visible cell.
     pub first: u8,
-    /// How many.
+    /// The number of visible cells.
     pub count: u8,
-    /// How many there are in all.
+    /// The number of cells in all.
     all: u8,
 }
 
 impl AxisWindow {
-    /// `cells` of which `room` can be seen, the cursor among them. The window moves by half of its size.
+    /// Creates a window of at most `room` of `cells` cells that shows the cursor. It moves by half of its size.
     pub(in crate::tui) fn new(cells: u8, room: u16, cursor: u8) -> Self {
         Self::in_steps(cells, room, cursor, 1)
     }
 
-    /// The same of a window that begins at a multiple of `step`.
+    /// Creates a window like [`AxisWindow::new`] that begins at a multiple of `step`.
     pub(in crate::tui) fn in_steps(cells: u8, room: u16, cursor: u8, step: u8) -> Self {
         Self::showing(cells, room, cursor..cursor + 1, step)
     }
 
-    /// The same of a window that shows all of `seen`, or its beginning where it is too large.
+    /// Creates a window that begins at a multiple of `step` and shows all of `seen`, or its beginning if it is too
+    /// large.
     fn showing(cells: u8, room: u16, seen: Range<u8>, step: u8) -> Self {
         let count = taxels(room).min(cells);
         let whole_steps = |number: u8| number / step * step;
@@ -109,34 +110,34 @@ impl AxisWindow {
         }
     }
 
-    /// The visible cells, each with its place from the first one.
+    /// Returns the visible cells, each with its place from the first one.
     pub fn visible(&self) -> impl Iterator<Item = (u16, u8)> {
         (0..self.count).map(|index| (u16::from(index), self.first + index))
     }
 
-    /// Whether there are cells before the first visible one, and after the last.
+    /// Returns whether there are cells before the first visible one, and after the last.
     pub fn hidden(&self) -> (bool, bool) {
         (self.first > 0, self.first + self.count < self.all)
     }
 
-    /// The cell at a place counted from the first visible one.
+    /// Returns the cell at a place counted from the first visible one.
     fn at(self, place: u16) -> Option<u8> {
         (place < u16::from(self.count)).then(|| self.first + taxels(place))
     }
 }
 
-/// Where the taxels are.
+/// The places of the taxels on the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct TaxelGrid {
     /// The column of the screen where the first visible taxel begins.
     pub x: u16,
-    /// The row of the screen where it begins.
+    /// The row of the screen where the first visible taxel begins.
     pub y: u16,
-    /// How large taxels are.
+    /// The size of the taxels.
     pub size: TaxelSize,
-    /// Visible columns.
+    /// The visible columns.
     pub columns: AxisWindow,
-    /// Visible rows.
+    /// The visible rows.
     pub rows: AxisWindow,
     /// Whether all taxels are visible.
     pub whole: bool,
@@ -145,15 +146,15 @@ pub struct TaxelGrid {
 }
 
 impl TaxelGrid {
-    /// The taxels of a matrix in its pane, with the cursor at a taxel and the window where `seen` is. `halves` tells whether
-    /// two of them may share a character.
+    /// Computes the places of a matrix's taxels in its pane, with the cursor at a taxel and the window around `seen`.
+    /// `halves` is whether two taxels may share a character.
     pub fn of(area: Rect, imprint: &Imprint, cursor: (u8, u8), seen: Bounds, halves: bool) -> Self {
         let size = TaxelSize::fitting(imprint, area, halves);
         let (across, lines) = (
             area.width.saturating_sub(RULER),
             area.height.saturating_sub(1),
         );
-        // A line of two taxels keeps its two wherever the window is.
+        // The same two taxels share a line wherever the window is.
         let step = if size == TaxelSize::Half { 2 } else { 1 };
         let columns = AxisWindow::showing(
             imprint.columns(),
@@ -175,7 +176,7 @@ impl TaxelGrid {
         }
     }
 
-    /// Columns and lines of the screen that the visible taxels have.
+    /// Returns the columns and lines of the screen that the visible taxels take.
     pub fn characters(&self) -> (u16, u16) {
         let (columns, rows) = (u16::from(self.columns.count), u16::from(self.rows.count));
         (
@@ -184,8 +185,8 @@ impl TaxelGrid {
         )
     }
 
-    /// The place of a taxel on the screen, by its indices among the visible columns and rows. Two that share a character
-    /// share their place.
+    /// Returns the place of a taxel on the screen, by its indices among the visible columns and rows. Two taxels that
+    /// share a character have the same place.
     pub fn cell_rect(&self, column: u16, row: u16) -> Rect {
         let (width, half_lines) = (self.size.columns(), self.size.half_lines());
         Rect {
@@ -196,7 +197,7 @@ impl TaxelGrid {
         }
     }
 
-    /// The taxels at a place of the screen: none, one, or of two in a character the upper one first.
+    /// Returns the taxels at a place of the screen: none, one, or two that share a character, the upper one first.
     pub fn taxels(&self, x: u16, y: u16) -> impl Iterator<Item = (u8, u8)> {
         let place = x.checked_sub(self.x).zip(y.checked_sub(self.y));
         let found = move |half: u16| {
@@ -211,8 +212,8 @@ impl TaxelGrid {
         (0..=second).filter_map(found)
     }
 
-    /// The taxel that a click at a place of the screen means. If two share a character, that is the one with the
-    /// cursor, otherwise the upper one.
+    /// Returns the taxel that a click at a place of the screen means. If two share a character, this is the one with
+    /// the cursor, otherwise the upper one.
     pub fn taxel(&self, x: u16, y: u16) -> Option<(u8, u8)> {
         let mut with_cursor = self.taxels(x, y).filter(|&taxel| taxel == self.cursor);
         with_cursor.next().or_else(|| self.taxels(x, y).next())

@@ -1,10 +1,10 @@
 //! The matrix and the descriptors beside it.
 //!
 //! ```text
-//! layout   where the taxels are        view     draws them
-//! rulers   numbers, and what is hidden  layers   outline, rectangle, CG and CD
-//! files    :open and :write
-//! update   keys without a page         panel    draws the descriptors
+//! layout   places of the taxels        view     draws the taxels
+//! rulers   numbers and scroll arrows   layers   outline, rectangle, CG and CD
+//! files    :open, :write and :export   panel    draws the descriptors
+//! update   messages without a page
 //! ```
 
 pub mod layout;

@@ -6,8 +6,9 @@
 //! P      16.97            8.49 mm              the value in millimetres if a pitch is set,
 //! xg     5.5              centroid, x          otherwise the name of the descriptor
 //! ```
-//! The rows are those of [`DESCRIPTORS`]. A low pane shows them in several columns, each as wide as its values where room is
-//! scarce; where even so not all have room, the first ones are whole, and the last line says how many are missing.
+//! The rows are [`DESCRIPTORS`]. If the pane is low, they are shown in several columns, each as wide as its values if
+//! space is scarce. If not all descriptors fit even then, the first ones are shown in full, and the last line says
+//! how many are missing.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -19,19 +20,19 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Columns of the symbols.
+/// The number of columns of the symbols.
 const SYMBOL: usize = 7;
-/// Columns of the values.
+/// The number of columns of the values.
 const VALUE: usize = 17;
 
-/// The same in ASCII, where the longest is `120.96, 59.04 deg`.
+/// The number of columns of the values in ASCII, where the longest is `120.96, 59.04 deg`.
 const VALUE_IN_ASCII: usize = 19;
 
-/// Draws the panel. Where it has fewer lines than there are descriptors, they stand in several columns.
+/// Draws the panel, in several columns if it has fewer lines than there are descriptors.
 pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let (seen, chosen) = (matrix.reading, matrix.chosen);
     let described = seen.region(chosen).zip(seen.description(chosen));
-    // What follows is plain as the values, so that a toggle changes little here.
+    // The text after the title is plain like the values, so that little changes here when a taxel is toggled.
     let (title, which) = match &described {
         Some(((index, region), _)) => {
             let (number, kind) = (index + 1, region.kind().name());
@@ -74,19 +75,19 @@ pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: R
 
 /// A column of the panel.
 struct PanelColumn {
-    /// Where it is.
+    /// The place of the column.
     area: Rect,
-    /// Columns of the screen that its symbols have.
+    /// The width of its symbols, in columns of the screen.
     symbol: usize,
 }
 
-/// How many lines the columns of the panel have, and where they are. They are equally wide where all values fit so; else
-/// each is as wide as its own need, with as many lines as there must be for all of them to fit. Where there are too few
-/// lines for that, the last line stays free, and only the first columns are there.
+/// Returns the number of lines of the panel's columns, and the columns. They are equally wide if all values fit;
+/// otherwise each is as wide as it needs to be, with as many lines as all of them need. If there are too few lines
+/// for that, the last line stays free, and only the first columns are returned.
 fn columns(cells: &[PanelCell], area: Rect) -> (usize, Vec<PanelColumn>) {
     let most = usize::from(area.height).max(1);
     let count = cells.len().div_ceil(most);
-    // As many in each column: one alone in the last would look forgotten.
+    // The columns are equally long: a single descriptor in the last one would look misplaced.
     let even = cells.len().div_ceil(count);
     let width = usize::from(area.width) / count;
     let needed = |cells: &[PanelCell], symbol: usize| {
@@ -106,7 +107,7 @@ fn columns(cells: &[PanelCell], area: Rect) -> (usize, Vec<PanelColumn>) {
         });
         columns.collect::<Vec<_>>()
     };
-    // The gap behind the last one may be cut.
+    // The gap after the last column may be cut off.
     let fits = |columns: &[(usize, usize)]| {
         columns.iter().map(|(width, _)| width).sum::<usize>() <= usize::from(area.width) + 1
     };
@@ -123,7 +124,7 @@ fn columns(cells: &[PanelCell], area: Rect) -> (usize, Vec<PanelColumn>) {
     (lines, placed(area, &widths))
 }
 
-/// Columns of these widths side by side, each with the width of its symbols.
+/// Returns columns of these widths side by side, each with the width of its symbols.
 fn placed(area: Rect, widths: &[(usize, usize)]) -> Vec<PanelColumn> {
     let mut x = area.x;
     let columns = widths.iter().map(|&(width, symbol)| {
@@ -140,16 +141,16 @@ fn placed(area: Rect, widths: &[(usize, usize)]) -> Vec<PanelColumn> {
 
 /// A descriptor with its value.
 struct PanelCell<'a> {
-    /// Which one it is.
+    /// The descriptor.
     descriptor: &'static Descriptor,
-    /// What the value is of; None of an empty matrix.
+    /// The description that the value is taken from; None if the matrix is empty.
     description: Option<&'a Description>,
     /// The value as text.
     value: String,
 }
 
 impl<'a> PanelCell<'a> {
-    /// That of a description.
+    /// Creates the cell of a descriptor, with its value in a description.
     fn of(
         theme: &Theme,
         descriptor: &'static Descriptor,
@@ -167,11 +168,11 @@ impl<'a> PanelCell<'a> {
         }
     }
 
-    /// Draws it: its symbol, its value, and what that is in millimetres or what it means, as far as there is room.
+    /// Draws the symbol, the value, and the value in millimetres or the descriptor's name, as far as there is room.
     fn draw(&self, theme: &Theme, pitch_mm: f64, symbols: usize, buffer: &mut Buffer, row: Rect) {
         let (descriptor, description) = (self.descriptor, self.description);
         let measured = description.map_or(descriptor.of_nothing, descriptor.measure);
-        // Millimetres where the user gave a pitch; a pitch of 1 says nothing new.
+        // The value in millimetres if the user gave a pitch; a pitch of 1 would only repeat the value.
         let scaled = value::in_millimetres(measured, descriptor.dimension, pitch_mm)
             .filter(|_| pitch_mm != 1.0);
         let symbol = format!("{:symbols$}", descriptor.symbol);
@@ -180,7 +181,7 @@ impl<'a> PanelCell<'a> {
         let name = description.map_or(descriptor.name, |described| {
             descriptor.name_of(described.kind)
         });
-        // A word that is cut tells nothing, and names of some descriptors only look as if the others had none.
+        // Shortened names say nothing, and names of only some descriptors would look as if the others had none.
         let room = usize::from(row.width).saturating_sub(symbols + width);
         let named = DESCRIPTORS.iter().all(|own| write::width(own.name) <= room);
         let remark = match scaled.as_deref() {
@@ -188,7 +189,7 @@ impl<'a> PanelCell<'a> {
             None if named && write::width(name) <= room => name,
             _ => "",
         };
-        // Where the value needs more room, the remark gives way.
+        // If the value needs more room, the remark is shortened.
         let gap = if self.value.chars().count() < width {
             ""
         } else {

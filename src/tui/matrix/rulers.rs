@@ -1,8 +1,8 @@
-//! The rulers of the matrix: numbers of columns above it and of rows on its left, and arrows at the ends behind which
-//! there is more to see.
+//! The rulers of the matrix: the numbers of columns above it and of rows on its left, and arrows at the ends beyond
+//! which more cells are hidden.
 //!
 //! ```text
-//!   ←10   15   20   25  →        columns 8 to 27 of more
+//!   ←10   15   20   25  →        columns 8 to 27; there are more on both sides
 //!  8↑· · · ·                     the first line; there are rows above it
 //! ```
 
@@ -35,8 +35,8 @@ pub(super) fn draw(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: R
     }
 }
 
-/// The numbers of columns, as many as have room: none in the place of an arrow, and none past the last column, where the
-/// descriptors may follow.
+/// Draws the numbers of columns, as many as fit: none in the place of an arrow, and none past the last column, where
+/// the descriptors may follow.
 fn draw_columns(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect) {
     let (cell, line) = (grid.size.columns(), write::row(area, 0));
     let every = match cell {
@@ -60,7 +60,7 @@ fn draw_columns(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect
     }
 }
 
-/// The number of each row; of two in a line that of the upper one.
+/// Draws the number of each row; of the upper row if two share a line.
 fn draw_rows(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect) {
     let rows = if grid.size == TaxelSize::Half { 2 } else { 1 };
     for (index, row) in grid.rows.visible().step_by(rows) {

@@ -1,6 +1,6 @@
-//! What messages do while no page lies over the matrix, and those that a question or a command leads to.
+//! Handles messages while no page lies over the matrix, and messages that follow from a question or a command.
 //!
-//! What concerns the library, a worker or the terminal is returned as an effect; everything else changes the state at
+//! Requests to the library, a worker or the terminal are returned as effects; everything else changes the state at
 //! once.
 
 use crate::description::{DESCRIPTORS, Descriptor};
@@ -33,8 +33,8 @@ use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::number::around;
 use crate::tui::{explore, live, recognise};
 
-/// What there is to say of an empty matrix.
-/// Copied descriptors, the rectangle and the choice of a region all need one, and say the same where there is none.
+/// The notice for an empty matrix. Copied descriptors, the rectangle and the choice of a region all need a region,
+/// and show this notice if there is none.
 const NO_REGION: &str = "no region: the matrix is empty";
 
 /// Handles a message.
@@ -97,9 +97,8 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
     None
 }
 
-/// Opens the page that a message asks for; does on the matrix what any other message says.
-/// The picture has two pages: with a picture or a stored shape on the matrix its form opens, otherwise the list to choose
-/// one from.
+/// Opens the page that a message asks for; other messages act on the matrix. The picture has two pages: its form if
+/// there is a picture or a stored shape on the matrix, otherwise the list to choose one from.
 fn open_page(app: &mut App, message: &Message) -> Option<Effect> {
     match message {
         Message::Load => return Some(open_list(app, Purpose::Load)),
@@ -166,10 +165,9 @@ fn begin_save(app: &mut App, shape: &StoredShape) {
     });
 }
 
-/// Opens the form of the picture that is on the matrix, or of the stored shape there as a picture. Answers whether there is
-/// one.
-/// Its name is that of the picture, else of the document; the notice says how to get to another shape, because the
-/// key for a picture leads here and no longer to the list.
+/// Opens the form of the picture on the matrix, or of the stored shape on the matrix as a picture. Returns false if
+/// there is neither. The name in the form is the name of the picture, or else of the document. The notice says how to
+/// get to another shape, because the key for a picture leads here and no longer to the list.
 fn edit_picture(app: &mut App) -> bool {
     let present = app.history.present();
     let (picture, name) = match (&present.source, app.loaded_imprint()) {
@@ -187,13 +185,13 @@ fn edit_picture(app: &mut App) -> bool {
     true
 }
 
-/// Asks a question where only yes does something.
+/// Asks a question; only the answer yes does something.
 fn ask(app: &mut App, text: String, yes: Message) {
     app.dialogs.push(Dialog::Question(Question::new(text, yes)));
 }
 
-/// Opens the prompt for a name. It proposes the name of the document, if that is a shape of the user's own.
-/// A shipped shape cannot be replaced, so for it, as for a drawing without a name, a new name is proposed.
+/// Opens the prompt for a name. It proposes the name of the document if that is a shape of the user's own. A shipped
+/// shape cannot be replaced, so a new name is proposed for it, as for a drawing without a name.
 fn save(app: &mut App) {
     if app.reading().imprint.is_empty() {
         return refuse(app, "nothing to save: the matrix is empty");
@@ -210,8 +208,8 @@ fn save(app: &mut App) {
     app.dialogs.push(Dialog::Name(dialog));
 }
 
-/// A name for what is on the matrix, as long as it has none: the figure with its sizes, the picture or the shape that it
-/// comes from, or "drawing".
+/// Returns a name for a document that has no name of its own: the figure with its sizes, the picture or the shape
+/// that it comes from, or "drawing".
 fn proposed_name(app: &App) -> String {
     if let Some(stored) = app.stored() {
         return format!("{} copy", stored.name);
@@ -233,8 +231,8 @@ fn proposed_name(app: &App) -> String {
     }
 }
 
-/// Switches the mouse: it sets taxels, or the terminal selects text with it.
-/// A terminal gives the mouse either to a program or to its own selection, never to both.
+/// Switches the mouse: either it sets taxels, or the terminal selects text with it. A terminal gives the mouse either
+/// to a program or to its own selection, never to both.
 fn switch_mouse(app: &mut App) -> Effect {
     app.mouse = !app.mouse;
     let key = app.key_of(&action::MOUSE);
@@ -261,8 +259,8 @@ fn next_display(app: &mut App) {
     inform(app, text);
 }
 
-/// Handles what needs nothing from outside: the cursor, what is shown, and the shape.
-/// Coverage is refused without a source: it is the share of a taxel that a shape covers, which a drawing has not.
+/// Handles messages that need nothing from outside: the cursor, the display, and the shape. Coverage is the share of
+/// a taxel that a shape covers, so it is refused if there is no source.
 fn edit(app: &mut App, message: &Message) {
     let sensor = app.history.present().sensor;
     match *message {
@@ -317,8 +315,8 @@ fn edit(app: &mut App, message: &Message) {
     }
 }
 
-/// The text goes to the terminal, which puts it into its clipboard or does not: it never says.
-/// Descriptors are one to a line, key and value with a tab between; the imprint is in the form of its text files.
+/// Sends a text to the terminal, which may put it into its clipboard, but never reports whether it does. Descriptors
+/// are one to a line, key and value with a tab between; the imprint is in the form of its text files.
 fn copy(app: &mut App, what: Copied) -> Option<Effect> {
     let seen = app.reading();
     let (name, text) = match (what, seen.description(app.chosen)) {
@@ -343,7 +341,7 @@ fn copy(app: &mut App, what: Copied) -> Option<Effect> {
     Some(Effect::Terminal(TerminalEffect::Copy(text)))
 }
 
-/// Opens a form; a shape that is held is let go.
+/// Opens a form; a held shape is let go.
 fn open_form(app: &mut App, form: FormDialog) {
     app.mode = Mode::Draw;
     app.dialogs.push(Dialog::Form(Box::new(form)));
@@ -356,8 +354,8 @@ fn open_list(app: &mut App, purpose: Purpose) -> Effect {
     Effect::Library(LibraryRequest::List)
 }
 
-/// Shows a layer or hides it; says which, and why there is nothing to see of it.
-/// A layer that nobody has asked for depends on the size of taxels, so the switch starts from what is seen.
+/// Shows a layer or hides it. The notice names it, and says why if there is nothing to see. Whether a layer is shown
+/// by default depends on the size of taxels, so the switch inverts what is visible now.
 fn switch_layer(app: &mut App, layer: Layer) {
     let Some(grid) = app.grid() else { return };
     let (name, now, missing) = match layer {
@@ -386,7 +384,7 @@ fn switch_layer(app: &mut App, layer: Layer) {
     inform(app, text);
 }
 
-/// The first or the last index of a number of columns or rows.
+/// Returns the first or the last index of a number of columns or rows.
 fn at_end(end: Endpoint, count: u8) -> u8 {
     match end {
         Endpoint::First => 0,
@@ -394,7 +392,7 @@ fn at_end(end: Endpoint, count: u8) -> u8 {
     }
 }
 
-/// Moves the cursor by one taxel; at the edge it stays.
+/// Moves the cursor by one taxel; it stays at the edge.
 fn move_cursor(app: &mut App, arrow: Arrow) {
     let sensor = app.history.present().sensor;
     let (dx, dy) = arrow.step();
@@ -410,10 +408,10 @@ fn move_cursor(app: &mut App, arrow: Arrow) {
         .min(sensor.rows() - 1);
 }
 
-/// Selects the region that comes `by` further on, the first after the last.
-/// Until one is chosen it is the main region that is described, and the next one counts from there.
+/// Selects the region that comes `by` further on, the first after the last. Until a region is chosen, the main region
+/// is described, and `by` counts from it.
 fn choose_region(app: &mut App, by: i8) {
-    // Also where it stays the same: it may be out of sight.
+    // Also if the region stays the same: it may be out of sight.
     app.followed = Followed::Region;
     let seen = app.reading();
     let Some((now, _)) = seen.region(app.chosen) else {

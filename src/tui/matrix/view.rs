@@ -6,10 +6,11 @@
 //!  1 · · ████████· ·
 //!  2 · · ██·[·]██· ·         the cursor between brackets, which hide second characters only
 //! ```
-//! A taxel of the described region, another active taxel, one of a described hole and an inactive one differ in their
-//! characters, not only in colour. If a matrix is larger than its pane, two of its rows share a line, by half blocks, and
-//! if that is not enough it scrolls with the cursor and the described region; one that is much smaller is drawn larger, a whole number of times.
-//! Coverage is shown in five shades or in percent: two digits where a taxel has room for a space beside them, else the tens alone, so that numbers do not run together.
+//! A taxel of the described region, another active taxel, a taxel of a described hole and an inactive one differ in
+//! their characters, not only in colour. If a matrix is larger than its pane, two of its rows share a line, by half
+//! blocks; if that is not enough, it scrolls with the cursor and the described region. A matrix that is much smaller
+//! than its pane is drawn larger, by a whole factor. Coverage is shown in five shades or in percent: two digits if a
+//! taxel has room for a space beside them, otherwise the tens alone, so that numbers do not run together.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -25,33 +26,33 @@ use crate::tui::matrix::layout::{TaxelGrid, TaxelSize};
 use crate::tui::matrix::rulers;
 use crate::tui::widget::theme::{Role, Theme};
 
-/// What is drawn of the matrix.
+/// The parts of the state that the drawing of the matrix depends on.
 #[derive(Clone, Copy, Debug)]
 pub struct MatrixView<'a> {
-    /// What is read off the document.
+    /// The imprint of the document, with its coverage and regions.
     pub reading: &'a Reading,
-    /// The millimetres of a cell side.
+    /// The length of a cell side in millimetres.
     pub pitch_mm: f64,
     /// The taxel under the cursor: column, row.
     pub cursor: (u8, u8),
-    /// What is in the window where not all of the matrix fits.
+    /// The taxels that the window shows if not all of the matrix fits.
     pub seen: Bounds,
-    /// The index of the chosen region, None for the main one.
+    /// The index of the chosen region; None for the main one.
     pub chosen: Option<usize>,
     /// How taxels are shown.
     pub display: Display,
-    /// The imprint that it is compared with, None for no comparison.
+    /// The imprint that the matrix is compared with; None for no comparison.
     pub compared: Option<&'a Imprint>,
-    /// What touches, where something does.
+    /// The source; None if nothing touches.
     pub source: Option<&'a Source>,
-    /// What is shown over the taxels.
+    /// The layers over the taxels.
     pub layers: Layers,
     /// Poses that may have left the imprint.
     pub poses: PoseLayer<'a>,
 }
 
 impl<'a> MatrixView<'a> {
-    /// What is drawn of the present state.
+    /// Creates the view of the present state.
     pub fn of(app: &'a App) -> Self {
         Self {
             reading: app.reading(),
@@ -67,13 +68,13 @@ impl<'a> MatrixView<'a> {
         }
     }
 
-    /// Where the taxels are in an area.
+    /// Returns the places of the taxels in an area.
     fn grid(&self, area: Rect) -> TaxelGrid {
         let halves = self.display == Display::Imprint && self.compared.is_none();
         TaxelGrid::of(area, &self.reading.imprint, self.cursor, self.seen, halves)
     }
 
-    /// Draws the matrix. Returns where the cursor is, None where it is not visible.
+    /// Draws the matrix. Returns the position of the cursor; None if it is not visible.
     pub fn draw(&self, theme: &Theme, buffer: &mut Buffer, area: Rect) -> Option<Position> {
         let grid = self.grid(area);
         rulers::draw(theme, &grid, buffer, area);
@@ -105,10 +106,10 @@ impl<'a> MatrixView<'a> {
         cursor.map(|place| self.draw_cursor(theme, grid.size, buffer, place))
     }
 
-    /// Marks the cursor's taxel on both sides, and answers where the cursor is. A taxel of two columns shows its state in the
-    /// first one; so one mark stands on its second, the other on the second of the taxel before it or on the ruler. In a
-    /// single column there is room for neither: there the taxel itself is marked, and of two that share a character the
-    /// other one is hidden.
+    /// Marks the cursor's taxel on both sides, and returns the position of the cursor. A taxel of two columns shows
+    /// its state in the first one; so one mark stands on its second column, the other on the second column of the
+    /// taxel before it or on the ruler. A taxel of a single column has no room for marks, so the taxel itself is
+    /// marked; of two that share a character, the other one is hidden.
     fn draw_cursor(
         &self,
         theme: &Theme,
@@ -122,7 +123,8 @@ impl<'a> MatrixView<'a> {
             place.y + (place.height - 1) / 2,
         );
         let (column, row) = self.cursor;
-        // Brackets are plain: so little is sent when the cursor moves, and the terminal's own cursor is on the first one.
+        // Brackets are plain, so that little is sent when the cursor moves. The terminal's own cursor is on the first
+        // one.
         let style = match size {
             TaxelSize::Square(_) => theme.style(Role::Text),
             TaxelSize::Half | TaxelSize::Narrow => theme.style(Role::Cursor),
@@ -148,7 +150,7 @@ impl<'a> MatrixView<'a> {
         at
     }
 
-    /// The layers that are shown.
+    /// Draws the layers that are shown.
     fn draw_layers(&self, theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer) {
         let active = |column, row| self.reading.imprint.get(column, row);
         let overlay = Overlay {
@@ -166,7 +168,7 @@ impl<'a> MatrixView<'a> {
         overlay.draw(grid, theme, buffer, active);
     }
 
-    /// How a taxel differs from the imprint that the matrix is compared with; None if it does not.
+    /// Returns how a taxel differs from the imprint that the matrix is compared with; None if it does not.
     fn difference(&self, column: u8, row: u8) -> Option<Role> {
         let compared = self.compared?;
         let inside = column < compared.columns() && row < compared.rows();
@@ -180,7 +182,8 @@ impl<'a> MatrixView<'a> {
         }
     }
 
-    /// A taxel: a character or two, or more of the same where it is drawn larger, with a sign or a number in its middle.
+    /// Draws a taxel: one or two characters, or more of the same if it is drawn larger, with a sign or a number in
+    /// its middle.
     fn draw_taxel(
         &self,
         theme: &Theme,
@@ -197,7 +200,7 @@ impl<'a> MatrixView<'a> {
             Display::Percent => percent(theme, coverage(seen, column, row), place.width > 2),
         };
         let style = theme.style(role);
-        // Full cells are filled, a sign or a number stands in the middle.
+        // Full cells are filled; a sign or a number stands in the middle.
         let fill = if first == second && !first.is_ascii_digit() {
             first
         } else {
@@ -216,7 +219,7 @@ impl<'a> MatrixView<'a> {
     }
 }
 
-/// What a taxel is to the region that is described.
+/// Returns the role of a taxel for the described region.
 fn role_of(seen: &Reading, chosen: Option<&Region>, column: u8, row: u8) -> Role {
     let active = seen.imprint.get(column, row);
     let in_region = chosen
@@ -230,7 +233,7 @@ fn role_of(seen: &Reading, chosen: Option<&Region>, column: u8, row: u8) -> Role
     }
 }
 
-/// A drawn taxel counts as covered.
+/// Returns the coverage of a taxel. A drawn taxel counts as covered.
 fn coverage(seen: &Reading, column: u8, row: u8) -> f64 {
     let drawn = if seen.imprint.get(column, row) {
         1.0
@@ -240,7 +243,8 @@ fn coverage(seen: &Reading, column: u8, row: u8) -> f64 {
     seen.coverage(column, row).unwrap_or(drawn)
 }
 
-/// Two digits, cut rather than rounded so that 49.9 % is not shown as 50; full and empty cells by their signs.
+/// Returns the coverage in percent as two digits, rounded down so that 49.9 % is not shown as 50; full and empty
+/// cells have their own signs.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
