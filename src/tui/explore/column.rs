@@ -4,31 +4,32 @@ use crate::atlas::{SortKey, sorted};
 use crate::pose::Axis;
 use crate::sweep::SweepResult;
 
-/// A column of the list.
+/// A column of the list of imprints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ListColumn {
-    /// The imprint's number, which is the order of first poses.
+    /// The number of the imprint; imprints are numbered in the order of their first poses.
     FirstPose,
     /// The number of poses that leave it; their share has the same order.
     Poses,
-    /// Where the first of them is, along an axis.
+    /// The place of the first of these poses, along an axis.
     Place(Axis),
-    /// Number of pieces.
+    /// The number of pieces.
     Pieces,
-    /// Number of holes.
+    /// The number of holes.
     Holes,
     /// The value of the chosen descriptor.
     Value,
 }
 
 impl ListColumn {
-    /// Whether the largest comes first when rows are sorted by it for the first time: counts and values do so, numbers and
-    /// places begin at their first.
+    /// Returns true if the largest comes first when rows are sorted by this column for the first time. Counts and
+    /// values begin with the largest, numbers and places with the smallest.
     pub fn largest_first(self) -> bool {
         !matches!(self, Self::FirstPose | Self::Place(_))
     }
 
-    /// The numbers of all imprints of a sweep, sorted by it. `values` are those of the chosen descriptor.
+    /// Returns the numbers of all imprints of a sweep, sorted by this column. `values` are those of the chosen
+    /// descriptor, by the imprints' numbers.
     pub fn order(self, sweep: &SweepResult, values: &[Option<f64>], descending: bool) -> Vec<u32> {
         let key = match self {
             Self::FirstPose => SortKey::FirstPose,

@@ -1,4 +1,4 @@
-//! The prompt for the name of the file that results are exported to. The ending decides the format.
+//! The prompt for the name of the file that results are exported to. The extension decides the format.
 
 use std::borrow::Cow;
 
@@ -12,10 +12,10 @@ use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::text_field::TextField;
 
-/// No name is longer: that of a Linux file with its folders.
+/// The maximum number of characters of a name: the longest path of a file on Linux.
 const LONGEST: usize = 4096;
 
-/// What is exported.
+/// The kind of export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportKind {
     /// The imprints of a sweep.
@@ -32,7 +32,7 @@ pub enum ExportKind {
 }
 
 impl ExportKind {
-    /// What the results of a sweep can be written as from the page that is open.
+    /// Returns the kind of export of a sweep's results from the open page.
     pub fn of(results: &Results) -> Self {
         let page = pages::row(results.page());
         Self::Sweep {
@@ -42,7 +42,7 @@ impl ExportKind {
         }
     }
 
-    /// What a name can end in.
+    /// Returns the extensions that a name can have.
     fn endings(self) -> Vec<&'static str> {
         match self {
             Self::Sweep { poses, drawing, .. } => {
@@ -54,7 +54,7 @@ impl ExportKind {
         }
     }
 
-    /// Whether a file of that name can be made, on some page at least.
+    /// Returns true if a file of that name can be made, at least on some page.
     fn takes(self, name: &str) -> bool {
         match self {
             Self::Sweep { .. } => {
@@ -65,24 +65,24 @@ impl ExportKind {
     }
 }
 
-/// The field.
+/// The prompt for the name.
 #[derive(Clone, Debug)]
 pub struct ExportDialog {
-    /// What was typed.
+    /// The typed text.
     pub field: TextField,
-    /// What is exported.
+    /// The kind of export.
     pub what: ExportKind,
 }
 
 impl ExportDialog {
-    /// A field that proposes a name: what is typed replaces it.
+    /// Creates a prompt that proposes a name; typing replaces it.
     pub fn proposing(name: &str, what: ExportKind) -> Self {
         let mut dialog = Self::new(name, what);
         dialog.field.enter();
         dialog
     }
 
-    /// A field that starts with a name.
+    /// Creates a prompt that starts with a name.
     pub fn new(name: &str, what: ExportKind) -> Self {
         Self {
             field: TextField::new(name, LONGEST),
@@ -90,10 +90,10 @@ impl ExportDialog {
         }
     }
 
-    /// The name of the file.
+    /// Returns the name of the file.
     ///
     /// # Errors
-    /// What is wrong with it, and what was expected.
+    /// Returns a message that says what is wrong with the name, and what was expected.
     pub fn name(&self) -> Result<String, String> {
         let name = self.field.text().trim();
         if self.what.takes(name) {
@@ -116,7 +116,7 @@ impl ExportDialog {
 impl LinePrompt for ExportDialog {
     const CONTEXT: Context = Context::Export;
 
-    /// The list of imprints may be filtered, and still all are written.
+    /// Says "all", because all imprints are written even if their list is filtered.
     fn label(&self) -> &'static str {
         match self.what {
             ExportKind::Sweep {
@@ -132,7 +132,7 @@ impl LinePrompt for ExportDialog {
         &self.field
     }
 
-    /// What a name can end in.
+    /// Returns the extensions that a name can have.
     fn behind(&self, _columns: u16) -> Cow<'_, str> {
         let endings = self.what.endings();
         if let (ExportKind::Sweep { table: true, .. }, [table, others @ ..]) =
@@ -149,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ending_tells_the_format() {
+    fn the_extension_decides_the_format() {
         let all = ExportKind::Sweep {
             poses: true,
             drawing: true,

@@ -1,8 +1,8 @@
 //! The prompt for a filter: the conditions that imprints in the list must meet. The list follows as you type.
 //!
 //! ```text
-//! Filter: na>=40 holes=0   312 of 4,102        how many it keeps
-//! Filter: na>=40 weight<3                      what is wrong with it stands above the line
+//! Filter: na>=40 holes=0   312 of 4,102        how many imprints the filter keeps
+//! Filter: na>=40 weight<3                      an error is shown above the line
 //! ```
 
 use std::borrow::Cow;
@@ -14,25 +14,25 @@ use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::text_field::TextField;
 
-/// Nobody types a longer one.
+/// The maximum number of characters of a filter.
 const LONGEST: usize = 200;
 
-/// What stands behind an empty field.
+/// The text behind an empty field.
 const EXAMPLE: &str = "   such as na>=40 holes=0; empty shows all";
 
-/// The field, and what becomes of the list if it is left.
+/// The prompt for a filter, and the state of the list before it.
 #[derive(Clone, Debug)]
 pub struct FilterDialog {
-    /// What was typed.
+    /// The typed text.
     pub field: TextField,
-    /// The filter before, and the imprint that was selected.
+    /// The filter and the selected imprint before the prompt was opened.
     before: (String, Option<u32>),
-    /// How many imprints are kept, of how many; or what is wrong with what was typed.
+    /// The number of kept imprints and of all imprints; or the error in the typed text.
     kept: Result<(usize, usize), FilterError>,
 }
 
 impl FilterDialog {
-    /// A field that starts with the filter of a list.
+    /// Creates a prompt that starts with the filter of a list.
     pub fn new(results: &Results) -> Self {
         let selected = results.rows_from(results.selected()).next();
         let mut field = TextField::new(results.filter(), LONGEST);
@@ -49,7 +49,7 @@ impl FilterDialog {
         }
     }
 
-    /// Applies what was typed to a list; one that cannot be read leaves it as it is.
+    /// Applies the typed filter to a list; a filter that cannot be read leaves the list as it is.
     pub fn apply(&mut self, results: &mut Results) {
         let typed = self.field.text();
         self.kept = typed.parse::<AtlasFilter>().map(|filter| {
@@ -58,12 +58,12 @@ impl FilterDialog {
         });
     }
 
-    /// What is wrong with what was typed, None if nothing is.
+    /// Returns the error in the typed text; None if there is none.
     pub fn error(&self) -> Option<&FilterError> {
         self.kept.as_ref().err()
     }
 
-    /// Gives a list the filter and the selected imprint that it had before.
+    /// Restores the filter and the selected imprint that a list had before.
     pub fn restore(&self, results: &mut Results) {
         let (typed, selected) = &self.before;
         if let Ok(filter) = typed.parse() {
@@ -87,7 +87,7 @@ impl LinePrompt for FilterDialog {
         &self.field
     }
 
-    /// How many imprints it keeps.
+    /// Returns how many imprints the filter keeps.
     fn behind(&self, _columns: u16) -> Cow<'_, str> {
         let count = |count: usize| grouped(count as u64);
         match self.kept {

@@ -6,8 +6,8 @@
 //! 49 |██                      1,204   0.12 %           an interval, a bar, poses, their share
 //! 50 |█████▌                  3,611   0.36 %
 //! ```
-//! Counts with few values have a bar for each value, everything else one for an interval of round width. A value that
-//! occurs at all has at least half a character.
+//! Counts with few values have a bar for each value, everything else has one for each interval of round width. The
+//! bar of a value that occurs is at least half a character long.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -23,10 +23,10 @@ use crate::tui::keys::binding::Context;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Characters of a number in the line above the bars.
+/// The number of characters of a number in the line above the bars.
 const NUMBER: usize = 9;
 
-/// The page.
+/// The histogram page.
 pub static PAGE: ResultsPage = ResultsPage {
     page: ExplorePage::Histogram,
     title: "histogram",
@@ -40,14 +40,16 @@ pub static PAGE: ResultsPage = ResultsPage {
     update: choose_descriptor,
 };
 
-/// The intervals of a histogram that fits on a page. The axis and what has no value have a line each.
+/// Computes the intervals of a histogram that fits on a page. Three lines of the page have no bar: the title, the
+/// numbers, and a spare one.
 fn histogram(results: &Results, page: Rect) -> Histogram {
     let room = usize::from(page.height.saturating_sub(3));
     let (atlas, values) = (&results.sweep().atlas, results.values());
     Histogram::of(atlas, results.feature(), values, room.max(1))
 }
 
-/// The bars as CSV: each interval from its start to before its end, the last one to its end; then the poses without a value.
+/// Returns the bars as CSV: each interval from its start to before its end, the last one including its end; then the
+/// poses without a value.
 fn table(results: &Results, page: Rect) -> String {
     let (histogram, key) = (histogram(results, page), &results.feature().key);
     let decimals = histogram.decimals();
@@ -105,12 +107,13 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     None
 }
 
-/// A line an interval.
+/// Draws the bars, a line for each interval.
 fn bars(theme: &Theme, histogram: &Histogram, unit: Dimension, buffer: &mut Buffer, area: Rect) {
     let decimals = histogram.decimals();
     let single = unit == Dimension::Count && histogram.width == 1.0;
     let bins = histogram.poses.len();
-    // Counts are whole: an interval shows its last one. Other values show the start of the next interval, the last one its end.
+    // Counts are whole, so an interval shows its last value. Other values show the start of the next interval, and
+    // the last interval its end.
     let label = |bin: usize| {
         let (from, to) = (histogram.from(bin), histogram.from(bin + 1));
         match unit {

@@ -1,14 +1,14 @@
-//! The imprints page.
+//! The imprints page: a list of the distinct imprints.
 //!
 //! ```text
-//!    #  ↓poses      %   x0   y0  p  h       na   >7      #12     headings, an arrow at what rows are sorted by
+//!    #  ↓poses      %   x0   y0  p  h       na   >7      #12     headings, an arrow at the sort column
 //! >  7     366   0.47 5.00 5.00  1  0       36   ·▄▄·    ▄██▄    the selected row, thumbnails from it on
-//!  a12     360   0.46 5.05 5.00  1  1       34   ·▀▀·    ·▀▀·    a row that is marked by a letter
-//! imprint 7 at x0 5.00, y0 5.00; 1 piece, 0 holes, na 36         everything about the selected one
+//!  a12     360   0.46 5.05 5.00  1  1       34   ·▀▀·    ·▀▀·    a row marked by a letter
+//! imprint 7 at x0 5.00, y0 5.00; 1 piece, 0 holes, na 36         everything about the selected imprint
 //! ```
-//! A row has the number of the imprint, how many poses leave it and their share, its first pose, pieces and holes, and
-//! the value of the chosen descriptor. Where there is little room the thumbnails give way first, then the first pose.
-//! Left and right choose a heading, and `s` sorts by it; a click on a heading does both.
+//! A row has the number of the imprint, how many poses leave it and their share, its first pose, pieces and holes,
+//! and the value of the chosen descriptor. If there is little room, the thumbnails are omitted first, then the first
+//! pose. Left and right choose a heading, and `s` sorts by it; a click on a heading does both.
 
 use std::collections::BTreeMap;
 
@@ -29,14 +29,14 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
-/// Characters of a value of a descriptor.
+/// The number of characters of a descriptor's value.
 const VALUE: usize = 8;
-/// Characters of a share in percent.
+/// The number of characters of a share in percent.
 const SHARE: usize = 6;
-/// Characters of the sign of the selected row.
+/// The number of characters of the sign of the selected row.
 const SIGN: usize = 2;
 
-/// The page.
+/// The imprints page.
 pub static PAGE: ResultsPage = ResultsPage {
     page: ExplorePage::Imprints,
     title: "imprints",
@@ -50,7 +50,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     update,
 };
 
-/// A click selects a row, a click on the selected row takes it, and one on a heading sorts by it.
+/// Returns the message of a click: it selects a row, puts the selected row onto the matrix, or sorts by a heading.
 fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     let list = ImprintList::of(page, results);
     if let Some(column) = list.heading(at) {
@@ -86,29 +86,29 @@ fn update(results: &mut Results, message: &Message, page: Rect) {
     results.keep_first_row(visible);
 }
 
-/// The list of imprints.
+/// The layout of the list of imprints.
 #[derive(Clone, Debug)]
 pub struct ImprintList {
     /// The headings.
     pub head: Rect,
     /// The rows.
     pub rows: Rect,
-    /// All about the selected one.
+    /// The line about the selected imprint.
     pub detail: Rect,
-    /// Thumbnails, where there is room beside the rows.
+    /// The thumbnails; None without room beside the rows.
     pub gallery: Option<Rect>,
-    /// The row that comes first.
+    /// The index of the first visible row.
     pub first: usize,
-    /// Characters of a number of an imprint.
+    /// The number of characters of an imprint's number.
     pub id: usize,
-    /// Characters of a number of poses.
+    /// The number of characters of a number of poses.
     pub poses: usize,
-    /// Characters of the values of the first pose, where there is room for it.
+    /// The axes of the first pose, with the number of characters of their values; empty without room for them.
     pub place: Vec<(Axis, usize)>,
 }
 
 impl ImprintList {
-    /// The list on its page.
+    /// Computes the layout of the list on its page.
     pub fn of(page: Rect, results: &Results) -> Self {
         let result = results.sweep();
         let grid = &result.grid;
@@ -144,7 +144,7 @@ impl ImprintList {
                 height: page.height.min(1),
                 ..table
             },
-            // Page by page, so that a row that is clicked on stays where it is.
+            // The list turns page by page, so that a clicked row stays where it is.
             first: results.first_row(rows.height.into()),
             rows,
             detail: Rect {
@@ -158,8 +158,8 @@ impl ImprintList {
         }
     }
 
-    /// The columns that rows can be sorted by, from left to right, with the characters that each takes, those of the gap
-    /// before it among them.
+    /// Returns the columns that rows can be sorted by, from left to right, with the number of characters of each,
+    /// including the gap before it.
     pub fn columns(&self) -> Vec<(ListColumn, usize)> {
         let place = self.place.iter();
         let place = place.map(|&(axis, width)| (ListColumn::Place(axis), width + 1));
@@ -175,7 +175,7 @@ impl ImprintList {
         first.into_iter().chain(place).chain(last).collect()
     }
 
-    /// The column whose heading is at a place of the screen.
+    /// Returns the column whose heading is at a place of the screen.
     fn heading(&self, place: Position) -> Option<ListColumn> {
         if !self.head.contains(place) {
             return None;
@@ -188,14 +188,14 @@ impl ImprintList {
         })
     }
 
-    /// The row at a place of the screen.
+    /// Returns the row at a place of the screen.
     pub fn row(&self, place: Position, results: &Results) -> Option<usize> {
         let row = self.first + usize::from(place.y.checked_sub(self.rows.y)?);
         (self.rows.contains(place) && row < results.row_count()).then_some(row)
     }
 }
 
-/// Draws the page. Returns where the selected row is.
+/// Draws the page. Returns the position of the selected row.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let list = ImprintList::of(page, results);
     draw_headings(theme, results, &list, buffer);
@@ -230,7 +230,8 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     cursor
 }
 
-/// The headings, an arrow at what the rows are sorted by. The chosen one looks like the selected row.
+/// Draws the headings, with an arrow at the column that rows are sorted by. The chosen heading looks like the
+/// selected row.
 fn draw_headings(theme: &Theme, results: &Results, list: &ImprintList, buffer: &mut Buffer) {
     let (by, descending) = results.sort_key();
     let key: String = results.feature().key.chars().take(VALUE - 1).collect();
@@ -268,7 +269,7 @@ fn draw_headings(theme: &Theme, results: &Results, list: &ImprintList, buffer: &
     write::line(buffer, list.head, theme, pieces);
 }
 
-/// The letters of the imprints that are marked, by number; of several the first one.
+/// Returns the letters of the marked imprints, by number; the first letter if an imprint has several.
 fn marked(results: &Results) -> BTreeMap<u32, char> {
     let mut marked = BTreeMap::new();
     for (&letter, &pose) in results.marks() {
@@ -279,7 +280,7 @@ fn marked(results: &Results) -> BTreeMap<u32, char> {
     marked
 }
 
-/// The text of a row, without the sign of the selected one.
+/// Returns the text of a row, without the sign of the selected one.
 fn row_text(theme: &Theme, results: &Results, list: &ImprintList, entry: &AtlasEntry) -> String {
     let (id, poses) = (list.id, list.poses);
     let mut text = format!(
@@ -297,13 +298,13 @@ fn row_text(theme: &Theme, results: &Results, list: &ImprintList, entry: &AtlasE
     text
 }
 
-/// In percent.
+/// Returns the share of an imprint's poses in percent.
 fn share(results: &Results, entry: &AtlasEntry) -> String {
     let share = crate::formats::atlas::share(results.sweep(), entry) * 100.0;
     format!("{share:.2}")
 }
 
-/// The chosen descriptor's value.
+/// Returns the chosen descriptor's value of an imprint.
 fn number(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     let index = usize::try_from(entry.id).ok();
     let value = index.and_then(|index| *results.values().get(index)?);
@@ -313,7 +314,7 @@ fn number(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     )
 }
 
-/// All about an imprint in one line.
+/// Describes an imprint in one line.
 fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     let pose = results.sweep().grid.pose(entry.first_pose);
     let count = |count: u16, noun: &str| counted(count, noun);
@@ -328,7 +329,7 @@ fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     )
 }
 
-/// Thumbnails of the selected imprint and those after it, in lines from left to right.
+/// Draws thumbnails of the selected imprint and the ones after it, in lines from left to right.
 fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rect) {
     let Some((_, first)) = results.rows_from(results.selected()).next() else {
         return;
@@ -342,7 +343,7 @@ fn draw_gallery(theme: &Theme, results: &Results, buffer: &mut Buffer, area: Rec
         return;
     }
     let across = (area.width + 2) / (width + 2);
-    // A caption stands over each.
+    // Each thumbnail has a caption above it.
     let down = area.height / (height + 1);
     let places =
         (0..down.max(1)).flat_map(|line| (0..across.max(1)).map(move |column| (column, line)));

@@ -1,8 +1,8 @@
-//! The prompt for the letter of a mark: the next letter marks what is selected, or goes to what it marks.
+//! The prompt for the letter of a mark: the next letter marks the selection, or goes to the mark of that letter.
 //!
 //! ```text
 //! Mark imprint 12 by a letter:                  after m
-//! Go to the mark: a imprint 12, b imprint 60    after ', with the marks that there are
+//! Go to the mark: a imprint 12, b imprint 60    after ', with the existing marks
 //! ```
 
 use std::borrow::Cow;
@@ -11,28 +11,28 @@ use crate::tui::app::line_prompt::LinePrompt;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::text_field::TextField;
 
-/// What a letter is asked for.
+/// The purpose of the letter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkPurpose {
-    /// To mark what is selected.
+    /// Mark the selection.
     Set,
-    /// To go to what is marked.
+    /// Go to a mark.
     Jump,
 }
 
-/// The prompt.
+/// The prompt for the letter of a mark.
 #[derive(Clone, Debug)]
 pub struct MarkDialog {
-    /// What the letter is for.
+    /// The purpose of the letter.
     pub purpose: MarkPurpose,
-    /// What stands before the cursor.
+    /// The text before the cursor.
     text: String,
-    /// The place of the letter.
+    /// The field for the letter.
     field: TextField,
 }
 
 impl MarkDialog {
-    /// A prompt with a text of what the letter does.
+    /// Creates a prompt with a text that says what the letter does.
     pub fn new(purpose: MarkPurpose, text: String) -> Self {
         Self {
             purpose,

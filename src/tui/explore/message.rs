@@ -1,4 +1,4 @@
-//! Messages about sweeps: what a key or a command asks for.
+//! Messages about sweeps: requests by keys and commands, and what a sweep found.
 
 use std::time::Duration;
 
@@ -9,19 +9,20 @@ use crate::storage::Existing;
 use crate::sweep::SweepResult;
 use crate::tui::explore::column::ListColumn;
 
-/// What a sweep found, whole or in part.
+/// The findings of a sweep, whole or in part.
 #[derive(Debug)]
 pub struct Findings {
     /// The sweep.
     pub sweep: SweepResult,
-    /// How many of its imprints are distinct up to shifts, and up to quarter turns and mirror images too.
+    /// The number of imprints that are distinct up to shifts, and of those distinct up to quarter turns and mirror
+    /// images too.
     pub classes: (usize, usize),
-    /// The numbers of its imprints, the most frequent first.
+    /// The numbers of the imprints, the most frequent first.
     pub by_poses: Vec<u32>,
 }
 
 impl Findings {
-    /// What a sweep found. It is counted and sorted here, which takes a moment for millions of imprints.
+    /// Counts and sorts what a sweep found, which takes a moment for millions of imprints.
     pub fn new(sweep: SweepResult) -> Self {
         Self {
             classes: sweep.atlas.distinct_classes(),
@@ -32,13 +33,13 @@ impl Findings {
 }
 
 impl PartialEq for Findings {
-    /// Whether they are those of one sweep: they are never changed.
+    /// Returns true if both are the same object in memory; findings never change.
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self, other)
     }
 }
 
-/// What is swept, in a word: the kind of a figure, the name of a stored shape, or a picture.
+/// Returns the name of what is swept: the kind of a figure, the name of a stored shape, or "picture".
 pub fn name_of(source: &Source) -> &str {
     let stored = match source {
         Source::Figure(_) => None,
@@ -47,14 +48,14 @@ pub fn name_of(source: &Source) -> &str {
     stored.unwrap_or(source.kind_name())
 }
 
-/// The pages that they are shown on.
+/// The pages of the results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExplorePage {
     /// The distinct imprints.
     Imprints,
     /// Statistics of every descriptor.
     Statistics,
-    /// How often which values of the chosen descriptor occur.
+    /// How often each value of the chosen descriptor occurs.
     Histogram,
     /// The square of x0 and y0 at one angle.
     Map,
@@ -65,7 +66,7 @@ pub enum ExplorePage {
 }
 
 impl ExplorePage {
-    /// All of them, in their order.
+    /// All pages, in the order of their tabs.
     pub const ALL: [Self; 6] = [
         Self::Imprints,
         Self::Statistics,
@@ -86,7 +87,7 @@ pub enum Zoom {
 }
 
 impl Zoom {
-    /// The axis of the grid.
+    /// Returns the axis of the grid.
     pub fn axis(self) -> Axis {
         match self {
             Self::X => Axis::ZoomX,
@@ -95,33 +96,33 @@ impl Zoom {
     }
 }
 
-/// What a key or a command asks for on the pages of Explore.
+/// A request by a key or a command on the pages of Explore.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExploreMessage {
-    /// The last result, or a form for the first.
+    /// Open the last results, or the form if there are none.
     Open,
-    /// The form of ranges.
+    /// Open the form of ranges.
     Ranges,
     /// Sweep a grid.
     Start(Box<PoseGrid>),
     /// Stop the work in progress. A sweep keeps what is complete.
     Stop,
-    /// A page.
+    /// Go to a page.
     Page(ExplorePage),
-    /// The page this many further on; negative goes back.
+    /// Go to the page this many further on; negative goes back.
     NextPage(i8),
-    /// The descriptor this many further on; negative goes back.
+    /// Choose the descriptor this many further on; negative goes back.
     Feature(i8),
-    /// Scroll the columns of the statistics by this many; choose another heading of the list, another descriptor for
-    /// the right of the scatter plot.
+    /// Scroll the columns of the statistics by this many; in the list, choose another heading; in the scatter plot,
+    /// choose another descriptor for the horizontal axis.
     Columns(i8),
-    /// Sort the imprints by a column; again by the same column, reversed.
+    /// Sort the imprints by a column; by the same column again, reverse their order.
     Sort(ListColumn),
-    /// The same by the column that is chosen in the headings.
+    /// Sort the imprints by the column of the chosen heading.
     SortHere,
-    /// Ask for an expression that imprints of the list have to fulfil.
+    /// Ask for an expression that filters the list of imprints.
     Filter,
-    /// Ask for a letter to mark what is selected with.
+    /// Ask for a letter to mark the selection with.
     Mark,
     /// Ask for the letter of a mark to go to.
     Jump,
@@ -133,9 +134,9 @@ pub enum ExploreMessage {
     Select(usize),
     /// Put the cursor of the map at an x0 and a y0, by index.
     Point(u64, u64),
-    /// The angle of the map this many further on; negative goes back.
+    /// Choose the angle of the map this many further on; negative goes back.
     Angle(i16),
-    /// The zoom of the map this many further on; negative goes back.
+    /// Choose the zoom of the map this many further on; negative goes back.
     Zoomed(Zoom, i8),
     /// Ask for the name of a file to export to.
     Export,
@@ -143,11 +144,11 @@ pub enum ExploreMessage {
     Write(String, Existing),
 }
 
-/// How far a sweep is.
+/// The progress of a sweep or an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SweepProgress {
-    /// Poses done.
+    /// The number of poses done.
     pub poses: u64,
-    /// Time since the work began.
+    /// The time since the work began.
     pub elapsed: Duration,
 }

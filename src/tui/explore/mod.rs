@@ -1,14 +1,16 @@
-//! Explore: every imprint of a shape. A form of ranges, the sweep in progress, the pages of its results, their export.
+//! Explore: every imprint of a shape. Here are the form of ranges, the sweep in progress, the pages of its results,
+//! and their export.
 //!
 //! ```text
-//! message    what is asked for, and what workers answer
+//! message    requests by keys and commands, and findings of a sweep
 //! ranges     the form                                     running: work in progress
-//! results    what was found and what is looked at         column: what its list is sorted by
-//! export  filter  mark       prompts: a file, a condition, a letter     prompts: what keys do in the last two
+//! results    the findings, and what is shown of them      column: the columns to sort the list by
+//! export  filter  mark       the prompts for a file name, a condition and a letter
+//! prompts    handles messages in filter and mark
 //! page       what the results know of a page of theirs    pages: the table of pages
 //! imprints  statistics  histogram  map  scatter  angles   the pages           drawing: a page in a file
 //! work       from the form to the results                 update: what keys do over the results
-//! view       tabs, what was swept, and the page
+//! view       tabs, summary, and the page
 //! ```
 
 pub mod message;

@@ -1,4 +1,4 @@
-//! What the results of a sweep know about each of their pages.
+//! The type of a page of the results of a sweep.
 //!
 //! A page has no state of its own: [`Results`] holds the chosen descriptor, row and pose, so that all pages agree on
 //! them.
@@ -19,11 +19,11 @@ use crate::tui::widget::theme::Theme;
 /// A page of the results: what [`crate::tui::explore::pages`] lists. The functions get the area of the page.
 #[derive(Debug)]
 pub struct ResultsPage {
-    /// Which page it is.
+    /// The page.
     pub page: ExplorePage,
-    /// Its title on its tab.
+    /// The title on its tab.
     pub title: &'static str,
-    /// The place where its keys are looked up.
+    /// The context in which its keys are looked up.
     pub context: Context,
     /// Whether it shows only the imprints that the filter keeps.
     pub sifted: bool,
@@ -31,30 +31,31 @@ pub struct ResultsPage {
     pub drawing: Option<fn(&Results) -> Option<PageDrawing>>,
     /// Its numbers for a CSV file: None for the list of imprints, whose file has all of them, and for drawings.
     pub table: Option<fn(&Results, Rect) -> String>,
-    /// What the mouse wheel does on it.
+    /// The effect of the mouse wheel.
     pub wheel: Wheel,
-    /// Draws it. Returns where the cursor is, None if the page has none.
+    /// Draws the page. Returns the position of the cursor; None if the page has none.
     pub draw: fn(&Results, &Theme, &mut Buffer, Rect) -> Option<Position>,
-    /// What a click at a position means.
+    /// Returns the message of a click at a position.
     pub click: fn(&Results, Rect, Position) -> Option<Message>,
-    /// Handles the messages that mean something else on each page: to scroll, to select a row, to move a cursor.
+    /// Handles the messages whose meaning differs between pages: to scroll, to select a row, to move a cursor.
     pub update: fn(&mut Results, &Message, Rect),
 }
 
 impl ResultsPage {
-    /// Whether a file of that name holds what this page shows: a drawing on any page, which may be refused, or its table.
+    /// Returns true if a file of that name holds what this page shows: a drawing on any page, which may be refused,
+    /// or its table.
     pub fn is_own_file(&self, name: &str) -> bool {
         drawn_format(name).is_some() || (self.table.is_some() && is_csv(name))
     }
 }
 
-/// Whether a name is that of a CSV file.
+/// Returns true if a name is that of a CSV file.
 pub(in crate::tui) fn is_csv(name: &str) -> bool {
     let ending = Path::new(name).extension();
     ending.is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
 }
 
-/// The update of a page whose rows are descriptors.
+/// Handles a message on a page whose rows are descriptors.
 pub(in crate::tui) fn choose_descriptor(results: &mut Results, message: &Message, _page: Rect) {
     match *message {
         Message::Scroll(lines) => {

@@ -15,7 +15,7 @@ pub static PAGES: [&ResultsPage; ExplorePage::ALL.len()] = [
     &angles::PAGE,
 ];
 
-/// The row of a page.
+/// Returns the row of a page.
 pub fn row(page: ExplorePage) -> &'static ResultsPage {
     PAGES[page as usize]
 }

@@ -1,4 +1,4 @@
-//! What messages do in the prompts over the results: the filter of the list, and the letters of marks.
+//! Handles messages in the prompts over the results: the filter of the list, and the letters of marks.
 
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::Dialog;
@@ -12,7 +12,7 @@ use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::runtime::effect::Effect;
 
-/// The results that a prompt stands over.
+/// Returns the results that a prompt lies over.
 fn results(app: &mut App) -> Option<&mut Results> {
     match app.dialogs.last_mut() {
         Some(Dialog::Results(results)) => Some(results),
@@ -52,8 +52,8 @@ pub(crate) fn in_filter(
     None
 }
 
-/// The prompt that asks for a letter; None, and a notice, where there is nothing to mark or to go to.
-/// A mark is of a pose, so that it holds on every page and under every filter.
+/// Returns the prompt for a letter. Shows a notice and returns None if there is nothing to mark or to go to. A mark
+/// belongs to a pose, so that it holds on every page and under every filter.
 pub(crate) fn mark_dialog(
     app: &mut App,
     results: &Results,
@@ -82,7 +82,7 @@ pub(crate) fn mark_dialog(
     Some(MarkDialog::new(purpose, text))
 }
 
-/// The imprint of a pose by its number, or the pose where that is not known.
+/// Names the imprint of a pose by its number, or describes the pose if it was not swept.
 fn what_lies_at(results: &Results, pose: u64) -> String {
     match results.id_at(pose) {
         Some(id) => format!("imprint {id}"),
@@ -90,7 +90,8 @@ fn what_lies_at(results: &Results, pose: u64) -> String {
     }
 }
 
-/// Handles a message where a letter is asked for: the letter marks or leads to a mark, and anything else ends it.
+/// Handles a message in the prompt for a letter: a letter sets a mark or goes to it; another character is refused,
+/// and any other message closes the prompt.
 pub(crate) fn in_mark(app: &mut App, dialog: MarkDialog, message: &Message) -> Option<Effect> {
     let Message::Type(letter) = *message else {
         return None;
@@ -123,9 +124,9 @@ pub(crate) fn in_mark(app: &mut App, dialog: MarkDialog, message: &Message) -> O
     None
 }
 
-/// Goes to a marked pose: on the map and at the angles to the pose itself, elsewhere to its imprint, in the list or among
-/// the points.
-/// The map has all poses; the list has only imprints that pass the filter, so there a mark may be out of reach.
+/// Goes to a marked pose: on the map and at the angles to the pose itself, elsewhere to its imprint, in the list or
+/// among the points. The map has all poses; the list has only imprints that pass the filter, so a mark may be out of
+/// reach there.
 fn go_to(results: &mut Results, pose: u64) -> Result<(), String> {
     if matches!(results.page(), ExplorePage::Map | ExplorePage::Angles) {
         results.go_to_pose(pose);

@@ -1,8 +1,8 @@
-//! The results of a sweep, and which part of them is shown: page, descriptor, order, row, cursor of the map.
+//! The results of a sweep, and the state of their pages: page, descriptor, order, row, cursor of the map.
 //!
-//! What was found never changes and is shared with workers that write it to files. All pages look at the same
-//! descriptor, and the list and the map lead to each other. The file is long because each key changes what several pages
-//! show.
+//! The findings never change, and are shared with workers that write them to files. All pages show the same
+//! descriptor, and the list and the map lead to each other. The file is long because each key changes what several
+//! pages show.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -20,58 +20,59 @@ use crate::tui::explore::map::visible::VisibleImprints;
 use crate::tui::explore::message::{ExplorePage, Findings, Zoom, name_of};
 use crate::tui::widget::number::around;
 
-/// The descriptor that the scatter plot has to the right at first: the perimeter `p`, by its index.
+/// The first descriptor of the horizontal axis of the scatter plot: the perimeter `p`, by its index.
 const ACROSS: usize = 7;
 
-/// The results, as they are looked at.
+/// The results of a sweep, and what is shown of them.
 #[derive(Clone, Debug)]
 pub struct Results {
-    /// What was found. Workers that write it share it.
+    /// The findings, shared with workers that write them.
     findings: Arc<Findings>,
-    /// The page that is shown.
+    /// The shown page.
     page: ExplorePage,
-    /// The number of the chosen descriptor, and its value of each imprint.
+    /// The number of the chosen descriptor.
     feature: usize,
-    /// Its value for each imprint.
+    /// The values of the chosen descriptor, by the imprints' numbers.
     values: Vec<Option<f64>>,
-    /// The number of the descriptor that the scatter plot has to the right, and its values.
+    /// The number of the descriptor of the scatter plot's horizontal axis, and its values by the imprints' numbers.
     across: (usize, Vec<Option<f64>>),
-    /// The imprints of each angle, once the page of angles was looked at.
+    /// The imprints of each angle; None until the page of angles was opened and they were found.
     angle_curve: Option<Arc<AngleCurve>>,
-    /// The zooms that those were asked for last.
+    /// The zooms for which the imprints of each angle were requested last.
     angles_asked: Option<PoseIndex>,
-    /// The zooms at which they could not be found last.
+    /// The zooms for which the imprints of each angle could not be found last.
     angles_failed: Option<PoseIndex>,
     /// The imprints that the map shows.
     visible_imprints: VisibleImprints,
-    /// How often the map was zoomed in, from its whole range on.
+    /// How many times the map was zoomed in, starting from its whole range.
     closer: u8,
-    /// What rows are sorted by, and whether the largest comes first.
+    /// The column that rows are sorted by, and whether the largest comes first.
     sort: (ListColumn, bool),
-    /// The heading that is chosen to sort by.
+    /// The chosen heading, which the sort key sorts by.
     heading: ListColumn,
-    /// What rows have to fulfil, as it was typed; empty for nothing.
+    /// The filter of the rows, as it was typed; empty for none.
     filter: String,
-    /// The numbers of all imprints, sorted. A filter is typed letter by letter, and none of them changes the order.
+    /// The numbers of all imprints, sorted. They are kept because a filter is typed letter by letter, which does not
+    /// change the order.
     order: Vec<u32>,
-    /// Whether it keeps each imprint, by number; empty if it keeps all.
+    /// Whether the filter keeps each imprint, by number; empty if it keeps all.
     kept: Vec<bool>,
-    /// The numbers of the imprints that it keeps, sorted.
+    /// The numbers of the imprints that the filter keeps, sorted.
     rows: Vec<u32>,
     /// The index of the selected row.
     selected: usize,
     /// The index of the row that came first when the list was last used.
     top: usize,
-    /// The first column of statistics that is shown.
+    /// The index of the first column of statistics that is shown.
     column: usize,
-    /// Where the cursor of the map is.
+    /// The place of the map's cursor, by indices.
     pose_index: PoseIndex,
-    /// The poses that were marked, by letter.
+    /// The marked poses, by letter.
     marks: BTreeMap<char, u64>,
 }
 
 impl Results {
-    /// What was found, the most frequent imprint first.
+    /// Creates the state for some findings, with the most frequent imprint first.
     pub fn new(findings: Arc<Findings>) -> Self {
         let mut results = Self {
             page: ExplorePage::Imprints,
@@ -100,17 +101,17 @@ impl Results {
         results
     }
 
-    /// All of it.
+    /// Returns the findings.
     pub fn findings(&self) -> &Arc<Findings> {
         &self.findings
     }
 
-    /// The sweep.
+    /// Returns the sweep.
     pub fn sweep(&self) -> &SweepResult {
         &self.findings.sweep
     }
 
-    /// The page.
+    /// Returns the shown page.
     pub fn page(&self) -> ExplorePage {
         self.page
     }
@@ -120,7 +121,7 @@ impl Results {
         self.page = page;
     }
 
-    /// Goes to another page, the first after the last.
+    /// Goes `by` pages on; the first follows the last.
     pub fn next_page(&mut self, by: i8) {
         let next = around(self.page as usize, by, ExplorePage::ALL.len());
         self.page = ExplorePage::ALL[next];
@@ -136,17 +137,18 @@ impl Results {
         &features()[self.feature]
     }
 
-    /// Its value of each imprint, by the imprints' numbers.
+    /// Returns the values of the chosen descriptor, by the imprints' numbers.
     pub fn values(&self) -> &[Option<f64>] {
         &self.values
     }
 
-    /// Chooses another descriptor, the first after the last.
+    /// Chooses the descriptor `by` further on; the first follows the last.
     pub fn next_feature(&mut self, by: i8) {
         self.choose_feature(around(self.feature, by, features().len()));
     }
 
-    /// Chooses a descriptor, or the last one. The selected imprint stays selected.
+    /// Chooses a descriptor by its number; a number too large chooses the last one. The selected imprint stays
+    /// selected.
     pub fn choose_feature(&mut self, number: usize) {
         self.feature = number.min(features().len() - 1);
         self.values = self.sweep().atlas.values(self.feature);
@@ -155,29 +157,30 @@ impl Results {
         }
     }
 
-    /// The number of the descriptor that the scatter plot has to the right.
+    /// Returns the number of the descriptor of the scatter plot's horizontal axis.
     pub fn across(&self) -> usize {
         self.across.0
     }
 
-    /// Its value of each imprint, by the imprints' numbers.
+    /// Returns the values of that descriptor, by the imprints' numbers.
     pub fn across_values(&self) -> &[Option<f64>] {
         &self.across.1
     }
 
-    /// Chooses another descriptor for the right of the scatter plot, the first after the last.
+    /// Chooses the descriptor `by` further on for the scatter plot's horizontal axis; the first follows the last.
     pub fn next_across(&mut self, by: i8) {
         let number = around(self.across.0, by, features().len());
         self.across = (number, self.sweep().atlas.values(number));
     }
 
-    /// The imprints of each angle at the zooms of the map, None until a worker has found them.
+    /// Returns the imprints of each angle at the zooms of the map; None until a worker has found them.
     pub fn angle_curve(&self) -> Option<&AngleCurve> {
         let curve = self.angle_curve.as_deref();
         curve.filter(|curve| curve.is_at(self.pose_index))
     }
 
-    /// Where the page needs imprints of each angle that nobody was asked for yet. From now on they count as asked for.
+    /// Returns the place at whose zooms the page needs the imprints of each angle, if they were not requested yet.
+    /// They count as requested afterwards.
     pub fn missing_angles(&mut self) -> Option<PoseIndex> {
         let missing = self.page == ExplorePage::Angles
             && self.angle_curve().is_none()
@@ -188,7 +191,7 @@ impl Results {
         missing.then_some(self.pose_index)
     }
 
-    /// Takes the imprints of each angle. Those of zooms that were left meanwhile are not needed.
+    /// Takes the imprints of each angle. Imprints for zooms that were left meanwhile are dropped.
     pub fn take_angles(&mut self, curve: Arc<AngleCurve>) {
         if curve.is_at(self.pose_index) {
             self.angle_curve = Some(curve);
@@ -200,34 +203,35 @@ impl Results {
         self.angles_failed = Some(zooms_of(place));
     }
 
-    /// Whether that is so at the zooms of the map.
+    /// Returns true if the imprints of each angle could not be found at the zooms of the map.
     pub fn angles_failed(&self) -> bool {
         self.angles_failed == Some(zooms_of(self.pose_index))
     }
 
-    /// The imprints that the map showed last.
+    /// Returns the imprints that the map showed last.
     pub(super) fn visible_imprints(&self) -> &VisibleImprints {
         &self.visible_imprints
     }
 
-    /// How often the map was zoomed in.
+    /// Returns how many times the map was zoomed in.
     pub fn closer(&self) -> u8 {
         self.closer
     }
 
-    /// Zooms the map in, or out if negative; `last` is the closest that there is.
+    /// Zooms the map in, or out if `by` is negative; `last` is the closest zoom.
     pub fn zoom_map(&mut self, by: i8, last: u8) {
         self.closer = self.closer.min(last).saturating_add_signed(by).min(last);
     }
 
-    /// How many imprints the list has of how many there are, as people read it: `312 of 4,102`.
+    /// Returns how many of all imprints are in the list, as text: `312 of 4,102`.
     pub fn kept_of_all(&self) -> String {
         let count = |count: usize| grouped(count as u64);
         let all = self.sweep().atlas.len();
         format!("{} of {}", count(self.row_count()), count(all))
     }
 
-    /// How much there is; first of all, whether it is all. `sifted` says whether what is shown follows the filter.
+    /// Returns a summary of the sweep; it begins with a remark if the sweep is only a part. `sifted` is whether the
+    /// shown page follows the filter.
     pub fn summary(&self, sifted: bool) -> String {
         let result = self.sweep();
         let all = result.grid.poses();
@@ -246,13 +250,13 @@ impl Results {
         format!("{what}: {poses}, {distinct}")
     }
 
-    /// What the imprints are sorted by, and whether from the largest on.
+    /// Returns the column that rows are sorted by, and whether the largest comes first.
     pub fn sort_key(&self) -> (ListColumn, bool) {
         self.sort
     }
 
-    /// Sorts by a column, which becomes the chosen heading; again, the other way. The imprint that is selected stays
-    /// selected.
+    /// Sorts by a column, which becomes the chosen heading; by the same column again, reverses the order. The
+    /// selected imprint stays selected.
     pub fn sort(&mut self, by: ListColumn) {
         self.sort = if self.sort.0 == by {
             (by, !self.sort.1)
@@ -263,12 +267,12 @@ impl Results {
         self.arrange();
     }
 
-    /// The heading that is chosen to sort by.
+    /// Returns the chosen heading.
     pub fn heading(&self) -> ListColumn {
         self.heading
     }
 
-    /// Chooses a heading, the one `by` further on among those that are shown; at the ends it stays.
+    /// Chooses the heading `by` further on among the shown ones; at the ends it stays.
     pub fn move_heading(&mut self, by: i8, shown: &[ListColumn]) {
         let now = shown.iter().position(|&column| column == self.heading);
         let next = now.map_or(0, |now| now.saturating_add_signed(isize::from(by)));
@@ -277,12 +281,12 @@ impl Results {
         }
     }
 
-    /// What rows have to fulfil, as it was typed; empty for nothing.
+    /// Returns the filter of the rows, as it was typed; empty for none.
     pub fn filter(&self) -> &str {
         &self.filter
     }
 
-    /// Keeps only the rows that fulfil an expression, given as it was typed and as it was read. The selected imprint stays
+    /// Keeps only the rows that pass a filter, given as it was typed and as it was read. The selected imprint stays
     /// selected if it is kept.
     pub fn keep(&mut self, typed: &str, filter: &AtlasFilter) {
         typed.trim().clone_into(&mut self.filter);
@@ -294,32 +298,33 @@ impl Results {
         self.sift();
     }
 
-    /// Whether the filter keeps an imprint.
+    /// Returns true if the filter keeps an imprint.
     pub fn keeps(&self, id: u32) -> bool {
         let kept = self.kept.get(wide(id));
         kept.is_none_or(|&kept| kept)
     }
 
-    /// Marks the pose that is looked at with a letter; false where there is none.
+    /// Marks the present pose with a letter. Returns false if there is none.
     pub fn mark(&mut self, letter: char) -> bool {
         let pose = self.pose();
         self.marks.extend(pose.map(|pose| (letter, pose)));
         pose.is_some()
     }
 
-    /// The marked poses with their letters, in the order of these.
+    /// Returns the marked poses with their letters, in the order of the letters.
     pub fn marks(&self) -> &BTreeMap<char, u64> {
         &self.marks
     }
 
-    /// Sorts and sifts.
+    /// Sorts and filters the rows.
     fn arrange(&mut self) {
         let (by, descending) = self.sort;
         self.order = by.order(self.sweep(), &self.values, descending);
         self.sift();
     }
 
-    /// Sifts, and keeps the selected imprint selected; where the filter took it, another one near the same row.
+    /// Filters the rows, and keeps the selected imprint selected; if the filter removes it, a row at about the same
+    /// place is selected.
     fn sift(&mut self) {
         let selected = self.rows.get(self.selected).copied();
         let rows = self.order.iter().copied();
@@ -329,29 +334,29 @@ impl Results {
         }
     }
 
-    /// How many rows the list of imprints has.
+    /// Returns the number of rows in the list of imprints.
     pub fn row_count(&self) -> usize {
         self.rows.len()
     }
 
-    /// Some of the imprints, from a row on.
+    /// Returns the imprints from a row on, with the indices of their rows.
     pub fn rows_from(&self, first: usize) -> impl Iterator<Item = (usize, AtlasEntry)> + '_ {
         let rows = self.rows.iter().enumerate().skip(first);
         rows.filter_map(|(index, &id)| Some((index, self.sweep().atlas.entry(id)?)))
     }
 
-    /// Which row is selected.
+    /// Returns the index of the selected row.
     pub fn selected(&self) -> usize {
         self.selected
     }
 
-    /// Selects a row, or the last one.
+    /// Selects a row by its index; an index too large selects the last one.
     pub fn select(&mut self, row: usize) {
         self.selected = row.min(self.rows.len().saturating_sub(1));
     }
 
-    /// The first row of a list that shows `visible` rows. It stays the same while the selected row is visible, else the list
-    /// turns by whole pages. The last page is full.
+    /// Returns the index of the first row of a list that shows `visible` rows. It stays the same while the selected
+    /// row is visible; otherwise the list turns by whole pages. The last page is full.
     pub fn first_row(&self, visible: usize) -> usize {
         let visible = visible.max(1);
         let last = self.rows.len().saturating_sub(visible);
@@ -364,68 +369,69 @@ impl Results {
         first.min(last)
     }
 
-    /// Keeps the row that comes first.
+    /// Stores the first row of a list that shows `visible` rows.
     pub fn keep_first_row(&mut self, visible: usize) {
         self.top = self.first_row(visible);
     }
 
-    /// Selects an imprint; false where the list has none of that number.
+    /// Selects an imprint by its number. Returns false if the list does not have it.
     pub fn find(&mut self, id: u32) -> bool {
         let row = self.rows.iter().position(|&row| row == id);
         self.selected = row.unwrap_or(self.selected);
         row.is_some()
     }
 
-    /// The first column of statistics that is shown.
+    /// Returns the index of the first column of statistics that is shown.
     pub fn column(&self) -> usize {
         self.column
     }
 
-    /// Shows other columns, the first of them no later than the `last`.
+    /// Scrolls the columns of statistics by `by`; the first one is at most `last`.
     pub fn move_columns(&mut self, by: i8, last: usize) {
         let moved = (self.column.min(last)).saturating_add_signed(isize::from(by));
         self.column = moved.min(last);
     }
 
-    /// Where the map's cursor is.
+    /// Returns the place of the map's cursor, by indices.
     pub fn pose_index(&self) -> PoseIndex {
         self.pose_index
     }
 
-    /// Puts it at an x0 and a y0, or the last ones.
+    /// Puts the map's cursor at an x0 and a y0, by index; an index too large means the last one.
     pub fn point(&mut self, x0: u64, y0: u64) {
         let counts = self.sweep().grid.counts();
         self.pose_index[Axis::X0] = x0.min(counts[Axis::X0] - 1);
         self.pose_index[Axis::Y0] = y0.min(counts[Axis::Y0] - 1);
     }
 
-    /// Shows another angle.
+    /// Shows the angle `by` further on.
     pub fn turn(&mut self, by: i16) {
         let count = self.sweep().grid.counts()[Axis::Angle];
         let now = self.pose_index[Axis::Angle];
-        // The first angle follows the last, as the angles may go all around.
+        // The first angle follows the last one, as the angles may go all around.
         let forward = u64::from(by.unsigned_abs()) % count;
         let step = if by < 0 { count - forward } else { forward };
         self.pose_index[Axis::Angle] = (now + step) % count;
     }
 
-    /// Shows another zoom, up to the last one.
+    /// Shows the zoom `by` further on, at most the last one.
     pub fn zoom(&mut self, zoom: Zoom, by: i8) {
         self.move_along(zoom.axis(), by.into());
     }
 
-    /// Moves the map's cursor along an axis by a number of poses, at most to its ends.
+    /// Moves the map's cursor along an axis by a number of poses; at the ends it stays.
     pub fn move_along(&mut self, axis: Axis, by: i64) {
         let last = self.sweep().grid.counts()[axis] - 1;
         self.pose_index[axis] = self.pose_index[axis].saturating_add_signed(by).min(last);
     }
 
-    /// Puts the map's cursor where a pose is.
+    /// Puts the map's cursor at a pose, given by its number.
     pub fn go_to_pose(&mut self, number: u64) {
         self.pose_index = self.sweep().grid.index(number);
     }
 
-    /// The pose that is looked at: of the map and the angles, or the first one of the selected imprint; its number.
+    /// Returns the number of the present pose: at the map's cursor on the pages of map and angles, otherwise the
+    /// first pose of the selected imprint.
     pub fn pose(&self) -> Option<u64> {
         if matches!(self.page, ExplorePage::Map | ExplorePage::Angles) {
             return Some(self.sweep().grid.number(self.pose_index));
@@ -434,7 +440,7 @@ impl Results {
         Some(entry.first_pose)
     }
 
-    /// A pose in words: the values of the axes that a sweep of this shape has.
+    /// Returns a pose as text: the values of the axes that a sweep of this shape has.
     pub fn pose_text(&self, pose: &Pose) -> String {
         let values = self.sweep().grid.axes().map(|axis| {
             let parameter = axis.parameter();
@@ -444,7 +450,7 @@ impl Results {
         values.collect::<Vec<_>>().join(", ")
     }
 
-    /// The characters that the values of an axis need, or its name.
+    /// Returns the number of characters that the values of an axis, or its name, need.
     pub fn width_of(&self, axis: Axis) -> usize {
         let (range, parameter) = (self.sweep().grid.ranges()[axis], axis.parameter());
         let ends = [range.value(0), range.value(1), range.last()];
@@ -454,14 +460,14 @@ impl Results {
             .fold(parameter.row().short.len(), usize::max)
     }
 
-    /// The number of the imprint that a pose leaves, None if the pose was not swept.
+    /// Returns the number of the imprint that a pose leaves; None if the pose was not swept.
     pub fn id_at(&self, pose: u64) -> Option<u32> {
         let grid = &self.sweep().grid;
         let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(grid.pose(pose)));
         self.id(&imprint)
     }
 
-    /// The number of an imprint in the atlas.
+    /// Returns the number of an imprint in the atlas.
     pub fn id(&self, imprint: &Imprint) -> Option<u32> {
         self.sweep().atlas.find(imprint)
     }
@@ -482,7 +488,7 @@ mod tests {
         of(source, ranges())
     }
 
-    /// A picture in two zooms.
+    /// Returns the results of a picture in two zooms.
     fn with_zooms() -> Results {
         let bar = "####\n####".parse().expect("an imprint");
         let zooms = "1:1.5:0.5".parse().expect("a range");
@@ -525,14 +531,14 @@ mod tests {
     }
 
     #[test]
-    fn angles_of_a_zoom_that_was_left_do_not_replace_those_of_the_present_one() {
+    fn angles_of_an_earlier_zoom_do_not_replace_the_present_ones() {
         let mut results = with_zooms();
         results.turn_to(ExplorePage::Angles);
         let curve = |place| Arc::new(AngleCurve::of(results.sweep(), place));
         let first = results.pose_index();
         let (early, late) = (curve(first), curve(first.with(Axis::ZoomX, 1)));
         assert_eq!(results.missing_angles(), Some(first));
-        // The curve is that of all angles and positions.
+        // The curve belongs to all angles and positions.
         results.move_along(Axis::X0, 1);
         assert_eq!(results.missing_angles(), None, "asked for already");
         results.move_along(Axis::X0, -1);
@@ -546,7 +552,7 @@ mod tests {
     }
 
     #[test]
-    fn a_filter_and_marks_keep_to_the_imprints_they_name() {
+    fn a_filter_and_marks_apply_to_the_right_imprints() {
         let mut results = results();
         let all = results.row_count();
         results.select(7);
@@ -574,7 +580,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_page_of_the_list_is_full_and_rows_stay_while_one_of_them_is_selected() {
+    fn the_last_page_is_full_and_the_list_turns_only_when_needed() {
         let mut results = results();
         let (all, visible) = (results.row_count(), 10);
         assert!(all > 25 && all % visible != 0, "{all}");

@@ -5,9 +5,9 @@
 //! 1,200,000 of 3,600,000 poses, 33 %        how far it is
 //! ████████████████░░░░░░░░░░░░░░░░          a gauge
 //! 250,000 poses a second, about 10 seconds left
-//! stop keeps what is complete               what stopping leaves
+//! stopping keeps what is complete           what stopping leaves
 //! ```
-//! An export of a known length has the same lines, any other only its title and what stopping leaves.
+//! An export of a known number of poses has the same lines, any other only its title and what stopping leaves.
 
 use std::time::Duration;
 
@@ -24,30 +24,30 @@ use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// What is done.
+/// The kind of work in progress.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WorkKind {
     /// A sweep of a grid.
     Sweep(Box<PoseGrid>),
-    /// An export to a file of this name; the number of poses if it has a record for each.
+    /// An export to a file of this name, and the number of poses if the file has a record for each.
     Write(String, Option<u64>),
 }
 
-/// The work.
+/// A sweep or an export in progress.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Running {
-    /// Its number.
+    /// The number of the work.
     pub number: u64,
-    /// What it is.
+    /// The kind of work.
     pub job: WorkKind,
-    /// How far it is; None before the first progress message.
+    /// The progress; None before the first progress message.
     pub progress: Option<SweepProgress>,
-    /// Whether it is being stopped.
+    /// Whether the work is being stopped.
     pub stopping: bool,
 }
 
 impl Running {
-    /// Work that begins.
+    /// Creates work that has just begun.
     pub fn new(number: u64, job: WorkKind) -> Self {
         Self {
             number,
@@ -57,7 +57,7 @@ impl Running {
         }
     }
 
-    /// How many poses there are in all, where it is about poses.
+    /// Returns the number of poses in all; None if it is not known.
     pub fn poses(&self) -> Option<u64> {
         match &self.job {
             WorkKind::Sweep(grid) => Some(grid.poses()),
@@ -65,7 +65,7 @@ impl Running {
         }
     }
 
-    /// Poses a second; None before the first progress message.
+    /// Returns the poses per second; None before the first progress.
     #[expect(clippy::cast_precision_loss, reason = "for reading")]
     pub fn rate(&self) -> Option<f64> {
         let SweepProgress { poses, elapsed } = self.progress?;
@@ -73,7 +73,7 @@ impl Running {
         (seconds > 0.0 && poses > 0).then(|| poses as f64 / seconds)
     }
 
-    /// Seconds that are left at that rate.
+    /// Returns the seconds left at that rate; None if it is not known.
     #[expect(clippy::cast_precision_loss, reason = "for reading")]
     pub fn left(&self) -> Option<f64> {
         let rest = self.poses()?.saturating_sub(self.progress?.poses);
@@ -81,7 +81,7 @@ impl Running {
     }
 }
 
-/// The gauge is no wider.
+/// The maximum width of the gauge.
 const WIDEST: u16 = 60;
 
 impl Page for Running {
@@ -104,13 +104,13 @@ impl Page for Running {
         None
     }
 
-    /// Its update stops the work.
+    /// The update of this page stops the work.
     fn cancels_itself(&self) -> bool {
         true
     }
 }
 
-/// Draws title, gauge, speed and what stopping does, a line each.
+/// Draws title, progress, gauge, speed and what stopping leaves, a line each.
 fn draw(theme: &Theme, running: &Running, buffer: &mut Buffer, area: Rect) {
     write::clear(buffer, area);
     let inner = write::right_of(area, area.x.saturating_add(2));
@@ -121,7 +121,7 @@ fn draw(theme: &Theme, running: &Running, buffer: &mut Buffer, area: Rect) {
         ),
         WorkKind::Write(name, _) => (format!("Writing {name}"), "stopping leaves no file behind"),
     };
-    // On a low screen what matters most comes first.
+    // On a low screen, there are no blank lines between them.
     let spaced = usize::from(area.height >= 9);
     let row = |index: usize| write::row(inner, index * (1 + spaced));
     write::line(buffer, row(0), theme, [(title.as_str(), Role::Title)]);
@@ -143,7 +143,7 @@ fn draw(theme: &Theme, running: &Running, buffer: &mut Buffer, area: Rect) {
     write::line(buffer, row(4), theme, [(end, Role::Quiet)]);
 }
 
-/// A bar as long as what is done.
+/// Draws a bar whose filled part is the share that is done.
 pub(in crate::tui) fn gauge(theme: &Theme, done: u64, all: u64, buffer: &mut Buffer, row: Rect) {
     let [full, _, empty] = theme.bar();
     let width = row.width.min(WIDEST);
@@ -155,7 +155,7 @@ pub(in crate::tui) fn gauge(theme: &Theme, done: u64, all: u64, buffer: &mut Buf
     write::line(buffer, row, theme, pieces);
 }
 
-/// Poses a second and the time left; empty before the first progress message.
+/// Returns the poses per second and the time left; empty before the first progress.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -178,7 +178,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn rate_and_rest_are_those_of_what_was_done() {
+    fn rate_and_time_left_follow_the_progress() {
         let mut running = Running::new(1, WorkKind::Write("a.npy".to_owned(), Some(1000)));
         assert_eq!((running.rate(), running.left()), (None, None));
         let progress = |poses, millis| {

@@ -1,14 +1,14 @@
 //! The scatter page: two descriptors of every imprint that the filter keeps, one against the other.
 //!
 //! ```text
-//! p: perimeter against na: active taxels; 62 imprints      what is shown; how many have both values
+//! p: perimeter against na: active taxels; 62 imprints      the descriptors, and how many imprints have both values
 //! p                     · 1   o 2–9   O 10–99   @ 100+     how many imprints share a character
-//! 24 ┤      · oX O                                         X where the selected one is
+//! 24 ┤      · oX O                                         X is the selected imprint
 //!    └────┬────┬──── na
-//! imprint 5: na 22, p 20; 4 poses                          the selected one
+//! imprint 5: na 22, p 20; 4 poses                          the selected imprint
 //! ```
-//! Up and down choose the upward descriptor, which is that of the other pages too; left and right the other one. A click
-//! selects the nearest imprint.
+//! Up and down choose the vertical descriptor, which is the one of the other pages too; left and right choose the
+//! horizontal one. A click selects the nearest imprint.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -27,10 +27,10 @@ use crate::tui::widget::plot::{PlotField, draw_no_room};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Characters of a value.
+/// The number of characters of a value.
 const VALUE: usize = 9;
 
-/// The page.
+/// The scatter page.
 pub static PAGE: ResultsPage = ResultsPage {
     page: ExplorePage::Scatter,
     title: "scatter",
@@ -44,7 +44,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     update,
 };
 
-/// Chooses the descriptors, selects an imprint.
+/// Chooses a descriptor, or selects an imprint.
 fn update(results: &mut Results, message: &Message, page: Rect) {
     match *message {
         Message::Explore(ExploreMessage::Columns(by)) => results.next_across(by),
@@ -53,21 +53,21 @@ fn update(results: &mut Results, message: &Message, page: Rect) {
     }
 }
 
-/// An imprint's values: across and upwards; None if it lacks one.
+/// Returns an imprint's values, horizontal and vertical; None if it lacks one.
 fn point(results: &Results, entry: &AtlasEntry) -> Option<(f64, f64)> {
     let index = usize::try_from(entry.id).ok()?;
     let [x, y] = [results.across_values(), results.values()];
     Some(((*x.get(index)?)?, (*y.get(index)?)?))
 }
 
-/// The points of all rows, with the rows' indices.
+/// Returns the points of all rows, with the indices of their rows.
 fn points(results: &Results) -> Vec<(usize, (f64, f64))> {
     let rows = results.rows_from(0);
     rows.filter_map(|(row, entry)| Some((row, point(results, &entry)?)))
         .collect()
 }
 
-/// The field on its page, for some points.
+/// Returns the plot field on the page, for some points; None without room.
 fn field(page: Rect, points: &[(usize, (f64, f64))]) -> Option<PlotField> {
     let area = Rect {
         height: page.height.saturating_sub(2),
@@ -78,7 +78,8 @@ fn field(page: Rect, points: &[(usize, (f64, f64))]) -> Option<PlotField> {
     PlotField::of(area, x, y)
 }
 
-/// A click selects the nearest imprint; one on the selected imprint takes it.
+/// Returns the message of a click: it selects the nearest imprint, or puts it onto the matrix if it is selected
+/// already.
 fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     let points = points(results);
     let field = field(page, &points)?;
@@ -99,7 +100,7 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     })
 }
 
-/// What the page shows, in words.
+/// Returns the title: both descriptors, and the number of imprints.
 fn title(results: &Results, count: usize) -> String {
     let (x, y) = (&features()[results.across()], results.feature());
     format!(
@@ -112,7 +113,7 @@ fn title(results: &Results, count: usize) -> String {
     )
 }
 
-/// Draws the page. Returns where the selected imprint is.
+/// Draws the page. Returns the position of the selected imprint.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let points = points(results);
     let title = title(results, points.len());
@@ -145,7 +146,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     Some(at)
 }
 
-/// The selected imprint in one line.
+/// Describes the selected imprint in one line.
 fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     let index = usize::try_from(entry.id).ok();
     let formatted = |values: &[Option<f64>]| {

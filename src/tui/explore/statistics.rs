@@ -3,11 +3,11 @@
 //! ```text
 //! 175 distinct up to shifts, 105 up to turns and mirrors too
 //! poses partly off the sensor: 316  without imprint: 32
-//! 1 of 23              min   mean    max     sd        which descriptor is chosen, and columns
+//! 1 of 23              min   mean    max     sd        the number of the chosen descriptor, and columns
 //! > na                   1 22.405     29 7.3052        a row for each descriptor
 //! ```
-//! The columns are those of [`STATISTIC_COLUMNS`]; those that do not fit scroll to the side. The chosen descriptor is
-//! also that of the histogram and of the list of imprints.
+//! The columns are [`STATISTIC_COLUMNS`]; columns that do not fit scroll to the side. The descriptor that is chosen
+//! here is also the one of the histogram and of the list of imprints.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -23,7 +23,7 @@ use crate::tui::keys::binding::Context;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write::{self, below, first_of};
 
-/// The page.
+/// The statistics page.
 pub static PAGE: ResultsPage = ResultsPage {
     page: ExplorePage::Statistics,
     title: "statistics",
@@ -40,7 +40,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     update,
 };
 
-/// The statistics of all descriptors as CSV, with the columns of the summary of a sweep.
+/// Returns the statistics of all descriptors as CSV, with the same columns as the summary of a sweep.
 fn table(results: &Results, _page: Rect) -> String {
     let keys = STATISTIC_COLUMNS.iter().map(|column| column.key);
     let mut text = format!("descriptor,{}\n", keys.collect::<Vec<_>>().join(","));
@@ -55,7 +55,7 @@ fn table(results: &Results, _page: Rect) -> String {
     text
 }
 
-/// Scrolls the columns; rows are descriptors.
+/// Scrolls the columns, or chooses a descriptor.
 fn update(results: &mut Results, message: &Message, page: Rect) {
     if let Message::Explore(ExploreMessage::Columns(by)) = message {
         let (_, visible) = StatisticsTable::of(page, results).columns;
@@ -65,27 +65,27 @@ fn update(results: &mut Results, message: &Message, page: Rect) {
     }
 }
 
-/// The table of statistics.
+/// The layout of the table of statistics.
 #[derive(Clone, Copy, Debug)]
 pub struct StatisticsTable {
-    /// How many poses and imprints there are; empty where there is no room.
+    /// The numbers of poses and imprints; empty without room.
     pub totals: Rect,
     /// The headings.
     pub head: Rect,
     /// The rows.
     pub rows: Rect,
-    /// The row that comes first.
+    /// The index of the first visible row.
     pub first: usize,
-    /// Characters of a name.
+    /// The number of characters of a descriptor's name.
     pub name: usize,
-    /// Characters of a column.
+    /// The number of characters of a column.
     pub column: usize,
-    /// The column that comes first, and how many there is room for.
+    /// The index of the first visible column, and the number of columns that there is room for.
     pub columns: (usize, usize),
 }
 
 impl StatisticsTable {
-    /// The table on its page.
+    /// Computes the layout of the table on its page.
     pub fn of(page: Rect, results: &Results) -> Self {
         let (name, count) = (17, STATISTIC_COLUMNS.len());
         let room = usize::from(page.width).saturating_sub(name);
@@ -112,19 +112,19 @@ impl StatisticsTable {
         }
     }
 
-    /// Whether there are columns that do not fit.
+    /// Returns true if there are columns that do not fit.
     pub fn hides_columns(&self) -> bool {
         self.columns.1 < STATISTIC_COLUMNS.len()
     }
 
-    /// The row at a place of the screen.
+    /// Returns the row at a place of the screen.
     pub fn row(&self, place: Position) -> Option<usize> {
         let row = self.first + usize::from(place.y.checked_sub(self.rows.y)?);
         (self.rows.contains(place) && row < features().len()).then_some(row)
     }
 }
 
-/// Draws the page. Returns where the chosen descriptor is.
+/// Draws the page. Returns the position of the chosen descriptor.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let table = StatisticsTable::of(page, results);
     for (index, total) in totals(results).iter().enumerate() {
@@ -176,7 +176,7 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     cursor
 }
 
-/// Which row is chosen where not all can be seen, and to which side there are columns that do not fit.
+/// Returns which row is chosen if not all rows are visible, and on which side there are more columns.
 fn head(table: &StatisticsTable, results: &Results) -> String {
     let (first, visible) = table.columns;
     let all = features().len();
@@ -194,7 +194,7 @@ fn head(table: &StatisticsTable, results: &Results) -> String {
     row + columns
 }
 
-/// Poses and imprints.
+/// Returns the lines with the numbers of imprints and poses.
 fn totals(results: &Results) -> [String; 2] {
     let findings = results.findings();
     let (result, (shifts, symmetry)) = (&findings.sweep, findings.classes);

@@ -1,4 +1,4 @@
-//! What messages do over the results of a sweep, and in the prompt for the name of an export. The other prompts have
+//! Handles messages over the results of a sweep, and in the prompt for the name of an export. The other prompts have
 //! [`crate::tui::explore::prompts`].
 //!
 //! Messages that mean the same on all pages are handled here: the page, the descriptor, the order, the map's angle and
@@ -28,9 +28,8 @@ use crate::tui::recognise;
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::runtime::effect::Effect;
 
-/// Does what a message says over the results.
-/// The page was taken off the stack: an arm that opens another page puts it back first, below that one. Closed results
-/// are kept, and Explore opens them again for the same shape.
+/// Handles a message over the results. The page was taken off the stack: an arm that opens another page puts it back
+/// first, below that one. Closed results are kept, and Explore opens them again for the same shape.
 pub(crate) fn in_results(
     app: &mut App,
     mut results: Box<Results>,
@@ -92,8 +91,8 @@ pub(crate) fn in_results(
     None
 }
 
-/// Opens the comparison of the selected imprint with the one on the matrix, over the results. An empty list has none to
-/// compare.
+/// Opens the comparison of the selected imprint with the one on the matrix, over the results. Refused if nothing is
+/// selected.
 fn compare(app: &mut App, results: Box<Results>) {
     let entry = results.rows_from(results.selected()).next();
     app.dialogs.push(Dialog::Results(results));
@@ -103,9 +102,10 @@ fn compare(app: &mut App, results: Box<Results>) {
     }
 }
 
-/// The prompt for a file. It proposes the page's drawing or table where it has one, otherwise the table of imprints.
+/// Returns the prompt for a file. It proposes the page's drawing or table if it has one, otherwise the table of
+/// imprints.
 fn export_of(results: &Results) -> ExportDialog {
-    // A path has other uses for a slash.
+    // A slash would separate folders.
     let name = name_of(results.sweep().grid.source()).replace('/', "-");
     let row = pages::row(results.page());
     let name = match (row.drawing, row.table) {
@@ -116,8 +116,7 @@ fn export_of(results: &Results) -> ExportDialog {
     ExportDialog::proposing(&name, ExportKind::of(results))
 }
 
-/// What changes only what is looked at.
-/// None of these touches the document, so there is nothing to undo.
+/// Handles messages that change only what is shown, not the document, so that there is nothing to undo.
 fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
     match *asked {
         ExploreMessage::Page(page) => results.turn_to(page),
@@ -140,7 +139,7 @@ fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
     }
 }
 
-/// Why there is no other pose along an axis; None where there is one.
+/// Returns why there is no other pose along an axis; None if there is one.
 fn only_one(app: &App, results: &Results, axis: Axis) -> Option<String> {
     let grid = &results.sweep().grid;
     let name = axis.parameter().row().short;
@@ -153,9 +152,8 @@ fn only_one(app: &App, results: &Results, axis: Axis) -> Option<String> {
     is_only.then(|| format!("only one {name} was swept; {ranges} explores other ranges"))
 }
 
-/// Selects the imprint on the matrix, or the same one at another place.
-/// The same imprint elsewhere counts: a shape moved by whole cells leaves it moved by as many taxels. The notice says
-/// which way it lies on the matrix, seen from the one in the list.
+/// Selects the imprint on the matrix, or the same imprint at another place: a shape moved by whole cells leaves an
+/// imprint moved by as many taxels. A notice says where it lies on the matrix, relative to the one in the list.
 fn find(app: &mut App, results: &mut Results) {
     let imprint = app.reading().imprint;
     if let Some(id) = results.id(&imprint) {
@@ -187,7 +185,7 @@ fn find(app: &mut App, results: &mut Results) {
     }
 }
 
-/// Selects an imprint in the list; where the filter hides it, says so and returns false.
+/// Selects an imprint in the list. If the filter hides it, shows a notice and returns false.
 fn select(app: &mut App, results: &mut Results, id: u32) -> bool {
     let found = results.find(id);
     if !found {
@@ -199,8 +197,8 @@ fn select(app: &mut App, results: &mut Results, id: u32) -> bool {
     found
 }
 
-/// From the list and the points to the first pose on the map, from the map and the angles to the imprint in the list.
-/// A sweep that was stopped has poses without an imprint: these are refused.
+/// Goes from the list and the points to the first pose on the map, or from the map and the angles to the imprint in
+/// the list. Refused for a pose whose imprint a stopped sweep has not found.
 fn follow(app: &mut App, results: &mut Results) {
     let Some(pose) = results.pose() else {
         return refuse(app, "nothing is selected here");
@@ -219,9 +217,8 @@ fn follow(app: &mut App, results: &mut Results) {
     }
 }
 
-/// The shape in the pose that is looked at, with just the imprint that the sweep found.
-/// The user may have another sensor by now. What that one reads differently is set by hand, taxel by taxel, so that
-/// the imprint is the one that was selected.
+/// Puts the shape onto the matrix in the present pose, with just the imprint that the sweep found. The user may have
+/// another sensor by now. Taxels that it reads differently are set by hand, so that the imprint is the selected one.
 fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     let grid = &results.sweep().grid;
     let Some(pose) = results.pose().map(|number| grid.pose(number)) else {
@@ -255,8 +252,8 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     None
 }
 
-/// The name of a file to write.
-/// One prompt serves the pages of Explore and the curve of the page of sizes; a name that is refused stays in it.
+/// Handles a message in the prompt for the name of a file. The prompt serves the pages of Explore and the curve of
+/// the page of sizes; a refused name stays in it.
 pub(crate) fn in_export(
     app: &mut App,
     mut dialog: ExportDialog,
@@ -288,7 +285,7 @@ pub(crate) fn in_export(
     None
 }
 
-/// Why a file cannot be written: the present page is a table and has no drawing, or not all poses were swept.
+/// Returns why a file cannot be written: the present page is a table and has no drawing, or not all poses were swept.
 fn missing(app: &App, name: &str) -> Option<String> {
     let results = app.results_below()?;
     let result = results.sweep();

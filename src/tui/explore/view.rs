@@ -5,7 +5,7 @@
 //! hexagon: 1,000 poses, 87 distinct imprints           what was swept, and how much was found
 //!                                                      the page, see the table in `pages`
 //! ```
-//! Results of a sweep that was stopped say which part they are of.
+//! Results of a stopped sweep say that they are only a part.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -76,8 +76,9 @@ impl Page for Results {
         pages::row(self.page()).wheel
     }
 
-    /// An empty list has nothing to compare, to put onto the matrix or to go to. Where all columns of the statistics
-    /// are visible, all poses of the map, or the only angle, there are no others.
+    /// An empty list has nothing to compare, to put onto the matrix or to go to. Scrolling, turning and zooming have
+    /// no use if all columns of the statistics are visible, if there is a single angle, or if the map has a single
+    /// scale.
     fn has_use_for(&self, message: &Message, area: Rect) -> bool {
         let page = || ResultPanes::of(area).page;
         match (message, self.page()) {
@@ -95,25 +96,25 @@ impl Page for Results {
         }
     }
 
-    /// Its update keeps what was found.
+    /// The update of this page keeps the findings.
     fn cancels_itself(&self) -> bool {
         true
     }
 }
 
-/// The parts of the screen of results.
+/// The parts of the screen that shows results.
 #[derive(Clone, Copy, Debug)]
 pub struct ResultPanes {
-    /// The names of the pages.
+    /// The tabs with the names of the pages.
     pub tabs: Rect,
-    /// How much there is.
+    /// The summary of the findings.
     pub summary: Rect,
     /// The page.
     pub page: Rect,
 }
 
 impl ResultPanes {
-    /// The parts of an area.
+    /// Divides an area into the parts.
     pub fn of(area: Rect) -> Self {
         let line = |index: u16| Rect {
             y: area.y + index.min(area.height),
@@ -127,7 +128,8 @@ impl ResultPanes {
         }
     }
 
-    /// The name of each page, and where it stands. Where there is no room for all names, only the present one has one.
+    /// Returns the name of each page, and its place. If there is no room for all names, only the present page has
+    /// one.
     pub fn tabs(&self, present: ExplorePage) -> impl Iterator<Item = (ExplorePage, String, Rect)> {
         let area = self.tabs;
         let name = move |page: ExplorePage, number: u16, named: bool| {

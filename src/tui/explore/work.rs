@@ -5,7 +5,7 @@
 //! results -> name of a file -> Running -> Written                       Stop: no file
 //! results -> name of a drawing or of the page's table -> a request about files
 //! ```
-//! Each piece of work has a number, and its events carry it. Events of work that is no longer waited for are dropped.
+//! Each piece of work has a number, and its events carry it. Events of work that is no longer awaited are dropped.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -33,7 +33,7 @@ use crate::tui::explore::running::{Running, WorkKind};
 use crate::tui::explore::view::ResultPanes;
 use crate::tui::runtime::effect::{Effect, FileRequest, Work};
 
-/// Handles what a key, a command or an answered question asks for.
+/// Handles a request by a key, a command or an answered question.
 pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
     match asked {
         ExploreMessage::Open => open(app),
@@ -70,20 +70,20 @@ pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
     }
 }
 
-/// Where the pages of the results are on the screen; nothing if there is no room.
+/// Returns the area of the results' pages on the screen; empty if there is no room.
 pub(super) fn page_area(app: &App, results: &Results) -> Rect {
     let area = app.panes().map(|panes| panes.area(results.slot()));
     area.map_or(Rect::default(), |area| ResultPanes::of(area).page)
 }
 
-/// Whether a file of that name holds what the open page shows, rather than all imprints.
+/// Returns true if a file of that name holds what the open page shows, rather than all imprints.
 pub(super) fn is_own_file(app: &App, name: &str) -> bool {
     let results = app.results_below();
     results.is_some_and(|results| pages::row(results.page()).is_own_file(name))
 }
 
-/// Opens the last results if they are of the shape on the matrix, otherwise the form.
-/// Results of another shape stay kept: the form comes, and they are there again with their shape.
+/// Opens the last results if they belong to the shape on the matrix, otherwise the form. Results of another shape are
+/// kept: the form opens, and they are there again with their shape.
 fn open(app: &mut App) -> Option<Effect> {
     app.mode = Mode::Draw;
     match app.results.take() {
@@ -98,14 +98,14 @@ fn open(app: &mut App) -> Option<Effect> {
     }
 }
 
-/// What is explored: the figure or picture on the matrix, or what is drawn there as a picture, with the name that it is
-/// stored under; None of an empty matrix.
+/// Returns what is explored: the figure or picture on the matrix, or a drawing as a picture, with the name that it is
+/// stored under; None for an empty matrix.
 pub(in crate::tui) fn explored(app: &App) -> Option<Source> {
     let document = app.history.present();
     if document.source.is_some() {
         return document.source.clone();
     }
-    // Without a source, the edits are all there is.
+    // Without a source, the document consists of the edits alone.
     let imprint = document.edits;
     let picture = (!imprint.is_empty()).then(|| Picture::at_home(imprint))?;
     Some(Source::Picture(match app.stored_name() {
@@ -114,14 +114,14 @@ pub(in crate::tui) fn explored(app: &App) -> Option<Source> {
     }))
 }
 
-/// Whether results are those of the shape on the matrix, wherever it is now.
+/// Returns true if results belong to the shape on the matrix, wherever the shape is now.
 fn is_of(app: &App, results: &Results) -> bool {
     let grid = &results.sweep().grid;
     let present = app.history.present();
     explored(app).is_some_and(|source| grid.is_of(&source, &present.sensor))
 }
 
-/// The form, with the ranges of the results below it or those that were last.
+/// Opens the form, with the ranges of the results below it or else the last ones.
 fn open_ranges(app: &mut App) -> Option<Effect> {
     let below = app.dialogs.last().and_then(|dialog| match dialog {
         Dialog::Results(results) => Some(results.sweep().grid.clone()),
@@ -139,7 +139,7 @@ fn open_ranges(app: &mut App) -> Option<Effect> {
     effect
 }
 
-/// The effect that estimates how long the grid of a form takes, once for each grid.
+/// Returns the effect that estimates how long the grid of a form takes, once for each grid.
 fn measure(form: &mut RangesForm) -> Option<Effect> {
     let grid = form.unmeasured()?;
     Some(Effect::Work(Work::Measure(Box::new(grid))))
@@ -151,7 +151,7 @@ fn start(app: &mut App, grid: PoseGrid) -> Effect {
     Effect::Work(Work::Sweep(number, Box::new(grid)))
 }
 
-/// A new piece of work, and its number.
+/// Opens the page of a new piece of work, and returns its number.
 fn begin(app: &mut App, job: WorkKind) -> u64 {
     app.works += 1;
     app.dialogs
@@ -185,9 +185,9 @@ pub(crate) fn in_ranges(
     effect
 }
 
-/// Handles a message over work in progress. Closing the page stops the work, and the page stays until the worker has
-/// answered: only then is it known what is complete. Quitting meanwhile ends the program: nothing else would while a worker
-/// hangs, and unsaved work is offered at the next start.
+/// Handles a message over work in progress. Closing the page stops the work; the page stays until the worker has
+/// answered, because only then is it known what is complete. Quitting meanwhile ends the program at once: nothing
+/// else would while a worker hangs, and unsaved work is offered at the next start.
 pub(crate) fn in_running(app: &mut App, mut running: Running, message: &Message) -> Option<Effect> {
     let stops = matches!(
         message,
@@ -203,7 +203,7 @@ pub(crate) fn in_running(app: &mut App, mut running: Running, message: &Message)
     stops.then_some(Effect::Work(Work::Stop))
 }
 
-/// Shows how far a sweep or an export is. Returns whether it is one that is waited for.
+/// Shows the progress of a sweep or an export. Returns true if this work is awaited.
 pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepProgress) -> bool {
     let running = running(app, number);
     let waited = running.is_some();
@@ -213,7 +213,7 @@ pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepPro
     waited
 }
 
-/// Shows in the form of ranges how long its grid will take.
+/// Shows how long the grid in the form of ranges will take.
 pub(in crate::tui) fn on_estimate(app: &mut App, grid: &PoseGrid, time: Duration) {
     let mut dialogs = app.dialogs.iter_mut().rev();
     let form = dialogs.find_map(|dialog| match dialog {
@@ -225,7 +225,7 @@ pub(in crate::tui) fn on_estimate(app: &mut App, grid: &PoseGrid, time: Duration
     }
 }
 
-/// The search for what the open page shows and has not found yet: the imprints of each angle.
+/// Returns the search for the imprints of each angle, if the open page shows them and they have not been found yet.
 pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     let Some(Dialog::Results(results)) = app.dialogs.last_mut() else {
         return None;
@@ -235,7 +235,7 @@ pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     Some(Effect::Work(Work::Angles(findings, place)))
 }
 
-/// Takes the imprints of each angle at a place, if these results are still there. Says why they were not found.
+/// Takes the imprints of each angle at a place, if these results are still there, or shows why they were not found.
 pub(in crate::tui) fn on_angles(
     app: &mut App,
     findings: &Arc<Findings>,
@@ -259,14 +259,14 @@ pub(in crate::tui) fn on_angles(
     }
 }
 
-/// Says that a file was written.
+/// Shows that a file was written.
 pub(in crate::tui) fn on_written(app: &mut App, number: u64, name: &str) {
     if finish(app, number).is_some() {
         inform(app, format!("written: {name}{}", filter_remark(app, name)));
     }
 }
 
-/// Asks whether a file that exists is to be replaced.
+/// Asks whether an existing file is to be replaced.
 pub(in crate::tui) fn on_existing(app: &mut App, number: u64, name: String) {
     if let Some(place) = finish(app, number) {
         let text = format!("{name} already exists. Replace it?");
@@ -275,7 +275,8 @@ pub(in crate::tui) fn on_existing(app: &mut App, number: u64, name: String) {
     }
 }
 
-/// Says why a sweep or an export failed, and asks for another name of a file. Returns whether it is one that is waited for.
+/// Shows why a sweep or an export failed, and asks for another file name after an export. Returns true if this work
+/// was awaited.
 pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> bool {
     let name = running(app, number).and_then(|running| match &running.job {
         WorkKind::Write(name, _) if !running.stopping => Some(name.clone()),
@@ -292,8 +293,8 @@ pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> bo
     true
 }
 
-/// Says that a file holds all imprints though their list is filtered. Empty for a drawing, which shows what its page does,
-/// and where nothing is filtered.
+/// Returns the remark that a file holds all imprints although their list is filtered. Empty without a filter, and for
+/// a drawing, which shows what its page shows.
 fn filter_remark(app: &App, name: &str) -> String {
     match app.results_below() {
         Some(results) if !results.filter().is_empty() && drawn_format(name).is_none() => {
@@ -304,13 +305,13 @@ fn filter_remark(app: &App, name: &str) -> String {
     }
 }
 
-/// Opens a page in place of the work that asks for it; help over the work is closed.
+/// Opens a page in place of the finished work; help over the work is closed.
 fn ask(app: &mut App, place: usize, dialog: Dialog) {
     app.dialogs.truncate(place);
     app.dialogs.push(dialog);
 }
 
-/// The work of that number, if it is still waited for.
+/// Returns the work of that number, if it is still awaited.
 fn running(app: &mut App, number: u64) -> Option<&mut Running> {
     let mut dialogs = app.dialogs.iter_mut();
     dialogs.find_map(|dialog| match dialog {
@@ -319,8 +320,8 @@ fn running(app: &mut App, number: u64) -> Option<&mut Running> {
     })
 }
 
-/// Closes the work of a number. Returns its index among the pages, None if nobody waits for it.
-/// Its notice, such as "stopping", goes with it.
+/// Closes the work of a number, and its notice, such as "stopping". Returns its index among the pages; None if it is
+/// not awaited.
 fn finish(app: &mut App, number: u64) -> Option<usize> {
     let own =
         |dialog: &Dialog| matches!(dialog, Dialog::Running(running) if running.number == number);
@@ -330,8 +331,8 @@ fn finish(app: &mut App, number: u64) -> Option<usize> {
     Some(place)
 }
 
-/// Results in place of the work, and of earlier results.
-/// A stopped sweep gives results of what was complete, as the notice says; one stopped before that gives none.
+/// Opens the results in place of the work and of earlier results. A stopped sweep gives results of what was complete,
+/// as a notice says; a sweep stopped before anything was complete gives none.
 pub(in crate::tui) fn take_findings(app: &mut App, number: u64, findings: Arc<Findings>) {
     let Some(place) = finish(app, number) else {
         return;

@@ -2,7 +2,7 @@
 //! angle.
 //!
 //! The imprints of an angle are found by sweeping its positions again. A large grid is sampled: only every n-th angle
-//! and every m-th y0 are swept, so that the plot is there within a second. Until then the page says so.
+//! and every m-th y0 are swept, so that the plot is there within a second. Until then the page says "computing".
 
 use std::collections::BTreeMap;
 
@@ -13,13 +13,13 @@ use crate::index::{index, wide};
 use crate::pose::{Axis, PoseIndex};
 use crate::sweep::SweepResult;
 
-/// Most angles: a screen has no more dots.
+/// The maximum number of angles: a screen has no more dots.
 const MOST_ANGLES: u64 = 720;
 
-/// Most rows of positions, those of all angles together.
+/// The maximum number of rows of positions, summed over all angles.
 const MOST_ROWS: u64 = 8_000;
 
-/// How often which imprints occur at the angles of a sweep, at one zoom.
+/// The imprints at the angles of a sweep, at one zoom, with how often each one occurs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AngleCurve {
     /// The zooms, as a place at the first position and angle.
@@ -28,7 +28,8 @@ pub struct AngleCurve {
     pub every_angle: u64,
     /// The step between the rows of positions that are sampled; 1 for all of them.
     pub every_row: u64,
-    /// For each of these angles its index and its imprints, by number, with how many of its positions leave them.
+    /// The sampled angles: the index of each, and its imprints by number, with how many of the sampled positions
+    /// leave them.
     angles: Vec<(u64, BTreeMap<u32, u32>)>,
 }
 
@@ -39,15 +40,15 @@ pub struct AngleSpread {
     pub index: u64,
     /// The angle in degrees.
     pub degrees: f64,
-    /// The smallest value; that of a direction is none.
+    /// The smallest value; None for a direction.
     pub min: Option<f64>,
-    /// The mean; of a direction the circular one.
+    /// The mean; the circular mean for a direction.
     pub mean: f64,
-    /// The largest value.
+    /// The largest value; None for a direction.
     pub max: Option<f64>,
 }
 
-/// A place with only its zooms.
+/// Returns a place at the first position and angle, with its zooms.
 pub(in crate::tui::explore) fn zooms_of(place: PoseIndex) -> PoseIndex {
     place
         .with(Axis::X0, 0)
@@ -56,7 +57,7 @@ pub(in crate::tui::explore) fn zooms_of(place: PoseIndex) -> PoseIndex {
 }
 
 impl AngleCurve {
-    /// Goes through the positions of all angles at the zooms of a place.
+    /// Sweeps the positions of all angles at the zooms of a place.
     pub fn of(sweep: &SweepResult, place: PoseIndex) -> Self {
         let counts = sweep.grid.counts();
         let (columns, rows, angles) = (counts[Axis::X0], counts[Axis::Y0], counts[Axis::Angle]);
@@ -87,7 +88,7 @@ impl AngleCurve {
         }
     }
 
-    /// Whether it is that of the zooms of a place.
+    /// Returns true if the curve belongs to the zooms of a place.
     pub fn is_at(&self, place: PoseIndex) -> bool {
         self.zooms == zooms_of(place)
     }
@@ -171,7 +172,7 @@ mod tests {
         Sweep::new(&grid.expect("in range")).run()
     }
 
-    /// Against each pose of an angle, described by itself.
+    /// Compares with each pose of an angle, described by itself.
     #[test]
     fn each_angle_has_the_values_of_its_positions() {
         let sweep = sweep("5:5.3:0.1", "0:80:20");
@@ -208,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_large_grid_a_part_is_gone_through() {
+    fn only_part_of_a_large_grid_is_visited() {
         let sweep = sweep("5:5.99:0.01", "0:89.9:0.1");
         let curve = AngleCurve::of(&sweep, PoseIndex::new([0; 5]));
         assert_eq!((curve.every_angle, curve.every_row), (2, 6));

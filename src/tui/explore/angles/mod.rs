@@ -1,13 +1,13 @@
 //! The angles page: the chosen descriptor against the angle.
 //!
 //! ```text
-//! na: active taxels against the angle   line: mean, dashes: min, max       what is shown
+//! na: active taxels against the angle   line: mean, dashes: min, max       the descriptor, and the legend
 //! na
 //! 20 ┤⠉⠒⠤⣀                                                                 over all positions
 //!    └────┬────┬──── angle / °
 //! angle 30°: min 16, mean 18.2, max 20                                     at the cursor
 //! ```
-//! Up and down choose the descriptor, left and right the angle, which is that of the map too.
+//! Up and down choose the descriptor, left and right the angle, which the map shows too.
 
 pub mod curve;
 
@@ -29,13 +29,13 @@ use crate::tui::widget::plot::{PlotField, draw_no_room};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Characters of a value.
+/// The number of characters of a value.
 const VALUE: usize = 9;
 
-/// What the lines are.
+/// The legend of the lines.
 const LEGEND: &str = "  line: mean, dashes: min, max";
 
-/// The page.
+/// The angles page.
 pub static PAGE: ResultsPage = ResultsPage {
     page: ExplorePage::Angles,
     title: "angles",
@@ -57,7 +57,7 @@ fn spread(results: &Results) -> Vec<AngleSpread> {
     })
 }
 
-/// The field on its page.
+/// Returns the plot field on the page; None without room.
 fn field(page: Rect, spread: &[AngleSpread]) -> Option<PlotField> {
     let area = Rect {
         height: page.height.saturating_sub(2),
@@ -68,7 +68,7 @@ fn field(page: Rect, spread: &[AngleSpread]) -> Option<PlotField> {
     PlotField::of(area, x, axis_ends(values.flatten()))
 }
 
-/// A click chooses the nearest angle.
+/// Returns the message of a click, which chooses the nearest angle.
 fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     let spread = spread(results);
     let (degrees, _) = field(page, &spread)?.point(at)?;
@@ -81,7 +81,7 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     Some(Message::Explore(ExploreMessage::Angle(by)))
 }
 
-/// The descriptor, and over which positions it is taken.
+/// Returns the title: the descriptor, and which part of the positions it is computed from.
 fn title(results: &Results) -> String {
     let feature = results.feature();
     let mut text = format!(
@@ -98,7 +98,7 @@ fn title(results: &Results) -> String {
     text
 }
 
-/// Why there is no curve, in a few words.
+/// Returns why there is no curve, in a few words.
 fn without_curve(results: &Results) -> &'static str {
     match results.angle_curve() {
         Some(_) => "no pose has a value",
@@ -107,7 +107,7 @@ fn without_curve(results: &Results) -> &'static str {
     }
 }
 
-/// Draws the page. Returns where the mean at the chosen angle is.
+/// Draws the page. Returns the position of the mean at the chosen angle.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let text = title(results);
     let end = write::line(buffer, page, theme, [(text.as_str(), Role::Title)]);
@@ -150,7 +150,7 @@ fn draw_curves(field: &PlotField, spread: &[AngleSpread], theme: &Theme, buffer:
             .iter()
             .map(|at| Some(field.dot((at.degrees, of(at)?))));
         let places: Vec<_> = places.collect();
-        // Dashes go on from one piece of the curve to the next, however long the pieces are.
+        // Dashes continue from one piece of the curve to the next, however long the pieces are.
         let mut gone = 0.0;
         for pair in places.windows(2) {
             if let [Some(from), Some(to)] = *pair {
@@ -174,7 +174,8 @@ fn draw_curves(field: &PlotField, spread: &[AngleSpread], theme: &Theme, buffer:
 /// A value of a spread.
 type SpreadValue = fn(&AngleSpread) -> Option<f64>;
 
-/// The curves: what of a spread each one shows, and whether it is dashed; the mean lies over the others.
+/// The curves: the value of a spread that each one shows, and whether it is dashed. The mean is drawn over the
+/// others.
 const CURVES: [(SpreadValue, bool); 3] = [
     (|at| at.min, true),
     (|at| at.max, true),
@@ -190,7 +191,7 @@ fn nearest(results: &Results, spread: &[AngleSpread]) -> Option<AngleSpread> {
         .copied()
 }
 
-/// The values at an angle in one line.
+/// Describes the values at an angle in one line.
 fn detail(at: &AngleSpread) -> String {
     let formatted = |value: f64| fitting(value, VALUE);
     let angle = Axis::Angle.parameter().format(at.degrees);

@@ -1,9 +1,9 @@
-//! Where the map's cells, its rulers and the pose at its cursor are.
+//! The places of the map's cells, of its rulers and of the pose at its cursor.
 //!
-//! Where letters for all poses do not fit, the map begins as a picture of its whole range, of which each half of a
-//! character is a pose: every n-th one along both axes. Zooming in halves n, down to every pose, and then to
+//! If letters for all poses do not fit, the map begins as a picture of its whole range, in which each half of a
+//! character is a pose: every n-th one along both axes. Zooming in halves n, down to every pose, and then changes to
 //! letters. A map that is larger than its page scrolls with its cursor. A letter is two columns wide if the whole map
-//! fits so.
+//! fits that way.
 
 use ratatui::layout::{Position, Rect};
 
@@ -12,30 +12,30 @@ use crate::tui::explore::results::Results;
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::write::below;
 
-/// The map of x0 and y0.
+/// The layout of the map of x0 and y0.
 #[derive(Clone, Copy, Debug)]
 pub struct MapPane {
-    /// Angle and zooms.
+    /// The line of angle and zooms.
     pub head: Rect,
-    /// x0 above the cells.
+    /// The ruler of x0, above the cells.
     pub ruler: Rect,
-    /// The cells; left of them stands y0.
+    /// The cells; the ruler of y0 is left of them.
     pub cells: Rect,
-    /// Characters of a cell.
+    /// The width of a cell in characters.
     pub cell: u16,
-    /// Poses shown in a line of the screen, one above the other: two in a picture.
+    /// The number of poses in a line of the screen, one above the other: two in a picture, otherwise one.
     pub lines: u16,
-    /// Every `stride`-th pose is shown, along x0 and along y0.
+    /// The step between shown poses, along x0 and along y0.
     pub stride: u64,
-    /// The closest zoom that there is.
+    /// The number of the closest zoom.
     pub closest: u8,
-    /// The first x0 and y0, by number.
+    /// The first visible x0 and y0, by index.
     pub first: (u64, u64),
-    /// How many of them are shown.
+    /// The number of visible values of x0 and y0.
     pub count: (u64, u64),
-    /// The pose at the cursor, where there is room beside the cells.
+    /// The pose at the cursor; None without room beside the cells.
     pub side: Option<Rect>,
-    /// The same in one line.
+    /// The pose at the cursor in one line.
     pub detail: Rect,
 }
 
@@ -48,7 +48,8 @@ enum MapScale {
     Picture(u64),
 }
 
-/// The ways of showing a map of some poses across and down in a room of columns and lines, from the whole range on.
+/// Returns the scales of a map of some poses across and down, in a room of columns and lines, starting with the whole
+/// range.
 fn scales((width, height): (u64, u64), (columns, lines): (u16, u16)) -> Vec<MapScale> {
     let (columns, lines) = (u64::from(columns.max(1)), u64::from(lines.max(1)));
     let mut scales = Vec::new();
@@ -65,7 +66,7 @@ fn scales((width, height): (u64, u64), (columns, lines): (u16, u16)) -> Vec<MapS
 }
 
 impl MapPane {
-    /// The map on its page, the cursor as near to the middle as the ends allow.
+    /// Computes the layout of the map on its page, with the cursor as near to the middle as the ends allow.
     pub fn of(page: Rect, results: &Results) -> Self {
         let grid = &results.sweep().grid;
         let [width, height, ..] = grid.counts().into_array();
@@ -80,7 +81,7 @@ impl MapPane {
         };
         let across = room.saturating_sub(label);
         let scales = scales((width, height), (across, body.height));
-        // There are at most as many as a number has bits, and two.
+        // There are at most as many scales as a number has bits, plus two.
         let closest = scales.len() - 1;
         let scale = scales[usize::from(results.closer()).min(closest)];
         let (stride, lines) = match scale {
@@ -126,7 +127,7 @@ impl MapPane {
         }
     }
 
-    /// The x0 and y0 at a place of the screen, by number; of two in a line the upper one.
+    /// Returns the x0 and y0 at a place of the screen, by index; of two in a line, the upper one.
     pub fn pose(&self, place: Position) -> Option<(u64, u64)> {
         self.cells.contains(place).then(|| {
             let x = u64::from((place.x - self.cells.x) / self.cell);
@@ -138,8 +139,7 @@ impl MapPane {
         })
     }
 
-    /// The place of the screen where a pose is shown, and whether it is the lower one of two; None where it is not in
-    /// sight.
+    /// Returns the place of a pose on the screen, and whether it is the lower one of two; None if it is not visible.
     pub fn position(&self, (x0, y0): (u64, u64)) -> Option<(Position, bool)> {
         let x = x0.checked_sub(self.first.0)? / self.stride;
         let y = y0.checked_sub(self.first.1)? / self.stride;
@@ -152,18 +152,19 @@ impl MapPane {
         })
     }
 
-    /// Whether it is a picture, not letters.
+    /// Returns true if the map is a picture, not letters.
     pub fn is_picture(&self) -> bool {
         self.lines > 1
     }
 }
 
-/// Of `all` poses of which one in `stride` is shown, the first that is in sight and how many are, with the one at `at` as
-/// near to the middle as the ends allow. `block` of them stand together.
+/// Returns the first visible pose along an axis, and the number of visible ones. One in `stride` of `all` poses is
+/// shown, at most `room` of these are visible, and the pose `at` is as near to the middle as the ends allow. `block`
+/// of them share a line.
 fn seen(at: u64, all: u64, stride: u64, room: u64, block: u64) -> (u64, u64) {
     let shown = all.div_ceil(stride);
     let seen = shown.min(room);
-    // Rounded up to whole blocks: otherwise the last one could not be reached where its block is not full.
+    // Rounded up to whole blocks, because otherwise the last pose could not be reached if its block is not full.
     let last = (shown - seen).next_multiple_of(block);
     let first = (at / stride).saturating_sub(seen / 2).min(last);
     let first = first - first % block;
@@ -175,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_map_is_shown_whole_first_and_letters_are_the_closest() {
+    fn a_map_is_shown_whole_first_and_the_closest_zoom_has_letters() {
         let strides = |map, room| {
             let scales = scales(map, room).into_iter();
             let strides = scales.map(|scale| match scale {
@@ -192,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_in_sight_keeps_the_cursor_and_whole_blocks() {
+    fn the_visible_poses_include_the_cursor_and_begin_at_a_block() {
         for (all, stride, room, block) in [
             (100, 3, 20, 2),
             (101, 2, 34, 2),

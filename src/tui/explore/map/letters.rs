@@ -1,18 +1,18 @@
-//! Letters for the imprints of a map: the same one wherever an imprint occurs, different ones for neighbours.
+//! Letters for the imprints of a map: the same letter wherever an imprint occurs, different letters for neighbours.
 //!
 //! This is a colouring of the graph of imprints that touch each other on the map, also across corners. There are 62
-//! letters. The imprints with most neighbours choose first: a letter that nobody uses yet, otherwise one that no
-//! neighbour has. An imprint with more than 61 neighbours may have to share a letter with one of them.
+//! letters. The imprints with the most neighbours choose first: a letter that is not used yet, otherwise a letter
+//! that no neighbour has. An imprint with more than 61 neighbours may have to share a letter with one of them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The number of letters: small and large ones, and digits.
+/// The number of letters: lower and upper case, and digits.
 pub const LETTERS: u8 = 62;
 
-/// The letter of each cell, from 0, of a map of rows that are `width` cells wide; none where there is no imprint.
-/// Different imprints have different letters while there are letters left. Then letters come back, but not where cells
-/// touch, at a corner too; only more than [`LETTERS`] imprints that all touch one could run out of them. Where nothing is
-/// in the way it is the imprint's number that decides, so most letters stay when the map moves.
+/// Returns the letter of each cell of a map as a number from 0, or None where there is no imprint. `width` is the
+/// number of cells in a row. Different imprints have different letters until all are used; then letters are repeated,
+/// but not for cells that touch, also across corners. Only around an imprint that touches more than 61 others can
+/// letters run out. By default the imprint's number decides, so that most letters stay when the map moves.
 ///
 /// ```
 /// use taxel::tui::explore::map::letters::letters;
@@ -23,7 +23,7 @@ pub fn letters(ids: &[Option<u32>], width: usize) -> Vec<Option<u8>> {
     signs(ids, width, LETTERS)
 }
 
-/// The same with another number of signs, at least one: colours or shades.
+/// Assigns another number of signs, at least one, in the same way as [`letters`]: colours or shades.
 pub fn signs(ids: &[Option<u32>], width: usize, count: u8) -> Vec<Option<u8>> {
     let width = width.max(1);
     let mut neighbours: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
@@ -48,7 +48,8 @@ pub fn signs(ids: &[Option<u32>], width: usize, count: u8) -> Vec<Option<u8>> {
             touch(id, index + width - 1);
         }
     }
-    // Those with most neighbours first: what has fewer of them than there are letters always finds one.
+    // Imprints with the most neighbours come first: an imprint with fewer neighbours than there are letters always
+    // finds one.
     let mut order: Vec<u32> = neighbours.keys().copied().collect();
     order.sort_by_key(|id| std::cmp::Reverse(neighbours[id].len()));
     let mut chosen: BTreeMap<u32, u8> = BTreeMap::new();
@@ -74,7 +75,7 @@ pub fn signs(ids: &[Option<u32>], width: usize, count: u8) -> Vec<Option<u8>> {
         .collect()
 }
 
-/// The letter of that number.
+/// Returns the letter of a number.
 pub fn letter(number: u8) -> char {
     let (first, number) = match number {
         0..26 => (b'a', number),
@@ -90,7 +91,7 @@ mod tests {
 
     #[test]
     fn neighbours_differ_and_an_imprint_has_one_letter() {
-        // Numbers that would all have the same letter.
+        // These numbers would all have the same letter.
         for (width, height) in [(1, 9), (9, 1), (7, 8), (40, 30)] {
             let id = |x: usize, y: usize| {
                 let block = (x / 3 * 7 + y / 2 * 5) % 23;

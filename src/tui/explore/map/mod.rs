@@ -1,10 +1,10 @@
 //! The map page: which imprint each x0 and y0 leaves at one angle.
 //!
 //! ```text
-//! letters   a letter, colour or shade for each imprint, different ones for neighbours
+//! letters   a letter, colour or shade for each imprint, different for neighbours
 //! layout    cells, rulers, the pose at the cursor
 //! visible   the imprints of the visible poses, kept while the same poses stay visible
-//! view      draws them
+//! view      draws the map
 //! ```
 
 pub mod letters;
@@ -26,7 +26,7 @@ use crate::tui::explore::page::ResultsPage;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
 
-/// The page.
+/// The map page.
 pub static PAGE: ResultsPage = ResultsPage {
     page: ExplorePage::Map,
     title: "map",
@@ -40,13 +40,13 @@ pub static PAGE: ResultsPage = ResultsPage {
     update,
 };
 
-/// A click puts the cursor at a pose.
+/// Returns the message of a click, which puts the cursor at a pose.
 fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     let (x0, y0) = MapPane::of(page, results).pose(at)?;
     Some(Message::Explore(ExploreMessage::Point(x0, y0)))
 }
 
-/// Moves the cursor by the poses that are shown: along y0 by lines, along x0 to the ends. Zooms the map.
+/// Moves the cursor by as many poses as the map's step: along y0 by lines, along x0 also to the ends. Zooms the map.
 fn update(results: &mut Results, message: &Message, page: Rect) {
     let pane = MapPane::of(page, results);
     let stride = i64::try_from(pane.stride).unwrap_or(i64::MAX);

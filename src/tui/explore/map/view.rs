@@ -1,17 +1,17 @@
 //! The map page: which imprint each x0 and y0 leaves, at one angle and zoom.
 //!
 //! ```text
-//! angle 0° 1/36  zoom x 1.00 1/3           imprint 0       what is fixed, and how many others there are
+//! angle 0° 1/36  zoom x 1.00 1/3           imprint 0       the fixed angle and zooms, with number and count
 //! y0   x0 5.00                5.90         366 poses       rulers
 //! 5.00 aaaaaaaabbcccccc                                    a letter for each imprint
 //! 5.05 aaaaaaaaddcccccc                    ··▄▄··          the imprint at the cursor
 //! imprint 0 at x0 5.00, y0 5.00; 366 poses                 and its pose
 //! ```
-//! Neighbouring imprints have different letters, so that borders are visible without colours; the same letter elsewhere
-//! may be another imprint. A pose whose imprint the stopped sweep has not found is blank.
+//! Neighbouring imprints have different letters, so that borders are visible without colours; the same letter
+//! elsewhere may be another imprint. A pose is blank if the sweep was stopped before it found the imprint.
 //!
-//! A map that does not fit in letters is a picture first, with a colour for each imprint in each half of a character;
-//! without colours with a shade in each character. Six colours and five shades seldom have to repeat beside each other.
+//! If a map does not fit in letters, it is a picture first: with colours, each half of a character shows one imprint;
+//! without colours, each character has a shade. Six colours and five shades seldom have to repeat side by side.
 
 use std::sync::Arc;
 
@@ -33,17 +33,17 @@ use crate::tui::explore::results::Results;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
-/// Colours of things side by side.
+/// The number of colours for neighbouring imprints.
 const TINTS: u8 = 6;
-/// Shades of the theme, that of nothing among them.
+/// The number of shades of the theme, including the one for zero.
 const SHADES: u8 = 5;
-/// A coverage that each of them stands for.
+/// A coverage for each shade.
 const COVERAGES: [f64; 5] = [0.0, 0.1, 0.3, 0.7, 1.0];
 
-/// A drawing has no more cells along a side: more could not be told apart.
+/// The maximum number of cells along a side of a drawing: more would not be distinguishable.
 const DRAWN: u64 = 400;
 
-/// What letters, colours or shades mean, and how many poses are not shown.
+/// Returns the legend: what letters, colours or shades mean, and which part of the poses is shown.
 fn meaning(theme: &Theme, pane: &MapPane) -> String {
     let sign = match (pane.is_picture(), has_colours(theme)) {
         (false, _) => "letter",
@@ -58,7 +58,7 @@ fn meaning(theme: &Theme, pane: &MapPane) -> String {
     format!("  each {sign} an imprint{part}")
 }
 
-/// Draws the page. Returns where the cursor is.
+/// Draws the page. Returns the position of the cursor.
 pub(in crate::tui) fn draw(
     results: &Results,
     theme: &Theme,
@@ -69,7 +69,7 @@ pub(in crate::tui) fn draw(
     let grid = &results.sweep().grid;
     let head = heading(results);
     let end = write::line(buffer, pane.head, theme, [(head.as_str(), Role::Title)]);
-    // Only where there is room for all of it.
+    // The legend is drawn only if there is room for all of it.
     let legend = write::right_of(pane.head, end);
     let text = meaning(theme, &pane);
     if write::width(&text) <= usize::from(legend.width) {
@@ -98,7 +98,7 @@ pub(in crate::tui) fn drawing(results: &Results) -> Option<PageDrawing> {
     Some(PageDrawing::Map(map.with_title(&title)))
 }
 
-/// The angle and the zooms, and how many others there are.
+/// Returns the angle and the zooms, each with its number and how many there are.
 fn heading(results: &Results) -> String {
     let grid = &results.sweep().grid;
     let (place, counts) = (results.pose_index(), grid.counts());
@@ -119,7 +119,7 @@ fn heading(results: &Results) -> String {
     parts.collect::<Vec<_>>().join("  ")
 }
 
-/// The imprints of the poses in sight, row by row.
+/// Returns the imprints of the visible poses, row by row.
 fn ids(results: &Results, pane: &MapPane) -> Arc<[Option<u32>]> {
     let (x, y) = pane.first;
     let poses = VisiblePoses {
@@ -131,7 +131,8 @@ fn ids(results: &Results, pane: &MapPane) -> Arc<[Option<u32>]> {
     results.visible_imprints().of(poses, find)
 }
 
-/// The imprints of a number of poses across and down, from a first one on, one in `stride` along both axes.
+/// Returns the imprints of a number of poses across and down, starting at a first one, one in `stride` along both
+/// axes.
 fn sampled(
     results: &Results,
     (x, y): (u64, u64),
@@ -151,7 +152,7 @@ fn sampled(
     ids.collect()
 }
 
-/// Draws the poses in sight. Returns where the cursor is, None if there is no room for any cell.
+/// Draws the visible poses. Returns the position of the cursor; None if there is no room for any cell.
 fn draw_cells(
     theme: &Theme,
     results: &Results,
@@ -189,7 +190,7 @@ fn draw_cells(
     let (cursor, _) = pane.position((x0, y0))?;
     for column in 0..pane.cell {
         if let Some(cell) = buffer.cell_mut(Position::new(cursor.x + column, cursor.y)) {
-            // A block that is reversed could not be told from its neighbours.
+            // A reversed block would look like its neighbours.
             if pane.is_picture() {
                 cell.reset();
                 cell.set_char('+');
@@ -200,17 +201,18 @@ fn draw_cells(
     Some(cursor)
 }
 
-/// How many colours or shades a picture has.
+/// Returns the number of colours or shades of a picture.
 fn signs_of_pictures(theme: &Theme) -> u8 {
     if has_colours(theme) { TINTS } else { SHADES }
 }
 
-/// Whether both halves of a character can have a colour.
+/// Returns true if the two halves of a character can have different colours.
 fn has_colours(theme: &Theme) -> bool {
     !theme.ascii && theme.tint(0).fg.is_some()
 }
 
-/// The character for two poses, one above the other, by their signs: in colours; without colours a shade for the upper one.
+/// Returns the character for two poses, one above the other, by their signs: with colours for both; without colours a
+/// shade for the upper one.
 fn halves(theme: &Theme, upper: Option<u8>, lower: Option<u8>) -> (char, Style) {
     let tint = |sign: u8| theme.tint(sign.into());
     if !has_colours(theme) {
@@ -234,7 +236,7 @@ fn halves(theme: &Theme, upper: Option<u8>, lower: Option<u8>) -> (char, Style) 
     }
 }
 
-/// y0 left of the cells; above them the first x0 and the last.
+/// Draws y0 left of the cells, and above them the first and the last x0.
 fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buffer, page: Rect) {
     let ranges = grid.ranges();
     let label = usize::from(pane.cells.x.saturating_sub(page.x)).saturating_sub(1);
@@ -269,7 +271,7 @@ fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buff
     write::line(buffer, ruler, theme, [(text.as_str(), Role::Quiet)]);
 }
 
-/// The pose at the cursor: its imprint, which one it is, where it is.
+/// Draws the pose at the cursor: its imprint, the number of that, and its place.
 fn draw_pose(theme: &Theme, results: &Results, pane: &MapPane, buffer: &mut Buffer) {
     let result = results.sweep();
     let grid = &result.grid;

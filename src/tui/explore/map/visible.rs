@@ -9,15 +9,15 @@ use crate::pose::PoseIndex;
 /// The poses that a map shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct VisiblePoses {
-    /// The first one, with the angle and the zooms of all.
+    /// The first pose, with the angle and the zooms of all.
     pub(super) first: PoseIndex,
-    /// How many are shown across and down.
+    /// The number of shown poses across and down.
     pub(super) count: (u64, u64),
     /// The step from one shown pose to the next, along both axes.
     pub(super) stride: u64,
 }
 
-/// The imprints of the poses that were visible last, by number; None of a pose that was not swept.
+/// The imprints of the poses that were visible last, by number; None for a pose that was not swept.
 #[derive(Clone, Debug, Default)]
 pub struct VisibleImprints(RefCell<Option<PosesAndImprints>>);
 
@@ -25,7 +25,7 @@ pub struct VisibleImprints(RefCell<Option<PosesAndImprints>>);
 type PosesAndImprints = (VisiblePoses, Arc<[Option<u32>]>);
 
 impl VisibleImprints {
-    /// The imprints of some poses, which `find` is called for if other poses were visible last.
+    /// Returns the imprints of some poses. Calls `find` if other poses were visible last.
     pub(super) fn of(
         &self,
         poses: VisiblePoses,

@@ -11,19 +11,19 @@ use crate::tui::widget::number::narrow;
 /// The lines of the form of ranges.
 #[derive(Clone, Copy, Debug)]
 pub struct RangeRows {
-    /// Lines a row has: two where there is room for an error under it.
+    /// The number of lines of a row: two if there is room for an error under it, otherwise one.
     pub spacing: u16,
     /// The index of the first visible row.
     first: usize,
-    /// How many rows are visible, the anchor among them.
+    /// The number of visible rows, including the anchor.
     pub visible: usize,
-    /// How many rows there are, the anchor among them.
+    /// The number of rows, including the anchor.
     rows: usize,
 }
 
 impl RangeRows {
-    /// The rows of a form in its pane: the fields and the anchor, the one that has the focus visible. A title stands
-    /// above them, and three lines below, or as many as the rows leave, but one at least.
+    /// Computes the rows of a form in its pane: the fields and the anchor, such that the row with the focus is
+    /// visible. The title is above them; below them are three lines, or as many as the rows leave, but at least one.
     pub fn of(area: Rect, form: &RangesForm) -> Self {
         let rows = form.fields().len() + 1;
         let room = usize::from(area.height.saturating_sub(1));
@@ -39,19 +39,19 @@ impl RangeRows {
         }
     }
 
-    /// The visible rows by number, each with its line from the top of the pane.
+    /// Returns the visible rows by number, each with its line from the top of the pane.
     pub fn lines(&self) -> impl Iterator<Item = (usize, u16)> {
         let rows = *self;
         (0..rows.visible).map(move |index| (rows.first + index, 1 + narrow(index) * rows.spacing))
     }
 
-    /// The row at a line of the pane.
+    /// Returns the row at a line of the pane.
     pub fn row(&self, line: u16) -> Option<usize> {
         let index = usize::from(line.checked_sub(1)? / self.spacing);
         (index < self.visible && self.first + index < self.rows).then_some(self.first + index)
     }
 
-    /// The line below the last visible row.
+    /// Returns the line below the last visible row.
     pub fn end(&self) -> u16 {
         1 + narrow(self.visible) * self.spacing
     }

@@ -1,9 +1,9 @@
 //! The form of ranges to sweep.
 //!
 //! ```text
-//! state    fields, anchor, the grid that they make, the estimate
-//! layout   which line a row has
-//! view     impl Page for RangesForm
+//! state    fields, anchor, the resulting grid, the estimate
+//! layout   the lines of the rows
+//! view     draws the form, and handles clicks
 //! ```
 
 pub mod state;

@@ -1,9 +1,9 @@
 //! The state of the form of ranges: a field for each axis of the shape, and the anchor.
 //!
-//! A range is `start:end:step` or a single number, as on the command line. The ranges of x0 and y0 are proposed: the cell
-//! that the shape lies in if nothing is cut off there in any of the angles, otherwise one around the middle. They follow
-//! the other fields until they are edited. Each valid grid is sent to a worker once, which measures how long its sweep
-//! would take; an estimate for another grid is ignored.
+//! A range is `start:end:step` or a single number, as on the command line. The ranges of x0 and y0 are proposed: the
+//! cell that the shape lies in if the sensor cuts nothing off there at any of the angles, otherwise a cell around the
+//! middle. The proposals follow the other fields until they are edited. Each valid grid is sent to a worker once,
+//! which measures how long its sweep would take; an estimate for another grid is ignored.
 
 use std::time::Duration;
 
@@ -22,84 +22,85 @@ use crate::tui::keys::key::Arrow;
 use crate::tui::widget::number::around;
 use crate::tui::widget::text_field::TextField;
 
-/// No field takes more characters.
+/// The maximum number of characters of a field.
 const LONGEST: usize = 40;
 
-/// With more orientations, ranges are not proposed, and the poses that are cut off are not counted while one types.
+/// The maximum number of orientations for which ranges are proposed, and poses that are cut off are counted, while
+/// the user types.
 const MOST_ORIENTATIONS: u64 = 20_000;
 
 /// The text field of one range.
 #[derive(Clone, Debug)]
 pub struct RangeField {
-    /// The axis that it is a range of.
+    /// The axis.
     axis: Axis,
     /// The text.
     input: TextField,
-    /// The text that was proposed, until another one is typed.
+    /// The proposed text; None once another text was typed.
     proposed: Option<String>,
 }
 
 impl RangeField {
-    /// Which parameter it ranges over.
+    /// Returns the parameter of the axis.
     pub fn parameter(&self) -> Parameter {
         self.axis.parameter()
     }
 
-    /// Its text.
+    /// Returns the text.
     pub fn text(&self) -> &str {
         self.input.text()
     }
 
-    /// Where its cursor stands, in columns.
+    /// Returns the place of the text cursor, in columns.
     pub fn cursor(&self) -> usize {
         self.input.cursor()
     }
 }
 
-/// What is wrong with the ranges.
+/// An error in the ranges.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RangesError {
-    /// The index of the field; None if all fields together are wrong, as with too many poses.
+    /// The index of the wrong field; None if all fields together are wrong, such as too many poses.
     pub field: Option<usize>,
-    /// The message beside its field; it may have several lines if it is about all fields.
+    /// The message beside the field; it may have several lines if it is about all fields.
     pub brief: String,
-    /// With the field's name.
+    /// The message with the field's name.
     pub full: String,
 }
 
-/// The form.
+/// The form of ranges.
 #[derive(Clone, Debug)]
 pub struct RangesForm {
-    /// What is swept.
+    /// The source to sweep.
     source: Source,
     /// The sensor, which bounds the values.
     sensor: Sensor,
-    /// What x0 and y0 place.
+    /// The anchor: the point of the shape that x0 and y0 place.
     anchor: Anchor,
     /// A field for each axis of the source.
     fields: Vec<RangeField>,
-    /// A field; none: the anchor, below the fields.
+    /// The index of the field that has the focus; None for the anchor, below the fields.
     focus: Option<usize>,
-    /// How many taxels were set by hand, which the sweep does not know.
+    /// The number of taxels that were set by hand, which the sweep ignores.
     by_hand: u32,
-    /// The grid that was asked about last, how many of its poses are cut off, and how long it takes.
+    /// The last measured grid, the number of its poses that are cut off, and its time.
     measured: Option<Measured>,
 }
 
-/// What is known of a grid before its sweep.
+/// The facts that are known about a grid before its sweep.
 #[derive(Clone, Debug)]
 struct Measured {
     /// The grid.
     grid: PoseGrid,
-    /// How many of its poses the sensor cuts off; None if it has too many orientations to count.
+    /// The number of its poses that the sensor cuts off; None if it has too many orientations to count.
     cut_off: Option<u64>,
-    /// How long its sweep takes; None until a worker has told.
+    /// The time that its sweep takes; None until a worker has measured it.
     time: Option<Duration>,
 }
 
 impl RangesForm {
-    /// The form for exploring a document. The ranges are those of an earlier sweep, or those that were accepted
-    /// last where they suit, or the defaults.
+    /// Creates the form for exploring a document. The ranges are those of an earlier sweep if there is one, otherwise
+    /// the last accepted ones if they fit, otherwise the defaults.
     pub fn new(
         document: &Document,
         source: Source,
@@ -113,7 +114,7 @@ impl RangesForm {
         Self::begun((document.sensor, by_hand), source, earlier, last)
     }
 
-    /// The same for a sensor, and a number of taxels that were set by hand.
+    /// Creates the form for a sensor, and a number of taxels that were set by hand.
     fn begun(
         (sensor, by_hand): (Sensor, u32),
         source: Source,
@@ -157,8 +158,8 @@ impl RangesForm {
         form
     }
 
-    /// Proposes ranges for x0 and y0 that suit the shape in the angles and zooms of the other fields, where no others were
-    /// typed. Does nothing while those are wrong.
+    /// Proposes ranges for x0 and y0 that fit the shape at the angles and zooms of the other fields, unless other
+    /// ranges were typed. Does nothing while another field is wrong.
     fn propose(&mut self) {
         let mut given = GivenRanges::default();
         let mut orientations = 1;
@@ -192,7 +193,7 @@ impl RangesForm {
         }
     }
 
-    /// The defaults in all fields.
+    /// Resets all fields to the defaults.
     fn set_defaults(&mut self) {
         let of = (self.sensor, self.by_hand);
         let fresh = Self::begun(of, self.source.clone(), None, None);
@@ -201,7 +202,8 @@ impl RangesForm {
         self.set_focus(focus);
     }
 
-    /// What is remembered of it: ranges that were typed or taken over, not those that follow the others.
+    /// Returns the ranges to remember: typed ones and ones from an earlier form, not those that follow the other
+    /// fields.
     pub fn remembered(&self) -> RememberedRanges {
         let own = self.fields.iter().filter(|field| field.proposed.is_none());
         let ranges = own.filter_map(|field| Some((field.axis, field.text().parse().ok()?)));
@@ -213,53 +215,53 @@ impl RangesForm {
         }
     }
 
-    /// What is swept, in a word or two.
+    /// Returns the title, with the name of the source.
     pub fn title(&self) -> String {
         format!("Explore: {}", name_of(&self.source))
     }
 
-    /// The fields, from the top.
+    /// Returns the fields, from the top.
     pub fn fields(&self) -> &[RangeField] {
         &self.fields
     }
 
-    /// Which field has the focus; none: the anchor.
+    /// Returns the index of the field that has the focus; None for the anchor.
     pub fn focus(&self) -> Option<usize> {
         self.focus
     }
 
-    /// What the ranges of x0 and y0 place.
+    /// Returns the anchor, the point of the shape that x0 and y0 place.
     pub fn anchor(&self) -> Anchor {
         self.anchor
     }
 
-    /// What the values of a field may be.
+    /// Returns the allowed values of a field.
     pub fn allowed(&self, field: &RangeField) -> Range {
         self.sensor.range(field.parameter())
     }
 
-    /// How many taxels were turned over by hand, which the sweep leaves out.
+    /// Returns the number of taxels that were set by hand, which the sweep ignores.
     pub fn by_hand(&self) -> u32 {
         self.by_hand
     }
 
-    /// How long the grid of the fields will take, about, where that is known.
+    /// Returns the approximate time for the grid of the fields; None if it is not known.
     pub fn estimate(&self) -> Option<Duration> {
         self.known()?.time
     }
 
-    /// How many poses of the grid of the fields the sensor cuts off, where that is known.
+    /// Returns the number of poses of the fields' grid that the sensor cuts off; None if it is not known.
     pub fn cut_off(&self) -> Option<u64> {
         self.known()?.cut_off
     }
 
-    /// What is known of the grid of the fields.
+    /// Returns the known facts about the grid of the fields.
     fn known(&self) -> Option<&Measured> {
         let measured = self.measured.as_ref();
         measured.filter(|known| self.grid().as_ref() == Ok(&known.grid))
     }
 
-    /// The grid of the fields if it was not measured before. From now on it counts as measured.
+    /// Returns the grid of the fields if it was not measured before. It counts as measured afterwards.
     pub fn unmeasured(&mut self) -> Option<PoseGrid> {
         let grid = self.grid().ok()?;
         if self
@@ -279,7 +281,7 @@ impl RangesForm {
         Some(grid)
     }
 
-    /// Notes how long a grid takes. An estimate for another grid is ignored.
+    /// Takes the estimated time of a grid. An estimate for another grid is ignored.
     pub fn take_estimate(&mut self, grid: &PoseGrid, time: Duration) {
         let known = self.measured.as_mut().filter(|known| known.grid == *grid);
         if let Some(known) = known {
@@ -287,7 +289,7 @@ impl RangesForm {
         }
     }
 
-    /// What is wrong with a field.
+    /// Returns the error in a field; None if there is none.
     pub fn trouble(&self, index: usize) -> Option<RangesError> {
         let field = self.fields.get(index)?;
         let wrong = |brief: String, full: String| RangesError {
@@ -310,10 +312,10 @@ impl RangesForm {
         error.map(|error| wrong(error.expected(), error.to_string()))
     }
 
-    /// The grid of the fields.
+    /// Returns the grid of the fields.
     ///
     /// # Errors
-    /// The first thing that is wrong.
+    /// Returns the first error in the fields.
     pub fn grid(&self) -> Result<PoseGrid, RangesError> {
         if let Some(trouble) = (0..self.fields.len()).find_map(|index| self.trouble(index)) {
             return Err(trouble);
@@ -339,7 +341,7 @@ impl RangesForm {
         })
     }
 
-    /// Goes to a field; none: to the anchor.
+    /// Moves the focus to a field; None moves it to the anchor.
     pub fn set_focus(&mut self, focus: Option<usize>) {
         self.focus = focus.map(|index| index.min(self.fields.len().saturating_sub(1)));
         if let Some(field) = self.focused() {
@@ -347,7 +349,8 @@ impl RangesForm {
         }
     }
 
-    /// Goes to a row, the anchor after the fields; there already, takes the other anchor.
+    /// Moves the focus to a row; the anchor follows the fields. If the anchor has the focus already, chooses the
+    /// other anchor.
     fn point(&mut self, row: usize) {
         let to = (row < self.fields.len()).then_some(row);
         if to.is_none() && self.focus.is_none() {
@@ -356,20 +359,20 @@ impl RangesForm {
         self.set_focus(to);
     }
 
-    /// Goes `by` rows on; the last row is followed by the first.
+    /// Moves the focus by `by` rows; the first row follows the last.
     pub fn move_focus(&mut self, by: i8) {
         let count = self.fields.len();
         let next = around(self.focus.unwrap_or(count), by, count + 1);
         self.set_focus((next < count).then_some(next));
     }
 
-    /// The field that has the focus, None while the anchor has it.
+    /// Returns the field that has the focus; None for the anchor.
     fn focused(&mut self) -> Option<&mut RangeField> {
         self.fields.get_mut(self.focus?)
     }
 
-    /// Moves to another row, or types, moves or deletes in the field; on the anchor, Space and the arrows to the sides are
-    /// the other one.
+    /// Handles a message: moves to another row, or types, moves or deletes in the field. On the anchor, Space and the
+    /// arrows to the sides choose the other anchor.
     pub fn take(&mut self, message: &Message) {
         match message {
             Message::Field(by) => self.move_focus(*by),
@@ -393,7 +396,7 @@ impl RangesForm {
         }
     }
 
-    /// The other anchor, and the ranges that suit it.
+    /// Chooses the other anchor, and proposes ranges that fit it.
     fn other_anchor(&mut self) {
         self.anchor = match self.anchor {
             Anchor::Corner => Anchor::Centre,

@@ -2,14 +2,14 @@
 //!
 //! ```text
 //! Explore: hexagon                          what is swept
-//! x0      5:5.99:0.01    -16 to 16 cells    label, range, what it may contain
+//! x0      5:5.99:0.01    -16 to 16 cells    label, range, allowed values
 //! y0      5:5.99:0.01    -16 to 16 cells
 //! Anchor  < corner >     top left, before turning
-//! 3,600,000 poses, about 20 seconds         how many poses, and how long a sweep takes
-//! ! 1,200 poses are cut off                 in how many of them the shape reaches beyond the sensor
-//! without 1 taxel set by hand               what the sweep does not know
+//! 3,600,000 poses, about 20 seconds         the number of poses, and the time that a sweep takes
+//! ! the sensor cuts off 1,200 poses         the number of poses in which the shape reaches beyond the sensor
+//! without 1 taxel set by hand               what the sweep ignores
 //! ```
-//! An error stands under its field, or in place of what it may contain where there is too little room.
+//! An error is shown under its field, or in place of the allowed values if there is too little room.
 
 use std::time::Duration;
 
@@ -28,14 +28,14 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Columns of a label.
+/// The number of columns of a label.
 const LABEL: usize = 8;
-/// Columns of the text of a field: `-15.5:-14.51:0.01` is about the longest that is proposed.
+/// The number of columns of the text of a field: `-15.5:-14.51:0.01` is about the longest that is proposed.
 const INPUT: usize = 16;
-/// The same in a narrow pane.
+/// The number of columns of the text of a field in a narrow pane.
 const NARROW_INPUT: usize = 14;
 
-/// A pane from this width on has room for what is allowed beside the field.
+/// The width from which a pane has room for the allowed values beside the field.
 const WIDE: u16 = 40;
 
 impl Page for RangesForm {
@@ -63,7 +63,7 @@ impl Page for RangesForm {
     }
 }
 
-/// Draws the form. Returns where the text cursor is.
+/// Draws the form. Returns the position of the text cursor.
 fn draw(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     write::clear(buffer, area);
     let title = form.title();
@@ -100,7 +100,7 @@ fn draw(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Op
     cursor
 }
 
-/// Draws label and text. Returns where the text cursor would be.
+/// Draws label and text of a field. Returns the position that the text cursor has if this field has the focus.
 fn draw_field(
     theme: &Theme,
     field: &RangeField,
@@ -110,7 +110,7 @@ fn draw_field(
 ) -> Position {
     let label = format!("{:LABEL$}", field.parameter().row().label);
     let room = input(row);
-    // A field is read from its start; what is typed must be seen.
+    // A field without focus is shown from its start; in a field with focus, the text at the cursor must be visible.
     let at = if focused { field.cursor() } else { 0 };
     let (shown, cursor) = write::field_columns(field.text(), at, room, theme);
     let role = if focused { Role::Focus } else { Role::Text };
@@ -120,7 +120,7 @@ fn draw_field(
     Position::new(row.x.saturating_add(column), row.y)
 }
 
-/// The columns of the text of a field in a row.
+/// Returns the number of columns of a field's text in a row.
 fn input(row: Rect) -> usize {
     if row.width >= WIDE {
         INPUT
@@ -129,7 +129,8 @@ fn input(row: Rect) -> usize {
     }
 }
 
-/// The anchor between angle brackets, and what it is as far as that has room.
+/// Draws the anchor between angle brackets, and its meaning as far as there is room. Returns the position of the
+/// cursor.
 fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect) -> Position {
     let label = format!("{:LABEL$}", "Anchor");
     let (name, meaning) = match form.anchor() {
@@ -155,7 +156,8 @@ fn draw_anchor(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, row: Rect)
     Position::new(row.x.saturating_add(narrow(LABEL)), row.y)
 }
 
-/// How many poses there are, or why there are none; and what is left out.
+/// Draws the number of poses and the time, or the error of the grid; then the number of poses that are cut off, and
+/// what the sweep ignores.
 fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rect) {
     let (text, role) = match form.grid() {
         Ok(grid) => {
@@ -165,7 +167,7 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
             let text = write::first_fitting(&[&timed, &poses], area.width.into());
             (text.to_owned(), Role::Text)
         }
-        // A wrong field says so itself.
+        // A wrong field shows its own error.
         Err(trouble) if trouble.field.is_some() => (String::new(), Role::Text),
         Err(trouble) => {
             for (index, line) in trouble.brief.lines().enumerate() {
@@ -196,7 +198,7 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
     }
 }
 
-/// A time as people say it.
+/// Returns a time in words: "about 20 seconds".
 pub fn about(time: Duration) -> String {
     let seconds = time.as_secs();
     let (number, unit) = match seconds {
@@ -214,7 +216,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_said_in_the_unit_that_fits() {
+    fn times_are_given_in_a_fitting_unit() {
         let said = [0, 1, 99, 100, 5_999, 7_300, 172_800, 400_000_000];
         let said = said.map(|seconds| about(Duration::from_secs(seconds)));
         assert_eq!(
