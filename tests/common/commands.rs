@@ -1,7 +1,7 @@
-//! Which commands the program has, as its own helps list them: for tests that look at every command.
+//! Lists the commands of the program, as its help texts name them, for tests that check every command.
 
-/// The names of all commands in the order of the helps, each before those below it; the program itself is the empty name.
-/// `help` gives the help of a command.
+/// Returns the names of all commands in the order of the help texts, each before its subcommands. The program itself
+/// has the empty name. `help` returns the help of a command.
 pub(crate) fn commands(help: &dyn Fn(&str) -> String) -> Vec<String> {
     with_subcommands("", help)
 }
@@ -9,7 +9,7 @@ pub(crate) fn commands(help: &dyn Fn(&str) -> String) -> Vec<String> {
 fn with_subcommands(command: &str, help: &dyn Fn(&str) -> String) -> Vec<String> {
     let text = help(command);
     let (start, end) = if command.is_empty() {
-        // The program's own are in groups.
+        // The program's own help lists its commands in groups.
         ("\nTouch:\n", "\nOptions:\n")
     } else {
         ("\nCommands:\n", "\n\n")
@@ -21,7 +21,7 @@ fn with_subcommands(command: &str, help: &dyn Fn(&str) -> String) -> Vec<String>
     let mut found = vec![command.to_owned()];
     for line in listed.lines().filter_map(|line| line.strip_prefix("  ")) {
         let name = line.split(' ').next().expect("a word");
-        // Deeper lines continue the words about a command.
+        // Lines with a deeper indent continue the description of a command.
         if !name.is_empty() && name != "help" {
             let path = format!("{command} {name}");
             found.extend(with_subcommands(path.trim_start(), help));

@@ -1,4 +1,4 @@
-//! What several test files share: random numbers from a fixed seed, and short ways to write a shape down.
+//! Helpers for several test files: random numbers from a fixed seed, and short notations for shapes.
 #![allow(dead_code, reason = "every test file uses its own part of this one")]
 
 use taxel::figure::{Figure, FigureKind};
@@ -11,7 +11,7 @@ use taxel::sensor::Sensor;
 pub(crate) struct Random(u64);
 
 impl Random {
-    /// Any seed; what matters is that it stands in the test.
+    /// Starts from any seed. The seed is written in the test, so that every run is the same.
     pub(crate) fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
     }
@@ -24,29 +24,29 @@ impl Random {
         self.0.wrapping_mul(0x2545_F491_4F6C_DD1D).rotate_left(32)
     }
 
-    /// A whole number from `low` to `high`, both possible.
+    /// Returns a whole number from `low` to `high`, both included.
     pub(crate) fn whole(&mut self, low: i32, high: i32) -> i32 {
         let count = u64::from(high.abs_diff(low)) + 1;
         low + i32::try_from(self.word() % count).expect("below the span")
     }
 
-    /// The same for a side of a sensor, a column or a row.
+    /// Like [`Self::whole`], for a side of a sensor, a column or a row.
     pub(crate) fn side(&mut self, low: u8, high: u8) -> u8 {
         u8::try_from(self.whole(i32::from(low), i32::from(high))).expect("between two u8")
     }
 
-    /// True in `permille` of a thousand.
+    /// Returns true with a probability of `permille` / 1000.
     pub(crate) fn chance(&mut self, permille: u64) -> bool {
         self.word() % 1000 < permille
     }
 
-    /// A decimal from `low` to `high` with none, one or two digits after the point: few digits make many ties.
+    /// Returns a decimal from `low` to `high` with 0, 1 or 2 digits after the point. So few digits cause many ties.
     pub(crate) fn decimal(&mut self, low: i32, high: i32) -> f64 {
         let scale = [1, 10, 100][usize::from(self.side(0, 2))];
         f64::from(self.whole(low * scale, high * scale)) / f64::from(scale)
     }
 
-    /// The same, but never 0 or below.
+    /// Like [`Self::decimal`] from 0 to `high`, but always above 0.
     pub(crate) fn size(&mut self, high: i32) -> f64 {
         loop {
             let size = self.decimal(0, high);
@@ -56,7 +56,8 @@ impl Random {
         }
     }
 
-    /// Whole degrees, every other time one of those where edges become upright or ties occur.
+    /// Returns an angle in whole degrees. Every other one is a multiple of 15°, where edges become upright or ties
+    /// occur.
     pub(crate) fn angle(&mut self) -> f64 {
         if self.chance(500) {
             f64::from(self.whole(0, 23) * 15)
@@ -66,7 +67,7 @@ impl Random {
     }
 }
 
-/// The value of a key in "key=value key=value".
+/// Returns the value of a key in a text such as "key=value key=value".
 fn value(text: &str, parameter: Parameter) -> Option<f64> {
     let (_, number) = text
         .split_whitespace()
@@ -75,12 +76,12 @@ fn value(text: &str, parameter: Parameter) -> Option<f64> {
     Some(number.parse().expect("a number after the ="))
 }
 
-/// The sensor of `side` × `side` taxels.
+/// Returns the sensor of `side` × `side` taxels.
 pub(crate) fn square(side: u8) -> Sensor {
     Sensor::new(side, side).expect("1 to 64")
 }
 
-/// The figure `hexagon side=3 x0=2.1 y0=1.35 angle=17 thickness=1`; an angle that is not given is 0.
+/// Reads a figure such as `hexagon side=3 x0=2.1 y0=1.35 angle=17 thickness=1`. The angle is 0 if it is not given.
 pub(crate) fn figure(text: &str, side: u8) -> Figure {
     let name = text.split_whitespace().next().expect("a name first");
     let kind = FigureKind::from_name(name).expect("one of the seven names");
@@ -89,7 +90,7 @@ pub(crate) fn figure(text: &str, side: u8) -> Figure {
     Figure::new(kind, &square(side), given).expect("values in range")
 }
 
-/// The picture of the rows in `##/#. x0=1 y0=1 angle=10 zoom_x=2 zoom_y=2`; angle 0 and zoom 1 where not given.
+/// Reads a picture such as `##/#. x0=1 y0=1 angle=10 zoom_x=2 zoom_y=2`. The angle is 0 and the zoom 1 if not given.
 pub(crate) fn picture(text: &str, side: u8) -> Picture {
     let rows = text.split_whitespace().next().expect("rows first");
     let given = |parameter| {
@@ -102,7 +103,7 @@ pub(crate) fn picture(text: &str, side: u8) -> Picture {
     Picture::new(grid(rows), &square(side), given).expect("values in range")
 }
 
-/// An imprint from rows with `/` or line ends between them; blanks around the rows do not count.
+/// Reads an imprint from rows with `/` or line ends between them. Spaces around the rows are ignored.
 pub(crate) fn grid(text: &str) -> Imprint {
     let rows = text
         .split(['/', '\n'])
@@ -111,7 +112,7 @@ pub(crate) fn grid(text: &str) -> Imprint {
     Imprint::from_rows(rows).expect("rows of # and .")
 }
 
-/// A sensor with these columns, rows and threshold.
+/// Returns a sensor with these columns, rows and threshold.
 pub(crate) fn sensor(columns: u8, rows: u8, threshold: f64) -> Sensor {
     Sensor::new(columns, rows)
         .and_then(|sensor| sensor.with(Parameter::Threshold, threshold))

@@ -1,4 +1,4 @@
-//! Facts about the ring of the paper's Fig. 1 (circles of 4 and 2 cells) that several tests hold: one place each.
+//! Facts about the ring of the paper's Fig. 1 (circles of 4 and 2 cells). Each is kept here once, for several tests.
 
-/// Distinct imprints over all positions in one cell, in steps of 0.01.
+/// The number of distinct imprints over all positions in one cell, in steps of 0.01.
 pub(crate) const RING_IMPRINTS: usize = 393;

@@ -1,12 +1,12 @@
-//! What a test does where something that it needs is not there: it is skipped, and says so.
+//! Skips a test whose requirements are missing, and reports that it was skipped.
 #![allow(dead_code, reason = "every test file uses its own part of this one")]
 
 use std::env;
 use std::fs::OpenOptions;
 use std::io::Write;
 
-/// Says that a test, or a part of one, is skipped. `cargo test` hides what a passing test prints, so a line is also added
-/// to the file that `TAXEL_SKIPS` names; `.ci/run` prints these lines at its end.
+/// Reports that a test, or a part of one, is skipped. `cargo test` hides the output of passing tests, so a line is
+/// also added to the file that `TAXEL_SKIPS` names; `.ci/run` prints these lines at its end.
 pub(crate) fn skipped(why: &str) {
     eprintln!("SKIPPED: {why}");
     if let Some(path) = env::var_os("TAXEL_SKIPS") {
@@ -17,7 +17,8 @@ pub(crate) fn skipped(why: &str) {
     }
 }
 
-/// The same for a program that is missing. With `TAXEL_CI` set, the test fails instead: the workflow installs all of them.
+/// Reports that a test is skipped because a program is missing. With `TAXEL_CI` set, the test fails instead: the
+/// workflow installs all programs.
 pub(crate) fn lacking(program: &str) {
     let must = env::var_os("TAXEL_CI").is_some_and(|set| !set.is_empty());
     assert!(!must, "there is no {program}");

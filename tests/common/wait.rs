@@ -1,4 +1,4 @@
-//! Pipes and connections that the program opens: the test waits for it, but not for ever.
+//! Pipes and connections that the program opens. The test waits for it, but with a deadline.
 #![allow(dead_code, reason = "every test file uses its own part of this one")]
 
 use std::fs::File;
@@ -10,10 +10,10 @@ use std::time::Duration;
 
 use crate::skip;
 
-/// Nothing is waited for longer, however busy the machine is.
+/// The longest wait for anything, however busy the machine is.
 const DEADLINE: Duration = Duration::from_secs(60);
 
-/// Makes a pipe with a name. Where there is no `mkfifo`, says so and returns false.
+/// Makes a named pipe. Without `mkfifo`, reports the test as skipped and returns false.
 pub(crate) fn fifo(path: &Path) -> bool {
     let Ok(made) = Command::new("mkfifo").arg(path).status() else {
         skip::lacking("mkfifo");
@@ -23,7 +23,7 @@ pub(crate) fn fifo(path: &Path) -> bool {
     true
 }
 
-/// The end of a pipe to write to, once the program reads from it.
+/// Opens the writing end of a pipe, once the program reads from it.
 pub(crate) fn writer_of(fifo: &Path) -> File {
     let path = fifo.to_owned();
     let opened = within_deadline("reader of the pipe", move || {
@@ -32,14 +32,14 @@ pub(crate) fn writer_of(fifo: &Path) -> File {
     opened.expect("the pipe opens")
 }
 
-/// The next connection that the program makes.
+/// Waits for the next connection that the program makes.
 pub(crate) fn connection(listener: &TcpListener) -> TcpStream {
     let listener = listener.try_clone().expect("a second handle");
     let accepted = within_deadline("connection", move || listener.accept());
     accepted.expect("it connects").0
 }
 
-/// Does what may wait for ever on a thread of its own. The thread is left behind where the test fails.
+/// Runs a call that may wait for ever on a thread of its own. If the test fails, the thread is left behind.
 fn within_deadline<T: Send + 'static>(what: &str, wait: impl FnOnce() -> T + Send + 'static) -> T {
     let (done, waits) = channel();
     std::thread::spawn(move || drop(done.send(wait())));

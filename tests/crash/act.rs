@@ -1,6 +1,6 @@
-//! What the programs do that are killed: this binary, started again with a variable that says so.
+//! The programs that are killed: this binary, started again with a variable that names an act.
 //!
-//! Each act says on standard output what it has done, as soon as it has; so much must have lasted.
+//! Each act prints every step as soon as it is done; what was printed must survive the kill.
 
 use std::fs::{self, File};
 use std::io::{Write, stdout};
@@ -11,10 +11,10 @@ use taxel::storage::{Expected, Journal, Library, Orphan};
 
 use super::state::shape;
 
-/// The variable: an act and a folder, with a colon between.
+/// The name of the variable. Its value is an act and a folder, separated by a colon.
 const VARIABLE: &str = "TAXEL_CRASH_ACT";
 
-/// This binary, to perform an act.
+/// Returns the command that starts this binary to perform an act.
 pub(crate) fn command(act: &str, folder: &Path) -> Command {
     let mut command = Command::new(std::env::current_exe().expect("this binary"));
     command
@@ -25,7 +25,7 @@ pub(crate) fn command(act: &str, folder: &Path) -> Command {
     command
 }
 
-/// Performs what the variable asks for; false where it asks for nothing.
+/// Performs the act that the variable names; returns false if it is not set.
 pub(crate) fn perform() -> bool {
     let Ok(asked) = std::env::var(VARIABLE) else {
         return false;
@@ -47,11 +47,11 @@ pub(crate) fn perform() -> bool {
 
 fn say(text: &str) {
     let mut out = stdout().lock();
-    // Nobody listens any more once this program is to be killed.
+    // Once this program is to be killed, nobody reads its output any more.
     let _ = writeln!(out, "{text}").and_then(|()| out.flush());
 }
 
-/// Keeps two states of unsaved work, one after the other, and gives it up.
+/// Keeps two versions of unsaved work, one after the other, and then clears the journal.
 fn journal(folder: &Path) {
     let mut journal = Journal::new(&Library::open(folder.to_owned()));
     for version in [1, 2] {
@@ -63,7 +63,7 @@ fn journal(folder: &Path) {
     say("cleared");
 }
 
-/// Takes over the work that a dead program has left.
+/// Takes over the unsaved work of a dead program.
 fn recover(folder: &Path) {
     let library = Library::open(folder.to_owned());
     let mut journal = Journal::new(&library);
@@ -91,7 +91,7 @@ fn churn(folder: &Path) {
     }
 }
 
-/// Saves for ever as one should not: into the file itself, line by line.
+/// Saves for ever in the unsafe way: writes into the file itself, line by line.
 fn naive(folder: &Path) {
     for version in 2.. {
         let mut file = File::create(folder.join("one.json")).expect("created");

@@ -1,4 +1,4 @@
-//! Each call of the system in turn: the program killed just before it, or the call refused.
+//! Goes through the system calls of an act: the program is killed just before each call, or the call is refused.
 
 use std::os::unix::process::ExitStatusExt;
 use std::process::{Command, Output};
@@ -12,13 +12,13 @@ use super::strace;
 use super::strace::Call;
 use taxel::storage::LibraryError;
 
-/// Something that is done to a library, and what may have become of it.
+/// An act on a library, with the states that it may leave.
 #[derive(Clone, Copy)]
 struct Deed {
     name: &'static str,
     state: fn() -> State,
     command: fn(&State) -> Command,
-    /// Whether the state is the one after it, and that it is one of the two.
+    /// Checks that the state is the one before or after the act, and returns true if it is the one after.
     done: fn(&State, &Output) -> bool,
 }
 
@@ -110,7 +110,7 @@ const DEEDS: [Deed; 7] = [
     },
 ];
 
-/// Whether something is the second of the two that it may be.
+/// Asserts that `found` is one of two values, and returns true if it is the second.
 fn either(found: Option<u32>, before: Option<u32>, after: Option<u32>) -> bool {
     assert!(
         found == before || found == after,
@@ -119,7 +119,7 @@ fn either(found: Option<u32>, before: Option<u32>, after: Option<u32>) -> bool {
     found == after
 }
 
-/// What is there besides must be there still.
+/// Checks that the rest of the library is still intact.
 fn others(deed: &Deed, state: &State) {
     state.starts();
     if deed.name != "saving into a new library" {
@@ -127,7 +127,7 @@ fn others(deed: &Deed, state: &State) {
     }
 }
 
-/// Every deed with every call that it makes in the library.
+/// Pairs every deed with each system call that it makes in the library.
 fn jobs() -> Vec<(Deed, Call)> {
     let mut jobs = Vec::new();
     for deed in DEEDS {
@@ -139,7 +139,7 @@ fn jobs() -> Vec<(Deed, Call)> {
     jobs
 }
 
-/// Killed just before each call.
+/// Kills the program just before each call.
 pub(crate) fn killed() -> String {
     if !strace::works() {
         return "SKIPPED, strace is missing or may not trace".to_owned();
@@ -162,7 +162,7 @@ pub(crate) fn killed() -> String {
     )
 }
 
-/// How often a program that writes into the file itself left it torn, of how many kills.
+/// Returns how many kills tore the file of a program that writes into it directly, and the number of kills.
 pub(crate) fn naive() -> (usize, usize) {
     let state = || {
         let state = State::new();
@@ -182,7 +182,7 @@ pub(crate) fn naive() -> (usize, usize) {
     (torn.into_inner(), calls.len())
 }
 
-/// The errors that a disk answers with, and what the system says of them.
+/// The errors that a file system returns, with the system's texts for them.
 const ERRORS: [(&str, &str); 5] = [
     ("ENOSPC", "No space left on device"),
     ("EIO", "Input/output error"),
@@ -191,7 +191,7 @@ const ERRORS: [(&str, &str); 5] = [
     ("EDQUOT", "Disk quota exceeded"),
 ];
 
-/// Each call refused with each error, and interrupted.
+/// Refuses each call with each error; also interrupts calls.
 pub(crate) fn refused() -> String {
     if !strace::works() {
         return "SKIPPED, strace is missing or may not trace".to_owned();
@@ -214,13 +214,14 @@ pub(crate) fn refused() -> String {
         let done = (deed.done)(&state, &output);
         others(deed, &state);
         match output.status.code() {
-            // A file that another user owns is opened in another way; what cannot be removed is left.
+            // If another user's file cannot be opened in one way, another is tried; a file that cannot be removed is
+            // left.
             Some(0) => assert!(done && message.is_empty(), "{context}"),
             Some(1) => {
                 let one = message.lines().count() == 1 && message.starts_with("error: ");
                 assert!(one && message.contains(text), "{context}");
                 assert!(message.contains("library"), "it names the place: {context}");
-                // Only where the last step fails the new state is there, and that is said.
+                // If only the last step fails, the new state is in place, and the message says so.
                 assert_eq!(done, message.contains("a power cut may undo"), "{context}");
                 told.fetch_add(1, Ordering::Relaxed);
             }

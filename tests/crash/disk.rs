@@ -1,4 +1,4 @@
-//! A disk that is full, and one that cannot be written to: small ones in memory, mounted for one program only.
+//! A full disk and a read-only disk: small ones in memory, mounted for one program only.
 
 use std::fs;
 use std::path::Path;
@@ -13,10 +13,10 @@ use super::state::shape;
 use super::state::taxel;
 use taxel::storage::{Expected, Journal, Library, Orphan, ShapeOrigin};
 
-/// The exit status of a program that may not mount.
+/// The exit status of a program that is not allowed to mount.
 const NOT_ALLOWED: i32 = 77;
 
-/// Performs an act where a disk of 64 KiB is mounted over the library's folder.
+/// Performs an act with a disk of 64 KiB mounted over the library's folder.
 fn on_own_disk(act: &str) -> Result<(), String> {
     let state = State::new();
     let own = act::command(act, &state.folder);
@@ -60,7 +60,7 @@ pub(crate) fn read_only() -> String {
     on_own_disk("read-only").map_or_else(|skipped| skipped, |()| done)
 }
 
-/// Inside: the disk is filled to the last byte.
+/// Runs on the mounted disk, which it fills to the last byte.
 pub(crate) fn on_full_disk(folder: &Path) {
     let library = Library::open(folder.to_owned());
     let stamp = library.save(&shape("one", 1), Expected::Nothing);
@@ -105,7 +105,7 @@ pub(crate) fn on_full_disk(folder: &Path) {
         .filter(|(_, what)| what.contains("half"))
         .collect();
     assert_eq!(half, []);
-    // Deleting needs no room but for the trash's folder, and makes none; it says what it can do.
+    // Deleting needs no room except for the trash folder, and frees none. It may fail, but its result must be true.
     let deleted = library.delete("one");
     assert!(deleted.is_ok() == library.load("one").is_err());
     if deleted.is_ok() {
@@ -113,7 +113,7 @@ pub(crate) fn on_full_disk(folder: &Path) {
     }
 }
 
-/// Inside: more frames than there is room for.
+/// Runs on the mounted disk: records more frames than fit.
 pub(crate) fn records_on_full_disk(folder: &Path) {
     let elsewhere = tempfile::tempdir().expect("there is a folder for temporary files");
     let source = elsewhere.path().join("frames.txt");
@@ -136,7 +136,7 @@ pub(crate) fn records_on_full_disk(folder: &Path) {
     assert!(reason.contains("No space left on device"), "{reason}");
 }
 
-/// Inside: what is on the disk can be read, and nothing else.
+/// Runs on the mounted disk: what is there can be read, but nothing can be changed.
 pub(crate) fn on_read_only_disk(folder: &Path) {
     let library = Library::open(folder.to_owned());
     library

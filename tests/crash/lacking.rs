@@ -1,5 +1,5 @@
-//! File systems that lack something, as `strace` makes them: locks, names without replacing, hard links, room. And
-//! folders that a stranger has filled.
+//! File systems without some features, simulated with `strace`: locks, renaming without replacing, hard links, free
+//! space. Also folders that a stranger has filled.
 
 use std::fs;
 use std::path::Path;
@@ -31,7 +31,7 @@ pub(crate) fn done_without() -> String {
     assert_eq!(run.status.code(), Some(0), "{run:?}");
     let text = fs::read_to_string(&target).expect("written");
     assert!(text.ends_with("</svg>\n"), "whole");
-    // What is recorded goes on in the file that has the name, be it a copy.
+    // A recording continues in the file with the requested name, even if that is a copy.
     let (frames, array) = (
         state.folder.join("frames.txt"),
         state.folder.join("rec.npy"),
@@ -48,7 +48,7 @@ pub(crate) fn done_without() -> String {
     let run = strace::refused(&watch, "?linkat", "EPERM");
     assert_eq!(run.status.code(), Some(0), "{run:?}");
     assert_eq!(recorded(&array), 50);
-    // The message names the file that was asked for, not the temporary one.
+    // The message names the requested file, not the temporary one.
     fs::remove_file(&target).expect("removed");
     let run = strace::refused(&export, "?fsync,?fdatasync", "EIO");
     let message = String::from_utf8_lossy(&run.stderr).into_owned();
@@ -61,7 +61,7 @@ pub(crate) fn done_without() -> String {
         .to_owned()
 }
 
-/// How many frames an array holds, as its header and as its length say.
+/// Returns the number of frames in an array, and checks that its header and its length agree on it.
 fn recorded(path: &Path) -> usize {
     let array = fs::read(path).expect("it is there");
     let records = (array.len() - 256) / (16 + 4 * 8);
@@ -71,7 +71,7 @@ fn recorded(path: &Path) -> usize {
 
 pub(crate) fn crafted() -> String {
     let state = State::new();
-    // The last number but one: later deletions must not be lost.
+    // The trash entry with the last number but one: later deletions must not be lost.
     let crafted = state.folder.join(".trash/18446744073709551614 z.json");
     fs::write(&crafted, shape("z", 5).write()).expect("written");
     assert!(
@@ -85,7 +85,7 @@ pub(crate) fn crafted() -> String {
             .success()
     );
     assert_eq!(state.version("one"), Some(1));
-    // More unsaved work than a program may open files.
+    // More unsaved work than the number of files that a program may open.
     let journal = state.folder.join(".journal");
     fs::create_dir(&journal).expect("made");
     for number in 0..1500 {

@@ -38,11 +38,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Instant;
 
-/// What a campaign has seen, in one line.
+/// A campaign, which returns a summary in one line.
 type Campaign = fn() -> String;
 
 const CAMPAIGNS: [(&str, Campaign); 12] = [
-    // The longest first, so that no thread waits for it at the end.
+    // The longest come first, so that no thread waits for one of them at the end.
     ("killed_at_random", random::killed),
     ("killed_at_every_call", calls::killed),
     ("every_error_is_reported", calls::refused),
@@ -68,7 +68,7 @@ fn main() -> ExitCode {
     let left = CAMPAIGNS.iter().filter(|(name, _)| asked.runs(name));
     let left = Mutex::new(left);
     let failed = AtomicBool::new(false);
-    // A campaign waits for its programs half of the time.
+    // A campaign spends half of its time waiting for its programs.
     thread::scope(|scope| {
         for _ in 0..asked.threads.get() {
             scope.spawn(|| {
@@ -88,7 +88,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs a campaign and reports what it has seen, or that it failed.
+/// Runs a campaign and prints its summary or its failure. Returns true if it passes.
 fn passes(name: &str, campaign: Campaign) -> bool {
     let start = Instant::now();
     let result = catch_unwind(campaign);
@@ -107,15 +107,15 @@ fn passes(name: &str, campaign: Campaign) -> bool {
     true
 }
 
-/// Which campaigns are asked for, as `cargo test` passes it on.
+/// The campaigns that are asked for, from the arguments that `cargo test` passes on.
 struct Asked {
-    /// Parts of their names; all if there are none.
+    /// Parts of the names of the campaigns to run; all run if there are none.
     names: Vec<String>,
-    /// Parts of the names of those to leave out.
+    /// Parts of the names of the campaigns to skip.
     skipped: Vec<String>,
-    /// Whether these are whole names.
+    /// Whether these are whole names instead of parts.
     exact: bool,
-    /// How many run at once: one for each core, unless a number is given.
+    /// The number of campaigns that run at once: one for each core, unless a number is given.
     threads: NonZeroUsize,
 }
 

@@ -1,4 +1,4 @@
-//! Killed at any moment, as a power cut or the system's own killer would; and a control that must fail.
+//! Kills at random moments, as by a power cut or the system's out-of-memory killer; and a control that must fail.
 
 use std::io::{BufRead, BufReader, Read};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -11,10 +11,10 @@ use super::state::each;
 use super::strace;
 use taxel::storage::LibraryError;
 
-/// Kills in a run of all tests.
+/// The number of kills in a normal run.
 const KILLS: usize = 300;
 
-/// Kills where a long run is asked for.
+/// The number of kills in a long run.
 const MANY_KILLS: usize = 2000;
 
 fn kills() -> usize {
@@ -24,7 +24,7 @@ fn kills() -> usize {
     asked.and_then(|kills| kills.parse().ok()).unwrap_or(many)
 }
 
-/// Starts an act, kills it some time after its first save, and answers the last numbers that it has said after "saved"
+/// Starts an act and kills it some time after its first save. Returns the last numbers that it printed after "saved"
 /// and "kept".
 fn kill(act: &str, state: &State, after: Duration) -> (u32, u32) {
     let mut child = act::command(act, &state.folder)
@@ -32,7 +32,7 @@ fn kill(act: &str, state: &State, after: Duration) -> (u32, u32) {
         .expect("the program starts");
     let mut output = BufReader::new(child.stdout.take().expect("piped"));
     let mut said = String::new();
-    // On a busy machine the start alone may take longer than the moments are.
+    // On a busy machine, the start alone may take longer than these moments.
     while !said.contains("saved") {
         let read = output.read_line(&mut said).expect("text");
         assert!(read > 0, "{act} ended before it saved: {said}");
@@ -48,7 +48,7 @@ fn kill(act: &str, state: &State, after: Duration) -> (u32, u32) {
     (last("saved"), last("kept"))
 }
 
-/// The seed of a campaign's moments: `TAXEL_SEED`, or else another one in each run, which is printed.
+/// Returns the seed for the moments of a campaign: `TAXEL_SEED`, or a new one for each run, which is printed.
 fn seed(campaign: &str) -> u32 {
     let given = std::env::var("TAXEL_SEED").ok();
     let given = given.map(|seed| seed.parse::<u32>().expect("TAXEL_SEED is a whole number"));
@@ -58,7 +58,7 @@ fn seed(campaign: &str) -> u32 {
     seed
 }
 
-/// Up to 40 ms each.
+/// Returns random moments of up to 40 ms each.
 fn moments(campaign: &str, count: usize) -> Vec<Duration> {
     let mut word = seed(campaign) | 1;
     let mut next = || {
@@ -71,7 +71,8 @@ fn moments(campaign: &str, count: usize) -> Vec<Duration> {
     (0..count).map(|_| next()).collect()
 }
 
-/// Saving, deleting, restoring and journalling for ever, killed at random: what was said to be saved is.
+/// Saves, deletes, restores and journals for ever, and is killed at random. Everything reported as saved must be
+/// there.
 pub(crate) fn killed() -> String {
     let (saves, in_trash) = (AtomicU32::new(0), AtomicU32::new(0));
     let kills = kills();
@@ -107,7 +108,7 @@ pub(crate) fn killed() -> String {
     )
 }
 
-/// The same with a program that writes into the file itself: if this were not caught, nothing would be.
+/// Does the same with a program that writes into the file itself. Unless this is caught, the campaign finds nothing.
 pub(crate) fn naive() -> String {
     let kills = kills() / 10;
     let mut torn = 0;
@@ -120,7 +121,7 @@ pub(crate) fn naive() -> String {
             Err(error) => panic!("{error}"),
         }
     }
-    // When they fall is chance; on a busy machine none may fall in the few moments that matter.
+    // The moments are random; on a busy machine none may hit the few that matter.
     let at_random = format!("{torn} of {kills} kills at random tore the file");
     if !strace::works() {
         return at_random + "; at every call SKIPPED, strace is missing or may not trace";

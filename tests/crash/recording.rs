@@ -1,5 +1,5 @@
-//! A recording that replaces another one, killed at each call: array and description are always of the same recording,
-//! and the description of a killed one says so.
+//! A recording that replaces another one, killed at each system call. The array and its description always belong to
+//! the same recording, and the description of a killed recording says that it has not ended.
 
 use std::ffi::OsString;
 use std::fs;
@@ -12,10 +12,10 @@ use super::array;
 use super::state::{each, program};
 use super::strace;
 
-/// Three frames.
+/// The source, with three frames.
 const SOURCE: &str = "0,1\n2,3\n\n4,5\n6,7\n\n8,9\n1,2\n\n";
 
-/// A folder with a recording of one frame, made by the program from another source.
+/// Makes a folder with a recording of one frame, which the program has made from another source.
 fn before() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     fs::write(folder.path().join("new.txt"), SOURCE).expect("written");
@@ -25,7 +25,7 @@ fn before() -> tempfile::TempDir {
     folder
 }
 
-/// Records a source over what is there.
+/// Returns the command that records a source over the old recording.
 fn record(folder: &Path, source: &str) -> Command {
     let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
     let (source, touch) = (path(source), path("touch.npy"));
@@ -35,8 +35,8 @@ fn record(folder: &Path, source: &str) -> Command {
     )
 }
 
-/// What is there: of which source, how many frames, ended or not; None without the description or the array. Both are of the
-/// same source, as far as the array has frames.
+/// Returns whether the recording is of the new source, its number of frames, and whether it has ended; None if the
+/// description or the array is missing. Checks that both are of the same source, if the array has frames.
 fn found(folder: &Path) -> Option<(bool, usize, bool)> {
     let recording = fs::read(folder.join("touch.npy")).ok()?;
     let frames = array::records(&recording).expect("a header");
@@ -45,7 +45,7 @@ fn found(folder: &Path) -> Option<(bool, usize, bool)> {
     let source = json["source"].as_str().expect("a source");
     let ended = json["ended"].as_bool().expect("said");
     let is_new = source.ends_with("new.txt");
-    // A record begins with its time and its number.
+    // A record begins with its time and its number, 8 bytes each.
     let start = array::start(&recording).expect("a header") + 16;
     if let Some(value) = recording.get(start..start + 8) {
         let first = f64::from_le_bytes(value.try_into().expect("eight bytes"));
@@ -68,13 +68,13 @@ pub(crate) fn killed() -> String {
         let output = strace::tampered(&command, call, "signal=KILL");
         assert_eq!(output.status.signal(), Some(9), "{call:?}: {output:?}");
         match found(folder.path()) {
-            // The old one as it was; the new one, begun or whole.
+            // The old recording unchanged, or the new one, begun or complete.
             Some((false, 1, true) | (true, _, false) | (true, 3, true)) => {}
-            // Without its description, which the next recording writes.
+            // No description: the next recording writes it.
             None => assert!(folder.path().join("touch.npy").exists(), "{call:?}"),
             other => panic!("{call:?}: {other:?}"),
         }
-        // Whatever it was, it is read, and recorded over again.
+        // In every state, the next recording can read it and replace it.
         let again = record(folder.path(), "new.txt").output().expect("it runs");
         assert!(again.status.success(), "{call:?}: {again:?}");
         assert_eq!(found(folder.path()), Some((true, 3, true)), "{call:?}");
@@ -85,7 +85,7 @@ pub(crate) fn killed() -> String {
     )
 }
 
-/// Each call refused: the old recording with its description, or the new one.
+/// Refuses each call: the old recording with its description must be there, or the new one.
 pub(crate) fn refused() -> String {
     if !strace::works() {
         return "SKIPPED, strace is missing or may not trace".to_owned();
@@ -112,7 +112,7 @@ pub(crate) fn refused() -> String {
         let entries = fs::read_dir(folder.path()).expect("read").flatten();
         let names: Vec<_> = entries.map(|entry| entry.file_name()).collect();
         let is_left = |name: &OsString| name.to_string_lossy().starts_with(".taxel-");
-        // What cannot be removed is left, for the next program that writes there.
+        // A file that cannot be removed is left for the next program that writes there.
         let is_clean = call.name.starts_with("unlink") || !names.iter().any(is_left);
         assert!(is_clean, "{names:?} {context}");
     });

@@ -1,4 +1,4 @@
-//! A library before an act, and what may be in it afterwards.
+//! A library before an act, and the states that it may be in afterwards.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,21 +12,21 @@ use taxel::sensor::Sensor;
 use taxel::storage::{Expected, Library, LibraryError, Orphan, ShapeOrigin};
 use tempfile::TempDir;
 
-/// No start takes so long, on the busiest machine.
+/// The longest time that a start may take, even on the busiest machine.
 const DEADLINE: Duration = Duration::from_secs(20);
 
-/// A shape that carries a number.
+/// Returns a shape whose taxels encode a number.
 pub(crate) fn shape(name: &str, version: u32) -> StoredShape {
     let mut imprint = Imprint::empty(16, 16);
     for row in 0..16 {
-        // Every row tells the number, so that no part of another file passes for it.
+        // Every second row holds the same half of the number, so no part of another file can pass for it.
         imprint.set_word(row, u64::from(version >> (row % 2 * 16) & 0xffff));
     }
     let name = Name::new(name).expect("a name");
     StoredShape::new(name, Sensor::default(), imprint, None).expect("16 x 16 both")
 }
 
-/// The number that a shape carries.
+/// Returns the number that a shape encodes.
 pub(crate) fn version(shape: &StoredShape) -> u32 {
     let word = |row: usize| u32::try_from(shape.imprint.words()[row]).expect("16 bits");
     let version = word(0) | word(1) << 16;
@@ -34,11 +34,11 @@ pub(crate) fn version(shape: &StoredShape) -> u32 {
     version
 }
 
-/// A library in a folder of its own: "one" with number 1, "two" with 2, and "gone" with 3 in the trash.
+/// A library in a folder of its own: shape "one" with number 1, "two" with 2, and "gone" with 3 in the trash.
 pub(crate) struct State {
     _folder: TempDir,
     pub(crate) folder: PathBuf,
-    /// A file outside with number 9, under another name.
+    /// The path of a file outside of the library, with number 9 and another name.
     pub(crate) new: PathBuf,
 }
 
@@ -62,7 +62,7 @@ impl State {
         }
     }
 
-    /// The unsaved work of a program that is dead.
+    /// Adds the unsaved work of a dead program.
     pub(crate) fn with_orphan(self) -> Self {
         let journal = self.folder.join(".journal");
         fs::create_dir(&journal).expect("made");
@@ -75,7 +75,7 @@ impl State {
         Library::open(self.folder.clone())
     }
 
-    /// The number of a shape, if there is one of that name. A torn one is a failure.
+    /// Returns the number of the shape with a name, if there is one. Fails if the shape is torn.
     pub(crate) fn version(&self, name: &str) -> Option<u32> {
         match self.library().load(name) {
             Ok(loaded) => Some(version(&loaded.shape)),
@@ -84,7 +84,7 @@ impl State {
         }
     }
 
-    /// The numbers of the work that is offered back.
+    /// Returns the numbers of the unsaved work that is offered for recovery.
     pub(crate) fn orphans(&self) -> Vec<u32> {
         let orphans = Orphan::all(&self.library());
         orphans
@@ -93,7 +93,7 @@ impl State {
             .collect()
     }
 
-    /// A start after the crash is not blocked, finds every file whole, and clears up; and saving goes on.
+    /// Starts the program after the crash: it is not blocked, finds every file whole, cleans up, and can save again.
     pub(crate) fn starts(&self) {
         let check = taxel(&["library", "check"], &self.folder);
         assert_eq!(
@@ -117,7 +117,7 @@ impl State {
     }
 }
 
-/// The program, for a library.
+/// Returns the command that runs the program on a library.
 pub(crate) fn program(arguments: &[&str], folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_taxel"));
     command
@@ -132,16 +132,16 @@ pub(crate) fn program(arguments: &[&str], folder: &Path) -> Command {
     command
 }
 
-/// Runs it, and fails where it does not end.
+/// Runs the program on a library, and fails if it does not end.
 pub(crate) fn taxel(arguments: &[&str], folder: &Path) -> Output {
     finish(&mut program(arguments, folder))
 }
 
-/// Runs a command to its end, which must come.
+/// Runs a command to its end; fails if it takes too long.
 pub(crate) fn finish(command: &mut Command) -> Output {
     let mut child = command.spawn().expect("the program starts");
     let start = Instant::now();
-    // What it says fits into a pipe.
+    // The output fits into the buffer of a pipe, so it can be read at the end.
     while child.try_wait().expect("a child").is_none() {
         if start.elapsed() > DEADLINE {
             let _ = child.kill();
@@ -152,7 +152,7 @@ pub(crate) fn finish(command: &mut Command) -> Output {
     child.wait_with_output().expect("a child")
 }
 
-/// Runs all jobs, as many at a time as the machine has cores.
+/// Runs all jobs, one at a time on each core.
 pub(crate) fn each<T: Sync>(jobs: &[T], run: impl Fn(&T) + Sync) {
     let next = AtomicUsize::new(0);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);

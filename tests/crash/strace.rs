@@ -1,23 +1,23 @@
-//! Calls of the system, listed and tampered with by `strace`.
+//! System calls, listed and tampered with by `strace`.
 
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use super::state::finish;
 
-/// All that can change files; those that a machine does not have are left out.
+/// All system calls that can change files. The `?` lets strace ignore those that a machine does not have.
 const CALLS: &str = "?openat,?open,?creat,?write,?pwrite64,?writev,?fsync,?fdatasync,?rename,?renameat,?renameat2,\
     ?unlink,?unlinkat,?link,?linkat,?symlink,?symlinkat,?mkdir,?mkdirat,?rmdir,?truncate,?ftruncate,?flock,?chmod,\
     ?fchmod,?fchmodat";
 
-/// The so-many-th call of a name, counted from 1.
+/// A system call: its name, and which call of that name it is, counted from 1.
 #[derive(Clone, Debug)]
 pub(crate) struct Call {
     pub(crate) name: String,
     pub(crate) number: usize,
 }
 
-/// Whether there is a `strace` that may trace.
+/// Returns true if there is a `strace` that is allowed to trace.
 pub(crate) fn works() -> bool {
     let traced = Command::new("strace")
         .args(["-qq", "-o", "/dev/null", "-e", "trace=?openat", "true"])
@@ -26,7 +26,7 @@ pub(crate) fn works() -> bool {
     traced.is_ok_and(|status| status.success())
 }
 
-/// The calls of a command that touch a folder or what is in it.
+/// Returns the calls of a command that concern a folder or its contents.
 pub(crate) fn calls(command: &Command, folder: &Path) -> Vec<Call> {
     let log = tempfile::NamedTempFile::new().expect("there is a folder for temporary files");
     let log_path = log.path().to_str().expect("a text");
@@ -52,7 +52,7 @@ pub(crate) fn calls(command: &Command, folder: &Path) -> Vec<Call> {
     calls
 }
 
-/// Runs a command with one of its calls tampered with: `signal=KILL` kills it just before, `error=EIO` refuses the call.
+/// Runs a command and tampers with one of its calls: `signal=KILL` kills it just before, `error=EIO` refuses the call.
 pub(crate) fn tampered(command: &Command, call: &Call, how: &str) -> Output {
     let Call { name, number } = call;
     let trace = format!("trace={name}");
@@ -63,7 +63,7 @@ pub(crate) fn tampered(command: &Command, call: &Call, how: &str) -> Output {
     )
 }
 
-/// Runs a command with every call of some names, as of `trace=`, refused.
+/// Runs a command and refuses every call with one of these names, written as for strace's `trace=`.
 pub(crate) fn refused(command: &Command, names: &str, error: &str) -> Output {
     let trace = format!("trace={names}");
     let inject = format!("inject={names}:error={error}");

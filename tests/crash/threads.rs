@@ -1,4 +1,5 @@
-//! A system that gives no threads, as `strace` makes it: what uses all cores is done on one, with the same answers.
+//! A system that refuses to start threads, simulated with `strace`: work on all cores is done on one, with the same
+//! answers.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +8,8 @@ use std::process::{Command, Output, Stdio};
 use super::state::finish;
 use super::strace;
 
-/// A line of a shell in a folder. `exec` makes it the program itself: a shell gets no thread either.
+/// Returns a shell line as a command in a folder. `exec` replaces the shell by the program, since a shell could not
+/// start a thread either.
 fn line(text: &str, folder: &Path) -> Command {
     let mut command = Command::new("sh");
     command
@@ -27,19 +29,19 @@ fn line(text: &str, folder: &Path) -> Command {
     command
 }
 
-/// What a line answers without threads.
+/// Runs a line without threads.
 fn alone(text: &str, folder: &Path) -> Output {
     strace::refused(&line(text, folder), "?clone,?clone3", "EAGAIN")
 }
 
-/// What is answered, but for the line that says how long it took.
+/// Returns the output, except the line with the time it took.
 fn answer(run: &Output) -> String {
     let text = String::from_utf8_lossy(&run.stdout);
     let lines = text.lines().filter(|line| !line.ends_with(" s"));
     lines.map(|line| line.to_owned() + "\n").collect()
 }
 
-/// Ranges of a few poses.
+/// Ranges with only a few poses.
 const FEW: &str = "--x0 0:0.9:0.3 --y0 0 --angle 0 --quiet";
 
 pub(crate) fn refused() -> String {
@@ -70,7 +72,7 @@ pub(crate) fn refused() -> String {
         assert!(!run.stdout.is_empty(), "{text}: {run:?}");
         assert_eq!(answer(&expected), answer(&run), "{text}");
     }
-    // Lines are written by a thread of their own, and nothing else would do.
+    // Lines are written by a thread of their own, which cannot be replaced.
     let run = alone("watch touch.txt --format lines --at-least 2 --json", folder);
     assert_eq!(run.status.code(), Some(1), "{run:?}");
     let message = String::from_utf8_lossy(&run.stderr).into_owned();
