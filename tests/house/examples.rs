@@ -22,7 +22,7 @@ mod touch;
 
 /// The numbers that the paper prints beside its Fig. 1.
 #[test]
-fn the_papers_figure_has_the_papers_descriptors() {
+fn the_ring_of_fig_1_has_the_descriptors_that_the_paper_prints() {
     let report = touch::report();
     let (ring, hole) = report.split_once("\nhole\n").expect("a ring has a hole");
     for line in [
@@ -57,7 +57,8 @@ fn the_example_counts_the_imprints_of_all_positions_in_a_cell() {
     let imprints = RING_IMPRINTS.to_string();
     assert_eq!(cells[1], ("10000", imprints.as_str()), "{report}");
     assert_eq!(cells[0], ("56", "50"), "{report}");
-    // On all cells a shift leaves the same imprint elsewhere: up to shifts there are no more than in one cell.
+    // On all cells, a shift leaves the same imprint elsewhere: up to shifts, there are no more imprints than in one
+    // cell.
     assert_eq!(found[1][5], found[2][5], "{report}");
 }
 
@@ -75,7 +76,7 @@ fn the_area_hardly_varies_and_the_sides_do() {
     };
     let (area, ratio) = (row("na"), row("side_ratio"));
     assert_eq!((area.len(), ratio.len()), (7, 7));
-    // Of a triangle of 16 taxels a single one is 6 %.
+    // The triangle has 16 taxels, so a single taxel is 6 % of its area.
     assert!(
         area.iter().all(|&percent| percent > 0.0 && percent < 15.0),
         "{report}"
@@ -89,7 +90,7 @@ fn the_area_hardly_varies_and_the_sides_do() {
 }
 
 #[test]
-fn an_outline_of_ones_own_covers_its_area() {
+fn a_user_defined_outline_covers_its_area() {
     let report = outline::report();
     let area = 6.0 * 12.0 + 6.0 * 6.0 - PI * 1.8 * 1.8;
     assert!(

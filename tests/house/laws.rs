@@ -1,8 +1,8 @@
-//! The laws of the rooms, held by reading the source as text.
+//! The laws of the rooms, checked by reading the source as text.
 //!
-//! A room is a folder or a file directly under `src/`. `lib.rs` lists the rooms in reading order, and a room names only
-//! rooms above it. Inside a room files may name each other as long as there is no cycle. The last tests break each law
-//! in small example sources, since a check that cannot fail is worth nothing.
+//! A room is a folder or a file directly under `src/`. `lib.rs` lists the rooms in reading order, and a room names
+//! only rooms above it. Inside a room, files may name each other as long as there is no cycle. The last tests break
+//! each law in small example sources, because a check that cannot fail proves nothing.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -12,10 +12,10 @@ use crate::source::{Source, Token, listed, paths, read, shipped, source};
 /// The modules that may open files and streams.
 const DOORS: &str = "storage acquire memory cli tui/runtime tui/terminal main";
 
-/// The module that may read and write those that it is given, by the traits of `std::io`.
+/// The module that may use the traits of `std::io`, for readers and writers that its callers open.
 const READER: &str = "formats";
 
-/// Crates that a single room names.
+/// Crates that only one room may name, with that room.
 const OWNED: [(&str, &str); 5] = [
     ("ratatui", "tui"),
     ("crossterm", "tui"),
@@ -24,13 +24,13 @@ const OWNED: [(&str, &str); 5] = [
     ("clap_mangen", "cli"),
 ];
 
-/// The number of lines in `src` where an impossible case becomes a value (`unwrap_or(0)` and the like, true defaults among
-/// them) is at most this. Such a value hides a mistake behind a plausible number, but the text does not show whether it
-/// is a true default. So they are counted rather than forbidden, and a new one must replace another. The number only
-/// goes down.
+/// The highest number of lines in `src` that may turn an impossible case into a value, with `unwrap_or(0)` and the
+/// like. Such a value hides a mistake behind a plausible number. Some of these lines are true defaults, which the text
+/// does not show, so they are counted rather than forbidden: a new one must replace another. The number only goes
+/// down.
 const MOST_FALLBACKS: usize = 47;
 
-/// What breaks the law, as `file:line: what; law: which`.
+/// Returns the violations of the laws, as `file:line: name; law: the law`.
 fn violations(files: &[(String, String)]) -> Vec<String> {
     let sources: Vec<_> = files.iter().map(source).collect();
     let mut found = Vec::new();
@@ -56,10 +56,10 @@ fn violations(files: &[(String, String)]) -> Vec<String> {
     found
 }
 
-/// Which file names which other file of its room, and on which line first; by module paths.
+/// For each file, the other files of its room that it names, with the first line that does; by module paths.
 type Edges = BTreeMap<String, BTreeMap<String, usize>>;
 
-/// One line for each pair of files that is part of a cycle.
+/// Returns one line for each pair of files that is part of a cycle.
 fn cycles(edges: &Edges) -> Vec<String> {
     let reaches = |from: &str, wanted: &str| {
         let (mut seen, mut waiting) = (vec![from], vec![from]);
@@ -89,7 +89,7 @@ fn cycles(edges: &Edges) -> Vec<String> {
     found
 }
 
-/// A sentence of purpose at the top.
+/// Checks that a file begins with a sentence about its purpose.
 fn purpose(source: &Source<'_>, report: &mut impl FnMut(usize, &str, &str)) {
     let first = source.text.lines().next().unwrap_or_default();
     if !first.starts_with("//! ") {
@@ -97,7 +97,8 @@ fn purpose(source: &Source<'_>, report: &mut impl FnMut(usize, &str, &str)) {
     }
 }
 
-/// A crate with an owner is named there only, files and streams in the rooms with a door; in unit tests too.
+/// Checks that only its owner names a crate, and that only the rooms in [`DOORS`] name files and streams; in unit
+/// tests, too.
 fn owned(source: &Source<'_>, report: &mut impl FnMut(usize, &str, &str)) {
     let module = source.module.join("/");
     let below = |room: &str| Path::new(&module).starts_with(room);
@@ -124,7 +125,7 @@ fn owned(source: &Source<'_>, report: &mut impl FnMut(usize, &str, &str)) {
     }
 }
 
-/// The map in the documentation of `lib.rs` shows the rooms that are declared below it, in the same order.
+/// Checks that the map in the documentation of `lib.rs` shows the rooms that are declared below it, in the same order.
 fn map(root: &Source<'_>, all: &[Source<'_>], report: &mut impl FnMut(usize, &str, &str)) {
     let lines = root.text.lines().zip(1..);
     let mut rows = lines
@@ -132,10 +133,10 @@ fn map(root: &Source<'_>, all: &[Source<'_>], report: &mut impl FnMut(usize, &st
         .skip_while(|(line, _)| *line != "//! ```text")
         .skip(1)
         .take_while(|(line, _)| *line != "//! ```")
-        // Deeper lines continue the row above.
+        // Lines with a deeper indent continue the row above.
         .filter_map(|(line, number)| Some((line.strip_prefix("//!  ")?, number)))
         .filter(|(row, _)| row.starts_with(|c: char| c.is_ascii_lowercase()))
-        // A row is one room or several, then words about them.
+        // A row names one or more rooms, then describes them.
         .flat_map(|(row, number)| {
             let columns = row
                 .split("  ")
@@ -157,8 +158,9 @@ fn map(root: &Source<'_>, all: &[Source<'_>], report: &mut impl FnMut(usize, &st
     }
 }
 
-/// The map in the documentation of a folder below a room names the modules that the folder lists, each at the start of a
-/// line or column. A drawing is a map if it begins with one of them; rooms draw the way of their data instead.
+/// Checks that the map in the documentation of a folder below a room names the modules that the folder lists, each at
+/// the start of a line or column. A drawing is a map if it begins with one of these modules; a room's drawing shows
+/// how its data flows instead.
 fn folder_map(source: &Source<'_>, all: &[Source<'_>], report: &mut impl FnMut(usize, &str, &str)) {
     let modules = listed(&source.module, all);
     let rows: Vec<_> = (source.text.lines().zip(1..))
@@ -200,7 +202,7 @@ fn folder_map(source: &Source<'_>, all: &[Source<'_>], report: &mut impl FnMut(u
     }
 }
 
-/// The names of the types that the tokens define for other files, with their lines.
+/// Returns the names of the types that these tokens define for other files, with their lines.
 fn types<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     let defines = |words: &[Token<'_>]| {
         let visible = matches!(words[0].0, "pub" | ")"); // `pub` or the end of `pub(crate)`
@@ -210,7 +212,7 @@ fn types<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     found.map(|words| words[2]).collect()
 }
 
-/// A type name that other files see is defined once in the crate; tests aside.
+/// Checks that a type name that other files see is defined only once in the crate, tests aside.
 fn names(sources: &[Source<'_>]) -> Vec<String> {
     let mut homes = BTreeMap::<&str, Vec<String>>::new();
     for source in sources {
@@ -229,14 +231,14 @@ fn names(sources: &[Source<'_>]) -> Vec<String> {
     homes.into_iter().map(line).collect()
 }
 
-/// Lines where an impossible case silently becomes 0, a maximum or a default, tests among them.
+/// Returns the lines where an impossible case silently becomes 0, a maximum or a default, tests included.
 fn fallbacks(source: &Source<'_>) -> BTreeSet<usize> {
     let zero = |word: &str| {
         let suffix = word.trim_start_matches('0');
         suffix.len() < word.len() && !suffix.starts_with(char::is_numeric)
     };
     let words: Vec<_> = source.tokens.iter().map(|token| token.0).collect();
-    // In `map_or`, the function that leaves what is there as it is makes it an `unwrap_or`.
+    // A `map_or` whose function returns its argument unchanged is an `unwrap_or`.
     let same = |rest: &[&str]| match rest {
         [")", ..] => true,
         [",", "|", "&", from, "|", to, ")", ..] | [",", "|", from, "|", to, ")", ..] => from == to,
@@ -256,7 +258,7 @@ fn fallbacks(source: &Source<'_>) -> BTreeSet<usize> {
     lines.map(|at| source.tokens[at].1).collect()
 }
 
-/// A module names what `lib.rs` lists above its room, and notes which siblings it names.
+/// Checks that a module names only modules that `lib.rs` lists above its room, and records the siblings that it names.
 fn order(
     source: &Source<'_>,
     all: &[Source<'_>],
@@ -265,7 +267,7 @@ fn order(
 ) {
     let module = &source.module;
     let Some((own, parent)) = module.split_last() else {
-        return; // the root names what it likes
+        return; // the root may name anything
     };
     if !listed(parent, all).contains(own) {
         report(1, own, "a file is listed by its parent");
@@ -291,7 +293,7 @@ fn order(
                     .find(|&depth| all.iter().any(|other| other.module == target[..depth]));
                 let file = &target[..depth.unwrap_or(1)];
                 let file = &reexported(file, &target, all);
-                // What a file says of itself or of its own folder's front page is not an edge.
+                // A name in the file itself or in the front page of its own folder is not an edge.
                 if file != module && !(module.starts_with(file) && target.len() == file.len()) {
                     let targets = edges.entry(module.join("/")).or_default();
                     targets.entry(file.join("/")).or_insert(line);
@@ -303,7 +305,7 @@ fn order(
     }
 }
 
-/// The file that defines an item: `file`, or the file below it from which `file` re-exports the item.
+/// Returns the file that defines an item: `file`, or the file below it from which `file` re-exports the item.
 fn reexported<'a>(file: &[&'a str], target: &[&'a str], all: &[Source<'a>]) -> Vec<&'a str> {
     let item = target.get(file.len());
     let front = all.iter().find(|source| source.module == file);
@@ -322,7 +324,7 @@ fn reexported<'a>(file: &[&'a str], target: &[&'a str], all: &[Source<'a>]) -> V
     candidates.max_by_key(Vec::len).unwrap_or(file.to_vec())
 }
 
-/// The files of `src/`, sorted.
+/// Returns the files of `src/`, sorted.
 fn own_files() -> Vec<(String, String)> {
     let (root, mut files) = (Path::new(env!("CARGO_MANIFEST_DIR")), Vec::new());
     read(root, &root.join("src"), &mut files);
@@ -338,7 +340,7 @@ fn the_source_keeps_the_laws() {
 }
 
 #[test]
-fn impossible_cases_seldom_become_values() {
+fn few_impossible_cases_become_values() {
     let files = own_files();
     let by_file = files.iter().map(|file| (&file.0, fallbacks(&source(file))));
     let by_file: Vec<_> = by_file.filter(|(_, lines)| !lines.is_empty()).collect();
@@ -347,7 +349,7 @@ fn impossible_cases_seldom_become_values() {
     assert!(count <= MOST_FALLBACKS, "{count} lines: {by_file:#?}");
 }
 
-/// Tests, benchmarks and examples name what they like, but they are read too.
+/// Tests, benchmarks and examples may name anything, but people read them, too.
 #[test]
 fn every_file_states_its_purpose() {
     let (root, mut files) = (Path::new(env!("CARGO_MANIFEST_DIR")), Vec::new());
@@ -365,7 +367,7 @@ fn every_file_states_its_purpose() {
     assert!(found.is_empty(), "\n{}\n", found.join("\n"));
 }
 
-/// A small tree that keeps the law, then what breaks it: file, text (`¶` ends a line), violation.
+/// A small tree that keeps the laws, followed by breaches: file, text (`¶` ends a line), violation.
 const TREE: &str = "
 src/lib.rs | //! # Map¶//! ```text¶//!  a   b    both of them¶//!       and more¶//!  x  the rest   end¶//!  ────¶//!  y    why not¶//!  formats¶//!  tui  the screen    end¶//! ```¶pub mod a;¶#[cfg(unix)]¶/// mod z;¶mod b;¶pub mod x;¶mod y { mod c; }¶mod formats;¶pub mod tui;
 src/x/mod.rs | pub mod p;¶pub(crate) mod q;¶mod r;¶pub use q::Q;
@@ -429,7 +431,7 @@ src/formats/mod.rs | use std::io::{self, Read};
 src/tui/runtime.rs | use std::{fs, io}; fn f() { fs::File::open(p) }
 src/main.rs | use taxel::tui; use std::io::stdin; use std::fs;"##;
 
-/// The violations of the tree with one file put in or replaced.
+/// Returns the violations of the tree with one file added or replaced.
 fn found(file: &str, text: &str) -> Vec<String> {
     let rows = TREE.lines().filter_map(|row| row.split_once(" |"));
     let others = rows.filter(|(name, _)| *name != file);
@@ -441,7 +443,7 @@ fn found(file: &str, text: &str) -> Vec<String> {
 }
 
 #[test]
-fn each_breach_is_caught() {
+fn each_breach_of_a_law_is_caught() {
     for row in BREACHES.lines().skip(1) {
         let (left, expected) = row.rsplit_once("| ").expect("a violation");
         let (file, text) = left.split_once(" |").expect("a text");
@@ -454,7 +456,7 @@ fn each_breach_is_caught() {
 }
 
 #[test]
-fn what_keeps_the_law_passes() {
+fn sources_that_keep_the_laws_pass() {
     for row in KEPT.lines().skip(1) {
         let (file, text) = row.split_once(" |").expect("a text");
         assert_eq!(found(file, text), [""; 0], "{row}");

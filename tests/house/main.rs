@@ -1,4 +1,5 @@
-//! The project itself: its source keeps the rules of its modules, and its documents say what the program does.
+//! Tests of the project itself: its source keeps the rules of its modules, and its documents say what the program
+//! does.
 
 #[cfg(feature = "sweep")]
 #[path = "../common/paper.rs"]

@@ -1,21 +1,21 @@
 //! Two measures of the source: lines of documentation for each line of code, room by room, and the length of functions.
 //!
-//! Both are measured on the text. A line of documentation begins with `///` or `//!`; other comments and empty lines do
-//! not count, and everything else is code. Unit tests at the end of a file are left out. A function ends at the first
-//! line that closes it at its own indentation, which is where rustfmt puts it.
+//! Both are measured on the text. A line of documentation begins with `///` or `//!`; other comments and empty lines
+//! are not counted, and everything else is code. Unit tests at the end of a file are ignored. A function ends at the
+//! first line that closes it at its own indentation, which is where rustfmt puts it.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::source::read;
 
-/// Lines of documentation for a hundred lines of code, at least, in every folder below `src/`.
+/// The least number of lines of documentation per hundred lines of code, in every folder below `src/`.
 const LEAST_DOCS: usize = 20;
 
-/// The most lines of a function, from `fn` to its closing brace. A longer one usually hides two.
+/// The highest number of lines of a function, from `fn` to its closing brace. A longer function usually hides two.
 const LONGEST: usize = 60;
 
-/// The lines of a file before its unit tests.
+/// Returns the lines of a file before its unit tests.
 fn shipped(text: &str) -> Vec<&str> {
     let lines: Vec<&str> = text.lines().collect();
     let is_tests = |pair: &[&str]| {
@@ -25,7 +25,7 @@ fn shipped(text: &str) -> Vec<&str> {
     lines[..end.unwrap_or(lines.len())].to_vec()
 }
 
-/// The lines of documentation and of code of a file.
+/// Returns the number of lines of documentation and of code in a file.
 fn counts(text: &str) -> (usize, usize) {
     let (mut docs, mut code) = (0, 0);
     for line in shipped(text) {
@@ -39,14 +39,14 @@ fn counts(text: &str) -> (usize, usize) {
     (docs, code)
 }
 
-/// The functions of a file that are too long: their name and their length.
+/// Returns the functions of a file that are too long, with their lengths.
 fn long_functions(text: &str) -> Vec<(&str, usize)> {
     let lines = shipped(text);
     let mut found = Vec::new();
     for (start, line) in lines.iter().enumerate() {
         let item = line.trim_start();
         let indent = &line[..line.len() - item.len()];
-        // One that is closed or only declared in its first line has no length.
+        // A function that is closed or only declared in its first line is short.
         let Some(name) = function(item).filter(|_| !item.ends_with([';', '}'])) else {
             continue;
         };
@@ -62,7 +62,7 @@ fn long_functions(text: &str) -> Vec<(&str, usize)> {
     found
 }
 
-/// The name of a function that a line begins, after its visibility and qualifiers.
+/// Returns the name of the function that a line begins, after its visibility and qualifiers.
 fn function(item: &str) -> Option<&str> {
     let item = match item.strip_prefix("pub") {
         Some(rest) if rest.starts_with('(') => rest.split_once(") ")?.1,
@@ -76,18 +76,18 @@ fn function(item: &str) -> Option<&str> {
     words.next()?.split(['(', '<']).next()
 }
 
-/// The files of `src/`.
+/// Returns the names and texts of the files of `src/`.
 fn files() -> Vec<(String, String)> {
     let (root, mut files) = (Path::new(env!("CARGO_MANIFEST_DIR")), Vec::new());
     read(root, &root.join("src"), &mut files);
-    // Unit tests in files of their own.
+    // Unit tests in files of their own are ignored.
     files.retain(|(name, _)| !name.ends_with("/tests.rs"));
     assert!(files.len() > 300, "{}", files.len());
     files
 }
 
 #[test]
-fn every_room_has_a_line_of_documentation_for_five_of_code() {
+fn every_room_has_a_line_of_documentation_for_five_lines_of_code() {
     let mut rooms: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     for (name, text) in files() {
         let inner = name.trim_start_matches("src/");

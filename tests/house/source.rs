@@ -1,15 +1,15 @@
-//! Rust source read as text: words and marks with their lines, the paths among them, and the modules a file lists.
+//! Rust source read as text: its tokens with their lines, the paths among them, and the modules that a file lists.
 
 use std::fs;
 use std::path::Path;
 
-/// A word or a mark with its line; comments, strings and characters are left out.
+/// A word or a punctuation mark, with its line. Comments, strings and character literals are left out.
 pub(crate) type Token<'a> = (&'a str, usize);
 
 pub(crate) struct Source<'a> {
     pub(crate) file: &'a str,
     pub(crate) text: &'a str,
-    /// `src/a/b.rs` and `src/a/b/mod.rs` stand at `[a, b]`, `src/lib.rs` at `[]`.
+    /// The path of the module: `[a, b]` for `src/a/b.rs` and `src/a/b/mod.rs`, `[]` for `src/lib.rs`.
     pub(crate) module: Vec<&'a str>,
     pub(crate) tokens: Vec<Token<'a>>,
 }
@@ -26,7 +26,7 @@ pub(crate) fn source((file, text): &(String, String)) -> Source<'_> {
     }
 }
 
-/// The modules that the file at `module` lists, in order.
+/// Returns the modules that the file of `module` lists, in order.
 pub(crate) fn listed<'a>(module: &[&str], all: &[Source<'a>]) -> Vec<&'a str> {
     let file = all.iter().find(|source| source.module == module);
     let tokens = file.map_or(&[][..], |file| shipped(&file.tokens));
@@ -39,13 +39,13 @@ pub(crate) fn listed<'a>(module: &[&str], all: &[Source<'a>]) -> Vec<&'a str> {
     modules.map(|pair| pair[1].0).collect()
 }
 
-/// What stands before `#[cfg(test)] mod tests {`; clippy sees to it that nothing follows that.
+/// Returns the tokens before `#[cfg(test)] mod tests {`; clippy ensures that nothing follows these tests.
 pub(crate) fn shipped<'t, 'a>(tokens: &'t [Token<'a>]) -> &'t [Token<'a>] {
     let same = |part: &[Token<'_>], words: &[&str]| part.iter().map(|token| &token.0).eq(words);
     let is_start = |part: &[Token<'_>]| same(part, &["mod", "tests", "{"]);
     let start = tokens.windows(3).position(is_start);
     let before = &tokens[..start.unwrap_or(0)];
-    // Its attributes are all that stands between it and the end of the item before.
+    // Only the attributes of `mod tests` stand between it and the end of the item before.
     let end = before
         .iter()
         .rposition(|token| matches!(token.0, ";" | "}"));
@@ -54,18 +54,18 @@ pub(crate) fn shipped<'t, 'a>(tokens: &'t [Token<'a>]) -> &'t [Token<'a>] {
     if of_tests { before } else { tokens }
 }
 
-/// Every path, the groups of `use` taken apart, with the line of its last word.
+/// Returns every path, with the line of its last word. Groups of `use` are split into single paths.
 pub(crate) fn paths<'a>(tokens: &[Token<'a>]) -> Vec<(Vec<&'a str>, usize)> {
     let (mut found, mut at) = (Vec::new(), 0);
     while at < tokens.len() {
         at = path(tokens, at, &[], &mut found);
     }
-    // One word is not a path, unless it is a crate: `use ratatui as r`.
+    // One word is not a path, unless it is the name of a crate: `use ratatui as r`.
     found.retain(|(path, _)| path.len() > 1 || matches!(path[0], "ratatui" | "crossterm" | "clap"));
     found
 }
 
-/// Reads the path that continues `prefix` at `at`, and says where it ends.
+/// Reads the path that continues `prefix` at `at`, and returns where it ends.
 fn path<'a>(
     tokens: &[Token<'a>],
     mut at: usize,
@@ -111,7 +111,7 @@ fn tokens(text: &str) -> Vec<Token<'_>> {
     found
 }
 
-/// The length of what `rest` begins with, and whether it is a token.
+/// Returns the length of the lexeme at the start of `rest`, and whether it is a token.
 fn lexeme(rest: &str) -> (usize, bool) {
     let past = |from: usize, end: &str| {
         let at = rest.get(from..).and_then(|tail| tail.find(end));
@@ -129,7 +129,7 @@ fn lexeme(rest: &str) -> (usize, bool) {
         [Some('/'), Some('*'), _] => (past(2, "*/"), false),
         [Some(':'), Some(':'), _] => (2, true),
         [Some('"'), ..] => {
-            let mut escaped = true; // or the opening quote would be the end
+            let mut escaped = true; // otherwise the opening quote would be the end
             let end = rest.find(|c| {
                 let ends = c == '"' && !escaped;
                 escaped = c == '\\' && !escaped;
@@ -144,7 +144,7 @@ fn lexeme(rest: &str) -> (usize, bool) {
     }
 }
 
-/// The `.rs` files below `folder`, by their names from `root`.
+/// Reads the `.rs` files below `folder`; names them by their paths from `root`.
 pub(crate) fn read(root: &Path, folder: &Path, files: &mut Vec<(String, String)>) {
     for entry in fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();

@@ -1,4 +1,4 @@
-//! The commit that a build reports.
+//! Tests the commit that a build reports.
 
 use std::path::Path;
 use std::process::Command;
@@ -9,7 +9,7 @@ mod build;
 
 fn git(folder: &Path, line: &str) -> String {
     let mut command = Command::new("git");
-    // A hook of git runs the tests with the variables of its own repository; and settings may sign commits.
+    // A git hook runs the tests with the variables of its own repository; and the user's settings may sign commits.
     for variable in build::OF_GIT {
         command.env_remove(variable);
     }
@@ -29,7 +29,7 @@ fn git(folder: &Path, line: &str) -> String {
 }
 
 #[test]
-fn without_git_there_is_no_commit_but_that_of_the_package() {
+fn without_git_the_commit_is_the_one_noted_in_the_package() {
     let folder = tempfile::tempdir().expect("a folder");
     assert_eq!(build::commit(folder.path()), None);
     let note = folder.path().join(".cargo_vcs_info.json");
@@ -48,7 +48,7 @@ fn without_git_there_is_no_commit_but_that_of_the_package() {
 }
 
 #[test]
-fn the_commit_is_that_of_the_packages_own_repository() {
+fn the_commit_is_read_from_the_packages_own_repository() {
     if Command::new("git").arg("--version").output().is_err() {
         crate::skip::lacking("git");
         return;

@@ -1,4 +1,4 @@
-//! What the program prints on the command line, and the commands that the documents show.
+//! The output of the command line, and the commands that the documents show.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,12 +18,12 @@ fn is_command(name: &str) -> bool {
     COMMANDS.iter().any(|command| command == name)
 }
 
-/// What a shell line prints, with this build's `taxel` first on the path and the program's own settings.
+/// Returns the output of a shell line, with this build's `taxel` first on the path and the program's default settings.
 fn shell(line: &str) -> String {
     shell_in(Path::new(env!("CARGO_MANIFEST_DIR")), line)
 }
 
-/// The same in a folder.
+/// Like [`shell`], in a given folder.
 pub(crate) fn shell_in(current: &Path, line: &str) -> String {
     let folder = Path::new(TAXEL)
         .parent()
@@ -46,19 +46,19 @@ pub(crate) fn shell_in(current: &Path, line: &str) -> String {
     String::from_utf8(output.stdout).expect("the output is text")
 }
 
-/// The result that the README shows: a command and its output.
+/// The result in the README: a command and its output.
 pub(crate) fn result() -> String {
     let line = "taxel sweep rectangle --length 6 --width 3 --quiet | grep -E 'imprints|mean|^na |^p |^side_ratio'";
     format!("\n```text\n$ {line}\n{}```\n\n", shell(line))
 }
 
-/// The worked study of the page about sweeps.
+/// The worked example of the page about sweeps.
 pub(crate) fn study() -> String {
     let line = "for width in 3 3.2 4; do taxel sweep rectangle --length 6 --width $width --quiet | grep '^na '; done";
     format!("\n```text\n$ {line}\n{}```\n\n", shell(line))
 }
 
-/// The help texts. Those of the commands of `library` are short, and its own help lists them.
+/// The help texts. The commands of `library` are omitted: they are short, and its own help lists them.
 pub(crate) fn help() -> String {
     COMMANDS
         .iter()
@@ -74,7 +74,7 @@ pub(crate) fn help() -> String {
         + "\n"
 }
 
-/// The shell lines of a document that call `taxel`, continuation lines joined.
+/// Returns the shell lines of a document that call `taxel`; continuation lines are joined.
 fn calls(text: &str) -> Vec<String> {
     let mut calls = Vec::new();
     for (index, fence) in text.split("```").enumerate() {
@@ -91,11 +91,11 @@ fn calls(text: &str) -> Vec<String> {
     calls
 }
 
-/// Readers copy these lines: each names a command of the program, and flags that this command has.
 fn is_of_flag(character: char) -> bool {
     character.is_ascii_alphanumeric() || character == '-'
 }
 
+/// Readers copy these lines, so each must name a command of the program and flags of this command.
 #[test]
 fn every_command_shown_exists_with_its_flags() {
     let mut helps = BTreeMap::new();
@@ -109,7 +109,7 @@ fn every_command_shown_exists_with_its_flags() {
                 .next_if(|word| !word.starts_with('-'))
                 .unwrap_or_default()
                 .to_owned();
-            // A subcommand has a help of its own.
+            // A subcommand has its own help.
             let longer = words.peek().map(|word| format!("{name} {word}"));
             if let Some(longer) = longer.filter(|longer| is_command(longer)) {
                 words.next();

@@ -1,4 +1,4 @@
-//! The page about dependencies: from the comments of `Cargo.toml`, what cargo says, and `deny.toml`.
+//! The page about dependencies, made from the comments of `Cargo.toml`, the output of `cargo tree` and `deny.toml`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -7,14 +7,15 @@ use std::sync::LazyLock;
 
 use crate::docs::{document, root};
 
-/// `Cargo.toml` as it was written: in a package, the original is beside one without comments.
+/// The text of `Cargo.toml` with its comments. A package has it as `Cargo.toml.orig`, because cargo strips the
+/// comments.
 static MANIFEST: LazyLock<String> = LazyLock::new(|| {
     let written = root().join("Cargo.toml.orig");
     fs::read_to_string(written).unwrap_or_else(|_| document("Cargo.toml"))
 });
 const DENY: &str = include_str!("../../../deny.toml");
 
-/// The whole block.
+/// Returns the whole generated block.
 pub(crate) fn block() -> String {
     let tree = tree("normal");
     let (own, tests) = (direct("dependencies"), direct("dev-dependencies"));
@@ -43,7 +44,7 @@ fn table(rows: &[(&str, String)]) -> String {
     format!("| crate | what for |\n|---|---|\n{rows}")
 }
 
-/// The crates of a section of the manifest, each with the comment above it.
+/// Returns the crates in a section of the manifest, each with the comment above it.
 fn direct(section: &str) -> Vec<(&'static str, String)> {
     let (_, rest) = MANIFEST
         .split_once(&format!("\n[{section}]\n"))
@@ -62,7 +63,7 @@ fn direct(section: &str) -> Vec<(&'static str, String)> {
     found
 }
 
-/// Names and versions of what the program is made of, by the kinds of dependencies.
+/// Returns the names and versions of all crates in the dependency tree, for these kinds of dependencies.
 fn tree(kinds: &str) -> BTreeSet<String> {
     let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
     let output = Command::new(cargo)
@@ -77,7 +78,7 @@ fn tree(kinds: &str) -> BTreeSet<String> {
     text.lines().map(str::to_owned).collect()
 }
 
-/// What `deny.toml` lets stand twice, and why.
+/// Returns the crates that `deny.toml` allows in more than one version, with the reasons.
 fn skipped() -> Vec<(&'static str, &'static str)> {
     let quoted = |line: &'static str, key: &str| {
         let (_, rest) = line.split_once(&format!("{key} = \""))?;
@@ -95,9 +96,9 @@ fn skipped() -> Vec<(&'static str, &'static str)> {
         .collect()
 }
 
-/// The limit that this project has given itself.
+/// The limit is this project's own.
 #[test]
-fn the_program_is_made_of_few_crates() {
+fn the_program_has_at_most_140_crates() {
     let crates = tree("normal");
     assert!(
         crates.iter().any(|line| line.starts_with("clap ")),
@@ -107,7 +108,7 @@ fn the_program_is_made_of_few_crates() {
 }
 
 #[test]
-fn only_what_deny_toml_names_is_there_twice() {
+fn only_crates_named_in_deny_toml_have_two_versions() {
     let mut versions: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for line in tree("normal,build,dev") {
         let mut words = line.split_whitespace();
@@ -119,7 +120,7 @@ fn only_what_deny_toml_names_is_there_twice() {
     }
     let mut twice = Vec::new();
     for (name, versions) in versions {
-        // All but the newest, as `cargo deny` counts.
+        // All versions except the newest, as `cargo deny` counts.
         let newest = versions.iter().max_by_key(|version| numbers(version));
         let older = versions.iter().filter(|&version| Some(version) != newest);
         twice.extend(older.map(|version| format!("{name}@{version}")));

@@ -12,7 +12,7 @@ use taxel::touch::Plane;
 use crate::common;
 use crate::docs::{Block, document};
 
-/// A block for every descriptor, by its key.
+/// The block of every descriptor, by the descriptor's key.
 pub(crate) const BLOCKS: &[Block] = &[
     ("na", na),
     ("nae", nae),
@@ -33,7 +33,7 @@ pub(crate) const BLOCKS: &[Block] = &[
     ("cg_cd_direction", cg_cd_direction),
 ];
 
-/// An imprint with one region worth describing.
+/// An imprint with one region to describe.
 struct Example {
     region: Region<'static>,
     described: Description,
@@ -46,7 +46,7 @@ impl Example {
         Self { region, described }
     }
 
-    /// The paper's Fig. 1.
+    /// The ring of the paper's Fig. 1.
     fn fig_1() -> Self {
         let text = "ellipse radius_x=4 radius_y=4 x0=1.99 y0=1.47 thickness=2";
         Self::new(&Plane::new(Sensor::default()).touch(&common::figure(text, 16)))
@@ -59,7 +59,7 @@ impl Example {
         ))
     }
 
-    /// A descriptor of it, as people read it.
+    /// Formats the value of a descriptor as people read it.
     fn value(&self, key: &str) -> String {
         let row = DESCRIPTORS
             .iter()
@@ -68,7 +68,7 @@ impl Example {
         value::text((row.measure)(&self.described), row.dimension).unwrap_or_else(|| "–".to_owned())
     }
 
-    /// The taxels with a margin of one around the rectangle: a character each.
+    /// Draws the taxels of the rectangle and a margin of one taxel around it, one character each.
     fn taxels(&self, sign: impl Fn(u8, u8) -> char) -> Vec<String> {
         let rect = self.described.rect;
         let columns = || rect.left - 1..=rect.right;
@@ -91,7 +91,7 @@ impl Example {
         column < size.columns() && row < size.rows() && size.get(column, row)
     }
 
-    /// Whether it is an outline taxel: filled, with one of its four neighbours outside.
+    /// Returns true for an outline taxel: filled, with at least one of its four neighbours outside.
     fn outline(&self, column: u8, row: u8) -> bool {
         self.filled(column, row)
             && !(self.filled(column - 1, row)
@@ -120,7 +120,7 @@ impl Example {
         canvas
     }
 
-    /// The canvas with the edges of the upright rectangle.
+    /// Returns the canvas with the edges of the upright rectangle.
     fn boxed(&self) -> Canvas {
         let mut canvas = self.canvas();
         let rect = self.described.rect;
@@ -153,7 +153,7 @@ struct Canvas {
 }
 
 impl Canvas {
-    /// A character at a point of the plane.
+    /// Puts a character at a point of the plane.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -173,7 +173,7 @@ impl Canvas {
     }
 }
 
-/// A drawing as a block of text, then the worked value.
+/// Formats a drawing as a block of text, followed by the worked value.
 fn block(drawing: &[String], worked: &str) -> String {
     let empty = |line: &&String| line.trim().is_empty();
     let first = drawing.iter().take_while(empty).count();
@@ -306,7 +306,7 @@ fn cg() -> String {
     )
 }
 
-/// The length of the outline, drawn step by step: neighbouring outline taxels that share the outside are joined.
+/// Draws the length of the outline step by step: neighbouring outline taxels that share the outside are joined.
 fn p() -> String {
     let ring = Example::fig_1();
     let mut canvas = ring.canvas();
@@ -363,7 +363,7 @@ impl Canvas {
     }
 }
 
-/// Three shapes of about the same number of taxels, with a value of each below it.
+/// Draws three shapes with about the same number of taxels, and writes the value of each below it.
 fn compared(key: &str) -> Vec<String> {
     let shapes = [
         "..##../.####./######/######/.####./..##..",
@@ -511,7 +511,7 @@ fn filling() -> String {
     )
 }
 
-/// The corner with its two centres.
+/// Draws the corner with its two centres.
 fn centres() -> (Example, Vec<String>) {
     let corner = Example::corner();
     let mut canvas = corner.boxed();

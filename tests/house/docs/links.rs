@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::docs::{document, documents, root};
 
-/// The text without fenced code.
+/// Returns the text without fenced code.
 fn prose(text: &str) -> String {
     let parts = text.split("```").enumerate();
     parts
@@ -15,7 +15,7 @@ fn prose(text: &str) -> String {
         .collect()
 }
 
-/// Targets of `[…](target)` and of `src="target"`.
+/// Returns the targets of `[…](target)` and of `src="target"`.
 fn targets(text: &str) -> Vec<String> {
     let prose = prose(text);
     let ends = [("](", ')'), ("src=\"", '"')];
@@ -30,8 +30,8 @@ fn targets(text: &str) -> Vec<String> {
     found
 }
 
-/// The anchors of a page's headings, as code hosts make them: lower case, letters and digits, a dash for a space; and
-/// those that the page names itself.
+/// Returns the anchors of a page: its headings, converted as code hosts do it (lower case, only letters and digits, a
+/// dash for a space), and the anchors that the page sets itself.
 fn anchors(text: &str) -> BTreeSet<String> {
     let prose = prose(text);
     let headings = prose.lines().filter(|line| line.starts_with('#'));
@@ -48,7 +48,7 @@ fn anchors(text: &str) -> BTreeSet<String> {
     headings.map(anchor).chain(named).collect()
 }
 
-/// A path without `.` and `..`.
+/// Resolves `.` and `..` in a path.
 fn plain(path: &Path) -> PathBuf {
     let mut plain = PathBuf::new();
     for part in path.components() {
@@ -78,7 +78,7 @@ fn every_link_leads_to_a_file_and_a_heading() {
             } else {
                 plain(&page.parent().expect("a folder").join(file))
             };
-            // The package has neither the checks of the repository nor its fuzz targets.
+            // The package contains neither the repository's checks nor its fuzz targets.
             let packaged = !path.starts_with(".ci") && !path.starts_with("fuzz");
             if !packaged && !root().join(".ci").exists() {
                 continue;
@@ -117,7 +117,7 @@ fn every_page_is_linked_from_the_readme() {
     }
 }
 
-/// Paths in the documents' prose, such as `src/lib.rs`, are those of files; a pattern is looked up by its folder.
+/// Paths in the documents' prose, such as `src/lib.rs`, must exist. For a pattern, its folder must exist.
 #[test]
 fn every_path_named_exists() {
     let rooms = [
@@ -152,7 +152,7 @@ fn every_path_named_exists() {
     assert!(missing.is_empty(), "no such files: {missing:#?}");
 }
 
-/// The text of every source file and test.
+/// Appends the text of every source file below a folder.
 fn sources(folder: &Path, text: &mut String) {
     for entry in fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
@@ -164,7 +164,7 @@ fn sources(folder: &Path, text: &mut String) {
     }
 }
 
-/// The guide for contributors names types, tables and functions that exist.
+/// The guide for contributors may only name types, tables and functions that exist.
 #[test]
 fn every_name_in_the_guide_for_contributors_exists() {
     let mut all = String::new();
@@ -180,7 +180,7 @@ fn every_name_in_the_guide_for_contributors_exists() {
             name.chars()
                 .all(|letter| letter.is_alphanumeric() || letter == '_')
         };
-        // `Type::name`, and `field: value` by its field.
+        // `Type::name` is checked word by word; of `field: value`, only the field is checked.
         let code = code.split(": ").next().unwrap_or_default();
         let names: Vec<_> = code.split("::").collect();
         if code.is_empty() || !names.iter().all(|name| is_name(name)) {

@@ -1,4 +1,5 @@
-//! What the page about recognition shows: each number is printed by the program when the page is checked.
+//! The commands on the page about recognition: the program runs them when the page is checked, so each number is its
+//! own.
 
 use std::fs;
 use std::path::Path;
@@ -6,10 +7,10 @@ use std::sync::OnceLock;
 
 use crate::docs::commands::shell_in;
 
-/// The set of the page.
+/// The set of shapes that the page uses.
 const SET: &str = include_str!("../../../examples/figures.jsonl");
 
-/// Lines of a shell in a folder with the set and its model; each with what it prints.
+/// Runs shell lines in a folder with the set and its model. Returns each line followed by its output.
 fn shown(lines: &[&str]) -> String {
     trained();
     let shown = lines
@@ -21,15 +22,15 @@ fn shown(lines: &[&str]) -> String {
 
 const TRAIN: &str = "taxel model train figures.jsonl --out figures.npz --quiet";
 
-/// A folder of this build.
+/// A folder that belongs to this build.
 const FOLDER: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/recognition");
 
-/// Trains the model in the folder, once for all blocks of the page. Gives what the training printed.
+/// Trains the model in the folder, once for all blocks of the page, and returns the output of the training.
 fn trained() -> &'static str {
     static PRINTED: OnceLock<String> = OnceLock::new();
     PRINTED.get_or_init(|| {
         let folder = Path::new(FOLDER);
-        // Of an earlier run.
+        // The folder may be left from an earlier run.
         fs::remove_dir_all(folder).ok();
         fs::create_dir_all(folder).expect("a folder can be made");
         fs::write(folder.join("figures.jsonl"), SET).expect("written");
@@ -76,9 +77,9 @@ pub(crate) fn want() -> String {
     ])
 }
 
-/// The numbers in the text of the page are those that the program prints.
+/// The numbers in the text of the page must be those that the program prints.
 #[test]
-fn the_text_says_what_the_commands_print() {
+fn the_numbers_in_the_text_are_those_that_the_commands_print() {
     let page = crate::docs::document("docs/recognition.md");
     let sizes = sizes();
     let errors: Vec<f64> = sizes

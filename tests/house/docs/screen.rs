@@ -1,4 +1,4 @@
-//! Screens of the program, as text and drawn, and the tour through it.
+//! Screens of the program, as text and as drawings, and the tour through the program.
 
 use std::fs;
 use std::ops::ControlFlow;
@@ -13,12 +13,12 @@ use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 use crate::docs::commands::shell_in;
 use crate::docs::document;
 
-/// `tests/screen/scripts.rs` runs these, too.
+/// `tests/screen/scripts.rs` runs these scripts, too.
 const FIGURE: &str = include_str!("../../scripts/paper_figure.taxel");
 const TOUR: &str = include_str!("../../scripts/tour.taxel");
 const FIRST_STEPS: &str = include_str!("../../scripts/first_steps.taxel");
 
-/// The screens that a script shows, by their names: as text, and drawn under a title each.
+/// Returns the screens that a script shows: the name, the text, and a drawing with a title.
 fn screens(script: &str, title: impl Fn(&str) -> String) -> Vec<(String, String, String)> {
     let settings = ScriptOptions {
         options: Options {
@@ -48,7 +48,7 @@ fn screens(script: &str, title: impl Fn(&str) -> String) -> Vec<(String, String,
     screens
 }
 
-/// The last screen that a script shows: as text, and drawn under a title.
+/// Returns the last screen that a script shows, as text and as a drawing with a title.
 fn last_screen(script: &str, title: &str) -> (String, String) {
     let last = screens(script, |_| title.to_owned()).pop();
     let (_, text, drawn) = last.expect("the script shows a screen");
@@ -62,12 +62,12 @@ pub(crate) fn text() -> String {
     format!("\n```text\n{text}```\n\n")
 }
 
-/// The same, drawn.
+/// The paper's Fig. 1 on the screen, as a drawing.
 pub(crate) fn svg() -> String {
     last_screen(FIGURE, "taxel: the imprint of a ring and its descriptors").1
 }
 
-/// The pages of Explore for the rectangle at every tenth degree, by the names of their files.
+/// The pages of Explore for the rectangle at every tenth degree, with the names of their files.
 pub(crate) fn explore_svgs() -> Vec<(String, String)> {
     const SCRIPT: &str = "
 Keys fr<Enter>:explore --angle 0:350:10<Enter>
@@ -99,7 +99,7 @@ Screen explore-angles
     all.map(|(name, _, drawn)| (name, drawn)).collect()
 }
 
-/// The same touch as on the screen in millimetres, drawn by the command that the page about files shows.
+/// The touch that the screen shows in millimetres, drawn by the command on the page about files.
 pub(crate) fn touch_svg() -> String {
     let page = document("docs/files.md");
     let ends = " --export touch.svg";
@@ -109,7 +109,7 @@ pub(crate) fn touch_svg() -> String {
     fs::read_to_string(folder.path().join("touch.svg")).expect("written")
 }
 
-/// The tour as numbered steps: each comment of the script says what happens, the lines after it which keys do it.
+/// The tour as numbered steps. In the script, a comment describes each step; the lines after it give the keys.
 pub(crate) fn tour() -> String {
     let (mut text, mut number) = (String::from("\n"), 0);
     for step in TOUR.split("\n\n") {
@@ -127,7 +127,7 @@ pub(crate) fn tour() -> String {
     text + "\n"
 }
 
-/// The first steps, each with its picture: the keys are those of the script before its screen.
+/// The first steps, each with its picture. The keys are those in the script before its screen.
 pub(crate) fn first_steps() -> String {
     let mut text = String::new();
     for (number, step) in (1..).zip(FIRST_STEPS.split("\n\n")) {
@@ -149,14 +149,14 @@ pub(crate) fn first_steps() -> String {
     text + "\n"
 }
 
-/// The pictures of the first steps, by the names of their files.
+/// The pictures of the first steps, with the names of their files.
 pub(crate) fn first_steps_svgs() -> Vec<(String, String)> {
     let title = |name: &str| format!("taxel: {}", name.replace('-', " "));
     let all = screens(FIRST_STEPS, title).into_iter();
     all.map(|(name, _, drawn)| (name, drawn)).collect()
 }
 
-/// How people write what a line of the script presses or types; none for lines that only check.
+/// Describes in words what a line of the script presses or types; None for lines that only check something.
 fn pressed(line: &str) -> Option<String> {
     let (command, rest) = line.split_once(' ')?;
     match command {

@@ -1,4 +1,4 @@
-//! Tables of the documents, from the program's own.
+//! Tables in the documents, made from the program's own tables.
 
 use taxel::description::{DESCRIPTORS, Dimension};
 use taxel::parameter::{PARAMETERS, Parameter};
@@ -23,7 +23,7 @@ pub(crate) fn descriptors() -> String {
     format!("\n| key | symbol | meaning | unit |\n|---|---|---|---|\n{rows}\n")
 }
 
-/// One table a place.
+/// One table for each place of the screen.
 pub(crate) fn keys() -> String {
     let mut text = String::new();
     for context in Context::ALL {
@@ -41,7 +41,7 @@ pub(crate) fn keys() -> String {
     text + "\n"
 }
 
-/// The commands after `:`, each with what the help says of its keys.
+/// The commands after `:`, each with what may follow it and its help.
 pub(crate) fn prompt() -> String {
     let mut text = String::from("\n| command | what may follow | what it does |\n|---|---|---|\n");
     for command in commands() {
@@ -62,11 +62,12 @@ pub(crate) fn prompt() -> String {
     text + "\n"
 }
 
-/// What can be set, with its range on the paper's sensor.
+/// The parameters that can be set, with their ranges on the paper's sensor.
 pub(crate) fn parameters() -> String {
     let row = |row: &taxel::parameter::ParameterRow| {
         let (flag, range) = (row.parameter.flag(), Sensor::default().range(row.parameter));
-        // What these two are set to where they are switched on: without the flag there is neither a hole nor a scale.
+        // The table of parameters has values for these two, which apply once they are switched on. Without the flag
+        // there is neither a hole nor a scale.
         let default = match row.parameter {
             Parameter::Thickness | Parameter::Pitch => "none".to_owned(),
             _ => row.default.to_string(),
