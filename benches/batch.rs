@@ -1,19 +1,19 @@
-//! Lines of `taxel batch` a second, as the README has them: on one core, and on all of them.
+//! Measures the lines per second of `taxel batch`, with the lines of the README: on one core, and on all of them.
 //!
-//! The runs take turns, and the fastest of each gives the ratios: other work on the machine slows both.
+//! The runs alternate, and ratios are taken between the fastest of each: other work on the machine slows both.
 
 use std::fs::{self, File};
 use std::process::{Command, Stdio};
 use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
-/// How often the lines of the README's file are repeated.
+/// The number of times that the lines of the README's file are repeated.
 const TIMES: usize = 40_000;
 
-/// How many turns are taken.
+/// The number of turns.
 const TURNS: usize = 7;
 
-/// The fastest of several turns of each.
+/// Returns the fastest time of each function over several turns.
 fn fastest<const N: usize>(mut run: [&mut dyn FnMut(); N]) -> [Duration; N] {
     let mut best = [Duration::MAX; N];
     for _ in 0..TURNS {
@@ -26,7 +26,7 @@ fn fastest<const N: usize>(mut run: [&mut dyn FnMut(); N]) -> [Duration; N] {
     best
 }
 
-/// Answers a file with this number of threads.
+/// Answers a file with the given number of threads.
 fn batch(input: &std::path::Path, jobs: usize) {
     let status = Command::new(env!("CARGO_BIN_EXE_taxel"))
         .args(["batch", "--jobs", &jobs.to_string()])
@@ -36,7 +36,7 @@ fn batch(input: &std::path::Path, jobs: usize) {
     assert!(status.is_ok_and(|status| status.success()));
 }
 
-/// Threads: one, and one for each core.
+/// Measures one thread, then one for each core.
 fn lines() {
     let folder = tempfile::tempdir().expect("a folder");
     let input = folder.path().join("lines.jsonl");

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What frames of sensors cost, and that none is lost: prints each figure beside what is asked for.
+"""Measures the cost of frames of sensors, and checks that none is lost. Prints each result with its required value.
 
     cargo build --release && python3 benches/frames.py [SECONDS] [FILE]
 
-SECONDS of the long run (default 60); FILE, a recording whose replay is measured. Needs socat for one of the parts.
+SECONDS is the length of the long run (default 60); FILE is a recording whose replay is measured. One part needs socat.
 """
 import fcntl
 import os
@@ -33,7 +33,7 @@ def figure(what, found, asked, holds):
 
 
 def line(number, side):
-    """A frame in one line: its number first, noise up to 30, and a disc of some thousands that wanders."""
+    """Returns a frame in one line: its number, then noise up to 30 with a moving disc of values from 2,000 to 4,000."""
     x, y = side / 2 + 0.2 * side * ((number % 50) / 50 - 0.5), side / 2
     values = [number % 10000]
     for index in range(1, side * side):
@@ -44,7 +44,7 @@ def line(number, side):
 
 
 def records(path):
-    """How many records an array of taxel's own counts, and their numbers."""
+    """Returns the number of records in an array that taxel has written, and the number that each record carries."""
     with open(path, "rb") as file:
         head = file.read(256)
         count = int(re.search(rb"'shape': \((\d+),", head).group(1))
@@ -72,20 +72,20 @@ class Screen:
         self.answers = True
 
     def take(self):
-        """Reads what has come."""
+        """Reads the available output."""
         before = len(self.bytes)
         self.bytes += os.read(self.master, 1 << 16)
         if self.answers:
-            # The question may have come in two pieces.
+            # The query may have come in two pieces.
             self.answer(self.bytes[max(0, before - 3):])
 
     def answer(self, shown):
-        """Tells the terminal's status where it is asked for, as terminals do."""
+        """Answers each query for the terminal's status, as terminals do."""
         for _ in range(shown.count(b"\x1b[5n")):
             os.write(self.master, b"\x1b[0n")
 
     def read(self, seconds):
-        """Reads what comes within a time; how many bytes that were."""
+        """Reads for some time. Returns the number of bytes."""
         end, before = time.monotonic() + seconds, len(self.bytes)
         while (left := end - time.monotonic()) > 0:
             if select.select([self.master], [], [], left)[0]:
@@ -96,7 +96,7 @@ class Screen:
         return len(self.bytes) - before
 
     def until(self, pattern, seconds=30.0):
-        """Reads until a text has come, from here on; how long that took."""
+        """Reads until new output contains a text. Returns the seconds that this took."""
         start, at = time.monotonic(), len(self.bytes)
         while not re.search(pattern, self.bytes[at:]):
             if time.monotonic() - start > seconds:
@@ -111,7 +111,7 @@ class Screen:
         os.waitpid(self.pid, 0)
 
     def memory(self):
-        """Resident memory in MB."""
+        """Returns the resident memory in MB."""
         with open(f"/proc/{self.pid}/status") as status:
             return int(re.search(r"VmRSS:\s+(\d+)", status.read()).group(1)) / 1024
 
@@ -153,7 +153,8 @@ def memory(folder):
         while sent < count:
             os.write(pipe, b"".join(lines))
             sent += 50
-            # A hundred times as fast as the sensor, but no faster: what has come and is not shown yet takes memory, too.
+            # A hundred times as fast as the sensor, but no faster: input that is waiting to be shown takes memory,
+            # too.
             time.sleep(max(0.0, start + sent / 3000 - time.monotonic()))
             screen.read(0.0)
             while select.select([screen.master], [], [], 0)[0]:
@@ -185,7 +186,7 @@ def stopped_terminal(folder):
     size = sum(map(len, frames)) / len(frames)
     rate = 200_000 / size
     line_in = os.open(ours, os.O_WRONLY)
-    # What comes first may be torn.
+    # The first line may be torn.
     os.write(line_in, b"1 2 3\n")
     start, sent = time.monotonic(), 0
     while time.monotonic() - start < 12.0:
@@ -197,9 +198,9 @@ def stopped_terminal(folder):
             screen.read(0.0)
             while select.select([screen.master], [], [], 0)[0]:
                 screen.take()
-    # Not read for more than ten seconds. Meanwhile all is recorded.
+    # For more than ten seconds the terminal is not read. Meanwhile everything is recorded.
     time.sleep(1.0)
-    # What has waited comes first, then the newest picture, then nothing more.
+    # The backlog comes first, then the newest picture, then nothing more.
     start = last = time.monotonic()
     while time.monotonic() - last < 0.5:
         if select.select([screen.master], [], [], 0.1)[0]:
@@ -235,7 +236,7 @@ def latency(folder):
                 screen.take()
         took.append(time.monotonic() - start)
     figure("frame to screen, median of 100", f"{1000 * statistics.median(took):.1f} ms", "50 ms", statistics.median(took) <= 0.05)
-    # After two seconds it says that no frame comes.
+    # After two seconds without a frame, the screen says so.
     screen.read(3.0)
     quiet = screen.read(3.0)
     figure("bytes in 3 s without a change", quiet, "0", quiet == 0)
@@ -262,7 +263,7 @@ def draws(folder):
 
 
 def slow_line(folder):
-    """How long help takes while pictures come, on a line of 2 kB/s behind buffers that take everything, as those of SSH."""
+    """Measures the time until help appears among pictures on a line of 2 kB/s behind unlimited buffers, as with SSH."""
     fifo = os.path.join(folder, "slow")
     os.mkfifo(fifo)
     screen = Screen(["watch", fifo, "--format", "lines", "--rows", "16", "--columns", "16", "--at-least", "1000"], folder)
@@ -279,7 +280,7 @@ def slow_line(folder):
         if now - start > 10.0 and not pressed:
             pressed = len(screen.bytes)
             os.write(screen.master, b"?")
-        # What the line has brought by now.
+        # The bytes that the line has transferred so far.
         brought, shown = shown, min(shown + 2000 * (now - before), len(screen.bytes))
         screen.answer(screen.bytes[max(0, int(brought) - 3):int(shown)])
     took = now - start - 10.0

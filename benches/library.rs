@@ -1,4 +1,4 @@
-//! `taxel library list` of 100,000 shapes, beside reading their files one after the other.
+//! `taxel library list` of 100,000 shapes, compared with reading their files one after the other.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 use taxel::formats::{Name, StoredShape};
 use taxel::prelude::*;
 
-/// How many shapes there are.
+/// The number of shapes.
 const SHAPES: usize = 100_000;
 
-/// How many turns are taken; the fastest counts.
+/// The number of turns; the fastest counts.
 const TURNS: usize = 5;
 
 fn main() {

@@ -1,8 +1,8 @@
-//! Recognition of seven figures of about 30 cells each (`cargo bench --bench recognition`): training beside the sweeps
-//! that it is made of, the evaluation of the model, and answers to single touches.
+//! Recognition of seven figures of about 30 cells each (`cargo bench --bench recognition`): training compared with the
+//! sweeps that it consists of, the evaluation of the model, and answers to single touches.
 //!
-//! Training is compared with its sweeps in one run, since their ratio is what training adds: the keys of all imprints, and
-//! one table of them.
+//! Training and its sweeps are compared in one run, because their ratio shows what training adds: the keys of all
+//! imprints, and one table of them.
 
 use std::hint::black_box;
 
@@ -19,7 +19,7 @@ fn train() -> Model {
     training().run().expect("nothing is cut off")
 }
 
-/// Training, the sweeps of its shapes, and the evaluation.
+/// Measures training, the sweeps of its shapes, and the evaluation.
 fn whole(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("train");
     group.sample_size(10);
@@ -50,7 +50,7 @@ fn whole(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// One touch that some shapes leave, one that none leaves, and where a shape lies.
+/// Measures a touch that some shapes leave, a touch that no shape leaves, and finding the pose of a shape.
 fn answers(criterion: &mut Criterion) {
     let model = train();
     let known: Imprint = "..........\n...####...\n..######..\n..######..\n..######..\n..######..\n...####...\n.........."

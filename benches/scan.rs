@@ -1,8 +1,8 @@
-//! The scan of all keys at all places (`cargo bench --bench scan`): time per pair of a key and a place where nothing can be
-//! skipped, and per query where most can.
+//! The scan that compares a touch with every key at every place (`cargo bench --bench scan`): the time per pair of a
+//! key and a place if nothing can be skipped, and per query if most pairs can.
 //!
-//! The templates are random blobs of about 30 taxels in boxes of 6 × 6, so no two are equal; a million of them are more
-//! keys than any set of shapes that was tried has.
+//! The templates are random blobs of about 30 taxels in boxes of 6 × 6, all different. A million of them are more keys
+//! than any set of shapes tried so far has.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -12,7 +12,7 @@ use taxel::prelude::*;
 use taxel::recognition::{Model, ModelParts, NamedShape, Noise, ShapeCount};
 use taxel::sweep::Shard;
 
-/// A simple generator: the same templates on every machine.
+/// A simple random generator that gives the same templates on every machine.
 fn next(state: &mut u64) -> u64 {
     *state = state
         .wrapping_mul(6_364_136_223_846_793_005)
@@ -20,7 +20,7 @@ fn next(state: &mut u64) -> u64 {
     *state >> 16
 }
 
-/// A model of one shape with that many keys.
+/// Returns a model of one shape with the given number of keys.
 fn model(keys: usize) -> Model {
     let sensor = Sensor::default();
     let shape = NamedShape::new(
@@ -34,10 +34,10 @@ fn model(keys: usize) -> Model {
     while parts.keys.len() < keys {
         let mut imprint = Imprint::empty(6, 6);
         for row in 0..6 {
-            // Three of four taxels are active.
+            // Three in four taxels are active.
             imprint.set_word(row, next(&mut state) | next(&mut state));
         }
-        // In a box of its own size, and not there yet.
+        // It fills its box, and is new.
         let bounds = imprint.bounds();
         let whole =
             bounds.is_some_and(|bounds| bounds.columns() == (0..6) && bounds.rows() == (0..6));
@@ -50,7 +50,7 @@ fn model(keys: usize) -> Model {
     Model::from_parts(parts).expect("a model")
 }
 
-/// A touch like one of the templates, with some taxels flipped.
+/// Returns a touch like one of the templates, with some taxels flipped.
 fn touch() -> Imprint {
     let mut touch = Imprint::empty(16, 16);
     for (row, word) in [
@@ -74,7 +74,7 @@ fn scan(criterion: &mut Criterion) {
         .expect("a thread");
     let touch = touch();
 
-    // Nothing is skipped: at e = 0.45 every distance matters.
+    // Nothing can be skipped: at e = 0.45 every distance matters.
     let model_of_10_000 = model(10_000);
     let every = Noise::new(0.45).expect("in range");
     group.throughput(Throughput::Elements(model_of_10_000.pairs((16, 16))));

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""The nearest imprint of a noisy touch: taxel beside two indices of faiss on the same templates, in one run.
+"""Finds the nearest imprint of a noisy touch with taxel and two indices of faiss, on the same templates in one run.
 
     cargo build --release && python3 benches/scan_peers.py [QUERIES]
 
-The model is that of the seven figures of 30 cells. For faiss each of its keys in each place on a 16 x 16 matrix is a
-template of 256 bits, about a million of them. QUERIES (default 500) are templates with each taxel flipped with
-probability 0.01. All three give the distance of the nearest template; where they differ, it is said. faiss and numpy are
-installed by pip, for this run only, if they are not there.
+The model has the seven figures of 30 cells. For faiss, each of its keys in each place on a 16 x 16 matrix is a template
+of 256 bits, about a million in total. QUERIES is the number of queries (default 500): templates with each taxel flipped
+with probability 0.01. All three find the distance of the nearest template; differences are reported. Missing faiss and
+numpy are installed by pip, for this run only.
 """
 import atexit
 import json
@@ -52,7 +52,7 @@ def train(path):
 
 
 def templates(path):
-    """Every key in every place: a row of 256 bits each."""
+    """Returns a row of 256 bits for each key in each place."""
     model = np.load(path)
     matrices = []
     for height, width, rows in zip(model["height"], model["width"], model["rows"]):
@@ -66,7 +66,7 @@ def templates(path):
 
 
 def asked_of_taxel(model, queries):
-    """Distances, and the seconds that the lines took: those of the program less those of a run of one line."""
+    """Returns the distances, and the seconds for the lines: those of the program minus those of a run with one line."""
     lines = []
     for query in queries:
         rows = np.unpackbits(query).reshape(SIDE, SIDE)
@@ -103,8 +103,8 @@ def main():
 
         flat = faiss.IndexBinaryFlat(SIDE * SIDE)
         flat.add(all_templates)
-        # Eight tables by 32 bits each: of two rows that differ in fewer than eight bits one table has the same entry. The
-        # bits are shuffled, because most rows of a matrix are empty.
+        # Eight tables of 32 bits each: two rows that differ in fewer than eight bits have the same entry in at least
+        # one table. The bits are shuffled, because most rows of a matrix are empty.
         order = random.permutation(SIDE * SIDE)
 
         def shuffled(rows):

@@ -1,12 +1,12 @@
-//! The paper's grid of 3.6 million poses: swept, touched pose by pose, and by what one would write without taxel
-//! ([`peer`]), side by side in one run; and how the time of a sweep grows with the sensor, the figure and the step. All
-//! descriptors of each imprint's main region, and all statistics, included.
+//! The paper's grid of 3.6 million poses, computed in three ways side by side in one run: as a sweep, with one touch
+//! per pose, and with code that one would write without taxel ([`peer`]). Also how the time of a sweep grows with the
+//! sensor, the figure and the step. All descriptors of each imprint's main region and all statistics are included.
 //!
-//! `cargo bench --bench sweep` prints two tables; a part of a row's name after `--` restricts them. Pose by pose, 20,000
-//! poses spread over the grid are taken and the time extrapolated. Each row is measured in several rounds, with all
-//! methods in turn, and each number is the smallest of its rounds. Work on one thread is measured in processor time,
-//! which other work on the machine disturbs least. Two threads are compared with one by wall-clock time, with both
-//! cores awake.
+//! `cargo bench --bench sweep` prints two tables; an argument after `--` selects the rows whose names contain it. For
+//! single touches, 20,000 poses spread over the grid are measured and the time is extrapolated. Each row is measured
+//! in several rounds, with all methods in turn, and each number is the smallest of its rounds. Work on one thread is
+//! measured in processor time, which other work on the machine disturbs least. Two threads are compared with one by
+//! wall-clock time, with both cores awake.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -43,11 +43,11 @@ mod peer;
 )]
 mod cases;
 
-/// Poses that are taken pose by pose.
+/// The number of poses that are touched one by one.
 const SAMPLE: u64 = 20_000;
 const ROUNDS: usize = 7;
 
-/// Of the shapes that are compared with touching, those that are measured.
+/// The shapes that are measured, of all shapes for which sweeps are compared with touches.
 const MEASURED: [&str; 11] = [
     "rectangle 6 x 3",
     "triangle 6",
@@ -62,7 +62,7 @@ const MEASURED: [&str; 11] = [
     "picture: ring",
 ];
 
-/// A hexagon with a wall of 1, each row in another respect than the first one; its angles, none of which repeats.
+/// Hexagons with a wall of 1: the first one, and variations of it in one respect each. None of their angles repeats.
 fn growing() -> Vec<Case> {
     let case = |name, side: f64, on: u8, place| Case {
         name,
@@ -85,7 +85,7 @@ fn growing() -> Vec<Case> {
     ]
 }
 
-/// Seconds that something takes: of the processor, all threads together, and of the clock on the wall.
+/// Returns the seconds that some work takes: processor time of all threads together, and wall-clock time.
 fn seconds(work: impl FnOnce()) -> [f64; 2] {
     let processor = || clock_gettime(ClockId::ProcessCPUTime);
     let (start, wall) = (processor(), Instant::now());
@@ -100,13 +100,13 @@ fn least(times: &[f64]) -> f64 {
     times.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// Poses spread over the grid.
+/// Returns poses spread over the grid.
 fn sample(grid: &PoseGrid) -> impl Iterator<Item = Pose> + '_ {
     let stride = grid.poses() / SAMPLE.min(grid.poses());
     (0..SAMPLE.min(grid.poses())).map(move |index| grid.pose(index * stride))
 }
 
-/// A source in each pose, made before the time is taken.
+/// Returns the source in each pose, made before time is measured.
 fn placed(grid: &PoseGrid) -> Vec<Source> {
     let set = |source: Source, parameter, value| {
         source
@@ -172,7 +172,7 @@ fn touch_peer(
     }
 }
 
-/// Kind, sizes and wall of a figure, for the peer; none of a picture.
+/// Returns the kind, sizes and wall of a figure, for the peer; None for a picture.
 fn sizes(source: &Source) -> Option<(FigureKind, [f32; 2], Option<f32>)> {
     let Source::Figure(figure) = source else {
         return None;
@@ -184,20 +184,20 @@ fn sizes(source: &Source) -> Option<(FigureKind, [f32; 2], Option<f32>)> {
     Some((figure.kind(), sizes, get(Parameter::Thickness)))
 }
 
-/// Times of one row, in seconds for the whole grid, and the number of distinct imprints.
+/// The times of one row, in seconds for the whole grid, and the number of distinct imprints.
 #[derive(Default)]
 struct Times {
     one: Vec<f64>,
-    /// On the wall, of one thread and of two.
+    /// The wall-clock times on one thread and on two.
     walls: [Vec<f64>; 2],
     touch: Vec<f64>,
     peer: Vec<f64>,
     distinct: usize,
 }
 
-/// Keeps all threads busy for a moment. A core of a virtual machine that has slept takes some milliseconds to come back,
-/// which is half of a short sweep: measured after 80 ms of work on one thread, two took 13.4 ms for what takes them 8.4 ms
-/// when both are awake, and one 15.3 ms.
+/// Keeps all threads busy for a moment. A core of a virtual machine takes some milliseconds to wake up, which is half
+/// of a short sweep: after 80 ms of work on one thread, a sweep took 13.4 ms on two threads, but 8.4 ms with both
+/// cores awake, and 15.3 ms on one.
 fn wake(pool: &rayon::ThreadPool) {
     pool.broadcast(|_| {
         let start = Instant::now();
@@ -207,7 +207,7 @@ fn wake(pool: &rayon::ThreadPool) {
     });
 }
 
-/// One thread, and two.
+/// A pool of one thread, and one of two.
 struct Pools([rayon::ThreadPool; 2]);
 
 impl Pools {
@@ -219,7 +219,7 @@ impl Pools {
         Self([pool(1), pool(2)])
     }
 
-    /// Sweeps on one and on two threads.
+    /// Sweeps once on one thread and once on two.
     fn sweep(&self, grid: &PoseGrid, times: &mut Times) {
         let [one, two] = self.0.each_ref().map(|pool| {
             wake(pool);
@@ -259,7 +259,7 @@ fn per_pose(times: &[f64], grid: &PoseGrid) -> f64 {
     least(times) * 1e9 / grid.poses() as f64
 }
 
-/// A row of the table of the paper's grid.
+/// Prints a row of the table of the paper's grid.
 fn print(name: &str, grid: &PoseGrid, times: &Times) {
     let own = per_pose(&times.one, grid);
     let [one, two] = times.walls.each_ref().map(|walls| least(walls));

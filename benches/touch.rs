@@ -1,7 +1,7 @@
-//! One touch with all descriptors of all regions, beside what one would write without taxel ([`peer`]).
+//! One touch with all descriptors of all regions, compared with code that one would write without taxel ([`peer`]).
 //!
-//! The three figures of each, and the stages of taxel's by themselves: figure to imprint, imprint to regions,
-//! regions to every value of [`DESCRIPTORS`]. And what a keystroke takes until the screen is drawn.
+//! Measures three figures with both, and each stage of taxel by itself: figure to imprint, imprint to regions, regions
+//! to every value of [`DESCRIPTORS`]. Also measures the time from a key press to the drawn screen.
 
 use std::hint::black_box;
 
@@ -74,7 +74,7 @@ fn circle() -> Figure {
     figure(FigureKind::Ellipse, &values)
 }
 
-/// Every value of the table.
+/// Computes every value of the table of descriptors.
 fn describe(region: &Region) {
     let description = Description::of(region);
     for descriptor in DESCRIPTORS {
@@ -110,7 +110,7 @@ const FIGURES: [Case; 3] = [
     ("circle", circle, peer_circle),
 ];
 
-/// The comparison is fair only if both do the same work, so the imprint and every number are first checked to be equal.
+/// Checks that the imprint and every number are equal. The comparison is only fair if both do the same work.
 fn assert_alike(name: &str, plane: &mut Plane, figure: &Figure, peer: &mut Peer, touch: PeerTouch) {
     let imprint = plane.touch(figure);
     let theirs = touch(peer).to_vec();
@@ -189,11 +189,12 @@ fn stages(criterion: &mut Criterion) {
     }
 }
 
-/// From a keystroke to a finished frame of 80 × 24 in a test buffer: the cursor moved, a taxel turned over.
+/// Measures the time from a key press to a finished frame of 80 × 24 in a test buffer: moving the cursor, and toggling
+/// a taxel.
 fn frame(criterion: &mut Criterion) {
     let options = Options::plain(false);
     let mut group = criterion.benchmark_group("frame");
-    // Two keys, two frames, and all is as before; undone, so that no history grows.
+    // Two keys and two frames restore the first state; `u` undoes, so that the history does not grow.
     for (name, keys) in [
         ("move", ["<Right>", "<Left>"]),
         ("toggle", ["<Space>", "u"]),
@@ -206,7 +207,7 @@ fn frame(criterion: &mut Criterion) {
             bencher.iter(|| {
                 for key in keys {
                     session.keys(black_box(key)).expect("keys that exist");
-                    // The screen is drawn where it is asked about.
+                    // The screen is drawn when its cursor is asked for.
                     black_box(session.cursor());
                 }
             });

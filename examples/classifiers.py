@@ -1,11 +1,11 @@
-"""The classifiers of 'taxel model confusion --classifier' beside those of scikit-learn, on the same touches and features.
+"""Compares the classifiers of 'taxel model confusion --classifier' with scikit-learn's, on the same features of touches.
 
     pip install numpy scikit-learn
     python3 examples/classifiers.py [SET.jsonl]       # taxel on the PATH, or: TAXEL=target/release/taxel
 
-Every row names the shape of all touches of the model: each key once, weighed by the number of poses that leave it. The
-row says what scikit-learn learns from: its Gaussians with common and own covariance take no weights, so they get a
-sample.
+Each row is a classifier that names the shape of all touches of the model: each key once, weighted by the number of
+poses that leave it. The row says what scikit-learn learns from: its Gaussians with common and own covariance accept no
+weights, so they get a sample.
 """
 
 import json
@@ -30,13 +30,13 @@ def taxel(*arguments, text=None):
 
 
 def keys(model):
-    """The imprint of each key as rows of text."""
+    """Returns the imprint of each key as rows of text."""
     for height, width, rows in zip(model["height"], model["width"], model["rows"]):
         yield ["".join("#" if int(row) >> i & 1 else "." for i in range(width)) for row in rows[:height]]
 
 
 def features(model):
-    """The features that taxel uses, by its own names, from its own descriptors; in units of their deviation."""
+    """Returns the features that taxel uses, from its own descriptors and by its names, in units of their deviation."""
     lines = "".join(json.dumps({"imprint": rows}) + "\n" for rows in keys(model))
     regions = [json.loads(line)["regions"][0] for line in taxel("batch", text=lines).splitlines()]
 
@@ -48,7 +48,7 @@ def features(model):
                 return 0.0 if angle is None else turn(np.radians(angle))
         if name[-2:] in ("_1", "_2"):
             return region[name[:-2]][int(name[-1]) - 1]
-        # Answers leave out what follows from another value.
+        # Answers omit descriptors that follow from others.
         return 4 * np.pi / region["f"] if name == "roundness" else region[name]
 
     used = json.loads(taxel("model", "confusion", "model.npz", "--classifier", "z", "--json"))["features"]

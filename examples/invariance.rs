@@ -1,16 +1,18 @@
-//! Which descriptors hardly depend on where and how a figure lies? The question that the paper's descriptors are for.
+//! Finds the descriptors that hardly depend on where and how a figure lies, which is the purpose of the paper's
+//! descriptors.
 //!
-//! Each of the seven figures is swept over the paper's grid, 3.6 million poses, and each descriptor's coefficient of
-//! variation is printed in percent, its standard deviation over its mean: what is near 0 is a quasi-invariant. Below it
-//! stand the two parts of the deviation: from the position at a fixed angle, and from the angle.
+//! Each of the seven figures is swept over the paper's grid of 3.6 million poses. For each descriptor, this prints the
+//! coefficient of variation in percent, which is the standard deviation over the mean: a value near 0 means a
+//! quasi-invariant. The two parts of the deviation follow below it: from the position at a fixed angle, and from the
+//! angle.
 //!
-//! `cargo run --release --example invariance [-- STEP]`; STEP is that of the angles in degrees, 1 if none is given.
+//! `cargo run --release --example invariance [-- STEP]`; STEP is the step of the angles in degrees, 1 by default.
 
 use std::fmt::Write;
 
 use taxel::prelude::*;
 
-/// Those that describe the shape.
+/// The descriptors of the shape, as opposed to its place.
 const DESCRIBING: [&str; 8] = [
     "na",
     "nae",
@@ -28,10 +30,10 @@ fn main() -> Result<(), String> {
     Ok(())
 }
 
-/// A table in Markdown over a range of angles: a row for each descriptor and each part, a column for each figure.
+/// Returns a Markdown table over a range of angles: a row for each descriptor and each part, a column for each figure.
 ///
 /// # Errors
-/// A range that is none.
+/// Returns an error if `angles` is not a range.
 pub(crate) fn report(angles: &str) -> Result<String, String> {
     let angle = angles
         .parse()
@@ -61,7 +63,7 @@ pub(crate) fn report(angles: &str) -> Result<String, String> {
     Ok(table)
 }
 
-/// A deviation of a feature in percent of its mean, for each figure.
+/// Returns the row for a feature: its deviation in percent of its mean, for each figure.
 fn row(
     results: &[SweepResult],
     key: &str,

@@ -1,7 +1,7 @@
-//! An outline of one's own: an angle plate with a drilled hole, touched like the figures that come with the program.
+//! A user-defined outline: an angle plate with a drilled hole, touched like the built-in figures.
 //!
-//! Whatever draws its boundary can touch a sensor. The boundary is drawn with numbers of any precision: once in `f64`,
-//! and again with 32 digits where a taxel is so near to the threshold that rounding could decide.
+//! Anything that can draw its boundary can touch a sensor. The boundary is drawn with numbers of any precision: once
+//! in `f64`, and again with 32 digits if a taxel is so close to the threshold that rounding could decide.
 //!
 //! `cargo run --example outline`
 
@@ -10,7 +10,7 @@ use std::fmt::Write;
 use taxel::geometry::{Ellipse, Pen, Point, Polygon, Real, Side, Solid};
 use taxel::prelude::*;
 
-/// A plate bounded by a polygon, with a round hole; cell sides.
+/// A plate bounded by a polygon, with a round hole; lengths in cells.
 struct Plate {
     outline: Polygon,
     hole: (f64, f64),
@@ -26,7 +26,7 @@ impl Solid for Plate {
             across: Point::new(radius, T::ZERO),
             along: Point::new(T::ZERO, radius),
         };
-        // The material lies around the hole, outside of its edge.
+        // The material is around the hole, outside of its edge.
         pen.ellipse(&hole, Side::Outside);
     }
 }
@@ -35,7 +35,7 @@ fn main() {
     print!("{}", report());
 }
 
-/// The imprint of the plate, how much of it is covered, and what a robot would know of it.
+/// Returns the imprint of the plate, the covered area, and what a robot would know about the plate.
 pub(crate) fn report() -> String {
     let corners = [
         (2.3, 1.6),

@@ -1,8 +1,8 @@
 //! The paper's experiment with positions: how many different imprints does one ring leave?
 //!
-//! The paper moved the ring of its Fig. 1 by hand to 56 positions, which it does not list, and reports 8 imprints among
-//! them. Here the same ring goes to a lattice of 56 positions over the same cell, to all 10,000 whose coordinates have
-//! two decimals, and from there to all cells of the sensor on which it fits.
+//! The paper moved the ring of its Fig. 1 by hand to 56 positions, which it does not list, and reports 8 imprints
+//! among them. Here the same ring is placed at a lattice of 56 positions over the same cell, at all 10,000 positions
+//! whose coordinates have two decimals, and at the same positions in all cells of the sensor where it fits.
 //!
 //! `cargo run --release --example positions`
 
@@ -10,7 +10,7 @@ use std::fmt::Write;
 
 use taxel::prelude::*;
 
-/// What is gone through, the ranges of x0 and y0, and what the paper says of it.
+/// The name of each experiment, its ranges of x0 and y0, and what the paper says about it.
 const EXPERIMENTS: [(&str, &str, &str, &str); 3] = [
     (
         "7 × 8 positions in a cell",
@@ -26,7 +26,7 @@ fn main() {
     print!("{}", report());
 }
 
-/// A table in Markdown: what was gone through, what the paper claims, what is found.
+/// Returns a Markdown table of the experiments: the positions, the paper's claim, and the numbers found.
 pub(crate) fn report() -> String {
     let mut table = String::from(
         "| positions | poses | the paper | distinct | up to shifts | up to symmetry |\n|---|---|---|---|---|---|\n",

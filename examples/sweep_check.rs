@@ -1,8 +1,9 @@
-//! Sweeps compared with touching pose by pose over the paper's whole grid: every difference counts.
+//! Compares sweeps with single touches over the paper's whole grid; any difference is an error.
 //!
-//! `cargo run --release --example sweep_check [-- NAME]` takes the figures and pictures of `tests/imprints/sweep/cases.rs` (or
-//! those whose name contains NAME), each over 100 × 100 positions and 360 angles, and ends with status 1 where any pose
-//! differs. About four minutes on one core; the sweeps are a hundredth of that.
+//! `cargo run --release --example sweep_check [-- NAME]` runs the figures and pictures of
+//! `tests/imprints/sweep/cases.rs` (or those whose name contains NAME), each over 100 × 100 positions and 360 angles,
+//! and exits with status 1 if any pose differs. It takes about four minutes on one core; the sweeps are a hundredth of
+//! that.
 
 #[path = "../tests/imprints/sweep/cases.rs"]
 mod cases;

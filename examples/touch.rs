@@ -1,4 +1,4 @@
-//! The paper's Fig. 1: an ellipse with radii of 4 and a wall of 2, touched once, and all its descriptors.
+//! The paper's Fig. 1: an ellipse with radii of 4 and a wall of 2, touched once, with all its descriptors.
 //!
 //! `cargo run --example touch`
 
@@ -11,7 +11,7 @@ fn main() {
     print!("{}", report());
 }
 
-/// The imprint, then each region with its descriptors.
+/// Returns the imprint, then each region with its descriptors.
 pub(crate) fn report() -> String {
     let sensor = Sensor::default();
     let ring = Figure::ellipse(4.0, 4.0)

@@ -1,8 +1,9 @@
-//! What one writes today without taxel: coverage by `ab_glyph_rasterizer`, contours by `imageproc`, descriptors by
-//! hand; every buffer that is ours is reused.
+//! What one would write today without taxel: coverage by `ab_glyph_rasterizer`, contours by `imageproc`, descriptors
+//! by hand. All buffers of this code are reused.
 //!
-//! Right for convex figures with at most one hole that lie on the sensor. Limits of the two crates: coverages in
-//! `f32`, no clipping at the left and right rim, and `find_contours` sees no exterior border that starts in column 0.
+//! It is correct for convex figures with at most one hole that lie on the sensor. The two crates have limits:
+//! coverages in `f32`, no clipping at the left and right rim, and `find_contours` does not see an exterior border that
+//! starts in column 0.
 
 use std::f32::consts::PI;
 use std::f64::consts::{PI as PI64, SQRT_2};
@@ -11,29 +12,31 @@ use ab_glyph_rasterizer::{Rasterizer, point};
 use imageproc::contours::{BorderType, find_contours};
 use imageproc::image::GrayImage;
 
-/// Chords of an ellipse, enclosing its area, for each root of its larger radius: so all are off by as much.
+/// The number of chords that approximate an ellipse is this times the root of its larger radius, so the error is the
+/// same for all sizes. The chords enclose the ellipse's area.
 ///
-/// Rings given the right imprint, of 20,000 random ones on a 16 × 16 sensor: 98.0 % with 16, 99.3 % with 24, 99.7 % with
-/// 32; 73.1 % with 16 chords whatever the radius, 96.8 % with 32, 99.4 % with 64. A peer has to give the right imprint,
-/// so 24, which takes the fewest chords for that. (The rasterizer's own curves come to about 16, inscribed.)
+/// Of 20,000 random rings on a 16 × 16 sensor, 98.0 % get the right imprint with 16, 99.3 % with 24, 99.7 % with 32.
+/// With a fixed number of chords for all radii it is 73.1 % with 16, 96.8 % with 32, 99.4 % with 64. A peer has to
+/// give the right imprint; 24 does so with the fewest chords. (The rasterizer's own curves, inscribed, correspond to
+/// about 16.)
 const CHORDS: f32 = 24.0;
 
-/// Half of a cell, less what `f32` may be wrong by: a tie is a common case, and is active.
+/// Half of a cell, minus the possible error of `f32`: ties are common, and a tie is active.
 const THRESHOLD: f32 = 0.5 - 1e-5;
 
 type Xy = (f32, f32);
 type Border = [imageproc::point::Point<u32>];
 
-/// An outline, placed.
+/// An outline in its place.
 #[derive(Clone, Copy, Debug)]
 pub enum Outline<'a> {
-    /// Its corners.
+    /// The corners.
     Polygon(&'a [Xy]),
-    /// Centre, radii, and the clockwise angle in degrees.
+    /// The centre, the radii, and the clockwise angle in degrees.
     Ellipse { centre: Xy, radii: Xy, degrees: f32 },
 }
 
-/// A rectangle and its hole, turned clockwise as seen about the centre.
+/// Returns the corners of a rectangle and of its hole, turned clockwise about the centre.
 pub fn rectangle(
     (length, width): Xy,
     (x0, y0): Xy,
@@ -54,7 +57,8 @@ pub fn rectangle(
     )
 }
 
-/// A regular polygon of `N` sides, one of them horizontal at the bottom before the turn, and its hole.
+/// Returns the corners of a regular polygon of `N` sides and of its hole. Before the turn, the bottom side is
+/// horizontal.
 pub fn regular<const N: usize>(
     side: f32,
     (x0, y0): Xy,
@@ -64,7 +68,7 @@ pub fn regular<const N: usize>(
     let (sin, cos) = (PI / N as f32).sin_cos();
     let (radius, inradius) = (side / (2.0 * sin), side * cos / (2.0 * sin));
     let (step_sin, step_cos) = (2.0 * sin * cos, cos * cos - sin * sin);
-    // Unit vectors to the corners, from the bottom right one.
+    // The unit vectors to the corners, starting at the bottom right corner.
     let mut unit = [(sin, cos); N];
     for k in 1..N {
         let (x, y) = unit[k - 1];
@@ -90,7 +94,7 @@ pub fn regular<const N: usize>(
     )
 }
 
-/// An ellipse and its hole.
+/// Returns the outlines of an ellipse and of its hole.
 pub fn ellipse(
     (rx, ry): Xy,
     (x0, y0): Xy,
@@ -106,7 +110,7 @@ pub fn ellipse(
     (smaller(0.0), wall.map(smaller))
 }
 
-/// The same descriptors as taxel's, of one region.
+/// The same descriptors of one region as taxel's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
     pub hole: bool,
@@ -118,7 +122,7 @@ pub struct Region {
     pub p: f64,
     pub f: f64,
     pub roundness: Option<f64>,
-    /// Left, top, right, bottom.
+    /// The left, top, right and bottom edge.
     pub rect: [u32; 4],
     pub cd: (f64, f64),
     pub area: u32,
@@ -129,7 +133,7 @@ pub struct Region {
     pub cg_cd_direction: Option<f64>,
 }
 
-/// A sensor of the two crates, to be touched again and again.
+/// A sensor simulated with the two crates, for many touches.
 #[derive(Debug)]
 pub struct Peer {
     raster: Rasterizer,
@@ -148,7 +152,7 @@ impl Peer {
         }
     }
 
-    /// One touch: the regions, exteriors first, and the image.
+    /// Touches the sensor once. Returns the regions, exteriors first.
     pub fn touch(&mut self, exterior: &Outline, hole: Option<&Outline>) -> &[Region] {
         self.raster.clear();
         draw(&mut self.raster, exterior, false);
@@ -165,7 +169,7 @@ impl Peer {
         &self.regions
     }
 
-    /// The imprint of the last touch: 255 is active.
+    /// Returns the imprint of the last touch; active taxels are 255.
     pub fn image(&self) -> &GrayImage {
         &self.image
     }
@@ -183,7 +187,7 @@ impl Peer {
             self.regions.push(exterior);
         }
         for border in of(BorderType::Hole) {
-            // The border runs on the object: what it encloses, as an image of its own, is traced again.
+            // The border runs on the object, so the area that it encloses is traced again, as an image of its own.
             let (rows, [left, top, right, bottom]) = border_rows(&border.points);
             let (width, height) = (right - left, bottom - top);
             let mut pixels = std::mem::take(&mut self.crop);
@@ -256,7 +260,7 @@ fn draw(raster: &mut Rasterizer, outline: &Outline, reversed: bool) {
     }
 }
 
-/// The pixels of a border, one bit each, and their rectangle.
+/// Returns the pixels of a border, one bit each, and their bounding rectangle.
 fn border_rows(points: &Border) -> ([u64; 64], [u32; 4]) {
     let (mut rows, mut rect) = ([0_u64; 64], [u32::MAX, u32::MAX, 0, 0]);
     for at in points {
@@ -271,7 +275,7 @@ fn border_rows(points: &Border) -> ([u64; 64], [u32; 4]) {
     (rows, rect)
 }
 
-/// First column and the one after the last.
+/// Returns the first column and the one after the last.
 fn ends(row: u64) -> (usize, usize) {
     (
         row.trailing_zeros() as usize,
@@ -279,7 +283,7 @@ fn ends(row: u64) -> (usize, usize) {
     )
 }
 
-/// All descriptors of the region that `points` goes round; the image's corner is at `corner`.
+/// Computes all descriptors of the region that `points` surrounds. The image's corner is at `corner`.
 fn region(image: &GrayImage, points: &Border, corner: (u32, u32), hole: bool) -> Region {
     let (rows, [left, top, right, bottom]) = border_rows(points);
     let (mut na, mut nae, mut ce, mut sum_x, mut sum_y) = (0, 0, 0, 0, 0);

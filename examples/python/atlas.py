@@ -17,7 +17,7 @@ GRID = ["--x0", "5:5.95:0.05", "--y0", "5:5.95:0.05", "--angle", "0:59:1"]
 
 
 def taxels(atlas, columns=16):
-    """The imprints as an array of bool: imprints x rows x columns. A row of the file is a word, bit i for column i."""
+    """Returns the imprints as an array of bool: imprints x rows x columns. In the file, a row is a word, bit i for column i."""
     return (atlas["rows"][:, :, None] >> np.arange(columns, dtype=np.uint64) & 1).astype(bool)
 
 
@@ -36,7 +36,7 @@ def main():
     row, column = np.unravel_index(often.argmax(), often.shape)
     print(f"taxel ({column}, {row}) is active most often: in {often[row, column]:.0%} of the poses")
 
-    # Descriptors are arrays too, one number for each imprint. Statistics weigh them by how often it occurs.
+    # Descriptors are arrays, too, with one number per imprint. Statistics weight each number by the imprint's poses.
     mean = np.average(atlas["na"], weights=count)
     deviation = np.sqrt(np.average((atlas["na"] - mean) ** 2, weights=count))
     print(f"active taxels: {mean:.2f} ± {deviation:.2f}; the continuous hexagon covers {3**2 * 1.5 * 3**0.5:.2f} cells")

@@ -30,7 +30,7 @@ def taxel(*arguments):
 
 
 def main():
-    # A row for each imprint of each shape: its descriptors, its shape, and in how many touches it occurs.
+    # A row for each imprint of each shape: its descriptors, its shape, and the number of touches that leave it.
     table, shape, count = [], [], []
     for number, (length, width) in enumerate(SHAPES.values()):
         size = ["--length", str(length), "--width", str(width)]

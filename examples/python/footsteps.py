@@ -19,7 +19,7 @@ TAXEL = os.environ.get("TAXEL", "taxel")
 # The numbers do not depend on your settings.
 os.environ["TAXEL_CONFIG"] = os.devnull
 THRESHOLD = "20"
-# Frames of the second step, and what they show.
+# Frames of the second step, with the part of the step that each shows.
 SHAPES = {"heel": 32, "whole": 42, "ball": 48}
 SECOND_STEP = range(29, 52)
 
@@ -31,7 +31,7 @@ def frames(recording, *options):
 
 
 def shapes(recording):
-    """A line of JSON for each shape: the imprint of a frame, as it is and mirrored."""
+    """Returns a JSON line for each shape: the imprint of a frame, as it is and mirrored."""
     for foot, flip in [("left", []), ("right", ["--flip", "x"])]:
         for part, number in SHAPES.items():
             [frame] = frames(recording, "--frame", str(number), *flip)

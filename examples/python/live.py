@@ -1,4 +1,4 @@
-"""Frames of a sensor as they come, each with its imprint, its descriptors and the name of the shape.
+"""Shows live frames of a sensor, each with its imprint, its descriptors and the name of the shape.
 
     python3 examples/python/live.py /dev/ttyACM0     # a serial line, tcp://HOST:PORT, a recording, a FIFO
     python3 examples/python/live.py                  # without a sensor: a disc and a bar, made up here
@@ -19,7 +19,7 @@ SHAPES = ["--shape", "disc=ellipse radius_x=3 radius_y=3", "--shape", "bar=recta
 
 
 def made_up(stream, frames=24, side=16):
-    """Writes frames of 16 x 16 values from 0 to 100: no contact, then a disc that wanders, then a bar."""
+    """Writes frames of 16 x 16 values from 0 to 100: no contact, then a moving disc, then a bar."""
     for frame in range(-1, frames):
         x, y = 5 + 0.2 * frame, 8.03 - 0.1 * frame
         disc = frame < frames // 2

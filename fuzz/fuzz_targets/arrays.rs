@@ -1,4 +1,4 @@
-//! An archive for `taxel merge`, sound but for some bytes of its arrays.
+//! An archive for `taxel merge` that is valid except for some bytes of its arrays.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| taxel_fuzz::run("arrays", bytes));

@@ -1,4 +1,4 @@
-//! The file of settings, from any bytes.
+//! The settings file, from any bytes.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| taxel_fuzz::run("config", bytes));

@@ -1,4 +1,4 @@
-//! A model with other bytes in its arrays.
+//! A model with changed bytes in its arrays.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| taxel_fuzz::run("model_arrays", bytes));

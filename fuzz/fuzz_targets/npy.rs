@@ -1,4 +1,4 @@
-//! A file of numpy, from any bytes.
+//! A numpy file, from any bytes.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| taxel_fuzz::run("npy", bytes));

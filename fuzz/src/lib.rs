@@ -4,10 +4,10 @@
 #[allow(dead_code, unused_imports, reason = "the property tests use more of it")]
 mod bodies;
 
-/// Gives bytes to the body of that name.
+/// Passes bytes to the body with this name.
 ///
 /// # Panics
-/// If there is none, or if something does not hold that should.
+/// Panics if there is no such body, or if a property does not hold.
 pub fn run(name: &str, bytes: &[u8]) {
     bodies::body(name)(bytes);
 }
