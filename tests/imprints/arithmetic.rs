@@ -1,6 +1,6 @@
-//! The numbers of geometry against constants of 32 digits and identities.
+//! Checks the numbers of geometry against constants of 32 digits and against identities.
 //!
-//! The constants were computed with 60 digits by series of whole-number arithmetic, apart from the code here.
+//! The constants were computed with 60 digits by series in whole-number arithmetic, independently of the code here.
 
 use crate::common::figure;
 use taxel::geometry::{Double, Real, cell_area};
@@ -10,7 +10,7 @@ use taxel::touch::Plane;
 
 const PI: &str = "3.1415926535897932384626433832795";
 
-/// The number of up to 32 digits, digit by digit: a second way beside [`Real::decimal`], which reads an `f64`.
+/// Reads a number of up to 32 digits, digit by digit: a second method beside [`Real::decimal`], which reads an `f64`.
 fn number(text: &str) -> Double {
     let (sign, text) = text.strip_prefix('-').map_or((1, text), |rest| (-1, rest));
     let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));
@@ -36,7 +36,7 @@ fn assert_near(name: &str, found: Double, expected: Double, within: f64) {
 }
 
 #[test]
-fn decimals_are_what_one_reads() {
+fn decimals_have_the_value_that_is_written() {
     let one = Double::ONE;
     for (value, scale) in [
         (0.1, 10),
@@ -68,7 +68,7 @@ fn decimals_are_what_one_reads() {
         let read = number(&format!("{value}"));
         assert_near(text, Double::decimal(value), read, 1e-30 * value.abs());
     }
-    // In binary 0.1 is another number; only its shortest decimal is one tenth.
+    // In binary, 0.1 is a different number; only its shortest decimal is one tenth.
     assert!(distance(Double::from(0.1), Double::decimal(0.1)) > 1e-18);
     assert_eq!(Double::decimal(-0.0), Double::ZERO);
     assert_eq!(f64::decimal(0.1), 0.1);
@@ -96,7 +96,7 @@ fn sums_products_and_quotients_hold_thirty_digits() {
         number(PI) * number(PI) + two * number(PI) + Double::ONE,
         1e-29,
     );
-    // What cancels leaves the small rest whole.
+    // After cancellation, the small rest is complete.
     let hair = Double::decimal(1e-25);
     assert_near(
         "1 + 1e-25 − 1",
@@ -111,7 +111,7 @@ fn sums_products_and_quotients_hold_thirty_digits() {
 }
 
 #[test]
-fn floors_look_at_both_halves() {
+fn floor_uses_both_halves_of_a_double() {
     let hair = Double::decimal(1e-25);
     for whole in [-64, -3, -1, 0, 1, 2, 63, 64] {
         let exact = Double::whole(whole);
@@ -142,7 +142,7 @@ fn floors_look_at_both_halves() {
 }
 
 #[test]
-fn roots() {
+fn square_roots_hold_thirty_digits() {
     for (square, root) in [
         ("2", "1.4142135623730950488016887242097"),
         ("3", "1.7320508075688772935274463415059"),
@@ -162,7 +162,7 @@ fn roots() {
             1e-61 * f64::from(whole),
         );
     }
-    // Roots of differences that vanish may come out below nought.
+    // The square of a vanishing root may come out slightly below 0.
     for nought in [Double::ZERO, -Double::decimal(1e-32)] {
         assert_eq!(nought.sqrt(), Double::ZERO);
     }
@@ -170,7 +170,7 @@ fn roots() {
 }
 
 #[test]
-fn sines_and_cosines_of_whole_degrees() {
+fn sines_and_cosines_of_whole_degrees_hold_thirty_digits() {
     let of = |degrees: i32| Double::whole(degrees).sin_cos_degrees();
     for (degrees, sin, cos) in [
         (
@@ -247,7 +247,7 @@ fn sines_and_cosines_of_whole_degrees() {
         assert_near("sin(−a)", of(-degrees).0, -sin, 1e-31);
         assert_near("cos(−a)", of(-degrees).1, cos, 1e-31);
         assert_near("cos(90 − a)", of(90 - degrees).1, sin, 1e-31);
-        // The addition theorem, for all pairs with a neighbour 37 and 101 degrees further.
+        // The addition theorem, for every angle with the angles 37 and 101 degrees further.
         for further in [37, 101] {
             let (sin_b, cos_b) = of(further);
             assert_near(
@@ -271,7 +271,7 @@ fn sines_and_cosines_of_whole_degrees() {
 }
 
 #[test]
-fn angles_are_those_of_their_sines() {
+fn angles_are_recovered_from_sine_and_cosine() {
     for tenths in -900..=900 {
         let degrees = Double::whole(tenths) / Double::whole(10);
         let (sin, cos) = degrees.sin_cos_degrees();
@@ -281,7 +281,7 @@ fn angles_are_those_of_their_sines() {
         let plain = f64::angle(sin.to_f64(), cos.to_f64());
         assert!((plain - expected.to_f64()).abs() < 5e-16, "{text}: {plain}");
     }
-    // Near the ends, where the sine alone tells nothing, and in the middle, down to nothing.
+    // Near the ends, where the sine alone says nothing, and in the middle, with tiny numbers down to zero.
     for power in 0..300 {
         let small = 0.1_f64.powi(power) * 0.5;
         let large = ((1.0 - small) * (1.0 + small)).sqrt();
@@ -317,7 +317,7 @@ fn areas_in_f64_hold_eleven_digits() {
     ] {
         let figure = figure(text, 64);
         plane.touch(&figure);
-        // Every seventh cell, each row beginning elsewhere.
+        // Every seventh cell, starting at another column in each row.
         for row in 0..64_u8 {
             for column in (row % 7..64).step_by(7) {
                 let exact = cell_area::<Double>(&figure, column, row).to_f64();
@@ -334,7 +334,7 @@ fn areas_of_cells_hold_twenty_eight_digits() {
     let (root_2, root_3) = (Double::whole(2).sqrt(), Double::whole(3).sqrt());
     let quarter = pi * half * half;
     let third = pi / Double::whole(3);
-    // The closed forms of these are explained with the coverages.
+    // tests/imprints/coverage.rs explains the closed forms of these areas.
     for (text, (column, row), expected) in [
         (
             "ellipse radius_x=0.5 radius_y=0.5 x0=3 y0=5",
@@ -388,8 +388,8 @@ fn areas_of_cells_hold_twenty_eight_digits() {
     }
 }
 
-/// Edges that are horizontal up to a rounding of `f64` have heights all the same, and taxels in doubt along them are
-/// decided each by its own area.
+/// An edge that is horizontal up to a rounding of `f64` still has a height, and each taxel in doubt along it is
+/// decided by its own area.
 #[test]
 fn edges_that_f64_takes_for_horizontal_are_decided_with_more_digits() {
     let rows = |text: &str, side| {
@@ -412,7 +412,8 @@ fn edges_that_f64_takes_for_horizontal_are_decided_with_more_digits() {
     for (on, cut) in on.iter().zip(cut) {
         assert_eq!(on >> 7, cut);
     }
-    // A threshold of a height that vanishes beside its place: of the six cells below it, half a cell counts at each end.
+    // A threshold and a height that vanish beside the figure's position: of the six cells at that height, half a cell
+    // counts at each end.
     let thin = figure("rectangle length=6 width=1e-18 x0=4 y0=4.5", 16);
     let sensor = Sensor::default().with(Parameter::Threshold, 1e-18);
     let imprint = Plane::new(sensor.expect("in range")).touch(&thin);

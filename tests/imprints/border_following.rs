@@ -1,8 +1,8 @@
-//! Regions and descriptors against a plain implementation: flood fill by queue, and border following.
+//! Checks regions and descriptors against a simple implementation: flood fill with a queue, and border following.
 //!
-//! The filled region is walked around as by Moore's neighbour tracing. A part one taxel wide is passed twice, and the
-//! first taxel can be passed before the walk is over, so the walk ends by Jacob Eliosoff's criterion: at the first
-//! taxel, about to leave it in the first direction again.
+//! The walk around the filled region is Moore's neighbour tracing. A part one taxel wide is passed twice, and the
+//! first taxel may be passed before the walk ends, so the walk ends by Jacob Eliosoff's criterion: at the first taxel,
+//! about to leave it in the first direction again.
 
 use std::f64::consts::{PI, SQRT_2};
 
@@ -13,7 +13,7 @@ use taxel::imprint::Imprint;
 /// Rows of taxels.
 type Mask = Vec<Vec<bool>>;
 
-/// Around a taxel, clockwise as seen from the one on its left: column and row. Odd ones are across a corner.
+/// The neighbours of a taxel as column and row, clockwise as seen, from the left one. Odd ones are diagonal.
 const AROUND: [(isize, isize); 8] = [
     (-1, 0),
     (-1, -1),
@@ -43,8 +43,8 @@ fn taxels(mask: &Mask) -> Vec<(usize, usize)> {
     mask.iter().enumerate().flat_map(row).collect()
 }
 
-/// Takes the component that holds a taxel out of `mask`; every `stride`-th neighbour counts: 1 all eight, 2 the four
-/// beside.
+/// Removes the component that contains a taxel from `mask` and returns its taxels. Every `stride`-th neighbour counts:
+/// 1 means all eight, 2 the four that share a side.
 fn take_component(mask: &mut Mask, start: (usize, usize), stride: usize) -> Vec<(usize, usize)> {
     let mut found = vec![start];
     mask[start.1][start.0] = false;
@@ -65,7 +65,7 @@ fn take_component(mask: &mut Mask, start: (usize, usize), stride: usize) -> Vec<
     found
 }
 
-/// The components of a mask in reading order of their first taxels; the taxels of each in reading order.
+/// Returns the components of a mask in reading order of their first taxels, the taxels of each in reading order.
 fn components(mask: &Mask, stride: usize) -> Vec<Vec<(usize, usize)>> {
     let (mut rest, mut found) = (mask.clone(), Vec::new());
     for (column, row) in taxels(mask) {
@@ -78,14 +78,14 @@ fn components(mask: &Mask, stride: usize) -> Vec<Vec<(usize, usize)>> {
     found
 }
 
-/// The inactive taxels that are cut off from the outside: the matrix gets a rim, which is flooded.
+/// Returns the inactive taxels that are cut off from the outside: the mask gets a rim, which is flooded.
 fn enclosed(mask: &Mask) -> Mask {
     let mut open = vec![vec![true; mask[0].len() + 2]; mask.len() + 2];
     for (column, row) in taxels(mask) {
         open[row + 1][column + 1] = false;
     }
     take_component(&mut open, (0, 0), 2);
-    // What the flood did not reach.
+    // The taxels that the flood did not reach.
     let inner = |row: usize, column: usize| open[row + 1][column + 1];
     (0..mask.len())
         .map(|row| {
@@ -96,12 +96,12 @@ fn enclosed(mask: &Mask) -> Mask {
         .collect()
 }
 
-/// Straight and diagonal steps of the walk around a filled region.
+/// Returns the straight and diagonal steps of the walk around a filled region.
 fn walk(filled: &Mask) -> (u32, u32) {
     let signed = |value: usize| isize::try_from(value).expect("a small number");
     let start = taxels(filled)[0];
     let start = (signed(start.0), signed(start.1));
-    // Nothing is active left of the first taxel in reading order, so the search begins there.
+    // Nothing is active to the left of the first taxel in reading order, so the search begins there.
     let next = |(column, row): (isize, isize), from: usize| {
         (0..8).map(|turn| (from + turn) % 8).find(|&direction| {
             let (dx, dy) = AROUND[direction];
@@ -121,7 +121,7 @@ fn walk(filled: &Mask) -> (u32, u32) {
         } else {
             diagonal += 1;
         }
-        // Back to the last inactive taxel that was looked at, as seen from the new place.
+        // Turns back to the last inactive taxel that was examined, as seen from the new place.
         let from = (direction + if direction % 2 == 0 { 6 } else { 5 }) % 8;
         direction = next(here, from).expect("at least the way back");
         if here == start && direction == first {
@@ -130,7 +130,7 @@ fn walk(filled: &Mask) -> (u32, u32) {
     }
 }
 
-/// What the plain implementation says of a region.
+/// A region as the simple implementation describes it.
 struct Plain {
     kind: RegionKind,
     taxels: Vec<(usize, usize)>,
@@ -150,7 +150,8 @@ fn plain_region(kind: RegionKind, own: &[(usize, usize)]) -> Plain {
     let least = |of: fn(&(usize, usize)) -> usize| own.iter().map(of).min().expect("not empty");
     let most = |of: fn(&(usize, usize)) -> usize| own.iter().map(of).max().expect("not empty") + 1;
     let (left, top, right, bottom) = (least(|t| t.0), least(|t| t.1), most(|t| t.0), most(|t| t.1));
-    // Filled within its own bounds: a small region of a large matrix would be lost in its mask.
+    // The region is filled within its own bounds: in a mask of the whole matrix, a small region would take too much
+    // time.
     let mut filled = vec![vec![false; right - left]; bottom - top];
     for (column, row) in own {
         filled[row - top][column - left] = true;
@@ -175,7 +176,7 @@ fn plain_region(kind: RegionKind, own: &[(usize, usize)]) -> Plain {
     let cd = glam::DVec2::new(number(left + right) / 2.0, number(top + bottom) / 2.0);
     let way = cd - cg;
     let distance = (way.x * way.x + way.y * way.y).sqrt();
-    // As a rule of signs, not by negating y: a flat way points to 0 or to 180.
+    // The sign is changed by a rule, not by negating y, so that a horizontal direction is 0 or 180, never -0 or -180.
     let steep = if way.y == 0.0 { 0.0 } else { -way.y };
     let flat = (height / width).atan() * 180.0 / PI;
     let existing = |exists: bool, value: f64| {
@@ -244,7 +245,8 @@ fn mask(imprint: &Imprint) -> Mask {
     (0..imprint.rows()).map(row).collect()
 }
 
-/// The rows of an imprint: there can be a thousand regions, and a mask of each would take most of the time.
+/// Returns the rows of an imprint as words. There can be a thousand regions, and a mask of each would take most of the
+/// time.
 fn words(taxels: &[(usize, usize)], rows: usize) -> Vec<u64> {
     let mut words = vec![0; rows];
     for &(column, row) in taxels {
@@ -253,7 +255,7 @@ fn words(taxels: &[(usize, usize)], rows: usize) -> Vec<u64> {
     words
 }
 
-/// Compares everything that is said of an imprint; gives the number of regions.
+/// Compares all values of an imprint, and returns the number of regions.
 fn compare(imprint: &Imprint) -> usize {
     let active_mask = mask(imprint);
     let holes = enclosed(&active_mask);
@@ -293,7 +295,7 @@ fn compare(imprint: &Imprint) -> usize {
             RegionKind::Hole => inactive += region.taxels().count(),
         }
     }
-    // Every taxel is in just one exterior, in just one hole, or outside.
+    // Every taxel is in exactly one exterior, in exactly one hole, or outside.
     let outside = taxels(&enclosed_or(&active_mask, &holes)).len();
     assert_eq!(active, imprint.count(), "{imprint}");
     assert_eq!(
@@ -313,7 +315,7 @@ fn compare(imprint: &Imprint) -> usize {
     found.len()
 }
 
-/// What is neither active nor in a hole.
+/// Returns the taxels that are neither active nor in a hole.
 fn enclosed_or(mask: &Mask, holes: &Mask) -> Mask {
     let mut outside = blank(mask);
     for (row, line) in outside.iter_mut().enumerate() {
@@ -336,7 +338,7 @@ fn drawn_size(random: &mut Random) -> Imprint {
 }
 
 #[test]
-fn random_noise() {
+fn random_noise_agrees() {
     let mut random = Random::new(11);
     let mut found = 0;
     for _ in 0..70_000 {
@@ -353,12 +355,12 @@ fn random_noise() {
 }
 
 #[test]
-fn random_blobs() {
+fn random_blobs_agree() {
     let mut random = Random::new(12);
     for _ in 0..40_000 {
         let mut imprint = drawn_size(&mut random);
         let (columns, rows) = (imprint.columns(), imprint.rows());
-        // Rectangles put down and taken away again, then a walk that may be one taxel wide.
+        // Draws and removes rectangles, then draws a walk that may be one taxel wide.
         for _ in 0..random.whole(0, 4) {
             let (left, top) = (random.side(0, columns - 1), random.side(0, rows - 1));
             let (right, bottom) = (random.side(left, columns - 1), random.side(top, rows - 1));
@@ -381,7 +383,7 @@ fn random_blobs() {
 }
 
 #[test]
-fn matrices_of_all_sizes() {
+fn matrices_of_all_sizes_agree() {
     let mut random = Random::new(13);
     for columns in 1..=64 {
         for rows in 1..=64 {
@@ -392,7 +394,7 @@ fn matrices_of_all_sizes() {
                     imprint.set(column, row, random.chance(density));
                 }
             }
-            // A broken frame around the noise, for regions within regions.
+            // A broken frame around the noise makes regions within regions.
             for column in 0..columns {
                 imprint.set(column, 0, random.chance(900));
                 imprint.set(column, rows - 1, random.chance(900));
@@ -407,13 +409,13 @@ fn matrices_of_all_sizes() {
 }
 
 #[test]
-fn spirals_checkerboards_and_combs() {
+fn spirals_checkerboards_and_combs_agree() {
     for side in 1..=64_u8 {
         let checkerboard = |i: u8, j: u8| (i + j).is_multiple_of(2);
         let comb = |i: u8, j: u8| i.is_multiple_of(2) || j == 0;
         let ring = |i: u8, j: u8| i.min(j).min(side - 1 - i).min(side - 1 - j);
         let rings = |i: u8, j: u8| ring(i, j).is_multiple_of(2);
-        // Rings joined into one arm: each ring but the last opens where the next one begins.
+        // The rings joined into one arm: each ring except the last opens where the next one begins.
         let spiral = |i: u8, j: u8| {
             let ring = ring(i, j);
             let gap = i == ring && j == ring + 1 && rings(i, j);

@@ -1,6 +1,6 @@
-//! Coverages computed by hand: every expected value is given beside its shape in closed form.
+//! Coverages computed by hand: every expected value is written beside its shape in closed form.
 //!
-//! The numbers of the shapes are decimals as a user writes them, most of which have no exact binary form.
+//! The sizes and positions are decimals as a user writes them; most have no exact binary form.
 
 use std::f64::consts::{PI, SQRT_2};
 
@@ -8,13 +8,13 @@ use crate::common::{Random, figure, picture, sensor};
 use taxel::geometry::{Ellipse, Extent, Pen, Point, Polygon, Real, Side, Solid};
 use taxel::touch::{Plane, reaches_beyond};
 
-/// Columns and rows of the sensor.
+/// The number of columns and of rows of the sensor.
 const SIDE: u8 = 16;
 
-/// x and y.
+/// The x and y coordinate.
 type Vertex = (f64, f64);
 
-/// What is expected of a taxel, given by column and row.
+/// Taxels by column and row, with their expected coverages.
 type Cells<'a> = &'a [((u8, u8), f64)];
 
 #[test]
@@ -29,7 +29,7 @@ fn nothing_is_covered_beyond_the_sensor() {
 }
 
 #[test]
-fn a_coverage_that_is_a_half_or_whole_but_for_a_rounding_error_is_exact() {
+fn coverages_of_a_half_or_a_whole_cell_have_no_rounding_error() {
     let mut plane = Plane::new(sensor(SIDE, SIDE, 0.5));
     plane.touch(&figure(
         "rectangle length=2.4 width=3.3 x0=1.1 y0=2.5",
@@ -55,23 +55,23 @@ fn assert_coverages(name: &str, solid: &impl Solid, cells: Cells) {
 
 #[test]
 #[rustfmt::skip] // A case a line, or the table cannot be read.
-fn upright_rectangles_cover_products() {
+fn upright_rectangles_cover_products_of_lengths() {
     let cases: &[(&str, Cells)] = &[
         ("length=2.5 width=1.5 x0=0.25 y0=0.5", &[((0, 0), 0.375), ((1, 0), 0.5), ((2, 0), 0.375), ((0, 1), 0.75),
             ((1, 1), 1.0), ((2, 1), 0.75), ((3, 0), 0.0), ((1, 2), 0.0)]),
         ("length=0.7 width=0.3 x0=5.2 y0=7.6", &[((5, 7), 0.21), ((6, 7), 0.0), ((5, 8), 0.0)]),
-        // Partly off the sensor, wholly off it, and just as large.
+        // Partly off the sensor, completely off it, and as large as the sensor.
         ("length=2 width=2 x0=-0.75 y0=-0.4", &[((0, 0), 1.0), ((1, 0), 0.25), ((0, 1), 0.6), ((1, 1), 0.15)]),
         ("length=5 width=5 x0=14.3 y0=13.9", &[((14, 13), 0.07), ((15, 13), 0.1), ((14, 15), 0.7), ((15, 15), 1.0)]),
         ("length=16 width=16 x0=-16 y0=-16", &[((0, 0), 0.0), ((15, 15), 0.0)]),
         ("length=16 width=16 x0=0 y0=0", &[((0, 0), 1.0), ((15, 0), 1.0), ((0, 15), 1.0), ((15, 15), 1.0)]),
-        // Right angles about (3.5, 2.5): what lay along x stands upright, and lies again.
+        // Right angles about (3.5, 2.5): the bar lies along x, stands upright, and lies again.
         ("length=3 width=1 x0=2 y0=2 angle=90", &[((3, 1), 1.0), ((3, 2), 1.0), ((3, 3), 1.0), ((2, 2), 0.0), ((4, 2), 0.0)]),
         ("length=3 width=1 x0=2 y0=2 angle=180", &[((2, 2), 1.0), ((3, 2), 1.0), ((4, 2), 1.0), ((3, 1), 0.0)]),
-        // A frame: the hole reaches from 1.75 to 4.25 and from 1.75 to 3.25.
+        // A frame: the hole extends from 1.75 to 4.25 and from 1.75 to 3.25.
         ("length=4 width=3 x0=1 y0=1 thickness=0.75", &[((1, 1), 0.9375), ((2, 1), 0.75), ((4, 1), 0.9375), ((1, 2), 0.75),
             ((2, 2), 0.0), ((4, 3), 0.9375), ((2, 3), 0.75)]),
-        // The two walls meet: no hole.
+        // The two walls meet, so there is no hole.
         ("length=4 width=3 x0=1 y0=1 thickness=1.5", &[((1, 1), 1.0), ((2, 2), 1.0), ((3, 2), 1.0)]),
     ];
     for &(text, cells) in cases {
@@ -81,18 +81,18 @@ fn upright_rectangles_cover_products() {
 
 #[test]
 #[rustfmt::skip] // A case a line.
-fn turned_squares_and_regular_polygons_cover_triangles() {
+fn turned_squares_and_regular_polygons_cover_hand_computed_areas() {
     let sqrt_3 = 3_f64.sqrt();
     // A hexagon of side 1 covers the first cell of its bounding rectangle except for two triangles.
     let hexagon = 1.0 - sqrt_3 / 8.0 - (1.0 - sqrt_3 / 2.0).powi(2) / (2.0 * sqrt_3);
     let lower = 0.75 * sqrt_3 - hexagon;
     let cases: &[(&str, Cells)] = &[
-        // |x| + |y| <= √2 about a cell's centre, and about a crossing of grid lines.
+        // x| + |y| <= √2 about the centre of a cell, and about a crossing of grid lines.
         ("rectangle length=2 width=2 x0=1.5 y0=1.5 angle=45", &[((2, 2), 1.0), ((3, 2), SQRT_2 - 0.75), ((2, 1), SQRT_2 - 0.75),
             ((3, 3), 1.5 - SQRT_2), ((1, 1), 1.5 - SQRT_2), ((4, 2), 0.0)]),
         ("rectangle length=2 width=2 x0=2 y0=2 angle=135", &[((3, 3), 2.0 * SQRT_2 - 2.0), ((2, 3), 2.0 * SQRT_2 - 2.0),
             ((4, 3), 1.5 - SQRT_2), ((3, 1), 1.5 - SQRT_2), ((4, 4), 0.0)]),
-        // Apex at (2, 1), sides x = 2 ± (y − 1)/√3; a third of a turn about its centre is not a turn.
+        // The apex is at (2, 1), the sides are x = 2 ± (y − 1)/√3. A third of a turn about the centre changes nothing.
         ("triangle side=2 x0=1 y0=1", &[((1, 1), 0.5 / sqrt_3), ((2, 1), 0.5 / sqrt_3), ((1, 2), 1.0 / sqrt_3), ((2, 2), 1.0 / sqrt_3)]),
         ("triangle side=2 x0=1 y0=1 angle=120", &[((1, 1), 0.5 / sqrt_3), ((2, 1), 0.5 / sqrt_3), ((1, 2), 1.0 / sqrt_3)]),
         ("hexagon side=1 x0=1 y0=1", &[((1, 1), hexagon), ((2, 1), hexagon), ((1, 2), lower), ((2, 2), lower)]),
@@ -108,13 +108,13 @@ fn turned_squares_and_regular_polygons_cover_triangles() {
 
 #[test]
 #[rustfmt::skip] // A case a line.
-fn ellipses_cover_segments_of_circles() {
+fn ellipses_cover_hand_computed_areas() {
     let sqrt_3 = 3_f64.sqrt();
-    // The part of a unit circle about a cell's centre that lies in the cell beside it, and in the one across a corner.
+    // The parts of a unit circle about a cell's centre in the cell beside it, and in the cell diagonally across.
     let (beside, across) = (PI / 6.0 + sqrt_3 / 4.0 - 0.5, (PI / 3.0 + 1.0 - sqrt_3) / 4.0);
     // ∫ √(4 − x²) from 0 to 1.
     let under = sqrt_3 / 2.0 + PI / 3.0;
-    // What a line at half of the radius cuts off a circle of radius 0.5.
+    // The segment that a line at half of the radius cuts off a circle of radius 0.5.
     let segment = 0.25 * (PI / 3.0 - sqrt_3 / 4.0);
     let cases: &[(&str, Cells)] = &[
         ("radius_x=0.5 radius_y=0.5 x0=3 y0=5", &[((3, 5), PI / 4.0), ((2, 5), 0.0), ((3, 4), 0.0), ((4, 5), 0.0)]),
@@ -125,7 +125,7 @@ fn ellipses_cover_segments_of_circles() {
         ("radius_x=2 radius_y=2 x0=0 y0=0", &[((1, 1), 1.0), ((0, 1), under - 1.0), ((2, 3), under - 1.0), ((3, 3), PI + 1.0 - 2.0 * under)]),
         ("radius_x=1 radius_y=1 x0=-1 y0=-1", &[((0, 0), PI / 4.0), ((1, 0), 0.0), ((0, 1), 0.0)]),
         ("radius_x=16 radius_y=16 x0=-8 y0=-8 angle=71", &[((0, 0), 1.0), ((15, 0), 1.0), ((7, 7), 1.0), ((15, 15), 1.0)]),
-        // Circles made narrower.
+        // Circles that are compressed.
         ("radius_x=2 radius_y=1 x0=3 y0=3", &[((5, 3), under / 2.0), ((6, 3), (PI - under) / 2.0), ((3, 4), (PI - under) / 2.0)]),
         ("radius_x=2 radius_y=1 x0=3 y0=3 angle=90", &[((4, 4), under / 2.0), ((4, 2), (PI - under) / 2.0), ((5, 5), (PI - under) / 2.0)]),
         ("radius_x=0.5 radius_y=0.25 x0=3 y0=3.25 angle=37", &[((3, 3), PI / 8.0)]),
@@ -142,14 +142,14 @@ fn ellipses_cover_segments_of_circles() {
 
 #[test]
 #[rustfmt::skip] // A case a line.
-fn polygons_of_ones_own_cover_what_their_slopes_say() {
+fn user_defined_polygons_cover_hand_computed_areas() {
     let wedge: Vec<_> = (0..8_u8).map(|k| ((k, 0), 1.0 - f64::from(2 * k + 1) / 16.0)).collect();
     let cases: &[(&str, &[Vertex], Cells)] = &[
-        // A square of side 5 whose sides climb by 3/4 and by 4/3.
+        // A square of side 5 whose sides have slopes of 3/4 and 4/3.
         ("3-4-5", &[(3.0, 0.0), (7.0, 3.0), (4.0, 7.0), (0.0, 4.0)], &[((0, 3), 0.625), ((0, 4), 0.375), ((1, 2), 5.0 / 6.0),
             ((2, 0), 0.375), ((3, 0), 0.625), ((1, 1), 1.0 / 6.0), ((2, 1), 23.0 / 24.0), ((3, 3), 1.0)]),
         ("a wedge that climbs by one cell over eight", &[(0.0, 0.0), (8.0, 1.0), (0.0, 1.0)], &wedge),
-        // Its left arm ends at x = 2 − (y − 2)/2.
+        // The left arm ends at x = 2 − (y − 2)/2.
         ("dented", &[(1.0, 1.0), (4.0, 1.0), (4.0, 2.0), (2.0, 2.0), (1.0, 4.0)], &[((1, 1), 1.0), ((3, 1), 1.0), ((2, 2), 0.0),
             ((1, 2), 0.75), ((1, 3), 0.25)]),
         ("a line", &[(1.0, 1.0), (4.0, 5.0)], &[((1, 1), 0.0), ((2, 2), 0.0), ((3, 4), 0.0)]),
@@ -160,7 +160,7 @@ fn polygons_of_ones_own_cover_what_their_slopes_say() {
     }
 }
 
-/// The edges as they are drawn.
+/// Records the edges that are drawn.
 struct Drawn(Vec<[Vertex; 2]>);
 
 impl Pen<f64> for Drawn {
@@ -171,13 +171,13 @@ impl Pen<f64> for Drawn {
 }
 
 #[test]
-fn polygons_of_any_size_and_anywhere_are_read_in_either_sense() {
+fn polygons_of_any_size_and_place_may_run_in_either_direction() {
     let drawn = |corners: [Vertex; 3]| {
         let mut drawn = Drawn(Vec::new());
         Polygon::new(corners).draw(&mut drawn);
         drawn.0
     };
-    // Beyond 1e154 the products of coordinates are none; near 1e9 those of a small triangle are all roundings.
+    // Beyond 1e154 products of coordinates overflow; near 1e9 those of a small triangle are only rounding errors.
     for size in [1e-300, 1e-200, 1.0, 1e154, 1e200, f64::MAX] {
         for place in [0.0, -size, 1e9] {
             let (near, far) = (place, place + size);
@@ -195,15 +195,15 @@ fn polygons_of_any_size_and_anywhere_are_read_in_either_sense() {
 #[rustfmt::skip] // A case a line.
 fn pictures_cover_the_sum_of_their_squares() {
     let cases: &[(&str, Cells)] = &[
-        // Their corner is scaled too: from 2.5 to 5 and from 1.5 to 3.
+        // The position of the corner is scaled, too: from 2.5 to 5 and from 1.5 to 3.
         ("# x0=1 y0=1 zoom_x=2.5 zoom_y=1.5", &[((2, 1), 0.25), ((3, 1), 0.5), ((4, 1), 0.5), ((2, 2), 0.5), ((3, 2), 1.0), ((5, 2), 0.0)]),
         ("##/#. x0=0.5 y0=0.25", &[((0, 0), 0.375), ((1, 0), 0.75), ((2, 0), 0.375), ((0, 1), 0.5), ((1, 1), 0.625),
             ((2, 1), 0.125), ((0, 2), 0.125), ((1, 2), 0.125), ((2, 2), 0.0)]),
         ("# x0=0.75 y0=0.75 angle=45 zoom_x=2 zoom_y=2", &[((2, 2), 1.0), ((3, 2), SQRT_2 - 0.75), ((3, 3), 1.5 - SQRT_2)]),
-        // Counter-clockwise: what lay below the left end of the row comes to lie below its right end.
+        // Counter-clockwise: the taxel below the left end of the row comes to be below its right end.
         ("##/#. x0=3 y0=3 angle=90", &[((3, 3), 1.0), ((3, 4), 1.0), ((4, 4), 1.0), ((4, 3), 0.0)]),
         ("#.# x0=2 y0=2 zoom_x=0.5 zoom_y=0.5", &[((1, 1), 0.25), ((2, 1), 0.25)]),
-        // From 0.6 to 1.5 with a hole from 0.9 to 1.2, both ways.
+        // From 0.6 to 1.5 with a hole from 0.9 to 1.2, in both directions.
         ("###/#.#/### x0=2 y0=2 zoom_x=0.3 zoom_y=0.3", &[((0, 0), 0.15), ((1, 0), 0.18), ((0, 1), 0.18), ((1, 1), 0.21)]),
         ("#.#/### x0=-1 y0=-1", &[((0, 0), 1.0), ((1, 0), 1.0), ((2, 0), 0.0)]),
         // The empty rim of the stored matrix is not part of the picture.
@@ -218,12 +218,12 @@ fn pictures_cover_the_sum_of_their_squares() {
 #[test]
 fn coverages_add_up_to_the_area_of_the_figure() {
     let regular = |corners: f64, side: f64| corners / 4.0 * side * side / (PI / corners).tan();
-    // The hole is the same polygon with an inradius smaller by the wall.
+    // The hole is the same polygon with an inradius that is smaller by the wall.
     let walled = |corners: f64, side: f64, wall: f64| {
         let inradius = side / (2.0 * (PI / corners).tan());
         regular(corners, side) * (1.0 - ((inradius - wall) / inradius).powi(2))
     };
-    #[rustfmt::skip] // A case a line.
+    #[rustfmt::skip] // One case per line.
     let cases = [
         ("triangle side=7.5 x0=3.1 y0=4.2 angle=11", regular(3.0, 7.5)),
         ("pentagon side=3.33 x0=4.4 y0=5.5 angle=23", regular(5.0, 3.33)),
@@ -235,7 +235,7 @@ fn coverages_add_up_to_the_area_of_the_figure() {
         ("hexagon side=3 x0=2.1 y0=3.35 angle=17 thickness=1", walled(6.0, 3.0, 1.0)),
         ("heptagon side=2.5 x0=3.3 y0=3.3 angle=1 thickness=2.5", walled(7.0, 2.5, 2.5)),
         ("octagon side=4.44 x0=2.02 y0=2.5 angle=45 thickness=0.01", walled(8.0, 4.44, 0.01)),
-        // The inradius of a triangle of side 3 is 0.866: no room for a hole.
+        // The inradius of a triangle of side 3 is 0.866, so there is no room for a hole.
         ("triangle side=3 x0=4 y0=4 angle=200 thickness=0.87", regular(3.0, 3.0)),
         ("ellipse radius_x=4 radius_y=2.5 x0=4 y0=4 angle=49", 10.0 * PI),
         ("ellipse radius_x=4 radius_y=2.5 x0=4 y0=4 angle=49 thickness=1.25", PI * (10.0 - 2.75 * 1.25)),
@@ -253,7 +253,7 @@ fn coverages_add_up_to_the_area_of_the_figure() {
     }
 }
 
-/// Ellipses, each in the material or the hole of the one before.
+/// Ellipses, each with the side on which its material is.
 struct Rings(Vec<(Ellipse<f64>, Side)>);
 
 impl Solid for Rings {
@@ -286,9 +286,9 @@ impl Solid for Quadrangle {
     }
 }
 
-/// A mistake in a shape of the user's own must not change the imprints of later shapes.
+/// A mistake in a user-defined shape must not change the imprints of later shapes.
 #[test]
-fn a_shape_that_is_not_finite_leaves_nothing_for_the_next_one() {
+fn a_shape_that_is_not_finite_does_not_affect_the_next_one() {
     let mut plane = Plane::new(sensor(SIDE, SIDE, 0.5));
     let square = Polygon::new([(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]);
     let mut check = |odd: f64, solid: &dyn Fn(&mut Plane) -> u32| {
@@ -325,7 +325,7 @@ fn a_shape_that_is_not_finite_leaves_nothing_for_the_next_one() {
     }
 }
 
-/// At a threshold of one half centres decide about ellipses, and coverages come from areas.
+/// At a threshold of one half, ellipses are decided by centres, while coverages are computed from areas.
 #[test]
 fn ellipses_are_active_where_they_cover_half() {
     let mut random = Random::new(7);
@@ -346,7 +346,7 @@ fn ellipses_are_active_where_they_cover_half() {
         };
         let mut rings = vec![(ellipse, Side::Inside)];
         for material in [Side::Outside, Side::Inside] {
-            // From walls as thin as a hair to no hole.
+            // From very thin walls to no hole.
             let scale = between(0.0, 1.3).min(0.9999);
             let smaller = |axis: Point<f64>| Point::new(axis.x * scale, axis.y * scale);
             ellipse.across = smaller(ellipse.across);
@@ -368,11 +368,11 @@ fn ellipses_are_active_where_they_cover_half() {
 }
 
 #[test]
-fn a_figure_that_ends_at_the_rim_does_not_reach_beyond() {
+fn a_figure_that_ends_at_the_rim_does_not_reach_beyond_it() {
     let sensor = sensor(SIDE, SIDE, 0.5);
     let mut beyond_but_for_rounding = 0;
     for hundredths in 100..400 {
-        // Turned onto itself, it ends where the upright one does.
+        // A rotation that maps the hexagon onto itself, so it ends where the upright one does.
         for angle in [60, 120, 180, 240, 300] {
             let side = f64::from(hundredths) / 100.0;
             let text = format!("hexagon side={side} x0=0 y0=0 angle={angle}");

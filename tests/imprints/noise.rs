@@ -1,4 +1,5 @@
-//! Recognition where taxels fail: against the sum over all flips, independent figures, and its own calibration.
+//! Recognition with failing taxels, compared with the sum over all flips, with independent numbers, and with its own
+//! claims.
 
 use std::path::PathBuf;
 
@@ -8,7 +9,7 @@ use taxel::recognition::{AnswerState, Evidence, Method, Model, NamedShape, Noise
 
 use crate::recognition::{float, published, ranges, s1, s4, sensor, train};
 
-/// Shapes that fit a matrix of 5 × 5, with few keys.
+/// Returns a model of shapes that fit a matrix of 5 × 5, with few keys.
 fn tiny() -> Model {
     let sensor = sensor(16);
     let bar = Figure::rectangle(2.0, 1.0).on(&sensor).expect("in range");
@@ -20,7 +21,7 @@ fn tiny() -> Model {
     train(shapes, 16, ranges("5:5.8:0.2", "5:5.8:0.2", "0:330:30"))
 }
 
-/// The probability of an imprint for each shape, from the definition: over all keys and their places.
+/// Computes the probability of an imprint for each shape from the definition: over all keys and their places.
 fn by_definition(model: &Model, imprint: &Imprint, flip: f64, dead: &Imprint) -> Vec<f64> {
     let shapes = model.shapes().len();
     let (mut sums, mut totals) = (vec![0.0; shapes], vec![0.0; shapes]);
@@ -62,7 +63,8 @@ fn by_definition(model: &Model, imprint: &Imprint, flip: f64, dead: &Imprint) ->
     likelihoods.into_iter().map(|own| own / all).collect()
 }
 
-/// The same for several touches: of products, since touches are independent once the shape is known.
+/// Does the same for several touches: their probabilities are multiplied, because touches are independent once the
+/// shape is known.
 fn of_several(model: &Model, touches: &[Imprint], flip: f64) -> Vec<f64> {
     let weights = model.shapes().iter().map(|shape| f64::from(shape.weight));
     let mut odds: Vec<f64> = weights.clone().collect();
@@ -77,7 +79,7 @@ fn of_several(model: &Model, touches: &[Imprint], flip: f64) -> Vec<f64> {
     odds.into_iter().map(|odds| odds / all).collect()
 }
 
-/// Some hundred imprints of 5 × 5, few and many taxels.
+/// Returns two hundred imprints of 5 × 5, with few and many taxels.
 fn imprints() -> impl Iterator<Item = Imprint> {
     (0_u64..200).map(|seed| {
         let mut imprint = Imprint::empty(5, 5);
@@ -95,7 +97,7 @@ fn imprints() -> impl Iterator<Item = Imprint> {
 }
 
 #[test]
-fn posteriors_are_those_of_the_definition() {
+fn posteriors_equal_those_from_the_definition() {
     let model = tiny();
     let mut dead = Imprint::empty(5, 5);
     dead.set(2, 2, true);
@@ -150,7 +152,7 @@ fn touches_that_contradict_each_other_are_weighed_not_ruled_out() {
 }
 
 #[test]
-fn shapes_that_each_leave_one_of_two_touches_only_are_both_possible() {
+fn both_shapes_stay_possible_if_each_explains_only_one_of_two_touches() {
     let sensor = sensor(16);
     let shape = |name: &str, width: f64| {
         let figure = Figure::rectangle(3.0, width).on(&sensor);
@@ -178,7 +180,7 @@ fn shapes_that_each_leave_one_of_two_touches_only_are_both_possible() {
 }
 
 #[test]
-fn heavy_shapes_count_from_afar() {
+fn shapes_with_a_large_weight_count_at_large_distances() {
     let sensor = sensor(16);
     let shape = |name: &str, width: f64| {
         let figure = Figure::rectangle(5.0, width).on(&sensor);
@@ -204,7 +206,7 @@ fn heavy_shapes_count_from_afar() {
 }
 
 #[test]
-fn without_noise_a_mask_does_not_make_the_impossible_certain() {
+fn without_noise_dead_taxels_do_not_make_an_impossible_touch_certain() {
     let model = tiny();
     let torn: Imprint = "##...\n.....\n.....\n....#\n....."
         .parse()
@@ -215,7 +217,7 @@ fn without_noise_a_mask_does_not_make_the_impossible_certain() {
     assert_eq!(model.posterior_under(&torn, &noise), None);
     let answer = model.recognise(Evidence::of(&[torn]).under(Some(&noise)));
     assert_eq!(answer.state, AnswerState::Unknown);
-    // The stray taxel is known to be dead: then nothing is wrong.
+    // If the stray taxel is known to be dead, the touch is possible.
     let mut dead = Imprint::empty(5, 5);
     dead.set(4, 3, true);
     let noise = Noise::new(0.0).expect("in range").without(dead);
@@ -226,7 +228,7 @@ fn without_noise_a_mask_does_not_make_the_impossible_certain() {
         model.nearest_of(evidence).map(|near| near.distance),
         Some(0)
     );
-    // Of several touches it is the one that is not left, though a dead taxel is a hole in the other.
+    // Of several touches, the impossible one counts, although a dead taxel is a hole in the other.
     let square: Imprint = ".....\n.##..\n.##..\n.....\n....."
         .parse()
         .expect("an imprint");
@@ -258,7 +260,7 @@ fn a_noise_of_0_leaves_a_certain_answer_certain() {
 }
 
 #[test]
-fn a_dead_taxel_at_the_rim_cuts_nothing_off() {
+fn a_dead_taxel_at_the_rim_is_not_taken_for_contact_there() {
     let model = tiny();
     let mut touch: Imprint = ".....\n.##..\n.....\n.....\n....."
         .parse()
@@ -278,7 +280,7 @@ fn a_dead_taxel_at_the_rim_cuts_nothing_off() {
 
 #[test]
 fn probabilities_of_all_imprints_sum_up_to_one() {
-    // On 3 × 3: Σ over all 512 imprints of P(imprint | s) is 1 if the likelihoods are what they say.
+    // On 3 × 3, Σ over all 512 imprints of P(imprint | s) is 1 if the likelihoods are correct.
     let model = tiny();
     let flip: f64 = 0.2;
     let noise = Noise::new(flip).expect("in range");
@@ -293,7 +295,7 @@ fn probabilities_of_all_imprints_sum_up_to_one() {
         let distances = model.distances(&imprint, &noise).expect("keys fit");
         for shape in 0..2 {
             assert!((posterior[shape] - expected[shape]).abs() < 2e-9);
-            // All distances matter at such a noise, so these are all touches.
+            // With this much noise all distances matter, so these are all touches.
             let touches = &distances.touches[shape];
             let total: u64 = touches.iter().sum();
             let at = |distance: u32| {
@@ -308,7 +310,7 @@ fn probabilities_of_all_imprints_sum_up_to_one() {
 }
 
 #[test]
-fn small_noise_is_looked_up_and_larger_noise_scanned() {
+fn low_noise_uses_lookups_and_higher_noise_a_scan() {
     let model = tiny();
     let touch: Imprint = ".....\n.##..\n.....\n.....\n....."
         .parse()
@@ -334,7 +336,7 @@ fn small_noise_is_looked_up_and_larger_noise_scanned() {
 }
 
 #[test]
-fn nothing_is_found_as_often_when_it_is_looked_up_as_when_it_is_scanned() {
+fn lookup_and_scan_count_the_empty_imprint_alike() {
     let sensor = sensor(16);
     let shape = |name: &str, (length, width): (f64, f64)| {
         let figure = Figure::rectangle(length, width).on(&sensor);
@@ -357,7 +359,7 @@ fn nothing_is_found_as_often_when_it_is_looked_up_as_when_it_is_scanned() {
 }
 
 #[test]
-fn independent_posteriors_agree() {
+fn posteriors_agree_with_independent_ones() {
     let given = std::env::var_os("TAXEL_REFERENCE_NOISE");
     let is_given = given.is_some();
     let path = given.map_or_else(
@@ -396,8 +398,8 @@ fn independent_posteriors_agree() {
 }
 
 #[test]
-fn names_are_right_as_often_as_published_and_as_claimed() {
-    // S1 at one flipped taxel in a hundred on 16 × 16: 0.654, from 7,000 touches.
+fn the_recognition_rate_is_as_published_and_as_claimed() {
+    // S1 with one flipped taxel in a hundred on 16 × 16: 0.654, from 7,000 touches.
     let model = train(s1(), 32, published());
     let noise = Noise::new(0.01).expect("in range");
     let touches = NoisyTouches::new(&Sensor::default(), noise, 1000, 7);
@@ -413,12 +415,12 @@ fn names_are_right_as_often_as_published_and_as_claimed() {
         "{}",
         rate.accuracy()
     );
-    // What it claims on average is what it reaches.
+    // The accuracy equals the average claimed probability.
     assert!(apart(rate.claimed(), rate.accuracy(), rate.standard_error()) < 3.0);
 }
 
 #[test]
-fn what_is_claimed_is_reached_at_every_noise() {
+fn the_claimed_accuracy_is_reached_at_every_noise() {
     for (name, set) in [("S1", s1()), ("S4", s4())] {
         let model = train(set, 32, published());
         for flip in [0.001, 0.01, 0.05] {
@@ -433,8 +435,8 @@ fn what_is_claimed_is_reached_at_every_noise() {
 }
 
 #[test]
-fn touches_until_certain_are_as_published() {
-    // Expected number of touches until one shape has a posterior of 0.99: 6.68 for S1, 4.96 for S4.
+fn the_number_of_touches_until_certainty_is_as_published() {
+    // The expected number of touches until one shape has a posterior of 0.99: 6.68 for S1, 4.96 for S4.
     for (set, expected) in [(s1(), 6.68), (s4(), 4.96)] {
         let model = train(set, 32, published());
         let touches = model

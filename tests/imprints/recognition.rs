@@ -1,4 +1,4 @@
-//! Recognition from one touch: the published figures of two sets, and the definitions by brute force on small grids.
+//! Recognition from one touch: the published numbers for two sets, and the definitions by brute force on small grids.
 
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ use taxel::recognition::{
 };
 use taxel::sweep::Shard;
 
-/// A count as a number to compute with.
+/// Converts a count to a number to compute with.
 #[expect(clippy::cast_precision_loss, reason = "all counts are small")]
 pub(crate) fn float(count: u64) -> f64 {
     count as f64
@@ -33,12 +33,12 @@ pub(crate) fn ranges(x0: &str, y0: &str, angle: &str) -> Ranges {
         .with(Axis::Angle, angle.parse().expect("a range"))
 }
 
-/// The grid of the published figures.
+/// The grid of the published numbers.
 pub(crate) fn published() -> Ranges {
     ranges("10:10.99:0.01", "10:10.99:0.01", "0:359:1")
 }
 
-/// Seven figures of about 30 cells.
+/// S1: seven figures of about 30 cells.
 pub(crate) fn s1() -> Vec<NamedShape> {
     let sensor = sensor(32);
     let shape = |name: &str, figure: taxel::figure::FigureBuilder| {
@@ -55,7 +55,7 @@ pub(crate) fn s1() -> Vec<NamedShape> {
     ]
 }
 
-/// Four rectangles that are hard to tell apart.
+/// S4: four rectangles that are hard to tell apart.
 pub(crate) fn s4() -> Vec<NamedShape> {
     let sensor = sensor(32);
     let sides = [(6.0, 3.0), (6.0, 3.2), (6.2, 3.0), (4.2, 4.2)];
@@ -98,7 +98,7 @@ fn seven_figures_are_told_apart_as_often_as_published() {
     );
     assert_eq!(format!("{:.2}", rounded.evaluate(&model).error()), "0.54");
 
-    // No choice of descriptors passes the limit, and each one chosen adds something.
+    // No choice of descriptors passes the limit, and each chosen descriptor improves the result.
     let chosen = greedy(&model, &[]);
     assert_eq!(chosen[0].0.key(), "cg_cd");
     assert!(
@@ -112,7 +112,7 @@ fn seven_figures_are_told_apart_as_often_as_published() {
             .all(|(_, evaluation)| evaluation.right <= limit.right)
     );
 
-    // Nor does any classifier by descriptors.
+    // No classifier on descriptors passes it, either.
     let settings = ClassifierSettings::default();
     for classifier in Classifier::ALL {
         let reached = classifier.evaluate(&model, &settings).evaluation;
@@ -130,7 +130,7 @@ fn seven_figures_are_told_apart_as_often_as_published() {
 }
 
 #[test]
-fn four_rectangles_are_confused_as_published() {
+fn four_rectangles_are_confused_as_often_as_published() {
     let model = train(s4(), 32, published());
     let limit = Evaluation::of(&model);
     assert_eq!((limit.touches, limit.right), (14_400_000, 10_498_796));
@@ -163,7 +163,7 @@ fn four_rectangles_are_confused_as_published() {
     assert!(errors[0][2] > errors[0][1]);
 }
 
-/// A small training whose every touch can be made one by one.
+/// A training so small that every touch can be made one by one.
 fn small() -> (Vec<NamedShape>, Ranges) {
     let sensor = sensor(16);
     let picture: Imprint = "###\n#..\n#..".parse().expect("an imprint");
@@ -182,7 +182,7 @@ fn small() -> (Vec<NamedShape>, Ranges) {
 }
 
 #[test]
-fn counts_are_those_of_touching_pose_by_pose() {
+fn counts_equal_those_of_touching_pose_by_pose() {
     let (shapes, ranges) = small();
     let sensor = sensor(16);
     let mut counts: HashMap<(ImprintKey, usize), u64> = HashMap::new();
@@ -235,7 +235,7 @@ fn counts_are_those_of_touching_pose_by_pose() {
 }
 
 #[test]
-fn shards_together_are_the_whole() {
+fn merged_shards_equal_the_whole_model() {
     let (shapes, ranges) = small();
     let whole = train(shapes.clone(), 16, ranges);
     let part = |number| {
@@ -272,7 +272,7 @@ fn shards_together_are_the_whole() {
         error(vec![part(1), whole.clone()]),
         "shard 1/1 belongs to another training"
     );
-    // A shard that is refused changes nothing, not even as the first one.
+    // A shard that is refused changes nothing, even if it comes first.
     let mut merge = ModelMerge::default();
     let shard = |number| Shard::new(number, 3).expect("a shard");
     let missing = |number| Err(ModelError::Missing { number, of: 3 });
@@ -315,7 +315,7 @@ fn cut_poses_are_refused_unless_allowed() {
     assert_eq!((cut, poses), (360_000, 360_000));
     let model = set().allow_cut(true).run().expect("allowed");
     assert_eq!(model.cut(), [360_000]);
-    // Those of the shards add up.
+    // The numbers of cut poses in the shards add up.
     let part = |number| {
         let shard = Shard::new(number, 3).expect("a shard");
         let part = set().allow_cut(true).shard(shard).run();
@@ -326,7 +326,7 @@ fn cut_poses_are_refused_unless_allowed() {
 }
 
 #[test]
-fn among_descriptors_that_tell_as_much_the_first_in_the_table_is_chosen() {
+fn of_equally_good_descriptors_the_first_in_the_table_is_chosen() {
     let sensor = sensor(16);
     let shape = |name: &str, length: f64| {
         let figure = Figure::rectangle(length, 2.0).on(&sensor);
@@ -364,7 +364,7 @@ fn answers_say_how_far_they_can_be_trusted() {
     );
     assert_eq!(answer.ranking, [(3, 1.0)]);
 
-    // The same at the rim may be a part of anything.
+    // The same touch at the rim may be a part of a larger imprint.
     let cut = read("####.\n####.\n####.\n####.\n.....");
     let answer = recognise(&cut);
     assert_eq!((answer.state, answer.at_rim), (AnswerState::Likely, true));
@@ -395,12 +395,13 @@ fn answers_say_how_far_they_can_be_trusted() {
         let expected = float(own.expect("it has one").poses).powi(2) / squares;
         assert!((probability - expected).abs() < 1e-12);
     }
-    // However often it is touched, the other shapes can leave it, too; their probability is smaller than any `f64`.
+    // However often this touch is repeated, the other shapes can leave it, too; but their probability is smaller than
+    // any `f64`.
     let often = vec![bar; 20_000];
     let answer = model.recognise(Evidence::of(&often));
     assert_eq!(answer.ranking.len(), 1);
     assert_eq!(answer.state, AnswerState::Likely);
-    // Contradicting ones leave nothing.
+    // No shape can leave touches that contradict each other.
     let answer = model.recognise(Evidence::of(&[bar, square]));
     assert_eq!(
         (answer.state, answer.shape, answer.ranking.len()),
@@ -409,7 +410,7 @@ fn answers_say_how_far_they_can_be_trusted() {
 }
 
 #[test]
-fn an_unknown_imprint_has_a_nearest_one() {
+fn the_nearest_imprint_of_an_unknown_one_is_found() {
     let model = train(s4(), 32, published());
     let mut touch: Imprint = ".########.".to_string().parse().expect("an imprint");
     touch = touch.resized(12, 9);
@@ -431,7 +432,7 @@ fn an_unknown_imprint_has_a_nearest_one() {
         [(10, 7)]
     );
 
-    // Against every key and shift, one by one.
+    // A comparison with every key at every shift, one by one.
     for touch in [touch, shifted] {
         let nearest = model.nearest(&touch).expect("keys fit");
         let mut least = u32::MAX;
@@ -477,11 +478,11 @@ fn two_names_for_one_shape_can_never_be_told_apart() {
         (answer.state, answer.shape, answer.tied.as_slice()),
         (AnswerState::Tied, Some(0), [0, 1].as_slice())
     );
-    // One of several touches at the rim may be cut off.
+    // If one of several touches is at the rim, it may be cut off.
     let rim: Imprint = "###\n###\n...".parse().expect("an imprint");
     let at_rim = |touches: &[Imprint]| model.recognise(Evidence::of(touches)).at_rim;
     assert!(at_rim(&[bar, rim]) && at_rim(&[rim, bar]) && !at_rim(&[bar, bar]));
-    // A probability that is just reached is not rejected.
+    // A probability that just reaches the limit is not rejected.
     let rejecting = |least| model.recognise(Evidence::of(&[bar]).reject_below(least));
     assert_eq!(rejecting(0.5), answer);
     let rejected = rejecting(0.500_001);
@@ -492,7 +493,7 @@ fn two_names_for_one_shape_can_never_be_told_apart() {
 }
 
 #[test]
-fn a_shape_that_may_leave_nothing_is_named_by_its_template() {
+fn a_shape_that_may_leave_an_empty_imprint_is_named_by_its_template() {
     let sensor = sensor(16);
     let shape = |name: &str, (length, width): (f64, f64)| {
         let figure = Figure::rectangle(length, width).on(&sensor);
@@ -506,9 +507,9 @@ fn a_shape_that_may_leave_nothing_is_named_by_its_template() {
     assert_eq!(reached.evaluation.error(), 0.0);
 }
 
-/// More shards than rows: some have no pose at all.
+/// With more shards than rows, some shards have no pose.
 #[test]
-fn a_shard_without_a_pose_has_numbers_all_the_same() {
+fn the_evaluation_of_a_shard_without_poses_has_numbers() {
     let disc = Figure::ellipse(2.0, 2.0).on(&sensor(16)).expect("in range");
     let shapes = vec![NamedShape::new("disc", disc)];
     let training = Training::new(shapes, sensor(16), Anchor::Corner, ranges("5", "5", "0"));
@@ -528,7 +529,7 @@ fn a_shard_without_a_pose_has_numbers_all_the_same() {
 }
 
 #[test]
-fn a_model_has_as_many_poses_as_its_ranges_say() {
+fn a_model_with_another_number_of_poses_than_its_ranges_is_refused() {
     let disc = Figure::ellipse(2.0, 2.0).on(&sensor(16)).expect("in range");
     let parts = |poses| {
         let grid = (Anchor::Corner, ranges("5:5.1:0.1", "5", "0"));
@@ -587,7 +588,7 @@ fn sets_and_descriptors_that_make_no_sense_are_refused() {
 }
 
 #[test]
-fn names_of_recognition_are_read_as_they_are_written() {
+fn names_of_classifiers_states_and_methods_read_back() {
     fn is_read<T: Copy + ToString + std::str::FromStr + PartialEq>(all: &[T]) -> bool {
         all.iter()
             .all(|one| one.to_string().parse().ok() == Some(*one))

@@ -1,6 +1,6 @@
-//! Poses answered by independent software, where that file is at hand; it is not part of the project.
+//! Compares answers with those of independent software. The file with these answers is not part of the project.
 //!
-//! `TAXEL_REFERENCE` names the file of poses, which must be there. Without it, one beside the project's folder is read if
+//! `TAXEL_REFERENCE` names the file, which must then exist. Otherwise a file beside the project's folder is read, if
 //! there is one.
 
 use std::path::PathBuf;
@@ -13,7 +13,7 @@ use taxel::touch::Plane;
 use crate::skip::skipped;
 
 #[test]
-fn every_reference_pose_is_answered_alike() {
+fn every_reference_pose_has_the_same_answer() {
     let given = std::env::var_os("TAXEL_REFERENCE").map(PathBuf::from);
     let must = given.is_some();
     let beside = concat!(
@@ -58,7 +58,7 @@ fn every_reference_pose_is_answered_alike() {
     );
 }
 
-/// Where two answers differ: numbers with a fraction by more than 1e-9, everything else at all.
+/// Describes how two answers differ: numbers with a fraction may differ by 1e-9, everything else must be equal.
 fn difference(found: &Value, expected: &Value) -> Option<String> {
     match (found, expected) {
         (Value::Number(a), Value::Number(b)) if a.is_f64() || b.is_f64() => {

@@ -1,6 +1,6 @@
-//! Regions and descriptors of grids drawn in the source, computed by hand.
+//! Regions and descriptors of grids that are drawn in the source, computed by hand.
 //!
-//! The steps around a region are counted by walking it with a finger: `straight` to a taxel beside, above or below,
+//! The steps around a region are counted by following it with a finger: `straight` to a taxel beside, above or below,
 //! `diagonal` across a corner.
 
 use std::collections::HashSet;
@@ -12,7 +12,7 @@ use taxel::description::{DESCRIPTORS, Description, RegionKind, Value, main_regio
 use taxel::imprint::Imprint;
 use taxel::touch::Plane;
 
-/// Kind of region; NA, NAE, CE; the sums of x and of y; straight and diagonal steps; left, top, right, bottom.
+/// The kind of region; NA, NAE, CE; the sums of x and of y; straight and diagonal steps; left, top, right, bottom.
 type Row = (RegionKind, [u32; 3], [f64; 2], [u32; 2], [u8; 4]);
 
 use RegionKind::{Exterior, Hole};
@@ -32,7 +32,7 @@ fn assert_regions(name: &str, imprint: &Imprint, expected: &[Row]) {
 
 #[test]
 #[rustfmt::skip] // A region a line, or the table cannot be read.
-fn drawn_grids_have_the_regions_that_one_sees() {
+fn regions_of_drawn_grids_equal_those_counted_by_hand() {
     let cases: &[(&str, &str, &[Row])] = &[
         ("nothing", ".../...", &[]),
         ("one taxel", ".../.#./...", &[(Exterior, [1, 1, 1], [1.5, 1.5], [0, 0], [1, 1, 2, 2])]),
@@ -69,18 +69,18 @@ fn drawn_grids_have_the_regions_that_one_sees() {
 
 #[test]
 #[rustfmt::skip] // A region a line.
-fn the_largest_and_the_longest_matrices() {
+fn matrices_of_the_largest_sizes_have_the_expected_regions() {
     let full = |columns: usize, rows: usize| grid(&vec!["#".repeat(columns); rows].join("/"));
     assert_regions("1 x 1", &full(1, 1), &[(Exterior, [1, 1, 1], [0.5, 0.5], [0, 0], [0, 0, 1, 1])]);
     // A line, there and back again: 2 · 63 steps.
     assert_regions("64 x 1", &full(64, 1), &[(Exterior, [64, 64, 64], [2048.0, 32.0], [126, 0], [0, 0, 64, 1])]);
     assert_regions("1 x 64", &full(1, 64), &[(Exterior, [64, 64, 64], [32.0, 2048.0], [126, 0], [0, 0, 1, 64])]);
     assert_regions("64 x 64", &full(64, 64), &[(Exterior, [4096, 4096, 252], [131_072.0, 131_072.0], [252, 0], [0, 0, 64, 64])]);
-    // All but the taxel in the middle of the last column: on the rim, so no hole.
+    // All taxels except the middle one of the last column: it is on the rim, so it is no hole.
     let mut dented = full(64, 64);
     dented.set(63, 32, false);
     assert_regions("dented", &dented, &[(Exterior, [4095, 4095, 252], [131_008.5, 131_039.5], [250, 2], [0, 0, 64, 64])]);
-    // The whole rim of the largest matrix.
+    // The complete rim of the largest matrix.
     let mut rim = full(64, 64);
     (1..63).for_each(|row| (1..63).for_each(|column| rim.set(column, row, false)));
     assert_regions("rim", &rim, &[(Exterior, [252, 4096, 252], [8064.0, 8064.0], [252, 0], [0, 0, 64, 64]),
@@ -88,12 +88,12 @@ fn the_largest_and_the_longest_matrices() {
 }
 
 #[test]
-fn the_main_region_has_the_largest_filled_area_the_first_of_equals() {
+fn the_main_region_is_the_first_with_the_largest_filled_area() {
     let cases = [
         ("...", None),
         ("#.#", Some(0)),
         ("#.##", Some(1)),
-        // Eight taxels around a hole enclose more than eight in two rows.
+        // Eight taxels around a hole enclose a larger area than eight in two rows.
         ("####.###/####.#.#/.....###", Some(1)),
         // A hole is never the main region, however large.
         (".###./#...#/#...#/#...#/.###.", Some(0)),
@@ -110,8 +110,8 @@ fn measure(imprint: &Imprint, key: &str) -> Value {
 }
 
 #[test]
-fn directions_run_counter_clockwise_as_seen() {
-    // From the centre of gravity to the centre of the rectangle.
+fn directions_are_counter_clockwise_as_seen() {
+    // The direction from the centre of gravity to the centre of the rectangle.
     let cases = [
         ("#./##", 45.0),
         (".#/##", 135.0),
@@ -159,14 +159,14 @@ fn one_taxel_has_an_outline_without_length() {
 }
 
 #[test]
-fn the_worked_example_of_the_paper() {
-    // Purcaru and Niculescu, Fig. 1.
+fn the_ring_of_fig_1_has_the_papers_values() {
+    // The ring of Fig. 1 in Purcaru and Niculescu's paper.
     let ring = figure(
         "ellipse radius_x=4 radius_y=4 x0=1.99 y0=1.47 thickness=2",
         16,
     );
     let imprint = Plane::new(sensor(16, 16, 0.5)).touch(&ring);
-    #[rustfmt::skip] // A region a line.
+    #[rustfmt::skip] // One region per line.
     assert_regions("the paper's ring", &imprint, &[
         (Exterior, [36, 48, 22], [216.0, 198.0], [18, 4], [2, 2, 10, 9]),
         (Hole, [12, 12, 10], [72.0, 66.0], [10, 0], [4, 4, 8, 7]),
@@ -191,8 +191,8 @@ fn the_worked_example_of_the_paper() {
 }
 
 #[test]
-fn touching_the_papers_ring_everywhere_in_a_cell_leaves_its_imprints() {
-    // Its range of positions, in its steps of 0.01.
+fn the_papers_ring_leaves_393_imprints_over_all_positions_in_a_cell() {
+    // The paper's range of positions, in steps of 0.01.
     let mut plane = Plane::new(sensor(16, 16, 0.5));
     let mut seen = HashSet::new();
     for x0 in 100..200 {

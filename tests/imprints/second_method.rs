@@ -1,10 +1,12 @@
-//! Coverages by a second, slower method, written apart from the first: clip the outline to each cell and measure it.
+//! Coverages by a second, slower method, written independently of the first: clip the outline to each cell and measure
+//! it.
 //!
-//! Polygons are clipped by I. E. Sutherland and G. W. Hodgman, *Reentrant polygon clipping* (1974), and measured by the
-//! shoelace formula. An ellipse is mapped to the unit disc, the cell with it, and the disc's share of that parallelogram
-//! is a sum of triangles and sectors about its centre. Vertices come from the figures' definitions, not from the code
-//! under test. Where a cell's coverage lies on the threshold the methods may differ in `f64`; there the taxel must be
-//! active: the decimals drawn here have two digits, and then no near miss comes that close.
+//! Polygons are clipped by I. E. Sutherland and G. W. Hodgman, *Reentrant polygon clipping* (1974), and measured by
+//! the shoelace formula. An ellipse is mapped to the unit disc together with the cell, and the disc's share of the
+//! resulting parallelogram is a sum of triangles and sectors about its centre. Vertices come from the definitions of
+//! the figures, not from the code under test. If a cell's coverage equals the threshold, the methods may differ in
+//! `f64`; then the taxel must be active, because the decimals drawn here have two digits, and no near miss comes that
+//! close.
 
 use std::f64::consts::PI;
 
@@ -16,13 +18,13 @@ use taxel::parameter::Parameter;
 use taxel::picture::Picture;
 use taxel::touch::Plane;
 
-/// Poses of each of the seven kinds, and of pictures.
+/// The number of poses of each of the seven kinds; that of pictures follows.
 const POSES: u32 = 30_000;
 const PICTURES: u32 = 20_000;
 
-/// The methods agree within this, in shares of a cell.
+/// The largest difference between the methods, as a share of a cell.
 const AGREEMENT: f64 = 1e-9;
-/// A coverage this near to the threshold is a tie.
+/// A coverage that is this close to the threshold is a tie.
 const TIE: f64 = 1e-11;
 
 type Point = (f64, f64);
@@ -30,7 +32,7 @@ type Point = (f64, f64);
 /// A convex outline.
 enum Outline {
     Polygon(Vec<Point>),
-    /// Centre, and where the unit disc's axes go.
+    /// The centre, and the images of the unit disc's two axes.
     Ellipse(Point, Point, Point),
 }
 
@@ -44,14 +46,14 @@ impl Outline {
                 },
             ),
             &Self::Ellipse((x, y), a, b) => {
-                // A generous box: the sum of both axes.
+                // A generous box: half of its size is the sum of both axes.
                 let (width, height) = (a.0.abs() + b.0.abs(), a.1.abs() + b.1.abs());
                 [x - width, y - height, x + width, y + height]
             }
         }
     }
 
-    /// The area inside the cell with its top left corner at (`x`, `y`).
+    /// Returns the area inside the cell whose top left corner is at (`x`, `y`).
     fn area_in_cell(&self, x: f64, y: f64) -> f64 {
         match self {
             Self::Polygon(points) => {
@@ -116,7 +118,7 @@ fn shoelace(ring: &[Point]) -> f64 {
     pairs.map(|(&p, &q)| cross(p, q)).sum::<f64>() / 2.0
 }
 
-/// The signed area of the triangle between the origin, `p` and `q` that lies in the unit disc.
+/// Returns the signed area of the part in the unit disc of the triangle between the origin, `p` and `q`.
 fn triangle_in_disc(p: Point, q: Point) -> f64 {
     let sector = |from: Point, to: Point| cross(from, to).atan2(dot(from, to)) / 2.0;
     let way = (q.0 - p.0, q.1 - p.1);
@@ -136,13 +138,13 @@ fn triangle_in_disc(p: Point, q: Point) -> f64 {
     sector(p, first) + cross(first, last) / 2.0 + sector(last, q)
 }
 
-/// Clockwise as seen, y down.
+/// Turns a point clockwise as seen, with y downwards.
 fn turned((x, y): Point, degrees: f64) -> Point {
     let (sin, cos) = degrees.to_radians().sin_cos();
     (x * cos - y * sin, x * sin + y * cos)
 }
 
-/// The outline of a figure and that of its hole.
+/// Returns the outline of a figure and of its hole.
 fn outlines(figure: &Figure) -> (Outline, Option<Outline>) {
     let get = |parameter| figure.get(parameter).expect("a parameter of this kind");
     let (x0, y0, angle) = (
@@ -188,7 +190,7 @@ fn outlines(figure: &Figure) -> (Outline, Option<Outline>) {
     let step = PI / f64::from(corners);
     let circumradius = get(Parameter::Side) / 2.0 / step.sin();
     let inradius = circumradius * step.cos();
-    // A side at the bottom: its two corners lie half a step left and right of straight down.
+    // One side is at the bottom: its two corners lie half a step to the left and right of straight down.
     let corner = |k: i32| {
         let angle = PI / 2.0 + f64::from(2 * k + 1) * step;
         (circumradius * angle.cos(), circumradius * angle.sin())
@@ -200,7 +202,7 @@ fn outlines(figure: &Figure) -> (Outline, Option<Outline>) {
     (ring(centre, &points, 1.0), hole)
 }
 
-/// The squares of a picture, each as an outline.
+/// Returns the outlines of a picture's squares.
 fn squares(picture: &Picture) -> Vec<Outline> {
     let get = |parameter| picture.get(parameter).expect("a parameter of pictures");
     let (zoom_x, zoom_y) = (get(Parameter::ZoomX), get(Parameter::ZoomY));
@@ -228,7 +230,7 @@ fn squares(picture: &Picture) -> Vec<Outline> {
     picture.imprint().active().map(square).collect()
 }
 
-/// Adds an outline's area in every cell to `cells`, times `sign`.
+/// Adds an outline's area in every cell, times `sign`, to `cells`.
 fn add(cells: &mut [f64], (columns, rows): (u8, u8), outline: &Outline, sign: f64) {
     let [left, top, right, bottom] = outline.box_around();
     for row in (0..rows).filter(|&row| f64::from(row) < bottom && f64::from(row) + 1.0 > top) {
@@ -240,7 +242,7 @@ fn add(cells: &mut [f64], (columns, rows): (u8, u8), outline: &Outline, sign: f6
     }
 }
 
-/// A plane of a drawn size and threshold; mostly the default ones.
+/// Returns a plane of random size and threshold; most have the default ones.
 fn drawn_plane(random: &mut Random) -> Plane {
     let (columns, rows) = match random.whole(0, 99) {
         0..=4 => (1, 1),
@@ -261,7 +263,7 @@ fn drawn_plane(random: &mut Random) -> Plane {
 fn drawn_figure(random: &mut Random, kind: FigureKind, sensor: &taxel::sensor::Sensor) -> Figure {
     let side = sensor.side();
     let wall = random.chance(400);
-    // Small sensors get large figures, which reach beyond them; large sensors mostly small ones.
+    // Small sensors get large figures, which reach beyond them; large sensors get mostly small ones.
     let most = i32::from(side.min(if random.chance(100) { 64 } else { 9 }));
     Figure::new(kind, sensor, |parameter| match parameter {
         Parameter::X0 | Parameter::Y0 => {
@@ -279,7 +281,7 @@ fn drawn_figure(random: &mut Random, kind: FigureKind, sensor: &taxel::sensor::S
     .expect("drawn within the ranges")
 }
 
-/// Compares coverages and imprint of one touch; says how many ties there were.
+/// Compares the coverages and the imprint of one touch, and returns the number of ties.
 fn compare(plane: &mut Plane, solid: &(impl Solid + ToString), slow: &[f64]) -> u32 {
     let threshold = plane.sensor().threshold();
     let imprint = plane.touch(solid);
@@ -322,42 +324,42 @@ fn compare_figures(kind: FigureKind, seed: u64) {
 }
 
 #[test]
-fn ellipses() {
+fn ellipses_agree() {
     compare_figures(FigureKind::Ellipse, 1);
 }
 
 #[test]
-fn rectangles() {
+fn rectangles_agree() {
     compare_figures(FigureKind::Rectangle, 2);
 }
 
 #[test]
-fn triangles() {
+fn triangles_agree() {
     compare_figures(FigureKind::Triangle, 3);
 }
 
 #[test]
-fn pentagons() {
+fn pentagons_agree() {
     compare_figures(FigureKind::Pentagon, 4);
 }
 
 #[test]
-fn hexagons() {
+fn hexagons_agree() {
     compare_figures(FigureKind::Hexagon, 5);
 }
 
 #[test]
-fn heptagons() {
+fn heptagons_agree() {
     compare_figures(FigureKind::Heptagon, 6);
 }
 
 #[test]
-fn octagons() {
+fn octagons_agree() {
     compare_figures(FigureKind::Octagon, 7);
 }
 
 #[test]
-fn pictures() {
+fn pictures_agree() {
     let mut random = Random::new(8);
     let mut ties = 0;
     for _ in 0..PICTURES {

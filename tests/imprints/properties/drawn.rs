@@ -11,7 +11,7 @@ pub(crate) fn hundredths(value: i32) -> f64 {
     f64::from(value) / 100.0
 }
 
-/// A whole number of degrees, every other time a multiple of 15.
+/// Returns a whole number of degrees; every other one is a multiple of 15.
 pub(crate) fn angle() -> impl Strategy<Value = i32> {
     prop_oneof![0..360, (0..24).prop_map(|step| step * 15)]
 }
@@ -20,7 +20,7 @@ pub(crate) fn kind() -> impl Strategy<Value = FigureKind> {
     proptest::sample::select(FigureKind::ALL.to_vec())
 }
 
-/// A figure of hundredths: kind, two sizes, x0, y0, angle, wall.
+/// A figure in hundredths: kind, two sizes, x0 and y0, angle, wall.
 pub(crate) type Drawn = (FigureKind, (i32, i32), (i32, i32), i32, Option<i32>);
 
 pub(crate) fn drawn(place: std::ops::Range<i32>) -> impl Strategy<Value = Drawn> {
@@ -56,7 +56,7 @@ pub(crate) fn imprints(
     })
 }
 
-/// The imprint with every active taxel taken elsewhere; what leaves the matrix is dropped.
+/// Returns the imprint with every active taxel moved by `to`; taxels that leave the matrix are dropped.
 pub(crate) fn moved(imprint: &Imprint, to: impl Fn(i32, i32) -> (i32, i32)) -> Imprint {
     let mut result = Imprint::empty(imprint.columns(), imprint.rows());
     for (column, row) in imprint.active() {
@@ -68,8 +68,9 @@ pub(crate) fn moved(imprint: &Imprint, to: impl Fn(i32, i32) -> (i32, i32)) -> I
     result
 }
 
-/// Vertices in hundredths: any will do where a shape is only compared with itself elsewhere, so these are star-shaped
-/// about (8, 8): in order of their angle, which keeps the polygon simple.
+/// Returns the vertices of a polygon in hundredths. It is star-shaped about (8, 8), with vertices in order of their
+/// angle, which keeps the polygon simple. Any polygon would do, because a shape is only compared with itself
+/// elsewhere.
 pub(crate) fn star() -> impl Strategy<Value = Vec<(i32, i32)>> {
     proptest::collection::vec((1..240_i32, 50..780_i32), 5..12).prop_map(|steps| {
         let total: i32 = steps.iter().map(|step| step.0).sum();
@@ -100,7 +101,7 @@ pub(crate) fn polygon(vertices: impl IntoIterator<Item = (i32, i32)>) -> Polygon
     )
 }
 
-/// The area by its closed form.
+/// Returns the area in closed form.
 pub(crate) fn area(figure: &Figure) -> f64 {
     let get = |parameter| figure.get(parameter).expect("a parameter of this kind");
     let wall = figure.get(Parameter::Thickness).unwrap_or(f64::MAX);

@@ -1,7 +1,7 @@
-//! Properties that hold for every shape: shapes are drawn at random from a fixed seed, and a failing one is shrunk.
+//! Properties that hold for every shape. Shapes are drawn at random from a fixed seed, and a failing one is shrunk.
 //!
-//! All coordinates are hundredths, so that a moved or mirrored shape is written in as few decimals as the first one
-//! and ties stay ties: imprints are compared taxel by taxel, with no tolerance.
+//! All coordinates are hundredths, so that a moved or mirrored shape is written with as few decimals as the original,
+//! and ties remain ties: imprints are compared taxel by taxel, without tolerance.
 
 mod drawn;
 
@@ -45,7 +45,7 @@ proptest! {
     fn a_figure_moved_by_whole_cells_leaves_the_moved_imprint(
         drawn in drawn(0..1100), by in (-11..=11, -11..=11), threshold in 1..=100
     ) {
-        // The first sensor is large enough that nothing is cut off on the way.
+        // The first sensor is so large that nothing is cut off by the move.
         let mut plane = Plane::new(sensor(48, 48, hundredths(threshold)));
         let (kind, sizes, (x0, y0), angle, wall) = drawn;
         let put = |right: i32, down: i32| {
@@ -60,7 +60,7 @@ proptest! {
     fn a_quarter_turn_of_a_centred_figure_turns_the_imprint(
         ellipse in any::<bool>(), half in (1..800, 1..800), angle in angle(), wall in proptest::option::of(1..300), odd in any::<bool>()
     ) {
-        // Only these two have a centre that decimals can put in the middle of the sensor.
+        // Only these two kinds have a centre that decimals can place in the middle of the sensor.
         let side: u8 = if odd { 17 } else { 16 };
         let middle = i32::from(side) * 50;
         let sizes = if ellipse { half } else { (half.0 * 2, half.1 * 2) };
@@ -71,7 +71,7 @@ proptest! {
         let last = i32::from(side) - 1;
         let expected = moved(&at(angle), |i, j| (last - j, i));
         prop_assert_eq!(at((angle + 90) % 360), expected);
-        // Two axes of symmetry: the opposite angle is the mirror image.
+        // Both kinds have two axes of symmetry, so the opposite angle gives the mirror image.
         let expected = moved(&at(angle), |i, j| (last - i, j));
         prop_assert_eq!(at((360 - angle) % 360), expected);
     }
@@ -94,7 +94,7 @@ proptest! {
     }
 
     #[test]
-    fn more_threshold_never_activates(drawn in drawn(-200..1500), low in 1..=100_i32, high in 1..=100_i32) {
+    fn a_higher_threshold_never_activates_a_taxel(drawn in drawn(-200..1500), low in 1..=100_i32, high in 1..=100_i32) {
         let figure = figure(&drawn, 16);
         let (low, high) = (low.min(high), low.max(high));
         let touch = |threshold: i32| Plane::new(sensor(16, 16, hundredths(threshold))).touch(&figure);
@@ -104,7 +104,7 @@ proptest! {
     }
 
     #[test]
-    fn a_plane_keeps_nothing_of_the_touch_before(first in drawn(-400..1500), second in drawn(-400..1500)) {
+    fn a_touch_does_not_depend_on_the_touch_before(first in drawn(-400..1500), second in drawn(-400..1500)) {
         let mut used = Plane::new(Sensor::default());
         used.touch(&figure(&first, 16));
         let mut fresh = Plane::new(Sensor::default());
@@ -128,7 +128,7 @@ proptest! {
     }
 
     #[test]
-    fn a_polygon_may_start_anywhere_and_run_either_way(vertices in star(), start in 0..12_usize) {
+    fn a_polygon_may_start_at_any_vertex_and_run_in_either_direction(vertices in star(), start in 0..12_usize) {
         let mut plane = Plane::new(Sensor::default());
         let imprint = plane.touch(&polygon(vertices.clone()));
         let coverages = plane.coverages();
@@ -168,9 +168,9 @@ proptest! {
     }
 
     #[test]
-    fn four_quarter_turns_of_a_square_picture_are_none(imprint in imprints(1..=24, 1..=24), side in 1..=24_u8) {
+    fn four_quarter_turns_of_a_square_picture_change_nothing(imprint in imprints(1..=24, 1..=24), side in 1..=24_u8) {
         let mut first = imprint.resized(side, side);
-        // Two corners that are opposite to each other make its bounding rectangle the whole matrix.
+        // Two taxels at opposite corners make the bounding rectangle the whole matrix.
         first.set(0, 0, true);
         first.set(side - 1, side - 1, true);
         let last = i32::from(side) - 1;
@@ -202,7 +202,7 @@ proptest! {
     ) {
         let sensor = sensor(imprint.columns(), imprint.rows(), f64::from(threshold) / 1000.0)
             .with(Parameter::Pitch, f64::from(pitch) / 1000.0).expect("in range");
-        // Numbers with all of their digits must come back as well.
+        // Numbers with all their digits must also come back.
         let long = |number: u32| f64::from(number) / f64::from(u32::MAX) * f64::from(sensor.side());
         let source = match source {
             0 => None,
@@ -234,7 +234,7 @@ proptest! {
         prop_assert!(sensor.range(parameter).contains(value));
         let given = share * f64::from(side);
         if sensor.range(parameter).contains(given) {
-            // Shown in full where a form would not take all of its decimals.
+            // The number is shown in full, even if it has more decimals than a form accepts.
             prop_assert_eq!(parameter.format(given).parse::<f64>(), Ok(given));
             if parameter.row().unit != taxel::parameter::Unit::Taxels {
                 prop_assert_eq!(sensor.read(parameter, &parameter.format(given)), Ok(given));
@@ -245,17 +245,17 @@ proptest! {
             let next = sensor.step(parameter, value, direction);
             prop_assert!(sensor.range(parameter).contains(next), "{parameter:?} {value} {direction} {next}");
             if direction != 0 {
-                // After one step the value has the paper's decimals, and it reads back.
+                // After one step, the value has the paper's decimals and reads back.
                 prop_assert_eq!(sensor.step(parameter, next, 0), next);
                 prop_assert_eq!(sensor.read(parameter, &parameter.format(next)), Ok(next));
             }
-            // From a number with more decimals the way may lead to the other side of it, at the end of the range.
+            // For a number with more decimals, a step at the end of the range may lead to the other side of it.
             let taken = sensor.step(parameter, value, 0) == value;
             if taken && parameter != Parameter::Angle {
                 prop_assert!((next - value) * f64::from(direction) >= 0.0, "{parameter:?} {value} {direction} {next}");
             }
             if taken && next != value {
-                // There and back again, over the change of decimals at 10 and over 360 degrees, too.
+                // A step and its reverse lead back, also across the change of decimals at 10 and across 360 degrees.
                 prop_assert_eq!(sensor.step(parameter, next, -direction), value);
             }
             value = next;
@@ -263,7 +263,7 @@ proptest! {
     }
 
     #[test]
-    fn shapes_of_any_size_are_covered_by_shares(
+    fn shapes_of_any_size_have_coverages_from_0_to_1(
         kind in kind(), exponents in (-300..2, -300..2), place in (-64.0..64.0_f64, -64.0..64.0_f64), angle in 0.0..360.0_f64, wall in -300..2
     ) {
         let size = |exponent: i32| 6.0 * 10_f64.powi(exponent);

@@ -1,4 +1,4 @@
-//! The figures and pictures whose sweeps are compared with touching and measured, and the comparison.
+//! Figures and pictures whose sweeps are measured and compared with single touches, and the comparison.
 
 use taxel::figure::{Figure, FigureKind};
 use taxel::parameter::Parameter;
@@ -9,19 +9,19 @@ use taxel::source::Source;
 use taxel::sweep::{Sweep, SweepResult};
 use taxel::touch::{Plane, reaches_beyond};
 
-/// What is swept, where, and how.
+/// A source to sweep, with its sensor and ranges.
 #[derive(Clone)]
 pub(crate) struct Case {
     pub(crate) name: &'static str,
     pub(crate) source: Source,
     pub(crate) sensor: Sensor,
     pub(crate) anchor: Anchor,
-    /// Ranges of x0 and y0; those of the paper's grid where empty.
+    /// The range of x0 and y0; empty for the one of the paper's grid.
     pub(crate) place: &'static str,
     pub(crate) zoom: &'static str,
 }
 
-/// A figure by its first and second size (the second of a regular polygon is not used) and its wall, 0 for none.
+/// Returns a figure with a first and a second size (regular polygons ignore the second) and a wall, 0 for none.
 pub(crate) fn figure(kind: FigureKind, first: f64, second: f64, wall: f64) -> Source {
     let figure = Figure::new(kind, &Sensor::LARGEST, |parameter| match parameter {
         Parameter::RadiusX | Parameter::Length | Parameter::Side => Some(first),
@@ -44,7 +44,8 @@ pub(crate) fn sensor(columns: u8, rows: u8, threshold: f64) -> Sensor {
         .expect("a threshold in range")
 }
 
-/// All kinds, solid and with a hole, sizes that make ties, beyond the sensor, other sensors, thresholds and anchors.
+/// Returns all kinds, solid and with a hole: sizes that cause ties, figures beyond the sensor, other sensors,
+/// thresholds and anchors.
 #[expect(clippy::too_many_lines, reason = "a list")]
 pub(crate) fn cases() -> Vec<Case> {
     let case = |name, source| Case {
@@ -66,7 +67,7 @@ pub(crate) fn cases() -> Vec<Case> {
             "rectangle 5.5 x 2.5 wall 1",
             figure(FigureKind::Rectangle, 5.5, 2.5, 1.0),
         ),
-        // At 5 its corners are beyond the sensor.
+        // At 5 its corners would be beyond the sensor.
         Case {
             place: "2.5:3.49:0.01",
             ..case(
@@ -236,7 +237,7 @@ pub(crate) fn cases() -> Vec<Case> {
 }
 
 impl Case {
-    /// Its grid at the given angles; every `stride`-th step of x0 and y0 only.
+    /// Returns the grid of the case at the given angles, with only every `stride`-th step of x0 and y0.
     pub(crate) fn grid(&self, angles: &str, stride: u32) -> PoseGrid {
         let place = if self.place.is_empty() {
             "5:5.99:0.01"
@@ -265,8 +266,8 @@ impl Case {
     }
 }
 
-/// Sweeps the grid and touches pose by pose; how many poses differ, and what is wrong otherwise. A sweep that does not
-/// give rows takes other ways, and must come to the same.
+/// Sweeps the grid and touches it pose by pose. Returns the number of poses that differ, or a message about another
+/// difference. A sweep that does not report rows uses other code, which must give the same result.
 pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
     let poses = usize::try_from(grid.poses()).expect("a small grid");
     let width = usize::try_from(grid.row_length()).expect("a small grid");

@@ -1,4 +1,4 @@
-//! Sweeps: identical to touching pose by pose, whatever the threads and the shards, and summed up as they should be.
+//! Sweeps equal single touches for any number of threads and shards, and their summaries are correct.
 
 #![expect(clippy::cast_precision_loss, reason = "numbers of poses in a test")]
 
@@ -36,7 +36,7 @@ fn small(source: Source, place: &str, angles: &str) -> PoseGrid {
 }
 
 #[test]
-fn sweeps_equal_touches_at_all_sorts_of_angles() {
+fn sweeps_equal_touches_at_many_angles() {
     for case in cases() {
         let grid = case.grid("0:359:15", 5);
         assert_eq!(differences(&grid), Ok(0), "{}", case.name);
@@ -58,7 +58,7 @@ fn sweeps_equal_touches_at_every_step_of_a_cell() {
 }
 
 #[test]
-fn nearly_upright_edges_do_no_harm() {
+fn sweeps_equal_touches_with_nearly_upright_edges() {
     for source in [
         figure(FigureKind::Rectangle, 6.0, 3.0, 0.5),
         figure(FigureKind::Ellipse, 5.0, 3.0, 1.0),
@@ -76,7 +76,7 @@ fn nearly_upright_edges_do_no_harm() {
 }
 
 #[test]
-fn steps_may_be_finer_than_the_crossings_are_sharp() {
+fn sweeps_equal_touches_with_very_fine_steps() {
     let grid = small(
         figure(FigureKind::Hexagon, 3.0, 0.0, 1.0),
         "5.49999:5.50001:0.0000005",
@@ -91,7 +91,7 @@ fn steps_may_be_finer_than_the_crossings_are_sharp() {
     assert_eq!(differences(&grid), Ok(0));
 }
 
-/// All that can be said of a result, in one text.
+/// Formats all values of a result as one text.
 fn told(result: &SweepResult) -> String {
     let entries: Vec<_> = result.atlas.entries().collect();
     let SweepResult {
@@ -107,7 +107,7 @@ fn told(result: &SweepResult) -> String {
 }
 
 #[test]
-fn threads_and_shards_do_not_matter() {
+fn the_result_does_not_depend_on_threads_and_shards() {
     let zoomed = cases().into_iter().find(|case| case.zoom.contains(':'));
     let grids = [
         small(
@@ -146,9 +146,9 @@ fn threads_and_shards_do_not_matter() {
     }
 }
 
-/// Shards of one row each have no other row that one could be the image of.
+/// A shard of one row has no other row of which the row could be the image.
 #[test]
-fn rows_that_are_images_equal_those_gone_through() {
+fn rows_taken_from_symmetry_equal_computed_rows() {
     let centred = |source, place: &str, angles: &str| {
         let read = |text: &str| text.parse().expect("a range");
         let ranges = Ranges::default()
@@ -186,7 +186,7 @@ fn rows_that_are_images_equal_those_gone_through() {
             "7.25:8.2:0.05",
             "0:44:9",
         ),
-        // At the rim of the sensor at some angles and beyond it at others: no images there.
+        // At some angles at the rim of the sensor, at others beyond it: there are no images then.
         small(tie, "0.5:1.48:0.02", "0:45:15"),
     ] {
         let whole = sweep(&grid);
@@ -229,7 +229,7 @@ fn shards_are_merged_only_if_all_are_there() {
         merge(vec![shard(&grid, 1, 2), shard(&grid, 1, 2)]),
         Err(MergeError::Twice { shard: twice })
     );
-    // Where the shape itself lay does not matter.
+    // The original place of the shape does not matter.
     let moved = figure(FigureKind::Triangle, 6.0, 0.0, 0.0)
         .with(Parameter::Y0, 2.5, &Sensor::default())
         .and_then(|source| source.with(Parameter::Angle, 77.0, &Sensor::default()));
@@ -248,7 +248,7 @@ fn shards_are_merged_only_if_all_are_there() {
         merge(vec![shard(&grid, 1, 2), shard(&other, 2, 2)]),
         Err(MergeError::Foreign { shard: foreign })
     );
-    // A shard that is refused changes nothing, not even as the first one.
+    // A shard that is refused changes nothing, even if it comes first.
     let mut refused = SweepMerge::default();
     let missing = |number, of| Err(MergeError::Missing { number, of });
     assert_eq!(refused.add(shard(&other, 2, 3)), missing(1, 3));
@@ -284,7 +284,7 @@ fn a_stopped_sweep_keeps_what_is_complete() {
     let result = stopped_after(500_000);
     assert!(!result.complete());
     assert_eq!(done.load(Ordering::Relaxed), 500_000);
-    // Whole turns, and at most the last sixteen of them are lost.
+    // Only whole turns are kept, and at most the last sixteen of them are lost.
     assert!((340_000..500_000).contains(&result.poses) && result.poses % 10_000 == 0);
     assert_eq!(
         result.atlas.entries().map(|entry| entry.count).sum::<u64>(),
@@ -295,14 +295,14 @@ fn a_stopped_sweep_keeps_what_is_complete() {
         shard: Shard::WHOLE,
     };
     assert_eq!(SweepResult::merge([result]).err(), Some(incomplete));
-    // Not even a turn is waited for.
+    // The sweep does not even wait for the end of a turn.
     let result = stopped_after(1);
     assert_eq!((result.poses, result.atlas.len()), (0, 0));
     assert!(done.load(Ordering::Relaxed) <= 5_000);
 }
 
 #[test]
-fn sweeping_the_papers_ring_at_all_angles_leaves_the_imprints_of_one() {
+fn the_papers_ring_leaves_the_same_imprints_at_all_angles_as_at_one() {
     let result = sweep(&small(
         figure(FigureKind::Ellipse, 4.0, 4.0, 2.0),
         "1:1.99:0.01",

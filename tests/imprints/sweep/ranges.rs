@@ -1,4 +1,4 @@
-//! Ranges and grids of poses: exact, or refused with the reason.
+//! Ranges and grids of poses are exact, or are refused with the reason.
 
 use taxel::figure::FigureKind;
 use taxel::pose::{Anchor, Axis, DecimalRange, PoseGrid, Ranges};
@@ -88,7 +88,7 @@ fn ranges_are_exact_or_refused() {
 }
 
 #[test]
-fn parts_beyond_the_end_are_none() {
+fn parts_beyond_the_end_of_a_range_are_none() {
     let far = i64::MAX.unsigned_abs();
     for text in ["5:5.99:0.01", "1", "999999999999998:999999999999999:1"] {
         let range: DecimalRange = text.parse().expect("a range");

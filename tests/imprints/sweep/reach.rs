@@ -1,4 +1,4 @@
-//! Which poses the sensor cuts off, the ranges that a sweep takes by itself, and the sensor that is large enough.
+//! The poses that the sensor cuts off, the default ranges of a sweep, and the smallest sensor that is large enough.
 
 use proptest::prelude::*;
 use taxel::figure::{Figure, FigureKind};
@@ -17,7 +17,7 @@ use taxel::touch::reaches_beyond;
 
 use super::cases::{self, picture};
 
-/// Every pose of a grid looked at by itself.
+/// Counts the poses of a grid that are cut off, one by one.
 fn cut_off_one_by_one(grid: &PoseGrid) -> u64 {
     let cut = |&number: &u64| reaches_beyond(&grid.placed(grid.pose(number)), grid.sensor());
     (0..grid.poses()).filter(cut).count() as u64
@@ -27,7 +27,7 @@ fn range(text: &str) -> DecimalRange {
     text.parse().expect("a range")
 }
 
-/// The shapes that come with the program, by name: what made them, or their imprint as a picture.
+/// Returns the shapes that are shipped with the program, by name: their source, or their imprint as a picture.
 fn shipped() -> Vec<(String, Source)> {
     let folder = std::fs::read_dir("library").expect("the folder of the crate");
     let paths = folder.map(|entry| entry.expect("an entry").path());
@@ -49,7 +49,7 @@ fn sensor(side: u8) -> Sensor {
     Sensor::new(side, side).expect("in range")
 }
 
-/// A shape of each kind, the sensor small enough that it is often cut off.
+/// Returns a shape of any kind. The sensor is so small that shapes are often cut off.
 fn shapes() -> impl Strategy<Value = Source> {
     let kinds = prop::sample::select(FigureKind::ALL.to_vec());
     let figures = (kinds, 5_u32..60, 5_u32..60).prop_map(|(kind, one, other)| {
@@ -66,7 +66,7 @@ fn shapes() -> impl Strategy<Value = Source> {
 
 proptest! {
     #[test]
-    fn poses_that_are_cut_off_are_counted_as_one_by_one(
+    fn the_number_of_cut_off_poses_equals_a_count_one_by_one(
         source in shapes(),
         columns in 1_u8..14,
         rows in 1_u8..14,
@@ -89,16 +89,16 @@ proptest! {
         ]);
         let sensor = Sensor::new(columns, rows).expect("in range");
         let anchor = Anchor::ALL[usize::from(centred)];
-        // Positions beyond a small sensor's range are refused.
+        // Positions beyond the range of a small sensor are refused.
         let Ok(grid) = PoseGrid::new(source, sensor, anchor, ranges) else { return Ok(()) };
         let counted = grid.poses_beyond_sensor();
         prop_assert_eq!(counted, cut_off_one_by_one(&grid));
         prop_assert_eq!(counted, Sweep::new(&grid).run().partly_off);
     }
 
-    /// A shape that is cut off in no pose of the ranges that are taken by themselves, or for which no cell would do.
+    /// The default ranges cut off no pose of a shape, unless no cell would do.
     #[test]
-    fn default_ranges_cut_nothing_off_where_that_can_be(
+    fn default_ranges_cut_nothing_off_if_possible(
         source in shapes(),
         columns in 1_u8..20,
         rows in 1_u8..20,
@@ -123,7 +123,7 @@ proptest! {
 }
 
 #[test]
-fn every_shipped_shape_that_fits_is_whole_in_the_ranges_that_are_taken_by_themselves() {
+fn default_ranges_cut_no_shipped_shape_off_that_fits() {
     let mut whole = 0;
     for side in [16, 20, 24] {
         for (name, source) in shipped() {
@@ -146,7 +146,7 @@ fn every_shipped_shape_that_fits_is_whole_in_the_ranges_that_are_taken_by_themse
 }
 
 #[test]
-fn a_shape_keeps_its_cell_where_nothing_is_cut_off_there() {
+fn a_shape_keeps_its_cell_if_nothing_is_cut_off_there() {
     use Parameter::{Length, Width, X0, Y0};
     let own = |source: &Source, anchor, angles: &str| {
         let given = GivenRanges::default().with(Axis::Angle, Some(range(angles)));
@@ -174,7 +174,7 @@ fn a_shape_keeps_its_cell_where_nothing_is_cut_off_there() {
         own(&bar(1.99, 3.0), Anchor::Corner, first),
         ["1:1.99:0.01", "3:3.99:0.01"]
     );
-    // Turned, it reaches above its corner: about the centre of the bar, 2.2 upwards.
+    // Turned, the bar reaches above its corner, by 2.2 upwards from its centre.
     assert_eq!(
         own(&bar(1.99, 3.0), Anchor::Corner, all),
         ["1:1.99:0.01", "3:3.99:0.01"]
@@ -187,7 +187,7 @@ fn a_shape_keeps_its_cell_where_nothing_is_cut_off_there() {
         own(&bar(2.0, 3.0), Anchor::Centre, all),
         ["5:5.99:0.01", "4:4.99:0.01"]
     );
-    // Beyond the sensor, its cell is not one where nothing is cut off.
+    // Its cell is beyond the sensor, so poses would be cut off there.
     assert_eq!(
         own(&bar(-2.5, 3.0), Anchor::Corner, first),
         ["4:4.99:0.01", "6:6.99:0.01"]
@@ -195,7 +195,7 @@ fn a_shape_keeps_its_cell_where_nothing_is_cut_off_there() {
 }
 
 #[test]
-fn what_is_given_stays() {
+fn given_ranges_are_kept() {
     let source = hexagon();
     let given = GivenRanges::default()
         .with(Axis::X0, Some(range("-3:3:0.5")))
@@ -210,7 +210,7 @@ fn what_is_given_stays() {
 }
 
 #[test]
-fn the_smallest_sensor_holds_all_shapes_and_a_smaller_one_does_not() {
+fn the_smallest_sensor_holds_all_shapes_and_no_smaller_one_does() {
     let large = sensor(64);
     let triangle = Source::from(Figure::triangle(20.0).on(&large).expect("in range"));
     let disc = Source::from(Figure::ellipse(9.5, 9.5).on(&large).expect("in range"));
@@ -231,7 +231,7 @@ fn the_smallest_sensor_holds_all_shapes_and_a_smaller_one_does_not() {
                 common_ranges(set, &fit, anchor, &given).expect("in range"),
                 ranges
             );
-            // Every cell of hundredths on the next smaller one, along one axis at a time.
+            // Every cell in hundredths on the next smaller sensor, along one axis at a time.
             let smaller = sensor(fit.columns() - 1);
             let fits_along = |axis: Axis| {
                 (-1500..1500).any(|start: i32| {
@@ -267,7 +267,7 @@ fn the_smallest_sensor_holds_all_shapes_and_a_smaller_one_does_not() {
 }
 
 #[test]
-fn what_no_sensor_holds_has_none() {
+fn a_shape_too_large_for_any_sensor_has_no_smallest_sensor() {
     let large = Source::from(
         Figure::ellipse(33.0, 1.0)
             .on(&sensor(64))

@@ -1,4 +1,4 @@
-//! What a sweep sums up, against a plain loop over all its poses; ideal values; classes of imprints.
+//! The statistics of a sweep, compared with a plain loop over all its poses; ideal values; classes of imprints.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use taxel::touch::Plane;
 use super::cases::{figure, picture};
 use super::{small, sweep};
 
-/// Sum of squares about the mean over the number.
+/// Returns the sum of squares about the mean, divided by the number of values.
 fn variance(values: &[f64]) -> f64 {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -22,7 +22,7 @@ fn variance(values: &[f64]) -> f64 {
         / count
 }
 
-/// Length of the mean unit vector, and its direction in degrees.
+/// Returns the length of the mean unit vector, and its direction in degrees.
 fn resultant(degrees: &[f64]) -> (f64, f64) {
     let mean = |part: fn(f64) -> f64| {
         degrees
@@ -167,7 +167,7 @@ fn ideal_values_are_those_of_the_continuous_figure() {
 
 type Map = fn((i32, i32)) -> (i32, i32);
 
-/// The eight images of a set of taxels, each moved to the top left corner.
+/// Returns the eight symmetric images of a set of taxels, each moved to the top left corner.
 fn images(imprint: &Imprint) -> [Vec<(i32, i32)>; 8] {
     let taxels: Vec<(i32, i32)> = imprint
         .active()
@@ -196,7 +196,7 @@ fn images(imprint: &Imprint) -> [Vec<(i32, i32)>; 8] {
 }
 
 #[test]
-fn classes_equal_those_of_all_images_written_out() {
+fn classes_equal_those_from_comparing_all_images() {
     for (source, place) in [
         (figure(FigureKind::Rectangle, 3.0, 2.0, 0.0), "3:7.9:0.31"),
         (picture("##.# .###"), "-3:15:0.9"),
