@@ -1,11 +1,11 @@
-//! `taxel batch`: order, bad lines, long lines, pauses.
+//! Tests of `taxel batch`: the order of answers, bad lines, long lines, pauses.
 
 use std::io::{BufRead, BufReader, Read, Write};
 
 use super::program;
 use super::taxel;
 
-/// The shortest pose, and its answer.
+/// The shortest pose; its answer follows.
 pub(super) const POINT: &str = r##"{"imprint":["#"]}"##;
 const POINT_ANSWER: &str = concat!(
     r##"{"imprint":["#"],"na":1,"regions":[{"kind":"exterior","na":1,"nae":1,"ce":1,"num_x":0.5,"num_y":0.5,"##,
@@ -14,9 +14,9 @@ const POINT_ANSWER: &str = concat!(
     "\n"
 );
 
-/// The files that the README names.
+/// Answers the files that the README names.
 #[test]
-fn the_files_of_the_examples_are_answered() {
+fn the_files_in_the_examples_folder_are_answered() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
     let poses = std::fs::read_to_string(format!("{folder}/poses.jsonl")).expect("it is there");
     let run = taxel("batch", poses.as_str());
@@ -129,7 +129,7 @@ fn bad_lines_are_answered_in_their_places() {
 }
 
 #[test]
-fn a_line_too_long_is_refused_and_read_over() {
+fn a_line_that_is_too_long_is_refused_and_skipped() {
     let mebibyte = 1 << 20;
     let padded = |length: usize| format!("{}{POINT}", " ".repeat(length - POINT.len()));
     let input = [
@@ -155,7 +155,7 @@ fn a_line_too_long_is_refused_and_read_over() {
 }
 
 #[test]
-fn a_message_does_not_quote_a_long_line_wholly() {
+fn a_message_quotes_only_a_part_of_a_long_line() {
     let line = format!(
         "{{\"figure\":\"hexagon\",\"side\":\"{}\"}}",
         "é".repeat(100_000)
@@ -186,7 +186,7 @@ fn the_sensor_of_a_batch_is_set_by_flags_and_lines() {
 }
 
 #[test]
-fn a_whole_matrix_is_not_touched_and_takes_no_sensor() {
+fn an_imprint_is_not_touched_and_accepts_no_sensor() {
     let run = taxel(
         "batch",
         r##"{"imprint":["#"],"sensor":{"columns":2,"rows":2}}"##,
@@ -199,7 +199,7 @@ fn a_whole_matrix_is_not_touched_and_takes_no_sensor() {
 }
 
 #[test]
-fn no_input_is_no_answer() {
+fn empty_input_has_no_answer() {
     for input in ["", "\n", " \r\n\t\n"] {
         let run = taxel("batch", input);
         assert_eq!(
@@ -216,7 +216,7 @@ fn an_answer_does_not_wait_for_the_next_line() {
         .expect("the program starts");
     let mut stdin = child.stdin.take().expect("piped");
     let mut stdout = BufReader::new(child.stdout.take().expect("piped"));
-    // The second pose arrives in two pieces, the first of them together with the first pose.
+    // The second pose arrives in two pieces, the first one together with the first pose.
     let (begin, end) = POINT.split_at(5);
     for (sent, expected) in [
         (format!("{POINT}\n{begin}"), POINT_ANSWER),
@@ -232,7 +232,7 @@ fn an_answer_does_not_wait_for_the_next_line() {
     assert_eq!(child.wait().expect("the program ends").code(), Some(0));
 }
 
-/// The values of a real sensor, with the rule of their imprint.
+/// A frame of a real sensor's values, with the rule for its imprint.
 #[test]
 fn a_frame_with_a_threshold_is_described() {
     let input = concat!(

@@ -1,5 +1,5 @@
-//! The file of settings and the keys that it changes: what it may say, what it refuses and where, and what the screen
-//! then shows.
+//! The settings file and the keys that it changes: valid contents, refusals with their places, and the resulting
+//! screen.
 
 use taxel::cli::settings::file::Config;
 use taxel::tui::app::state::{App, Options};
@@ -13,14 +13,14 @@ fn refused(text: &str, expected: &str) {
     assert_eq!(error, expected, "{text}");
 }
 
-/// The parts of the keys, as messages list them.
+/// Returns the contexts of keys, as messages list them.
 fn contexts() -> String {
     let names: Vec<&str> = Context::ALL.iter().map(|context| context.name()).collect();
     names.join(", ")
 }
 
 #[test]
-fn nothing_has_to_be_said() {
+fn an_empty_settings_file_is_valid() {
     for text in ["", "\n# nothing\n", "[sensor]\n[keys]\n[keys.matrix]\n"] {
         let config = Config::read(text).expect("a file of settings");
         assert!(config.sensor_entries().is_empty() && config.changes().is_empty());
@@ -28,7 +28,7 @@ fn nothing_has_to_be_said() {
 }
 
 #[test]
-fn what_is_unknown_or_unfit_is_refused_with_its_place() {
+fn unknown_keys_and_bad_values_are_refused_with_their_places() {
     for (text, expected) in [
         (
             "# a comment\n  colour = 'never'\n",
@@ -116,7 +116,7 @@ fn what_is_unknown_or_unfit_is_refused_with_its_place() {
 }
 
 #[test]
-fn a_wrong_action_and_a_key_that_is_given_twice_are_named() {
+fn unknown_actions_and_duplicate_keys_are_named() {
     let actions = "expected an action of 'taxel config', or \"none\"";
     for (text, expected) in [
         (
@@ -145,7 +145,7 @@ fn a_wrong_action_and_a_key_that_is_given_twice_are_named() {
 }
 
 #[test]
-fn changes_of_keys_that_would_surprise_are_refused_where_they_stand() {
+fn surprising_changes_of_keys_are_refused_with_their_places() {
     refused(
         "[keys.matrix]\n'<CR>' = 'toggle'\n'<Enter>' = 'undo'\n",
         "3:1: <Enter> is bound twice here",
@@ -168,7 +168,7 @@ fn changes_of_keys_that_would_surprise_are_refused_where_they_stand() {
     );
 }
 
-/// No message is longer than can be read, whatever the file holds.
+/// Messages are short enough to read, whatever the file contains.
 #[test]
 fn messages_are_short() {
     let long = "x".repeat(100_000);
@@ -207,7 +207,7 @@ fn shows(keys: &str, texts: &[&str]) {
 }
 
 #[test]
-fn keys_do_what_the_file_says() {
+fn keys_do_what_the_settings_file_says() {
     shows("x", &["NA 1 in all"]);
     shows("x<Space>", &["NA 0 in all"]);
     shows("hx", &["column  7, row  8    active"]);
@@ -218,7 +218,7 @@ fn keys_do_what_the_file_says() {
 }
 
 #[test]
-fn menu_hints_help_and_notices_name_the_keys_of_the_file() {
+fn menu_hints_help_and_notices_show_the_keys_of_the_settings_file() {
     shows(
         "",
         &[
@@ -245,7 +245,7 @@ fn menu_hints_help_and_notices_name_the_keys_of_the_file() {
     );
 }
 
-/// An option that has lost its key can still be clicked on.
+/// An option without a key can still be clicked.
 #[test]
 fn an_option_without_a_key_stays_in_the_menu() {
     let mut session = session("[keys.matrix]\nf = 'none'\n", "f");
@@ -264,9 +264,9 @@ fn an_option_without_a_key_stays_in_the_menu() {
     assert!(session.screen().contains("Kind"), "{}", session.screen());
 }
 
-/// Whatever keys a file frees or adds, the table keeps its rows and its words.
+/// The table keeps its rows and names, whatever keys a file removes or adds.
 #[test]
-fn every_place_and_every_action_can_be_named() {
+fn the_settings_file_can_name_every_context_and_action() {
     for context in Context::ALL {
         for name in taxel::tui::keys::keymap::actions(context) {
             let text = format!("[keys.{}]\n'<C-k>' = '{name}'\n", context.name());

@@ -1,4 +1,4 @@
-//! `taxel describe`: imprints as text, stored shapes, and what is said of bad ones.
+//! Tests of `taxel describe`: imprints as text, stored shapes, and messages about bad ones.
 
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ pub(super) const SHAPE: &str = r###"
   "source": { "figure": "triangle", "side": 2, "x0": -1, "y0": 0, "angle": 0 }
 }"###;
 
-/// A file of its own for a test.
+/// A temporary file for a test.
 struct Scratch(PathBuf);
 
 impl Scratch {
@@ -42,7 +42,7 @@ impl Drop for Scratch {
 }
 
 #[test]
-fn an_imprint_is_described_whatever_its_line_ends() {
+fn an_imprint_is_described_with_any_kind_of_line_ends() {
     let expected = taxel("describe -", ".##.\n#..#\n.##.");
     assert_eq!((expected.status, expected.stderr.as_str()), (Some(0), ""));
     assert!(expected.stdout.starts_with(
@@ -64,7 +64,7 @@ fn an_imprint_is_described_whatever_its_line_ends() {
 }
 
 #[test]
-fn a_bad_imprint_is_told_by_line_and_column() {
+fn a_bad_imprint_is_reported_with_line_and_column() {
     let bad = |input: &[u8], message: &str| {
         refused(
             &taxel("describe -", input),
@@ -122,7 +122,7 @@ fn a_bad_imprint_is_told_by_line_and_column() {
 }
 
 #[test]
-fn a_recording_is_sent_to_the_command_that_reads_it() {
+fn the_error_for_a_recording_names_the_command_that_reads_it() {
     for name in [
         "records.npy",
         "u2.npy",
@@ -145,7 +145,7 @@ fn a_recording_is_sent_to_the_command_that_reads_it() {
 }
 
 #[test]
-fn a_stored_shape_tells_its_name_and_what_made_it() {
+fn a_stored_shape_is_described_with_its_name_and_source() {
     let file = Scratch::new("corner.json", SHAPE.as_bytes());
     let run = file.describe();
     let expected = "
@@ -168,7 +168,7 @@ the figure reaches beyond the sensor
 }
 
 #[test]
-fn a_bad_shape_is_told_by_line_and_column() {
+fn a_bad_shape_is_reported_with_line_and_column() {
     let bad = |from: &str, to: &str, message: &str| {
         let run = taxel("describe -", SHAPE.replace(from, to));
         refused(&run, 1, &format!("standard input: {message}"));
@@ -201,7 +201,7 @@ fn a_bad_shape_is_told_by_line_and_column() {
 }
 
 #[test]
-fn text_from_files_does_not_steer_the_terminal() {
+fn text_from_files_cannot_send_control_characters_to_the_terminal() {
     let run = taxel(
         "describe -",
         SHAPE.replace("corner", r"\u001b[31m\u0007\u009b"),
@@ -216,7 +216,7 @@ fn text_from_files_does_not_steer_the_terminal() {
 }
 
 #[test]
-fn a_shape_is_described_by_its_name_too() {
+fn a_shape_can_be_described_by_its_name() {
     let shelf = Shelf::new();
     let shown = shelf.does("library|show|washer|--pitch|2", "");
     assert_eq!(shelf.does("describe|Washer|--pitch|2", ""), shown);
@@ -244,7 +244,7 @@ fn a_file_that_cannot_be_read_is_named() {
 }
 
 #[test]
-fn lines_that_another_command_reads_name_it() {
+fn the_error_for_lines_of_another_command_names_that_command() {
     let field =
         "unknown field `figure`, expected one of `format`, `name`, `sensor`, `imprint`, `source`";
     let pose = "{\"figure\":\"hexagon\",\"side\":3,\"x0\":2,\"y0\":2}\n";
@@ -258,7 +258,7 @@ fn lines_that_another_command_reads_name_it() {
     let shape = "{\"name\":\"disc\",\"figure\":\"ellipse\",\"radius_x\":3,\"radius_y\":3}\n";
     let run = taxel("describe -", shape);
     refused(&run, 1, &told(23, "a set of shapes", "model train"));
-    // A stored shape is none of both, whatever made it.
+    // A stored shape is neither of the two, whatever it was made from.
     let run = taxel("describe -", SHAPE.replace("\"name\"", "\"nom\""));
     assert!(!run.stderr.contains("use taxel"), "{}", run.stderr);
     let run = taxel("recognise -", pose);

@@ -1,4 +1,4 @@
-//! `taxel export` and `--export`: every form out and in again, where it goes, and what is refused.
+//! Tests of `taxel export` and `--export`: writing and reading every format, the places of files, and refusals.
 
 use tempfile::TempDir;
 
@@ -32,7 +32,7 @@ impl Folder {
         std::fs::write(self.0.path().join(name), content).expect("written");
     }
 
-    /// The names in it.
+    /// Returns the names of the files in the folder.
     fn names(&self) -> Vec<String> {
         let files = std::fs::read_dir(self.0.path())
             .expect("a folder")
@@ -53,7 +53,7 @@ fn said(text: &str) -> Run {
 }
 
 #[test]
-fn every_form_of_an_imprint_is_described_like_the_first() {
+fn every_format_of_an_imprint_has_the_same_description() {
     let folder = Folder::new();
     assert_eq!(folder.run("export washer a.txt"), said("written: a.txt\n"));
     let expected = folder.run("describe a.txt --json");
@@ -87,7 +87,7 @@ fn every_form_of_an_imprint_is_described_like_the_first() {
 }
 
 #[test]
-fn a_figure_leaves_its_drawing_beside_its_table() {
+fn a_figure_is_exported_and_its_table_is_still_printed() {
     let folder = Folder::new();
     let table = taxel(RING, "").stdout;
     let run = folder.run(&format!("{RING} --export ring.svg"));
@@ -99,7 +99,7 @@ fn a_figure_leaves_its_drawing_beside_its_table() {
     let drawing = String::from_utf8(folder.read("ring.svg")).expect("text");
     assert!(drawing.starts_with("<svg ") && drawing.contains(">x / cells<"));
     assert!(drawing.contains(">CG 6, 5.5 cells<") && drawing.contains("class=\"outline\""));
-    // In mm where a pitch is given, with JSON too.
+    // In mm if a pitch is given, also with JSON.
     let run = folder.run(&format!(
         "{RING} --pitch 2 --json --export ring.svg --force"
     ));
@@ -124,7 +124,7 @@ fn a_stored_shape_is_drawn_with_its_outline_and_name() {
 }
 
 #[test]
-fn standard_streams_take_part() {
+fn imprints_are_exported_through_standard_input_and_output() {
     let plain = "P1\n3 2\n101\n111\n";
     let run = taxel("export - - --format pbm-plain", "1,0,1\n1,1,1\n");
     assert_eq!(run, said(plain));
@@ -138,12 +138,12 @@ fn standard_streams_take_part() {
         "figure hexagon --export - --format csv --columns 4 --rows 1",
         "",
     );
-    // From the corner of so small a sensor on: its upper side reaches from 2 to 6.
+    // Drawn on a sensor this small, the upper side extends from 2 to 6.
     assert_eq!(run, said("0,0,1,1\n"));
 }
 
 #[test]
-fn nothing_is_overwritten_unless_asked_for() {
+fn files_are_only_overwritten_with_force() {
     let folder = Folder::new();
     folder.write("old.svg", b"mine");
     let there = "\"old.svg\" already exists; --force replaces it";
@@ -155,7 +155,7 @@ fn nothing_is_overwritten_unless_asked_for() {
         said("written: old.svg\n")
     );
     assert!(folder.read("old.svg").starts_with(b"<svg"));
-    // Only a file is replaced, and no half of one is left.
+    // Only files are replaced, and no partial file is left.
     std::fs::create_dir(folder.0.path().join("folder.svg")).expect("made");
     refused(
         &folder.run("export washer folder.svg --force"),
@@ -171,7 +171,7 @@ fn nothing_is_overwritten_unless_asked_for() {
 }
 
 #[test]
-fn a_refusal_says_what_is_expected() {
+fn bad_targets_are_refused_with_what_is_expected() {
     misused(
         "export washer washer.bmp",
         "'washer.bmp': expected a name that ends in .txt, .pbm, .csv, .npy, .svg or .png, or a '--format'",
@@ -222,7 +222,7 @@ fn screens_of_a_script_are_drawn() {
 }
 
 #[test]
-fn a_drawn_screen_has_its_theme_and_is_not_overwritten() {
+fn a_drawn_screen_has_the_theme_and_is_not_overwritten() {
     let folder = Folder::new();
     let line = "script -k f<Enter> --size 60x20 --svg .";
     assert_eq!(folder.run(line).status, Some(0));
@@ -251,7 +251,7 @@ fn a_drawn_screen_has_its_theme_and_is_not_overwritten() {
 }
 
 #[test]
-fn a_file_and_a_name_come_together_or_not_at_all() {
+fn export_and_save_either_both_happen_or_neither() {
     let folder = Folder::new();
     let run = folder.run(&format!("{RING} --export ring.txt --save washer"));
     assert_eq!(run.status, Some(1), "{}", run.stderr);
@@ -260,7 +260,7 @@ fn a_file_and_a_name_come_together_or_not_at_all() {
 
 #[cfg(unix)]
 #[test]
-fn what_others_may_not_read_they_may_not_read_afterwards() {
+fn a_replaced_file_keeps_its_permissions() {
     use std::os::unix::fs::PermissionsExt;
     let folder = Folder::new();
     folder.write("own.svg", b"mine");
@@ -274,9 +274,9 @@ fn what_others_may_not_read_they_may_not_read_afterwards() {
     assert_eq!(mode & 0o777, 0o600);
 }
 
-/// What editors put before a text is not a taxel.
+/// The byte order mark that editors write before a text is not a taxel.
 #[test]
-fn a_byte_order_mark_is_passed_over() {
+fn a_byte_order_mark_is_skipped() {
     let folder = Folder::new();
     for (name, content) in [("a.txt", ".#\n##\n"), ("a.csv", "0,1\n1,1\n")] {
         folder.write(name, format!("\u{feff}{content}").as_bytes());
@@ -296,9 +296,9 @@ fn a_byte_order_mark_is_passed_over() {
     );
 }
 
-/// A drawing is in the mm of the flag, else of the shape's own sensor.
+/// A drawing is in the mm of the flag, or else in those of the shape's own sensor.
 #[test]
-fn a_stored_pitch_counts() {
+fn a_stored_pitch_is_used() {
     let folder = Folder::new();
     let line = format!("{RING} --pitch 2.5 --save pit --library .");
     assert_eq!(folder.run(&line).status, Some(0));

@@ -1,4 +1,4 @@
-//! `taxel figure`: the worked example of the paper, flags, ranges, usage.
+//! Tests of `taxel figure`: the paper's worked example, flags, ranges, usage.
 
 use super::RING;
 use super::library::Shelf;
@@ -7,21 +7,21 @@ use super::refused;
 use super::taxel;
 
 #[test]
-fn the_worked_example_is_shown_as_matrix_and_table() {
+fn the_papers_example_is_shown_as_matrix_and_table() {
     let run = taxel(RING, "");
     assert_eq!(run.stdout, include_str!("ring.txt"));
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
 }
 
 #[test]
-fn with_a_pitch_lengths_and_areas_stand_in_mm_too() {
+fn with_a_pitch_lengths_and_areas_are_also_in_mm() {
     let run = taxel(&format!("{RING} --pitch 2.5 --ascii"), "");
     assert_eq!(run.stdout, include_str!("ring-ascii-mm.txt"));
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
 }
 
 #[test]
-fn the_worked_example_is_one_line_of_json_from_every_command() {
+fn the_papers_example_is_the_same_line_of_json_from_every_command() {
     let expected = include_str!("ring.json");
     let run = taxel(&format!("{RING} --json"), "");
     assert_eq!((run.status, run.stdout.as_str()), (Some(0), expected));
@@ -35,7 +35,7 @@ fn the_worked_example_is_one_line_of_json_from_every_command() {
 }
 
 #[test]
-fn what_is_not_given_takes_its_default() {
+fn missing_sizes_and_positions_have_defaults() {
     let line = |line: &str| taxel(line, "").stdout.lines().nth(18).map(str::to_owned);
     let made = |text: &str| Some(text.to_owned());
     assert_eq!(
@@ -76,7 +76,7 @@ no active taxels, so no regions to describe
 }
 
 #[test]
-fn wrong_usage_is_status_2() {
+fn wrong_usage_exits_with_status_2() {
     misused("figur", "unrecognized subcommand 'figur'\n");
     misused(
         "figure",
@@ -118,7 +118,7 @@ fn wrong_usage_is_status_2() {
 }
 
 #[test]
-fn a_flag_of_another_command_is_refused_with_what_this_one_takes_or_where_it_belongs() {
+fn a_flag_of_another_command_is_refused_with_a_hint() {
     for (line, message) in [
         (
             "figure hexagon --zoom-x 2",
@@ -154,7 +154,7 @@ fn a_flag_of_another_command_is_refused_with_what_this_one_takes_or_where_it_bel
             "watch - --x0 3",
             "'--x0' does not belong to 'watch', but to 'figure', 'picture', 'sweep' and 'model train'\n",
         ),
-        // It has to come later.
+        // The flag has to come later.
         (
             "library --json list",
             "unexpected argument '--json' found\n\n  tip: 'list --json' exists\n",
@@ -164,7 +164,7 @@ fn a_flag_of_another_command_is_refused_with_what_this_one_takes_or_where_it_bel
             "picture -ring",
             "unexpected argument '-r' found\n\n  tip: to pass '-r' as a value, use '-- -r'\n",
         ),
-        // One that no command has, with no advice to pass it as a value.
+        // A flag of no command; there is no tip to pass it as a value.
         (
             "describe washer --foo 3",
             "unexpected argument '--foo' found\n\nUsage: taxel describe ",
@@ -184,7 +184,7 @@ fn a_flag_of_another_command_is_refused_with_what_this_one_takes_or_where_it_bel
 }
 
 #[test]
-fn a_word_that_is_no_figure_says_what_it_may_be() {
+fn a_word_that_is_not_a_figure_is_refused_with_a_tip() {
     let shelf = Shelf::new();
     shelf.does("library|save|my ring|washer", "");
     let tip = |line: &str| {
@@ -252,7 +252,7 @@ fn a_word_that_is_no_figure_says_what_it_may_be() {
 }
 
 #[test]
-fn a_number_out_of_range_is_status_1_and_the_range_is_told() {
+fn a_number_out_of_range_exits_with_status_1_and_names_the_range() {
     let out = |line: &str, message: &str| refused(&taxel(line, ""), 1, message);
     out(
         "figure hexagon --side 99",

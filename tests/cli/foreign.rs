@@ -1,6 +1,6 @@
-//! Files that other programs read, and files of theirs: numpy, Pillow, mcap and netpbm, where they are installed.
+//! Exchange of files with other programs: numpy, Pillow, mcap and netpbm, where they are installed.
 //!
-//! With `TAXEL_NUMPY` set, Python must have its packages; with `TAXEL_CI` set, netpbm must be there.
+//! With `TAXEL_NUMPY` set, Python must have its packages; with `TAXEL_CI` set, netpbm must be installed.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -12,7 +12,7 @@ use super::program;
 use super::python_has;
 use super::skip::lacking;
 
-/// What the washer is, as rows of `#` and `.`, and its files in a folder.
+/// Returns the washer as rows of `#` and `.`, and a folder with its files.
 fn washer() -> (String, TempDir) {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     for name in [
@@ -38,7 +38,7 @@ fn export(folder: &Path, line: &str) {
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{line}");
 }
 
-/// Runs a program of others in a folder; none where it is not there.
+/// Runs another program in a folder; None if it is not installed.
 fn others(folder: &Path, name: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(name)
         .args(arguments)
@@ -56,7 +56,7 @@ fn others(folder: &Path, name: &str, arguments: &[&str]) -> Option<String> {
 }
 
 #[test]
-fn numpy_reads_and_is_read() {
+fn files_are_exchanged_with_numpy() {
     if !python_has("numpy") {
         return;
     }
@@ -99,12 +99,12 @@ for row in a:
 }
 
 #[test]
-fn pillow_reads_and_is_read() {
+fn files_are_exchanged_with_pillow() {
     if !python_has("PIL.Image") {
         return;
     }
     let (text, folder) = washer();
-    // Black is an active taxel; Pillow's own bitmaps have 0 for black.
+    // Black is an active taxel; in Pillow's own bitmaps, 0 is black.
     let script = "
 from PIL import Image
 a, b = Image.open('a.pbm'), Image.open('plain.pbm')
@@ -146,7 +146,7 @@ print(page.tagName, page.namespaceURI, len(page.getElementsByTagName('path')) > 
 }
 
 #[test]
-fn netpbm_reads_and_is_read() {
+fn files_are_exchanged_with_netpbm() {
     let (text, folder) = washer();
     let path = folder.path();
     if others(path, "pamfile", &["a.pbm"]).is_none() {
@@ -165,7 +165,7 @@ fn netpbm_reads_and_is_read() {
     assert!(compared.contains("16 by 16"), "{compared}");
 }
 
-/// Chunks of each packing, written by the package of the format's authors.
+/// The package of the format's authors writes chunks with each compression.
 #[test]
 fn recordings_of_the_mcap_package_are_read() {
     if !python_has("mcap, lz4, zstandard") {

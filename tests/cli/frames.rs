@@ -1,4 +1,4 @@
-//! `taxel frames`: recordings listed, and their frames as imprints.
+//! Tests of `taxel frames`: lists of recordings, and their frames as imprints.
 
 use std::io::Write;
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::array::array;
 use super::{Run, misused, taxel};
 
-/// A sample of the tests of recordings.
+/// Returns the path of a sample from the tests of recordings.
 fn sample(name: &str) -> String {
     format!(
         "{}/tests/files/frames/samples/{name}",
@@ -20,7 +20,7 @@ fn frames(name: &str, flags: &str) -> Run {
 }
 
 #[test]
-fn a_recording_in_place_of_a_command_gives_tips() {
+fn a_recording_instead_of_a_command_gives_tips() {
     let touch = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scripts/touch.csv");
     let tips = format!(
         "unrecognized subcommand '{touch}'\n\n  \
@@ -28,7 +28,7 @@ fn a_recording_in_place_of_a_command_gives_tips() {
          tip: taxel watch {touch} plays it\n\nUsage: "
     );
     misused(touch, &tips);
-    // No such file; and a file of another kind.
+    // A file that does not exist, and a file of another kind.
     misused(
         "touch.csv",
         "unrecognized subcommand 'touch.csv'\n\nUsage: ",
@@ -47,7 +47,7 @@ fn answers(run: &Run) -> Vec<Value> {
         .collect()
 }
 
-/// Answers without a message.
+/// Returns the answers of a run that must print no message.
 fn answered(name: &str, flags: &str) -> Vec<Value> {
     let run = frames(name, flags);
     assert_eq!(
@@ -58,7 +58,7 @@ fn answered(name: &str, flags: &str) -> Vec<Value> {
     answers(&run)
 }
 
-/// Exit status 1, and a message with this in it.
+/// Checks that a run exits with status 1 and a message that contains `message`.
 fn refused(name: &str, flags: &str, message: &str) {
     let run = frames(name, flags);
     assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""), "{flags}");
@@ -66,7 +66,7 @@ fn refused(name: &str, flags: &str, message: &str) {
 }
 
 #[test]
-fn a_list_says_what_the_recording_says() {
+fn a_list_shows_what_the_recording_says_about_itself() {
     let found = answered("tekscan.asf", "--json");
     let expected = r#"{"format":"tekscan","channels":[{"name":null,"frames":3,"rows":4,"columns":5,"cells":18,
         "unit":"raw","start":"1/2/2024 3:04:05.06PM","seconds_per_frame":0.05,"pitch_mm":[2.5,2.5],"threshold":null,
@@ -92,7 +92,7 @@ fn a_list_says_what_the_recording_says() {
 }
 
 #[test]
-fn a_list_says_when_frames_were_taken_and_where_the_time_goes_back() {
+fn a_list_shows_the_times_of_frames_and_where_they_go_back() {
     let time = |times: [&str; 3]| {
         let lines = times.map(|time| format!("{time},1,2,3,4\n"));
         let run = taxel(
@@ -141,7 +141,7 @@ fn frames_are_chosen_by_number_label_or_sum() {
 }
 
 #[test]
-fn rules_are_those_of_flags_or_of_the_recording() {
+fn the_rule_comes_from_flags_or_from_the_recording() {
     let imprint =
         |flags: &str| answered("tekscan.asf", &format!("--frame 2 --json {flags}"))[0].clone();
     let rows = |flags: &str| imprint(flags)["imprint"].clone();
@@ -157,7 +157,7 @@ fn rules_are_those_of_flags_or_of_the_recording() {
         rows("--at-least 7 --min-taxels 4"),
         serde_json::json!([".....", ".....", ".....", "....."])
     );
-    // The median of 3, 5 and 4 is 4, of 9, 14 and 10 is 10.
+    // The median of 3, 5 and 4 is 4, and of 9, 14 and 10 is 10.
     let tared = imprint("--tare 3 --at-least 0.5");
     assert_eq!(
         tared["imprint"],
@@ -197,7 +197,7 @@ fn rules_are_those_of_flags_or_of_the_recording() {
 }
 
 #[test]
-fn of_several_channels_one_must_be_named() {
+fn one_of_several_channels_must_be_named() {
     refused(
         "xsensor.csv",
         "--peak --at-least 9",
@@ -216,12 +216,12 @@ fn of_several_channels_one_must_be_named() {
 }
 
 #[test]
-fn the_only_array_of_an_archive_is_a_channel_with_its_name() {
+fn the_only_array_of_an_archive_is_a_channel_with_the_arrays_name() {
     let listed = answered("touch.npz", "--json");
     assert_eq!(listed[0]["channels"][0]["name"], "touch");
     let frame = &answered("touch.npz", "--channel touch --frame 0 --at-least 9 --json")[0];
     assert_eq!(frame["channel"], "touch");
-    // It need not be named.
+    // The channel need not be named.
     assert_eq!(
         &answered("touch.npz", "--frame 0 --at-least 9 --json")[0],
         frame
@@ -230,7 +230,7 @@ fn the_only_array_of_an_archive_is_a_channel_with_its_name() {
 }
 
 #[test]
-fn what_the_recording_does_not_say_is_asked_for_and_never_cut() {
+fn missing_rows_and_columns_are_asked_for_and_a_crop_must_fit() {
     refused("plain.csv", "", "--rows and --columns");
     refused(
         "plain.csv",
@@ -252,7 +252,7 @@ fn what_the_recording_does_not_say_is_asked_for_and_never_cut() {
     assert_eq!(negative.status, Some(2));
     let said = "expected the first column and row, then columns x rows";
     assert!(negative.stderr.contains(said), "{}", negative.stderr);
-    // A listing is about what is left.
+    // A listing describes the cropped frames.
     let list = &answered("u2.npy", "--crop 1,1,2x3 --json")[0]["channels"][0];
     let size = ["rows", "columns", "cells"].map(|key| list[key].as_u64());
     assert_eq!(size, [Some(3), Some(2), Some(6)]);
@@ -262,7 +262,7 @@ fn what_the_recording_does_not_say_is_asked_for_and_never_cut() {
 }
 
 #[test]
-fn whole_frames_before_a_damage_are_answered_then_the_damage() {
+fn whole_frames_before_damage_are_answered_then_the_damage_is_reported() {
     let whole = std::fs::read_to_string(sample("tekscan.asf")).expect("a text");
     let torn = whole.replace("0,4,10,0,0", "0,4,?,0,0");
     let run = taxel("frames - --all --at-least 9 --json", torn);
@@ -271,7 +271,7 @@ fn whole_frames_before_a_damage_are_answered_then_the_damage() {
         run.stderr,
         "error: standard input: line 32, column 3: found \"?\", expected a number\n"
     );
-    // Frames for the tare lack because of the damage.
+    // The frames for the tare are missing because of the damage.
     let torn = whole.replace("0,4,10,0,0", "0,4,?,0,0");
     let run = taxel("frames - --all --tare 3 --at-least 9", torn);
     assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""));
@@ -286,7 +286,7 @@ fn whole_frames_before_a_damage_are_answered_then_the_damage() {
 }
 
 #[test]
-fn what_is_no_recording_is_refused_by_its_beginning() {
+fn a_file_that_is_not_a_recording_is_refused_by_its_beginning() {
     for content in ["no recording", &"no recording\n".repeat(1 << 16)] {
         let run = taxel("frames -", content);
         assert_eq!(run.status, Some(1));
@@ -297,7 +297,7 @@ fn what_is_no_recording_is_refused_by_its_beginning() {
             run.stderr
         );
     }
-    // A pipe whose writer goes on is not read to its end, for it may have none.
+    // A pipe that its writer keeps open is not read to the end, because it may have no end.
     let mut endless = super::program(&["frames", "-"], "C.UTF-8")
         .spawn()
         .expect("the program starts");
@@ -313,9 +313,9 @@ fn what_is_no_recording_is_refused_by_its_beginning() {
 }
 
 #[test]
-fn records_that_the_header_counts_but_the_file_lacks_are_named() {
+fn missing_records_that_the_header_counts_are_reported() {
     let whole = std::fs::read(sample("records.npy")).expect("an array");
-    // Two are counted; the third came after that, as in the file of a program that was killed.
+    // The header counts two; the third was written after that, as in the file of a program that was killed.
     let cut = &whole[..whole.len() - 97];
     let run = taxel("frames - --all --at-least 1 --json", cut);
     assert_eq!((run.status, answers(&run).len()), (Some(0), 1));
@@ -327,7 +327,7 @@ fn records_that_the_header_counts_but_the_file_lacks_are_named() {
 }
 
 #[test]
-fn rows_and_columns_that_a_recording_states_itself_are_not_taken() {
+fn rows_and_columns_in_the_recording_override_the_flags() {
     let run = frames("tekscan.asf", "--rows 2 --columns 2");
     assert_eq!(run.status, Some(0));
     let expected = "it states 4 rows and 5 columns; --rows and --columns have no effect\n";
@@ -336,7 +336,7 @@ fn rows_and_columns_that_a_recording_states_itself_are_not_taken() {
 }
 
 #[test]
-fn frames_are_exported_with_their_number_and_stored() {
+fn frames_are_exported_with_their_number_and_saved() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("touch.svg");
     let flags = format!("--all --at-least 9 --heat --export {}", file.display());
@@ -371,7 +371,7 @@ fn frames_are_exported_with_their_number_and_stored() {
 }
 
 #[test]
-fn a_report_on_noise_has_no_lengths() {
+fn a_report_on_noise_accepts_no_pitch() {
     misused(
         &format!(
             "frames {} --noise-report --at-least 9 --pitch 2",
@@ -381,11 +381,11 @@ fn a_report_on_noise_has_no_lengths() {
     );
 }
 
-/// Rows of four cells, each with a label; 7 stands twice.
+/// Rows of four cells, each with a label; 7 occurs twice.
 const LABELLED: &str = "label,a,b,c,d\n7,1,0,0,0\n7,1,1,0,0\n8,1,1,1,0\n";
 
 #[test]
-fn one_frame_is_saved_or_exported_by_a_label() {
+fn a_frame_is_saved_or_exported_by_its_label() {
     let folder = tempfile::tempdir().expect("a folder");
     let library = folder.path().join("library");
     let file = folder.path().join("foo.svg");
@@ -418,7 +418,7 @@ fn one_frame_is_saved_or_exported_by_a_label() {
     assert!(!library.exists(), "nothing is kept");
     let left = std::fs::read_dir(folder.path()).expect("a folder").count();
     assert_eq!(left, 0, "nothing is kept");
-    // Without them both are answered, and a label of one frame is enough.
+    // Without these flags both frames are answered; a label of one frame is enough for them.
     assert_eq!(answers(&of_label(7, "--json")).len(), 2);
     let svg = of_label(8, "--save foo --export - --format svg");
     assert_eq!(svg.stdout.matches("<svg xmlns").count(), 1);
@@ -426,7 +426,7 @@ fn one_frame_is_saved_or_exported_by_a_label() {
 }
 
 #[test]
-fn standard_output_takes_the_export_of_one_frame() {
+fn only_one_frame_can_be_exported_to_standard_output() {
     let line = format!("frames {} --at-least 9", sample("tekscan.asf"));
     misused(
         &format!("{line} --all --export - --format svg"),
@@ -455,10 +455,10 @@ fn cells_that_are_not_square_have_no_lengths_in_mm() {
     assert!(square.contains("in mm"), "{square}");
 }
 
-/// What a recording says of the taxels that flip, and of those that are stuck; and the mask of these.
+/// The taxels of a recording that flip, and those that are stuck, with the mask of the stuck ones.
 #[test]
 fn the_noise_of_a_recording_is_reported() {
-    // 30 frames of 5 x 5: one taxel is always on, one flips in every tenth frame.
+    // 30 frames of 5 × 5: one taxel is always on, one flips in every tenth frame.
     let frame = |number: u32| {
         let mut values = [0; 25];
         values[24] = 9;
@@ -500,7 +500,7 @@ fn the_noise_of_a_recording_is_reported() {
     assert!(run.stdout.contains(flips), "{}", run.stdout);
     let written = std::fs::read_to_string(&mask).expect("it is written");
     assert_eq!(written, ".....\n.....\n.....\n.....\n....#\n");
-    // Values that change at random flip too often for any noise below a half; with two frames nothing can be told.
+    // Values that change at random flip too often for any noise below one half; from two frames nothing can be said.
     let mut state = 1_u32;
     let mut random = || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -526,7 +526,7 @@ fn the_noise_of_a_recording_is_reported() {
         "{}",
         run.stdout
     );
-    // What says nothing of many frames is refused, not ignored.
+    // Flags that have no meaning for many frames are refused, not ignored.
     for flag in ["--save mask", "--model figures", "--heat"] {
         let line = format!("frames - --noise-report --at-least 5 {flag}");
         misused(&line, "the argument '--noise-report' cannot be used with");
@@ -534,7 +534,7 @@ fn the_noise_of_a_recording_is_reported() {
 }
 
 #[test]
-fn a_listing_is_of_the_channel_that_is_asked_for() {
+fn a_listing_shows_only_the_requested_channel() {
     let text = frames("xsensor.csv", "--channel right");
     assert_eq!((text.status, text.stderr.as_str()), (Some(0), ""));
     assert!(
@@ -558,9 +558,9 @@ fn a_listing_is_of_the_channel_that_is_asked_for() {
     );
 }
 
-/// What is wrong at the beginning is said although the input has no end.
+/// Errors at the beginning are reported, although the input has no end.
 #[test]
-fn an_input_without_an_end_is_refused_at_once() {
+fn an_endless_input_is_refused_at_once() {
     for (line, expected) in [
         ("1 2 3", "3 numbers a line, but no rows and columns"),
         ("{\\\"frame\\\":[[1],[]]}", "line 1, column "),
@@ -577,9 +577,9 @@ fn an_input_without_an_end_is_refused_at_once() {
     }
 }
 
-/// What would change nothing in a listing is refused there.
+/// Flags that would change nothing in a listing are refused.
 #[test]
-fn a_listing_has_no_threshold_and_no_tare() {
+fn a_listing_accepts_no_threshold_and_no_tare() {
     for flags in [
         "--at-least 10",
         "--percent 50",
@@ -606,7 +606,7 @@ fn a_listing_has_no_threshold_and_no_tare() {
 }
 
 #[test]
-fn a_plain_table_of_factors_is_a_gain() {
+fn a_plain_table_of_factors_is_read_as_a_gain() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("gain.csv");
     let gain = path.to_str().expect("UTF-8");
@@ -662,7 +662,7 @@ fn a_threshold_out_of_range_names_what_is_allowed() {
     );
 }
 
-/// A mask and a gain are read from standard input as from a file; two that read it are refused.
+/// A mask and a gain can be read from standard input like from a file, but not both of them.
 #[test]
 fn a_mask_and_a_gain_may_come_from_standard_input() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -708,7 +708,7 @@ fn a_mask_and_a_gain_may_come_from_standard_input() {
 }
 
 #[test]
-fn a_gain_of_one_row_or_one_column_is_a_table() {
+fn a_gain_of_one_row_or_one_column_is_read_as_a_table() {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, content: &str| {
         let path = folder.path().join(name);
@@ -776,7 +776,7 @@ fn a_column_of_numbers_is_a_recording_if_rows_and_columns_are_given() {
     }
     let read =
         |text: &str, flags: &str| taxel(&format!("frames - --all --at-least 2 {flags}"), text);
-    // Without them, nothing says that these are frames.
+    // Without rows and columns, nothing says that these are frames.
     super::refused(
         &read(column, ""),
         1,
@@ -811,7 +811,7 @@ fn a_recording_without_values_has_no_peak() {
     }
 }
 
-/// A file in a folder of its own, and the imprints of all its frames.
+/// Writes a file into a folder of its own, and returns the imprints of all its frames.
 fn imprints_of(name: &str, content: &[u8], flags: &str) -> Vec<Value> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join(name);
@@ -826,9 +826,9 @@ fn imprints_of(name: &str, content: &[u8], flags: &str) -> Vec<Value> {
 }
 
 #[test]
-fn cells_are_where_the_file_says_in_less_usual_tables() {
+fn unusual_tables_have_their_cells_in_the_right_places() {
     let two_rows = serde_json::json!(["..#", "###"]);
-    // Two frames of six cells each, the frames next to each other.
+    // Two frames of six cells each, with the frames next to each other.
     let flat: Vec<f64> = (1..=6).flat_map(|cell| [f64::from(cell), 0.0]).collect();
     let flags = "--rows 2 --columns 3 --at-least 3";
     let found = imprints_of("flat.npy", &array("(2, 6)", true, &flat), flags);
@@ -837,7 +837,7 @@ fn cells_are_where_the_file_says_in_less_usual_tables() {
     let found = imprints_of("one.npy", &array("(2, 3)", true, &square), "--at-least 3");
     assert_eq!(found[0], two_rows);
     for (text, flags) in [
-        // What is said of the frame after its cells.
+        // A value about the frame after its cells.
         ("S0_0,S0_1,S0_2,S1_0,S1_1,S1_2,total\n1,2,3,4,5,6,21\n", ""),
         // Comments above and between rows.
         (
@@ -848,12 +848,12 @@ fn cells_are_where_the_file_says_in_less_usual_tables() {
             "# from Windows\r\n\r\n  # indented\r\n \t\r\n1 2 3\r\n4 5 6\r\n\r\n1 2 3\r\n4 5 6\r\n",
             "",
         ),
-        // A pair of numbers in a name by chance.
+        // A pair of numbers that is part of a name by chance.
         (
             "a_1_1,a_1_2,c0,c1,c2,c3,c4,c5\n9,9,1,2,3,4,5,6\n",
             "--rows 2 --columns 3",
         ),
-        // Numbers in a row are values unless they count from 0.
+        // Numbers in a row are values, unless they count from 0.
         ("1 2 3\n4 5 6\n\n1 2 3\n4 5 6\n", ""),
     ] {
         let found = imprints_of(
@@ -863,7 +863,7 @@ fn cells_are_where_the_file_says_in_less_usual_tables() {
         );
         assert_eq!(found[0], two_rows, "{text}");
     }
-    // The last cell is none.
+    // The last cell has no value.
     let text = "r0c0,r0c1,r1c0,r1c1\n1,2,3,\n4,5,6,7\n";
     let found = imprints_of("none.csv", text.as_bytes(), "--at-least 3");
     assert_eq!(found[0], serde_json::json!(["..", "#."]));
@@ -873,7 +873,7 @@ fn cells_are_where_the_file_says_in_less_usual_tables() {
 }
 
 #[test]
-fn a_frame_without_cells_is_no_peak() {
+fn a_frame_without_values_is_never_the_peak() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("idle.jsonl");
     let none = "{\"frame\":[[null,null]]}\n";
@@ -893,7 +893,7 @@ fn a_frame_without_cells_is_no_peak() {
 }
 
 #[test]
-fn a_peak_is_that_of_the_values_after_a_gain() {
+fn the_peak_is_found_after_the_gain_is_applied() {
     let folder = tempfile::tempdir().expect("a folder");
     let (path, gain) = (
         folder.path().join("two.jsonl"),
@@ -929,7 +929,7 @@ fn a_recording_of_more_cells_than_an_imprint_is_listed() {
 }
 
 #[test]
-fn of_many_warnings_the_first_twenty_are_shown() {
+fn only_the_first_twenty_warnings_are_shown() {
     let head = "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nUNITS raw\nASCII_DATA @@\n";
     let wrong = |frames: u32| -> String {
         let frame = |number| format!("\nFrame {number}, 0,,,,,Raw Sum=,,9\n1,2\n");

@@ -1,4 +1,4 @@
-//! `taxel library`, and what `--save` and `--library` do: every command, every refusal.
+//! Tests of `taxel library`, `--save` and `--library`: every command, every refusal.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use super::program;
 use super::refused;
 use super::run_in;
 
-/// A library of its own.
+/// A library in a temporary folder.
 pub(super) struct Shelf {
     outside: TempDir,
     pub(super) folder: PathBuf,
@@ -32,14 +32,14 @@ impl Shelf {
         run_in("C.UTF-8", &arguments, input.as_bytes())
     }
 
-    /// Runs it, and answers what it says; it must succeed.
+    /// Runs a line that must succeed, and returns its output.
     pub(super) fn does(&self, line: &str, input: &str) -> String {
         let run = self.run(line, input);
         assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{line}");
         run.stdout
     }
 
-    /// A file outside the library.
+    /// Writes a file outside the library.
     pub(super) fn file(&self, name: &str, content: &str) -> String {
         let path = self.outside.path().join(name);
         std::fs::write(&path, content).expect("written");
@@ -93,7 +93,7 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
     );
     shelf.refuses("library|show|my ring", "no shape is called \"my ring\"");
     shelf.refuses("library|delete|my ring", "no shape is called \"my ring\"");
-    // A slip of the keys, in the library and in its trash.
+    // A typing error in the name of a shape, in the library and in its trash.
     shelf.refuses(
         "library|show|wahser",
         "no shape is called \"wahser\"; did you mean \"washer\"?",
@@ -121,7 +121,7 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
 }
 
 #[test]
-fn an_existing_shape_is_replaced_by_force_only() {
+fn an_existing_shape_is_only_replaced_with_force() {
     let shelf = Shelf::new();
     shelf.does("library|save|one|-", RING);
     let taken = "\"one\" already exists; --force replaces it";
@@ -166,7 +166,7 @@ fn figures_are_saved_with_their_sensor_and_source() {
     );
     assert_eq!(run.stdout.lines().count(), 1, "nothing but the answer");
     assert_eq!(run.stdout, shelf.does("library|show|json|--json", ""));
-    // Copied with all that it has, a file of the library being a file as well.
+    // A copy has everything of the original; a file of the library can be read like any other file.
     let file = shelf.folder.join("mine.json").display().to_string();
     shelf.does(&format!("library|save|copy|{file}"), "");
     let copied = shelf.does("library|show|copy", "");
@@ -180,7 +180,7 @@ fn figures_are_saved_with_their_sensor_and_source() {
 }
 
 #[test]
-fn names_that_are_not_clear_are_reported() {
+fn ambiguous_names_are_reported() {
     let shelf = Shelf::new();
     shelf.does("library|save|ring|-", RING);
     let file = |name: &str| shelf.folder.join(name);
@@ -210,7 +210,7 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
     let bad = shelf.folder.join("bad\u{e9}.json");
     std::fs::write(&bad, "{\"format\":\"taxel-shape/9\"}").expect("written");
     std::fs::create_dir(shelf.folder.join("dir.json")).expect("made");
-    // What the screen remembers is the library's own; the rest is foreign.
+    // The screen's own files belong to the library; the others are foreign.
     for file in [".commands", ".recognise", ".forms", "notes.txt", "a:b.json"] {
         std::fs::write(shelf.folder.join(file), "").expect("written");
     }
@@ -262,14 +262,14 @@ fn broken_shapes_are_listed_and_checked_with_the_reason() {
         parsed[2],
         serde_json::json!({"name": "good", "origin": "own", "columns": 4, "rows": 3, "na": 6, "pieces": 1, "holes": 1})
     );
-    // The name is that of the library, so no file is looked for.
+    // The library has this name, so no file is looked for.
     let run = shelf.run("picture|bad\u{e9}", "");
     assert_eq!(run.status, Some(1));
     assert!(run.stderr.contains("taxel-shape/9"), "{}", run.stderr);
 }
 
 #[test]
-fn the_folder_is_that_of_the_flag_wherever_it_stands() {
+fn the_library_flag_may_stand_anywhere() {
     let shelf = Shelf::new();
     let folder = shelf.folder.to_str().expect("text");
     for line in [
@@ -289,7 +289,7 @@ fn the_folder_is_that_of_the_flag_wherever_it_stands() {
 }
 
 #[test]
-fn wrong_usage_is_status_2() {
+fn wrong_usage_exits_with_status_2() {
     misused("library", "'taxel library' requires a subcommand");
     misused("library show", "the following required arguments");
     misused("library save name", "the following required arguments");
@@ -311,9 +311,9 @@ fn wrong_usage_is_status_2() {
     );
 }
 
-/// Where the folder of the library lies below a file, shipped shapes can be read and none can be saved.
+/// If the library's folder would be below a file, shipped shapes can be read, but none can be saved.
 #[test]
-fn a_library_below_a_file_has_the_shipped_shapes() {
+fn a_library_path_below_a_file_still_has_the_shipped_shapes() {
     let shelf = Shelf::new();
     let file = shelf.file("file", "");
     let below = format!("{file}/share/library");
@@ -353,13 +353,13 @@ fn a_library_below_a_file_has_the_shipped_shapes() {
         "{}",
         saved.stderr
     );
-    // A file in place of the folder itself is an error.
+    // A file with the name of the folder itself is an error.
     let file = run_in("C.UTF-8", &["library", "list", "--library", &file], b"");
     assert_eq!(file.status, Some(1), "{}", file.stderr);
 }
 
 #[test]
-fn a_file_in_place_of_the_name_says_what_comes_first() {
+fn saving_with_name_and_file_swapped_explains_the_order() {
     let shelf = Shelf::new();
     let imprint = shelf.file("imprint.txt", RING);
     let folder = std::path::Path::new(&imprint).parent().expect("a folder");

@@ -1,4 +1,4 @@
-//! The program as users run it: arguments and standard input in, text and exit status out.
+//! Tests of the program as users run it: arguments and standard input in, text and exit status out.
 
 #[path = "../common/paper.rs"]
 mod paper;
@@ -63,7 +63,7 @@ use std::io::Write;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// The program in a locale, its pipes open.
+/// Returns the command that runs the program in a locale, with pipes for all its streams.
 fn program<A: AsRef<OsStr>>(arguments: &[A], locale: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_taxel"));
     command
@@ -71,14 +71,14 @@ fn program<A: AsRef<OsStr>>(arguments: &[A], locale: &str) -> Command {
         .env_remove("LC_CTYPE")
         .env_remove("LANG")
         .env("LC_ALL", locale)
-        // No settings file.
+        // Uses no settings file.
         .env("TAXEL_CONFIG", "/dev/null")
-        // No library, only the shapes that come with the program.
+        // Uses no library, only the shapes that are shipped with the program.
         .env(
             "TAXEL_LIBRARY",
             concat!(env!("CARGO_TARGET_TMPDIR"), "/no-library"),
         )
-        // No model that another version has cached.
+        // Uses no model that another version has cached.
         .env(
             "XDG_CACHE_HOME",
             concat!(env!("CARGO_TARGET_TMPDIR"), "/cache"),
@@ -89,7 +89,7 @@ fn program<A: AsRef<OsStr>>(arguments: &[A], locale: &str) -> Command {
     command
 }
 
-/// The result of a run.
+/// The result of running the program.
 #[derive(Debug, PartialEq, Eq)]
 struct Run {
     status: Option<i32>,
@@ -122,7 +122,7 @@ fn taxel(line: &str, input: impl AsRef<[u8]>) -> Run {
     run_in("C.UTF-8", &arguments, input.as_ref())
 }
 
-/// Nothing written but one message.
+/// Checks that a run wrote nothing but one message.
 fn refused(run: &Run, status: i32, message: &str) {
     let stderr = format!("error: {message}\n");
     let stdout = String::new();
@@ -134,7 +134,7 @@ fn refused(run: &Run, status: i32, message: &str) {
     assert_eq!(*run, expected);
 }
 
-/// Wrong usage: status 2, a message that starts like this, and a pointer to the help.
+/// Checks that a line is wrong usage: status 2, a message that begins with `message`, and a pointer to the help.
 fn misused(line: &str, message: &str) {
     let run = taxel(line, "");
     assert_eq!(run.status, Some(2), "{line}");
@@ -151,7 +151,7 @@ fn misused(line: &str, message: &str) {
     );
 }
 
-/// Waits until something holds, for half a minute at most.
+/// Waits until a condition holds, for half a minute at most.
 fn until(what: &str, mut holds: impl FnMut() -> bool) {
     let start = Instant::now();
     while !holds() {
@@ -160,7 +160,8 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
     }
 }
 
-/// Whether Python has these modules; where not, the test is skipped. With `TAXEL_NUMPY` set they must be there.
+/// Returns true if Python has these modules; otherwise reports the test as skipped. With `TAXEL_NUMPY` set, they are
+/// required.
 fn python_has(modules: &str) -> bool {
     let found = Command::new("python3")
         .args(["-c", &format!("import {modules}")])

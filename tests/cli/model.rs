@@ -1,4 +1,4 @@
-//! `taxel model`: training, shards, evaluation, and what is refused.
+//! Tests of `taxel model`: training, shards, evaluation, and refusals.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
@@ -27,14 +27,14 @@ pub(crate) const RECTANGLES: &str = "{\"name\":\"a\",\"figure\":\"rectangle\",\"
      {\"name\":\"c\",\"figure\":\"rectangle\",\"length\":6.2,\"width\":3}\n\
      {\"name\":\"d\",\"figure\":\"rectangle\",\"length\":4.2,\"width\":4.2}\n";
 
-/// The grid of the published figures.
+/// The grid of the published numbers.
 const PUBLISHED: &str = "--x0 10:10.99:0.01 --y0 10:10.99:0.01 --angle 0:359:1 --anchor corner \
                          --columns 32 --rows 32 --quiet";
 
-/// One that is done at once.
+/// A coarse grid, for a quick training.
 pub(crate) const COARSE: &str = "--positions 10 --angle 0:355:5 --quiet";
 
-/// A folder with files, and a program whose library is in it.
+/// A folder with files, in which the program runs and has its library.
 pub(crate) struct Place(pub(crate) tempfile::TempDir);
 
 impl Place {
@@ -74,7 +74,7 @@ impl Place {
         finish(program.spawn().expect("it starts"), input.as_bytes())
     }
 
-    /// The same, of a line that must work; returns what it prints.
+    /// Runs a line that must succeed, and returns its output.
     pub(crate) fn done(&self, line: &str) -> String {
         let run = self.run(line, "");
         assert_eq!(run.status, Some(0), "{line}: {}", run.stderr);
@@ -86,7 +86,7 @@ impl Place {
     }
 }
 
-/// The keys of an object as they stand in its text.
+/// Returns the keys of an object in the order of its text.
 pub(crate) fn keys(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let (mut depth, mut quoted, mut word) = (0, false, String::new());
@@ -109,7 +109,7 @@ pub(crate) fn keys(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn four_rectangles_by_command_line_are_confused_as_published() {
+fn four_rectangles_on_the_command_line_are_confused_as_published() {
     let place = Place::new();
     place.done(&format!(
         "model train rectangles.jsonl {PUBLISHED} --out s4.npz"
@@ -161,7 +161,7 @@ fn four_rectangles_by_command_line_are_confused_as_published() {
 }
 
 #[test]
-fn what_descriptors_pairs_and_classifiers_are_worth() {
+fn confusion_is_evaluated_for_descriptors_pairs_and_classifiers() {
     let place = Place::new();
     place.done(&format!(
         "model train rectangles.jsonl {COARSE} --out m.npz"
@@ -189,7 +189,7 @@ fn what_descriptors_pairs_and_classifiers_are_worth() {
         assert!(right(&peer) <= right(&limit) && peer["certain"].is_null());
     }
     assert_eq!(table["limit"], limit["error"]);
-    // What is drawn says so, and nothing is certain that is not known.
+    // A drawn sample is marked as such, and nothing that is unknown is called certain.
     let knn = "model confusion m.npz --classifier knn --sample 7 --seed 3";
     let answer = place.json(&format!("{knn} --json"));
     assert_eq!((&answer["sample"], &answer["seed"]), (&7.into(), &3.into()));
@@ -215,7 +215,7 @@ fn what_descriptors_pairs_and_classifiers_are_worth() {
 }
 
 #[test]
-fn what_is_said_and_written_fits_what_is_asked() {
+fn messages_and_files_match_the_request() {
     let place = Place::new();
     place.done(&format!(
         "model train rectangles.jsonl {COARSE} --out m.npz"
@@ -247,7 +247,7 @@ fn what_is_said_and_written_fits_what_is_asked() {
         1,
         "all.svg: the table of all classifiers is written as .csv",
     );
-    // Noise, from the whole imprint and from descriptors.
+    // With noise: from the whole imprint, and from descriptors.
     let noisy = "model confusion m.npz --noise 0:0.04:0.02 --dead 0,4 --touches 50 --quiet";
     let shown = place.done(&format!("{noisy} --export noise.svg"));
     assert!(shown.contains("\n4 dead taxels\n"), "{shown}");
@@ -302,7 +302,7 @@ fn shards_and_threads_give_the_same_bytes() {
 }
 
 #[test]
-fn a_training_is_taken_up_where_it_was_left() {
+fn an_interrupted_training_can_be_resumed() {
     let place = Place::new();
     let train = |more: &str| {
         let coarse = "--positions 5 --angle 0:350:10 --resume --out part.npz";
@@ -317,7 +317,7 @@ fn a_training_is_taken_up_where_it_was_left() {
         .stdout
         .replace("written: ", "kept, complete and part of this study: ");
     assert_eq!((again.status, again.stdout.as_str()), (Some(0), &*kept));
-    // With --quiet neither is said.
+    // With --quiet, neither message is printed.
     let summary = kept.split_once('\n').map(|(_, summary)| summary.to_owned());
     assert_eq!(
         Some(train(&format!("{of} --quiet")).stdout),
@@ -348,7 +348,7 @@ fn a_training_is_taken_up_where_it_was_left() {
         );
         assert!(run.stderr.contains("error: part.npz is of another study ("));
     }
-    // Poses that are cut off have to be allowed again.
+    // Poses that are cut off must be allowed again.
     fs::remove_file(place.path("part.npz")).expect("it is there");
     let cut = "washer --columns 8 --rows 8";
     assert_eq!(train(&format!("{cut} --allow-cut")).status, Some(0));
@@ -370,7 +370,7 @@ fn a_training_is_taken_up_where_it_was_left() {
 }
 
 #[test]
-fn models_have_names_and_cards() {
+fn models_can_be_named_listed_and_shown() {
     let place = Place::new();
     let built_in = "figures: built in\nfigures-30: built in\nshapes: built in\n";
     assert_eq!(place.done("model list"), built_in);
@@ -416,7 +416,7 @@ fn models_have_names_and_cards() {
     );
 }
 
-/// A set from everywhere: a file, standard input, the library, words.
+/// Shapes of a set come from anywhere: a file, standard input, the library, words.
 #[test]
 fn shapes_come_from_files_words_and_the_library() {
     let place = Place::new();
@@ -441,7 +441,7 @@ fn shapes_come_from_files_words_and_the_library() {
 }
 
 #[test]
-fn names_that_are_nearly_right_are_named() {
+fn similar_names_are_suggested() {
     let place = Place::new();
     for (line, message) in [
         (
@@ -468,7 +468,7 @@ fn names_that_are_nearly_right_are_named() {
 }
 
 #[test]
-fn sets_that_make_no_sense_are_refused_in_one_sentence() {
+fn meaningless_sets_are_refused_in_one_sentence() {
     let place = Place::new();
     let train = |what: &str, input: &str| {
         place.run(&format!("model train {what} {COARSE} --out m.npz"), input)
@@ -521,7 +521,7 @@ fn sets_that_make_no_sense_are_refused_in_one_sentence() {
     );
     let run = train("no-such-shape", "");
     assert!(run.stderr.contains("no-such-shape"), "{}", run.stderr);
-    // A cut imprint tells of the rim.
+    // Poses that the sensor cuts off are refused unless they are allowed.
     let cut = "model train --shape 't=triangle side=11.77' --x0 5:5.9:0.1 --y0 5:5.9:0.1 \
                --angle 0:350:10 --columns 16 --rows 16 --quiet --out cut.npz";
     refused(
@@ -556,14 +556,14 @@ fn sets_that_make_no_sense_are_refused_in_one_sentence() {
 }
 
 #[test]
-fn training_chooses_the_side_of_the_sensor_that_is_not_given() {
+fn training_chooses_missing_sides_of_the_sensor() {
     let place = Place::new();
     let disc = "model train --shape 'a=ellipse radius_x=9 radius_y=9' --positions 2 --angle 0 --json --quiet --out m.npz";
     for (given, columns, rows) in [
         ("", 19, 19),
         ("--columns 40", 40, 19),
         ("--rows 40", 19, 40),
-        // The corner is at x0: of 18 cells, one begins at 3.5.
+        // The corner is at x0: with 18 cells, one of them begins at 3.5.
         ("--columns 40 --x0 3:3.5:0.5", 40, 19),
         ("--rows 40 --x0 3:3.5:0.5", 22, 40),
     ] {
@@ -574,13 +574,13 @@ fn training_chooses_the_side_of_the_sensor_that_is_not_given() {
             "{given}"
         );
     }
-    // Small shapes do not make it smaller than 16.
+    // Small shapes do not make the sensor smaller than 16.
     let small = "model train parts.jsonl --positions 2 --angle 0:330:30 --rows 20 --json --quiet --out small.npz";
     assert_eq!(place.json(small)["sensor"]["columns"], 16);
 }
 
 #[test]
-fn where_poses_are_cut_off_on_every_sensor_the_smallest_is_taken_and_what_helps_is_named() {
+fn if_every_sensor_cuts_poses_off_the_message_says_what_helps() {
     let place = Place::new();
     let square =
         "model train --shape 'a=rectangle length=3 width=3' --x0 0 --y0 0 --quiet --out m.npz";
@@ -588,7 +588,7 @@ fn where_poses_are_cut_off_on_every_sensor_the_smallest_is_taken_and_what_helps_
         let message = format!("a: the {cut}; {remedy}, or allow it with --allow-cut");
         refused(&place.run(line, ""), 1, &message);
     };
-    // Turned, it reaches beyond the left and the top.
+    // When turned, it reaches beyond the left and upper rim.
     cut(
         square,
         "16 × 16 sensor cuts off 356 of 360 poses",
@@ -663,7 +663,7 @@ fn a_shape_of_a_set_has_no_pose() {
     }
     let words = "model train --shape 'a=ellipse radius_x=3 radius_y=2 x0=1'";
     refused_at(words, "", "--shape a: x0");
-    // The pose of a stored shape belongs to its figure.
+    // The pose of a stored shape belongs to its figure, so it is accepted.
     place.done(&format!("model train washer {COARSE} --out washer.npz"));
 }
 
@@ -694,7 +694,7 @@ fn damaged_models_are_refused() {
             run.stderr
         );
     }
-    // An atlas is not a model, nor is a set of shapes.
+    // An atlas is not a model, and a set of shapes is not one, either.
     place.done("sweep hexagon --x0 5 --y0 5 --angle 0 --quiet --atlas atlas.npz");
     let run = place.run("model show atlas.npz", "");
     let kind = "atlas.npz: an atlas of taxel sweep, expected a model";
@@ -729,7 +729,7 @@ fn damaged_models_are_refused() {
 }
 
 #[test]
-fn the_matrix_goes_into_files() {
+fn the_confusion_matrix_is_exported_to_files() {
     let place = Place::new();
     place.done(&format!(
         "model train rectangles.jsonl {COARSE} --out m.npz"
@@ -761,7 +761,7 @@ fn the_matrix_goes_into_files() {
 }
 
 #[test]
-fn names_are_quoted_in_tables_where_they_have_to_be() {
+fn names_are_quoted_in_tables_if_necessary() {
     let place = Place::new();
     place.write(
         "odd.jsonl",
@@ -780,7 +780,7 @@ fn names_are_quoted_in_tables_where_they_have_to_be() {
 }
 
 #[test]
-fn an_interrupted_training_leaves_nothing() {
+fn an_interrupted_training_leaves_no_files() {
     let place = Place::new();
     // Minutes of work.
     let line =
@@ -791,7 +791,7 @@ fn an_interrupted_training_leaves_nothing() {
         .current_dir(place.0.path())
         .spawn()
         .expect("it starts");
-    // It listens to signals before it says what it will do.
+    // The program listens for signals before it says what it will do.
     let mut notes = BufReader::new(child.stderr.take().expect("piped"));
     let mut note = String::new();
     notes.read_line(&mut note).expect("a line");
@@ -810,7 +810,7 @@ fn an_interrupted_training_leaves_nothing() {
     assert_eq!(names(place.0.path()), ["parts.jsonl", "rectangles.jsonl"]);
 }
 
-/// Read by the real numpy, where Python has it; with `TAXEL_NUMPY` set it must.
+/// The real numpy reads a model, if Python has it; with `TAXEL_NUMPY` set, it is required.
 #[test]
 fn numpy_reads_a_model() {
     if !python_has("numpy") {
@@ -847,7 +847,7 @@ assert (bits.any(axis=1).sum(axis=1) == model['width']).all()
 }
 
 #[test]
-fn ascii_is_kept_to() {
+fn output_of_model_commands_is_ascii_if_the_locale_is_not_utf_8() {
     let place = Place::new();
     place.done(&format!(
         "model train rectangles.jsonl {COARSE} --out m.npz"
@@ -865,9 +865,9 @@ fn ascii_is_kept_to() {
     }
 }
 
-/// A table of 20,000 shapes would take 12 GB and more.
+/// A table of 20,000 shapes would take more than 12 GB.
 #[test]
-fn a_table_of_pairs_has_a_bound() {
+fn the_table_of_pairs_is_limited() {
     let place = Place::new();
     let line = |number: u32| {
         format!("{{\"name\":\"{number}\",\"figure\":\"rectangle\",\"length\":2,\"width\":1}}\n")
@@ -884,7 +884,7 @@ fn a_table_of_pairs_has_a_bound() {
 }
 
 #[test]
-fn shapes_that_are_never_told_apart_have_no_number_of_touches() {
+fn identical_shapes_have_no_number_of_touches_until_certainty() {
     let place = Place::new();
     let disc = "ellipse radius_x=2 radius_y=2";
     let bar = "rectangle length=6 width=3";
@@ -904,7 +904,7 @@ fn shapes_that_are_never_told_apart_have_no_number_of_touches() {
 }
 
 #[test]
-fn a_built_in_set_is_meant_before_a_file_of_its_name() {
+fn the_name_of_a_built_in_set_is_preferred_to_a_file_of_that_name() {
     let place = Place::new();
     fs::create_dir(place.path("figures")).expect("a folder");
     let text = place.done("recognise washer");
@@ -920,7 +920,7 @@ fn a_built_in_set_is_meant_before_a_file_of_its_name() {
 }
 
 #[test]
-fn words_of_a_shape_that_say_nothing_are_refused() {
+fn meaningless_words_of_a_shape_are_refused() {
     let place = Place::new();
     let words = [
         ("a=hexagon side=3 side=4", "--shape a: side: given twice"),
@@ -964,9 +964,9 @@ fn files_that_cannot_be_used_are_refused_before_any_work() {
     );
 }
 
-/// `.` has no name to put another beside: the models stand beside the folder that it is.
+/// `.` has no name of its own to derive another from: the models are placed beside the folder that it stands for.
 #[test]
-fn a_library_named_by_a_dot_has_its_models_beside_it() {
+fn the_models_of_a_library_named_dot_are_beside_its_folder() {
     let place = Place::new();
     let folder = place.0.path().join("library");
     fs::create_dir(&folder).expect("a folder");
@@ -980,7 +980,7 @@ fn a_library_named_by_a_dot_has_its_models_beside_it() {
 }
 
 #[test]
-fn one_shard_is_shown_and_merged_but_not_asked() {
+fn a_shard_of_a_model_can_be_shown_and_merged_but_not_evaluated() {
     let place = Place::new();
     let train = format!("model train parts.jsonl {COARSE} --shard 1/2");
     place.done(&format!("{train} --out half.npz"));
@@ -1061,13 +1061,13 @@ fn a_classifier_can_be_given_descriptors() {
 }
 
 #[test]
-fn what_cannot_work_is_refused_with_its_reason() {
+fn impossible_requests_are_refused_with_the_reason() {
     let place = Place::new();
     let train = format!("model train parts.jsonl {COARSE}");
     let run = place.run(&format!("{train} --out model.txt"), "");
     refused(&run, 1, "model.txt: a model is written as .npz");
     place.done(&format!("{train} --name parts"));
-    // Another case is the same name.
+    // A name that differs only in case is the same name.
     let run = place.run(&format!("{train} --name Parts"), "");
     assert_eq!(run.status, Some(1), "{}", run.stderr);
     assert!(run.stderr.contains("parts.npz"), "{}", run.stderr);
@@ -1104,7 +1104,7 @@ fn what_cannot_work_is_refused_with_its_reason() {
 }
 
 #[test]
-fn a_torn_first_line_is_answered_by_its_error_as_any_other() {
+fn a_truncated_first_line_is_answered_with_its_error_like_any_other() {
     let place = Place::new();
     place.done(&format!("model train parts.jsonl {COARSE} --out m.npz"));
     let line = "{\"imprint\":[\".....\",\".###.\",\".###.\",\".....\"]}\n";
@@ -1119,7 +1119,7 @@ fn a_torn_first_line_is_answered_by_its_error_as_any_other() {
         answers[0]
     );
     assert!(answers[1].starts_with("{\"answer\":"), "{}", answers[1]);
-    // A stored shape goes on in its next line, wherever its first one ends.
+    // A stored shape continues in its next line, wherever the first one ends.
     let shape = "{\"format\":\"taxel-shape/1\",\"name\":\"a\",\"imprint\":[\"##\"],\"sensor\":\n\
         {\"columns\":2,\"rows\":1,\"pitch_mm\":1.0,\"threshold\":0.5}}\n";
     let run = place.run("recognise - --model m.npz", shape);

@@ -1,4 +1,4 @@
-//! `taxel picture`: shapes of the library and of files, moved; named pictures in a batch.
+//! Tests of `taxel picture`: shapes of the library and of files, moved; named pictures in a batch.
 
 use super::library::Shelf;
 use super::refused;
@@ -16,7 +16,7 @@ fn without_flags_a_picture_is_the_shape_itself() {
 }
 
 #[test]
-fn a_picture_is_moved_as_a_pose_of_a_batch_is() {
+fn picture_and_batch_give_the_same_answer_for_a_pose() {
     let shelf = Shelf::new();
     let json = shelf.does(
         "picture|key|--x0|3.5|--y0|-1|--angle|30|--zoom-x|0.8|--zoom-y|1.25|--columns|20|--threshold|0.4|--json",
@@ -31,7 +31,7 @@ fn a_picture_is_moved_as_a_pose_of_a_batch_is() {
 }
 
 #[test]
-fn the_sensor_is_that_of_the_shape_or_large_enough() {
+fn the_sensor_is_the_shapes_own_or_large_enough() {
     let shelf = Shelf::new();
     let size = |line: &str, input: &str| {
         let text = shelf.does(line, input);
@@ -50,7 +50,7 @@ fn the_sensor_is_that_of_the_shape_or_large_enough() {
 }
 
 #[test]
-fn a_name_of_the_library_goes_before_a_file() {
+fn a_name_of_the_library_is_preferred_to_a_file() {
     let shelf = Shelf::new();
     let file = shelf.file("shape.txt", "##\n##\n");
     assert!(
@@ -91,7 +91,7 @@ fn a_name_of_the_library_goes_before_a_file() {
 }
 
 #[test]
-fn a_batch_tells_of_names_that_lead_nowhere() {
+fn a_batch_reports_unknown_names() {
     let shelf = Shelf::new();
     shelf.does("library|save|mine|-", "#\n");
     std::fs::write(shelf.folder.join("bad.json"), "{").expect("written");

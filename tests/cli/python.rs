@@ -1,4 +1,5 @@
-//! The programs of `examples/python`, each run where Python has what it needs. With `TAXEL_NUMPY` set it must.
+//! Runs the programs of `examples/python` if Python has the required modules. With `TAXEL_NUMPY` set, it must have
+//! them.
 
 use std::process::Command;
 
@@ -10,7 +11,7 @@ fn printed(name: &str, modules: &str) -> Option<String> {
     printed_with(name, modules, &[])
 }
 
-/// The same with arguments.
+/// Like [`printed`], with arguments.
 fn printed_with(name: &str, modules: &str, arguments: &[&str]) -> Option<String> {
     if !python_has(modules) {
         return None;
@@ -30,7 +31,7 @@ fn printed_with(name: &str, modules: &str, arguments: &[&str]) -> Option<String>
 }
 
 #[test]
-fn an_atlas_is_arrays() {
+fn an_atlas_is_read_as_arrays() {
     let Some(printed) = printed("atlas.py", "numpy") else {
         return;
     };
@@ -60,7 +61,7 @@ fn no_classifier_passes_the_limit() {
 }
 
 #[test]
-fn frames_are_named_as_they_come() {
+fn live_frames_are_named() {
     let Some(printed) = printed("live.py", "json") else {
         return;
     };
@@ -73,7 +74,7 @@ fn frames_are_named_as_they_come() {
     };
     assert_eq!((of("disc"), of("bar")), (12, 12), "{printed}");
     assert!(printed.starts_with("frame 0: no contact\n"), "{printed}");
-    // A recording that begins and ends without contact.
+    // This recording begins and ends without contact.
     let recording = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/recording.csv");
     let Some(printed) = printed_with("live.py", "json", &[recording]) else {
         return;
@@ -97,7 +98,7 @@ fn real_footsteps_are_named() {
     let Some(printed) = printed_with("footsteps.py", "json", &[recording]) else {
         return;
     };
-    // The recording is of a left foot. Each step begins with the heel, and goes on over the whole foot to the ball.
+    // The recording is of a left foot. Each step begins with the heel, then the whole foot follows, then the ball.
     let steps = printed.lines().filter(|line| line.starts_with("step"));
     let phases = ": left heel, left whole, left ball";
     assert_eq!(

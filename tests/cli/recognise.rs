@@ -1,20 +1,20 @@
-//! `taxel recognise`: answers for people and for programs, one and in bulk, and exit statuses.
+//! Tests of `taxel recognise`: answers for people and for programs, single and in bulk, and exit statuses.
 
 use serde_json::Value;
 
 use super::model::{COARSE, Place, keys};
 use super::{Run, finish, misused, program, refused};
 
-/// A square of 4 × 4, which only one of the rectangles leaves.
+/// A square of 4 × 4, which only one of the four rectangles leaves.
 const SQUARE: &str = "......\n.####.\n.####.\n.####.\n.####.\n......\n";
 
-/// A bar that three of them leave.
+/// A bar that three of the rectangles leave.
 const BAR: &str = "........\n.######.\n.######.\n.######.\n........\n";
 
-/// No rectangle leaves it.
+/// A single taxel, which no rectangle leaves.
 const SPECK: &str = "...\n.#.\n...\n";
 
-/// A place with a model of four rectangles, called `r`.
+/// Makes a place with a model of four rectangles, called `r`.
 fn place() -> Place {
     let place = Place::new();
     place.done(&format!("model train rectangles.jsonl {COARSE} --name r"));
@@ -29,7 +29,7 @@ fn answer(run: &Run) -> Value {
 }
 
 #[test]
-fn an_answer_has_its_keys_in_order() {
+fn an_answer_has_its_keys_in_the_documented_order() {
     let place = place();
     let text = place.done("recognise square.txt --model r --json");
     let documented = [
@@ -63,7 +63,7 @@ fn an_answer_has_its_keys_in_order() {
 }
 
 #[test]
-fn people_read_names_bars_and_differences() {
+fn answers_for_people_show_names_bars_and_differences() {
     let place = place();
     for (noise, how) in [
         ("0", "noise 0: only the key of the imprint is looked up"),
@@ -104,7 +104,7 @@ fn people_read_names_bars_and_differences() {
 #[test]
 fn a_touch_that_noise_does_not_explain_is_doubted() {
     let place = place();
-    // A square with two corners missing, and a cross, of which no rectangle is near.
+    // A square with two corners missing, and a cross that no rectangle resembles.
     let near = "......\n..###.\n.####.\n.####.\n.###..\n......\n";
     let cross = "...........\n.....#.....\n.....#.....\n.....#.....\n.....#.....\n.#########.\n\
                  .....#.....\n.....#.....\n.....#.....\n.....#.....\n...........\n";
@@ -115,7 +115,7 @@ fn a_touch_that_noise_does_not_explain_is_doubted() {
         assert!(text.contains("taxels differ\n"), "{text}");
         assert_eq!(text.contains(doubt), is_doubted, "{text}");
     }
-    // Without noise, and with none, nothing is named.
+    // Without `--noise`, and with a noise of 0, nothing is named.
     for flags in ["", "--noise 0"] {
         let run = place.run(&format!("recognise - --model r {flags}"), cross);
         assert!(run.stdout.starts_with("unknown: "), "{}", run.stdout);
@@ -124,7 +124,7 @@ fn a_touch_that_noise_does_not_explain_is_doubted() {
 }
 
 #[test]
-fn an_imprint_that_is_smaller_than_all_of_the_model_is_unknown_whatever_the_noise() {
+fn an_imprint_smaller_than_any_of_the_model_is_unknown_at_any_noise() {
     let place = place();
     let text = "unknown: no imprint of the model fits on 3 × 3 taxels\n";
     for flags in ["", "--noise 0", "--noise 0.01"] {
@@ -188,7 +188,7 @@ fn the_exit_status_says_whether_the_answer_was_expected() {
     assert!(tied.contains(r#""tied":["one","two"]"#), "{tied}");
     let unknown = place.run("recognise - --model r --expect d", SPECK);
     assert_eq!(unknown.status, Some(3));
-    // Lines: one that is not as expected, and one that is wrong, which goes before.
+    // Lines: one that is not as expected, and one that is invalid, which takes precedence.
     let good =
         "{\"imprint\":[\"......\",\".####.\",\".####.\",\".####.\",\".####.\",\"......\"]}\n";
     let speck = "{\"imprint\":[\"...\",\".#.\",\"...\"]}\n";
@@ -250,7 +250,7 @@ fn lines_are_answered_in_their_order() {
     let two = read(lines[3])["ranking"][0]["probability"].as_f64();
     assert!(two > one, "two touches tell more than one");
     assert_eq!(read(lines[4])["state"], "unknown");
-    // A first line that was torn is answered as any other, wherever that was.
+    // A truncated first line is answered like any other, wherever it was cut.
     for torn in [
         "{\"imprint\":",
         "{\"touches\":[",
@@ -274,7 +274,7 @@ fn lines_are_answered_in_their_order() {
     let run = place.run("recognise - --model r --json", "{\"imprint\":[\"#\"]}\n5\n");
     let expected = "expected an object with an imprint, touches or a frame";
     assert!(run.stdout.contains(expected), "{}", run.stdout);
-    // Answers of a batch are such lines.
+    // The answers of a batch are such lines.
     let poses = "{\"figure\":\"rectangle\",\"length\":4.2,\"width\":4.2,\"x0\":5.2,\"y0\":5.3,\"angle\":20}\n";
     let answers = place.run("batch", &poses.repeat(3));
     let run = place.run("recognise - --model r --expect d", &answers.stdout);
@@ -297,7 +297,7 @@ fn standard_input_is_read_once() {
 }
 
 #[test]
-fn a_pose_is_told_in_cells_degrees_and_mm() {
+fn a_pose_is_given_in_cells_degrees_and_mm() {
     let place = place();
     let text = place.done("recognise bar.txt --model r --pose --json");
     assert_eq!(keys(&text).last().map(String::as_str), Some("pose"));
@@ -305,7 +305,7 @@ fn a_pose_is_told_in_cells_degrees_and_mm() {
     let pose = &bar["pose"];
     assert_eq!(pose["name"], bar["answer"]);
     let number = |value: &Value| value.as_f64().expect("a number");
-    // The bar's middle, from the matrix and from the box, which begins at (1, 1).
+    // The middle of the bar, from the corner of the matrix and from the corner of its box, which begins at (1, 1).
     assert!((number(&pose["centre"][0]) - 4.0).abs() < 0.1, "{pose}");
     assert!((number(&pose["centre"][1]) - 2.5).abs() < 0.1, "{pose}");
     let from_box = number(&pose["centre"][0]) - number(&pose["centre_in_box"][0]);
@@ -327,7 +327,7 @@ fn a_pose_is_told_in_cells_degrees_and_mm() {
         text.chars().filter(|&sign| braille(sign)).count() > 15,
         "{text}"
     );
-    // Nothing has no pose, and a disc no angle.
+    // An unknown touch has no pose, and a disc has no angle.
     let noisy = place.run(
         "recognise - --model r --noise 0.01 --pose",
         &BAR.replacen("........\n", "#.......\n", 1),
@@ -351,7 +351,7 @@ fn a_pose_is_told_in_cells_degrees_and_mm() {
     );
 }
 
-/// A picture that a quarter turn maps onto itself has its angle modulo that.
+/// The angle of a picture that a quarter turn maps onto itself is only known up to quarter turns.
 #[test]
 fn the_angle_of_a_cross_is_known_modulo_a_quarter_turn() {
     let place = Place::new();
@@ -377,7 +377,7 @@ fn a_heptagon_repeats_every_seventh_of_a_turn() {
     place.done("model train heptagon.jsonl --positions 4 --name h");
     let near = place.done("figure heptagon --side 4 --x0 5.25 --y0 5 --angle 2 --json");
     let near = answer(&place.run("recognise - --model h", &near));
-    // What it leaves in one of the few poses of the model.
+    // The imprint that the heptagon leaves in one of the few poses of the model.
     let touched = format!("{{\"imprint\":{}}}\n", near["nearest"]["imprint"]);
     let rows = near["nearest"]["imprint"].as_array().expect("rows");
     let rows = rows.iter().filter_map(Value::as_str);
@@ -389,7 +389,7 @@ fn a_heptagon_repeats_every_seventh_of_a_turn() {
     let number = |key: &str| angle[key].as_f64().expect("a number");
     assert!((number("period") - 360.0 / 7.0).abs() < 1e-9, "{angle}");
     assert!(number("degrees") <= 52.0, "{angle}");
-    // An angle as good as unknown has neither a deviation nor an interval.
+    // An angle that is practically unknown has neither a deviation nor an interval.
     let dot = "dot=rectangle length=1.2 width=1";
     place.done(&format!(
         "model train --shape '{dot}' --positions 4 --name dot"
@@ -400,7 +400,7 @@ fn a_heptagon_repeats_every_seventh_of_a_turn() {
 }
 
 #[test]
-fn the_seven_figures_are_at_hand() {
+fn the_seven_figures_are_built_in() {
     let place = Place::new();
     let touched = place.done("figure hexagon --side 4 --x0 5.3 --y0 5.1 --angle 12 --json");
     let known = answer(&place.run("recognise -", &touched));
@@ -412,9 +412,9 @@ fn the_seven_figures_are_at_hand() {
     assert!(card.contains("hexagon: hexagon side 4.00"), "{card}");
 }
 
-/// Each of these is refused before a built-in set is trained.
+/// Each of these lines is refused before a built-in set is trained.
 #[test]
-fn what_is_mistyped_costs_no_training() {
+fn mistyped_names_are_refused_before_training() {
     let place = place();
     place.write("there.svg", "");
     for line in [
@@ -437,10 +437,10 @@ fn what_is_mistyped_costs_no_training() {
     }
 }
 
-/// One thread: each more has a stack, which counts too.
+/// One thread only: every further thread has a stack, which is counted, too.
 #[cfg(target_os = "linux")]
 #[test]
-fn the_training_of_a_built_in_set_keeps_to_the_memory_that_there_is() {
+fn the_training_of_a_built_in_set_respects_the_memory_limit() {
     let place = place();
     let mut command = std::process::Command::new("sh");
     command
@@ -457,7 +457,7 @@ fn the_training_of_a_built_in_set_keeps_to_the_memory_that_there_is() {
     assert!(said.contains("taxel model train"), "{said}");
 }
 
-/// Frames of which one has a square, with `--model` and through a pipe.
+/// One of these frames has a square; with `--model`, and through a pipe.
 #[test]
 fn frames_are_named_by_a_model() {
     let place = place();
@@ -481,7 +481,7 @@ fn frames_are_named_by_a_model() {
         (&"d".into(), &0.01.into())
     );
     assert_eq!(named["nearest"]["distance"], 0);
-    // The same of a stream; and the answers of both are lines for recognise.
+    // A stream gives the same answers, and the answers of both are input for recognise.
     let watched = place.done(&format!("watch touch.jsonl --once {flags}"));
     assert_eq!(watched, listed);
     let piped = answer(&place.run(

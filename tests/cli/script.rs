@@ -1,4 +1,4 @@
-//! `taxel script`: what it prints, and how it tells what did not hold.
+//! Tests of `taxel script`: its output, and its messages about expectations that fail.
 
 use super::Run;
 use super::run_in;
@@ -57,9 +57,9 @@ fn messages_name_the_script_and_the_line() {
     assert_eq!(run.status, Some(2));
 }
 
-/// What held before something did not is printed, screen by screen.
+/// The screens before a failed expectation are printed.
 #[test]
-fn screens_come_before_the_message() {
+fn screens_are_printed_before_the_message() {
     let Run { stdout, .. } = taxel("script -", "Size 20x6\nScreen one\nKeys q\nScreen two\n");
     assert!(
         stdout.starts_with("--- screen one 20x6 cursor "),
@@ -68,7 +68,7 @@ fn screens_come_before_the_message() {
     assert_eq!(stdout.lines().count(), 7, "{stdout}");
 }
 
-/// A record of many shapes is longer than any shape.
+/// A record of many shapes is longer than any single shape.
 #[test]
 fn a_script_may_be_long() {
     let script = "# nothing but a remark that is repeated\n".repeat(40_000) + "State /na\n";
@@ -77,9 +77,9 @@ fn a_script_may_be_long() {
     assert_eq!((run.status, run.stdout.as_str()), (Some(0), "0\n"));
 }
 
-/// `~/` is the home in the name of a file, and what was written is named with its whole path.
+/// `~/` in the name of a file is the home folder, and a written file is named with its whole path.
 #[test]
-fn a_file_may_be_named_below_the_home() {
+fn file_names_may_begin_with_the_home_folder() {
     let home = tempfile::tempdir().expect("there is a folder for temporary files");
     let keys = "fh<Enter>:explore --x0 5 --y0 5 --angle 0:59:1<Enter>x~/in-home.csv<Enter>";
     let mut command = super::program(&["script", "-k", keys], "C.UTF-8");
@@ -93,7 +93,7 @@ fn a_file_may_be_named_below_the_home() {
     assert!(file.exists());
 }
 
-/// A script answers its own questions, so it must not reach what is the user's.
+/// A script answers its own questions, so it must not reach the user's own files.
 #[test]
 fn a_script_changes_nothing_outside_its_folder() {
     let place = tempfile::tempdir().expect("a folder");
@@ -114,7 +114,7 @@ fn a_script_changes_nothing_outside_its_folder() {
             "Keys f<Enter>:export<Space>\nType \"{path}\"\nKeys <Enter>{answer}\nWait\nScreen\n"
         )
     };
-    // What is refused is said on the screen.
+    // A refusal is shown on the screen.
     for (path, answer, refusal) in [
         (
             "../outside.svg",
@@ -137,12 +137,12 @@ fn a_script_changes_nothing_outside_its_folder() {
         Some("theirs")
     );
     assert!(!folder.join(".hidden.svg").exists());
-    // Its own files it may write and replace, also from another folder.
+    // The script may write and replace its own files, also from another folder.
     let twice = export("own.svg", "") + &export("own.svg", "y");
     let own = run("b.taxel", &twice, &[]);
     assert_eq!(own.status, Some(0), "{own:?}");
     assert!(folder.join("own.svg").exists(), "{own:?}");
-    // A device would be set up, a connection made, a pipe waited for.
+    // A script must not set up a device, make a connection, or wait for a pipe.
     let pipe = place.path().join("pipe");
     let mut sources = vec!["tcp://127.0.0.1:9", "-"];
     if wait::fifo(&pipe) {
@@ -187,7 +187,7 @@ fn a_script_changes_nothing_outside_its_folder() {
 }
 
 #[test]
-fn the_folder_of_a_killed_script_is_removed_by_the_next() {
+fn the_next_script_removes_the_folder_of_a_killed_one() {
     let place = tempfile::tempdir().expect("a folder");
     let command = |script: &str| {
         let mut command = super::program(&["script", "-"], "C.UTF-8");

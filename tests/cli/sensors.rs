@@ -1,4 +1,4 @@
-//! The page about sensors: every line of it that can be run here is run, in the order in which it stands there.
+//! Runs every line of the page about sensors that can be run here, in the order of the page.
 
 use std::fmt::Write;
 use std::fs;
@@ -7,7 +7,7 @@ use std::process::Command;
 
 const PAGE: &str = include_str!("../../docs/sensors.md");
 
-/// The contents of the fences of a language.
+/// Returns the contents of the fenced blocks in a language.
 fn fences(language: &str) -> Vec<&'static str> {
     let start = format!("{language}\n");
     let parts = PAGE.split("```").enumerate();
@@ -17,7 +17,7 @@ fn fences(language: &str) -> Vec<&'static str> {
         .collect()
 }
 
-/// Two frames of 8 x 8 as candump prints them: a message a row.
+/// Returns two frames of 8 × 8 as candump prints them, one message per row.
 fn candump() -> String {
     let mut text = String::new();
     for frame in 0..2 {
@@ -41,7 +41,7 @@ fn furnished(folder: &Path) {
     fs::write(folder.join("rows.awk"), fences("awk")[0]).expect("written");
 }
 
-/// The recording of the page, read by the lines of Python that stand below it.
+/// Reads the recording of the page with the Python lines that the page shows for it.
 fn reads_by_numpy(folder: &Path) {
     if !super::python_has("numpy") {
         return;
@@ -58,7 +58,7 @@ fn reads_by_numpy(folder: &Path) {
 }
 
 #[test]
-fn every_line_that_can_be_run_is_run() {
+fn every_line_that_can_be_run_works() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     furnished(folder);

@@ -1,11 +1,11 @@
-//! `taxel model separate`: the error against size and threshold, by command line.
+//! Tests of `taxel model separate`: the error against size and threshold, on the command line.
 
 use super::misused;
 use super::model::{COARSE, Place, keys};
 use super::refused;
 
 #[test]
-fn the_error_falls_with_the_size_as_trained_by_hand() {
+fn the_error_falls_with_the_size_as_in_separate_trainings() {
     let place = Place::new();
     let line =
         "model separate rectangles.jsonl --scale 1:2:0.5 --positions 10 --angle 0:355:5 --quiet";
@@ -32,7 +32,7 @@ fn the_error_falls_with_the_size_as_trained_by_hand() {
             "side"
         ]
     );
-    // At 1 it is the training of the set, at 2 that of shapes twice as large.
+    // At 1 it equals a training of the set, at 2 a training of shapes that are twice as large.
     place.done(&format!(
         "model train rectangles.jsonl {COARSE} --out m.npz"
     ));
@@ -45,7 +45,7 @@ fn the_error_falls_with_the_size_as_trained_by_hand() {
             assert_eq!(point[key], limit[key], "{file} {key}");
         }
     }
-    // A model has its shapes and its grid.
+    // A model provides its shapes and its grid.
     let model = place.json("model separate m.npz --scale 1:2:0.5 --quiet --json");
     assert_eq!(model["points"], answer["points"]);
     let table = place.done(&format!("{line} --csv"));
@@ -73,7 +73,7 @@ fn the_error_falls_with_the_size_as_trained_by_hand() {
 }
 
 #[test]
-fn half_the_pitch_is_twice_the_scale() {
+fn half_the_pitch_equals_twice_the_scale() {
     let place = Place::new();
     let grid = "--positions 5 --angle 0:350:10 --quiet --json";
     let scales = place.json(&format!(
@@ -109,7 +109,7 @@ fn the_smallest_size_that_reaches_an_error_is_found() {
     let error = found["smallest"]["error"].as_f64().expect("an error");
     assert!(error <= 0.1 && scale > 1.0, "{answer}");
     assert_eq!(found["step"].as_f64(), Some(0.05));
-    // The one before it does not reach it.
+    // The scale before it does not reach the error.
     let before = scale - 0.05;
     let before = place.json(&format!(
         "model separate rectangles.jsonl --scale {before:.2} --positions 5 --angle 0:350:10 --quiet --json"
@@ -139,7 +139,7 @@ fn the_smallest_size_that_reaches_an_error_is_found() {
     assert!(never["want"][0]["smallest"].is_null());
     let text = place.done(&format!("{line} --want 0.9"));
     assert!(text.contains("it is the first that was tried"), "{text}");
-    // Finer pitches are larger shapes: the search comes from above.
+    // A finer pitch means larger shapes, so the search starts at the top.
     let text = place.done(
         "model separate rectangles.jsonl --pitch 0.4:1:0.2 --positions 5 --angle 0:350:10 --quiet --want 0.1",
     );
@@ -174,7 +174,7 @@ fn every_threshold_has_its_curve() {
 }
 
 #[test]
-fn sizes_that_fit_on_no_sensor_are_left_out() {
+fn sizes_that_fit_on_no_sensor_are_omitted() {
     let place = Place::new();
     let coarse = "--positions 2 --angle 0 --quiet --json";
     let scales = |run: &super::Run| {

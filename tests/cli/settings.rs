@@ -1,4 +1,4 @@
-//! `taxel config`: which settings hold, and where each comes from.
+//! Tests of `taxel config`: the settings in effect, and the origin of each.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use super::Run;
 use super::program;
 use super::wait;
 
-/// A file that says something of everything.
+/// A settings file with settings of every kind.
 const FILE: &str = "theme = \"light\"\ncolor = \"256\"\nmouse = false\nlibrary = \"~/shapes\"\n\n\
 [sensor]\ncolumns = 32\npitch = 2.5\n\n[keys.matrix]\nx = \"toggle\"\nd = \"none\"\n";
 
@@ -21,7 +21,7 @@ fn taxel(line: &str) -> Command {
     program(&words, "C.UTF-8")
 }
 
-/// A home with that file in its place.
+/// Makes a home folder with this settings file.
 fn home(text: &str) -> tempfile::TempDir {
     let home = tempfile::tempdir().expect("a folder");
     let folder = home.path().join(".config/taxel");
@@ -52,7 +52,7 @@ fn shows(command: &mut Command, lines: &[(&str, &str)]) {
 }
 
 #[test]
-fn each_value_tells_where_it_comes_from() {
+fn each_value_is_shown_with_its_origin() {
     let home = home(FILE);
     let folder = home.path();
     let shapes = format!("library = \"{}\"", folder.join("shapes").display());
@@ -72,7 +72,7 @@ fn each_value_tells_where_it_comes_from() {
             ("\"d\" = \"none\"", "file, line 12"),
         ],
     );
-    // A flag goes before a variable, that before the file.
+    // A flag overrides a variable, which overrides the file.
     shows(
         at_home("config --theme mono --columns 8 --ascii", folder)
             .env("NO_COLOR", "1")
@@ -107,9 +107,9 @@ fn each_value_tells_where_it_comes_from() {
     );
 }
 
-/// What is printed is a file that says the same.
+/// The output is a file with the same settings.
 #[test]
-fn the_settings_can_be_read_again() {
+fn the_printed_settings_read_back() {
     let home = home(&FILE.replace("~/shapes", "/a \\\"b\\\" \\\\ é"));
     let values = |text: &str| -> Vec<String> {
         let entries = text.lines().filter(|line| !line.starts_with('#'));
@@ -135,7 +135,7 @@ fn the_settings_can_be_read_again() {
 }
 
 #[test]
-fn the_file_holds_for_every_command_but_scripts() {
+fn the_settings_file_applies_to_every_command_except_scripts() {
     let home = home(FILE);
     let folder = home.path();
     let figure = run(&mut at_home("figure ellipse", folder)).stdout;
@@ -148,7 +148,7 @@ fn the_file_holds_for_every_command_but_scripts() {
     assert!(explicit.contains("8 × 16"), "{explicit}");
     let path = run(&mut at_home("library path", folder)).stdout;
     assert_eq!(Path::new(path.trim_end()), folder.join("shapes"));
-    // A script is the same for everybody, unless it is told otherwise.
+    // A script is the same for everybody, unless it is given settings.
     let script = |line: &str| {
         let mut command = at_home("script -k x", folder);
         command.args(line.split_whitespace());
@@ -166,7 +166,7 @@ fn the_file_holds_for_every_command_but_scripts() {
 }
 
 #[test]
-fn a_broken_file_is_told_and_nothing_is_started() {
+fn a_broken_settings_file_is_reported_and_nothing_is_started() {
     let home = home("theme = \"light\"\ncolour = \"never\"\n");
     let folder = home.path();
     let file = folder.join(".config/taxel/config.toml");
@@ -189,7 +189,7 @@ fn a_broken_file_is_told_and_nothing_is_started() {
         );
     }
     assert!(!folder.join(".local").exists(), "nothing was stored");
-    // What is the same for everybody does not ask.
+    // Commands that are the same for everybody do not read the file.
     for line in [
         "--help",
         "--version",
@@ -202,7 +202,7 @@ fn a_broken_file_is_told_and_nothing_is_started() {
 }
 
 #[test]
-fn a_file_that_is_named_must_be_there_and_be_text() {
+fn a_named_settings_file_must_exist_and_be_text() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("missing.toml");
     let told = |message: &str| {
@@ -221,9 +221,9 @@ fn a_file_that_is_named_must_be_there_and_be_text() {
     assert_eq!(run.status, Some(2), "it comes to an end");
 }
 
-/// A flag of the screen before a command would be lost: it is refused.
+/// A flag of the screen before a command would have no effect, so it is refused.
 #[test]
-fn flags_of_the_screen_do_not_stand_before_a_command() {
+fn flags_of_the_screen_are_refused_before_a_command() {
     for flag in [
         "--theme light",
         "--record r.taxel",
@@ -237,7 +237,7 @@ fn flags_of_the_screen_do_not_stand_before_a_command() {
         let expected = format!("cannot be used with '{name}', which is only for the screen");
         assert!(run.stderr.contains(&expected), "{flag}: {}", run.stderr);
     }
-    // The live page is a screen too.
+    // The live page is also a screen.
     let run = run(&mut taxel("--no-mouse watch touch.csv"));
     let expected = "'--no-mouse' must come after 'watch'";
     assert!(run.stderr.contains(expected), "{}", run.stderr);
@@ -262,9 +262,9 @@ fn a_settings_file_that_is_a_pipe_is_refused_at_once() {
     );
 }
 
-/// Settings of real sensors, for frames and watch; flags override them.
+/// Settings of real sensors apply to frames and watch; flags override them.
 #[test]
-fn frames_are_looked_at_as_the_file_says() {
+fn settings_for_frames_are_used() {
     let text =
         "[source]\nrows = 4\ncolumns = 5\nformat = 'flexitac'\n[frames]\npercent = 40\ntare = 1\n";
     let home = home(text);
@@ -297,7 +297,7 @@ fn frames_are_looked_at_as_the_file_says() {
         flags.contains("\"rule\":{\"at_least\":9,\"from\":\"flag\"}") && !flags.contains("tare"),
         "{flags}"
     );
-    // A tare that cannot be made is named as that of the settings.
+    // A tare that is impossible is reported as coming from the settings.
     let few = self::home("[frames]\ntare = 9\n");
     for command in ["frames --all", "watch --once"] {
         let line = |tare| format!("{command} {samples}/tekscan.asf --json --at-least 9 {tare}");
@@ -308,7 +308,7 @@ fn frames_are_looked_at_as_the_file_says() {
         let of_flag = said("--tare 9");
         assert!(of_flag.ends_with(&format!("{lacking}\n")), "{of_flag}");
     }
-    // A stream has the rows and columns of the settings; a recording its own.
+    // A stream has the rows and columns of the settings; a recording has its own.
     let stream = answered(format!(
         "watch {samples}/flexitac.bin --once --format flexitac"
     ));
@@ -320,7 +320,7 @@ fn frames_are_looked_at_as_the_file_says() {
 }
 
 #[test]
-fn a_number_that_a_flag_cannot_take_is_answered_with_what_it_expects() {
+fn a_bad_number_for_a_flag_is_refused_with_the_expected_range() {
     for (line, expected) in [
         ("batch --jobs -1", "expected a whole number from 1 to 1024"),
         (

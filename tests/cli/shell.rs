@@ -1,4 +1,4 @@
-//! At home in the shell: completions, pages of the manual, and the examples of every help, each run.
+//! Integration into the shell: completions, man pages, and the examples of every help text, which are all run.
 
 use std::fs;
 use std::path::Path;
@@ -11,10 +11,10 @@ use super::program;
 use super::skip::lacking;
 use super::taxel;
 
-/// Every command, each with a help of its own.
+/// Every command; each has its own help.
 static COMMANDS: LazyLock<Vec<String>> = LazyLock::new(|| commands(&help));
 
-/// Whether a program is there; where not, a part of the test is skipped.
+/// Returns true if a program is installed; otherwise reports that a part of the test is skipped.
 fn has(name: &str) -> bool {
     let there = Command::new(name).arg("--version").output().is_ok();
     if !there {
@@ -47,7 +47,7 @@ fn every_help_fits_80_columns_and_ends_with_examples() {
     }
 }
 
-/// The examples of a help: a line each, or several where a line ends in a backslash.
+/// Returns the examples of a help text: one line each, or several if a line ends in a backslash.
 fn examples(help: &str) -> Vec<String> {
     let (_, examples) = help.split_once("\nExamples:\n").expect("examples");
     let examples = examples.replace("\\\n", "");
@@ -57,7 +57,7 @@ fn examples(help: &str) -> Vec<String> {
         .collect()
 }
 
-/// A folder with all that the examples take for given.
+/// Prepares a folder with all files that the examples expect.
 fn furnished(folder: &Path) {
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).expect("written");
     write("imprint.txt", ".##.\n#..#\n.##.\n");
@@ -96,7 +96,7 @@ fn furnished(folder: &Path) {
     }
 }
 
-/// The models that the examples of a command take for given.
+/// Trains the models that the examples of a command expect.
 fn with_models(folder: &Path, command: &str) {
     let coarse = "--positions 5 --angle 0:350:10 --quiet";
     let train = |files: &str| {
@@ -130,7 +130,7 @@ fn in_library(folder: &Path, arguments: &[&str]) {
     assert!(output.expect("it runs").status.success(), "{arguments:?}");
 }
 
-/// Those of one help come one after the other, in one folder: what the first stores the second may delete.
+/// The examples of one help text run in sequence in one folder: what the first one stores, the second may delete.
 #[test]
 fn every_example_of_every_help_runs() {
     let binary = Path::new(env!("CARGO_BIN_EXE_taxel"));
@@ -157,7 +157,7 @@ fn every_example_of_every_help_runs() {
             in_library(folder, &["delete", "ring"]);
         }
         for example in examples(&help(command)) {
-            // The screen has tests of its own, and so have sweeps: millions of poses take their time.
+            // The screen has its own tests, and so have sweeps, which would take long with millions of poses.
             let long = [
                 "sweep rectangle --length 6 --width 3",
                 "--zoom-x 0.8:1.2:0.1",
@@ -182,7 +182,7 @@ fn every_example_of_every_help_runs() {
                 .env("LC_ALL", "C.UTF-8")
                 .output()
                 .expect("there is a shell");
-            // The imprint of the examples is another shape than the expected one.
+            // The imprint of the examples is not of the expected shape.
             let other = example.contains("--expect") && output.status.code() == Some(3);
             assert!(output.status.success() || other, "{example}: {output:?}");
             run += 1;
@@ -192,14 +192,14 @@ fn every_example_of_every_help_runs() {
 }
 
 #[test]
-fn shells_take_the_completions() {
+fn shells_accept_the_completions() {
     for (shell, check) in [("bash", "-n"), ("zsh", "-n"), ("fish", "--no-execute")] {
         let run = taxel(&format!("completions {shell}"), "");
         assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{shell}");
         for word in ["figure", "hexagon", "restore", "radius-x"] {
             assert!(run.stdout.contains(word), "{shell}: no {word}");
         }
-        // What is added to that of fish calls a function of it.
+        // Our addition to fish's completions calls one of their functions.
         let helper = "function __fish_taxel_using_subcommand\n";
         assert!(
             shell != "fish" || run.stdout.contains(helper),
@@ -217,7 +217,7 @@ fn shells_take_the_completions() {
         assert!(output.status.success(), "{shell}: {output:?}");
     }
     misused("completions", "the following required arguments");
-    // A library means nothing to these.
+    // These commands use no library.
     for line in [
         "merge --library x a.npz --atlas b.csv",
         "--library x merge a.npz --atlas b.csv",
@@ -229,7 +229,7 @@ fn shells_take_the_completions() {
     misused("completions csh", "invalid value 'csh'");
 }
 
-/// Names of shapes where a command takes one; blanks and quotation marks are bash's.
+/// Completes names of shapes for commands that accept them, and quotes spaces and quotation marks for bash.
 #[test]
 fn bash_completes_names_of_shapes_and_models() {
     if !has("bash") {
@@ -281,7 +281,7 @@ fn bash_completes_names_of_shapes_and_models() {
         (&["library", "save", "new", "oval"], "oval\\ ring\n"),
         (&["sweep", "--picture", "wash"], "washer\n"),
         (&["model", "train", "arrow", "wash"], "washer\n"),
-        // Flags and their values do not count as arguments.
+        // Flags and their values are not counted as arguments.
         (&["describe", "--pitch", "2", "wa"], "washer\n"),
         (&["describe", "--pitch", "=", "2", "wa"], "washer\n"),
         (&["--ascii", "describe", "wa"], "washer\n"),
@@ -293,7 +293,7 @@ fn bash_completes_names_of_shapes_and_models() {
             "washer\n",
         ),
         (&["describe", "washer", "--pitch", "wa"], "\n"),
-        // A shape that comes with the program cannot be deleted.
+        // A shipped shape cannot be deleted.
         (&["library", "delete", "wa"], "\n"),
         (&["library", "restore", ""], "gone\n"),
         (&["model", "show", "p"], "parts\n"),
@@ -335,7 +335,7 @@ fn bash_completes_names_of_shapes_and_models() {
     assert!(fish.matches("(__fish_taxel_names ").count() >= 6, "{fish}");
 }
 
-/// What bash offers after a line.
+/// The words that bash offers after a line.
 #[test]
 fn bash_completes_commands_kinds_and_flags() {
     if !has("bash") {
@@ -376,7 +376,7 @@ fn bash_completes_commands_kinds_and_flags() {
 }
 
 #[test]
-fn pages_of_the_manual_tell_what_the_help_tells() {
+fn man_pages_say_the_same_as_the_help() {
     let folder = tempfile::tempdir().expect("a folder");
     let pages = folder.path().join("share/man1");
     let run = taxel(&format!("man {}", pages.display()), "");

@@ -1,4 +1,4 @@
-//! What holds for every command: characters, help, pipes that close, disks that are full.
+//! Properties of every command: characters, help, closed pipes, full disks.
 
 use super::RING;
 use super::batch::POINT;
@@ -24,7 +24,7 @@ const WRITING: [&str; 10] = [
 ];
 
 #[test]
-fn ascii_is_kept_to_where_the_locale_is_not_utf_8() {
+fn output_is_ascii_if_the_locale_is_not_utf_8() {
     let ascii = |arguments: &[&str], input: &str| {
         for locale in ["C", "POSIX", "ro_RO.ISO-8859-2"] {
             let run = run_in(locale, arguments, input.as_bytes());
@@ -69,7 +69,7 @@ fn ascii_is_kept_to_where_the_locale_is_not_utf_8() {
 }
 
 #[test]
-fn the_help_comes_by_flag_and_by_command() {
+fn the_help_is_the_same_by_flag_and_by_command() {
     let whole = taxel("--help", "").stdout;
     assert_eq!(taxel("-h", "").stdout, whole);
     assert_eq!(taxel("help", "").stdout, whole);
@@ -81,7 +81,7 @@ fn the_help_comes_by_flag_and_by_command() {
 
 #[test]
 fn the_version_is_that_of_the_package() {
-    // An optimised build tells its commit too: tests/house/version.rs.
+    // An optimised build also reports its commit: tests/house/version.rs.
     let version = concat!("taxel ", env!("CARGO_PKG_VERSION"));
     let shown = taxel("--version", "").stdout;
     let commit = shown.strip_prefix(version).map(str::trim_end);
@@ -93,7 +93,7 @@ fn the_version_is_that_of_the_package() {
 
 #[cfg(unix)]
 #[test]
-fn a_closed_pipe_ends_quietly() {
+fn a_closed_pipe_ends_the_program_quietly() {
     for line in WRITING {
         let arguments: Vec<&str> = line.split_whitespace().collect();
         let (reader, writer) = std::io::pipe().expect("a pipe");
@@ -111,7 +111,7 @@ fn a_closed_pipe_ends_quietly() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_is_told() {
+fn a_full_disk_is_reported() {
     for line in WRITING {
         let arguments: Vec<&str> = line.split_whitespace().collect();
         let full = std::fs::File::options()
@@ -134,7 +134,7 @@ fn a_full_disk_is_told() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn input_that_cannot_be_read_is_told() {
+fn unreadable_input_is_reported() {
     let folder = std::fs::File::open(".").expect("a folder");
     let output = program(&["batch"], "C")
         .stdin(folder)

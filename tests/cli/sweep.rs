@@ -1,4 +1,4 @@
-//! `taxel sweep` and `taxel merge`: summaries, files, shards, interrupts, refusals.
+//! Tests of `taxel sweep` and `taxel merge`: summaries, files, shards, interrupts, refusals.
 
 use std::fs;
 use std::path::Path;
@@ -13,10 +13,10 @@ use super::refused;
 use super::wait;
 use super::{Run, taxel};
 
-/// The paper's ring over one cell.
+/// A sweep of the paper's ring over one cell.
 const RING: &str = "sweep ellipse --radius-x 4 --radius-y 4 --thickness 2 --angle 0 --x0 1:1.99:0.01 --y0 1:1.99:0.01";
 
-/// A folder of a test's own, empty.
+/// Makes an empty folder for a test.
 pub(crate) fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a folder can be made")
 }
@@ -72,9 +72,9 @@ fn the_summary_has_the_numbers_of_the_paper_s_ring() {
     assert!(summary["descriptors"]["ce"]["ideal"].is_null());
 }
 
-/// Without x0 and y0 a sweep takes a cell that suits the shape, and says which.
+/// Without x0 and y0, a sweep chooses a cell that suits the shape, and prints it.
 #[test]
-fn the_ranges_that_are_taken_are_printed() {
+fn the_default_ranges_are_printed() {
     let ran = |line: &str, ranges: [&str; 2], cut: u64, notes: &str| {
         let run = taxel(line, "");
         assert_eq!(
@@ -98,14 +98,14 @@ fn the_ranges_that_are_taken_are_printed() {
         0,
         "range: y0 5:5.99:0.01\n",
     );
-    // At 5 it would be cut off when it turns.
+    // At 5 it would be cut off when turned.
     ran(
         "sweep rectangle --length 10 --width 8 --angle 0:90:45 --json",
         ["2:2.99:0.01", "3:3.99:0.01"],
         0,
         "range: x0 2:2.99:0.01, y0 3:3.99:0.01\n",
     );
-    // No cell is large enough for the triangle in every angle.
+    // No cell is large enough for the triangle at every angle.
     let noted = "range: x0 -0.5:0.49:0.01, y0 -7.73:-6.74:0.01\n\
          the figure reaches beyond the sensor in 20,000 of 20,000 poses\n";
     ran(
@@ -130,7 +130,7 @@ fn the_ranges_that_are_taken_are_printed() {
 }
 
 #[test]
-fn a_summary_for_people_fits_their_eyes() {
+fn the_summary_for_people_is_readable() {
     let run = taxel(
         "sweep triangle --side 5 --x0 5 --y0 5:5.3:0.1 --angle 0:90:45 --ascii",
         "",
@@ -144,7 +144,7 @@ fn a_summary_for_people_fits_their_eyes() {
 }
 
 #[test]
-fn tables_hold_every_imprint() {
+fn tables_contain_every_imprint() {
     let scratch = folder();
     let folder = scratch.path();
     let path = |name: &str| folder.join(name).display().to_string();
@@ -177,7 +177,7 @@ fn tables_hold_every_imprint() {
     assert_eq!(lines.len(), RING_IMPRINTS);
     for (id, line) in lines.iter().enumerate() {
         assert_eq!(line["id"], id);
-        // The first pose does leave that imprint, and its main region is described as elsewhere.
+        // The first pose leaves this imprint, and its main region is described like elsewhere.
         if id % 40 == 0 {
             let value = |key: &str| line["first"][key].to_string();
             let answer = json(&format!(
@@ -244,7 +244,7 @@ fn shards_merge_into_the_same_bytes() {
 }
 
 #[test]
-fn a_study_is_taken_up_where_it_was_left() {
+fn an_interrupted_study_can_be_resumed() {
     let scratch = folder();
     let folder = scratch.path();
     let path = |name: &str| folder.join(name).display().to_string();
@@ -318,7 +318,7 @@ fn a_study_is_taken_up_where_it_was_left() {
 }
 
 #[test]
-fn what_a_merge_costs_is_bounded_and_printed() {
+fn the_memory_of_a_merge_is_limited_and_printed() {
     let scratch = folder();
     let path = |name: &str| scratch.path().join(name).display().to_string();
     let (one, two) = (path("1.npz"), path("2.npz"));
@@ -364,8 +364,8 @@ fn what_a_merge_costs_is_bounded_and_printed() {
     assert!(!scratch.path().join("no.npz").exists());
 }
 
-/// Which bytes of an archive belong to the numbers of an array. Arrays are stored one after the other, each with a local header
-/// of 30 bytes, the sizes of its parts in them, as APPNOTE.TXT of PKWARE says.
+/// Returns which bytes of an archive belong to the numbers of an array. Arrays are stored one after the other. Each
+/// has a local header of 30 bytes, which contains the sizes of its parts (APPNOTE.TXT by PKWARE).
 pub(super) fn numbers_in(archive: &[u8]) -> Vec<bool> {
     let mut inside = vec![false; archive.len()];
     let number = |at: usize, length: usize| {
@@ -394,7 +394,7 @@ fn damaged_archives_are_refused() {
         path("bad.npz"),
         path("x.csv")
     );
-    // In the arrays each byte counts, asked for or not. What lies between them may say less.
+    // In the arrays every byte counts, whether it is used or not. The bytes between them may not matter.
     let numbers = numbers_in(&good);
     let mut refusals = 0;
     for place in (0..good.len()).step_by(991) {
@@ -407,7 +407,7 @@ fn damaged_archives_are_refused() {
         refusals += i32::from(numbers[place]);
     }
     assert!(refusals > 100, "{refusals}");
-    // Taken up again, too: of an array that merging does not need.
+    // Resuming notices it, too: an array is damaged that merging does not need.
     let mut bad = good.clone();
     let name = b"na.npy";
     let at = good.windows(name.len()).position(|bytes| bytes == name);
@@ -440,7 +440,7 @@ fn damaged_archives_are_refused() {
 }
 
 #[test]
-fn what_is_no_sweep_is_refused() {
+fn impossible_sweeps_are_refused() {
     refused(
         &taxel("sweep hexagon --x0 1:20:1", ""),
         1,
@@ -522,7 +522,7 @@ fn what_is_no_sweep_is_refused() {
     );
 }
 
-/// Read by the real numpy, where Python has it; with `TAXEL_NUMPY` set it must.
+/// The real numpy reads atlas and poses, if Python has it; with `TAXEL_NUMPY` set, it is required.
 #[test]
 fn numpy_reads_atlas_and_poses() {
     if !python_has("numpy") {
@@ -563,10 +563,10 @@ assert x0[0] == 5.0 and x0.max() <= 5.9 and numpy.isnan(atlas['cg_cd_direction']
     );
 }
 
-/// What would need more memory than it may use is refused, or stopped, with what can be done.
+/// A sweep that would need more memory than it may use is refused or stopped, with advice.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_sweep_keeps_to_the_memory_that_it_may_use() {
+fn a_sweep_respects_the_memory_limit() {
     let folder = tempfile::tempdir().expect("a folder");
     let atlas = folder.path().join("a.npz");
     let run = |ranges: &str, memory: &str| {
@@ -584,7 +584,7 @@ fn a_sweep_keeps_to_the_memory_that_it_may_use() {
             && refused.stderr.contains("--shard 1/8"),
         "{refused:?}"
     );
-    // Not so much that the estimate is sure of it.
+    // This sweep is smaller, so the estimate alone does not refuse it.
     let stopped = run("--x0 0:3:0.05 --y0 0:3:0.05 --angle 0:45:1", "20M");
     assert_eq!(
         (stopped.status, stopped.stdout.as_str()),
@@ -609,7 +609,7 @@ fn a_sweep_keeps_to_the_memory_that_it_may_use() {
     );
 }
 
-/// The signal of `ulimit -f` would end the program without a word.
+/// The signal of `ulimit -f` would end the program without a message.
 #[test]
 fn a_file_beyond_the_limit_is_an_error_like_a_full_disk() {
     let scratch = folder();

@@ -1,4 +1,5 @@
-//! What a sweep leaves: whole files, none that was there unless asked for, nothing where it is stopped.
+//! The files of a sweep: they are complete, replace others only on request, and are not left by a sweep that was
+//! stopped.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -11,13 +12,13 @@ use super::sweep::names;
 use super::taxel;
 use super::until;
 
-/// How long it takes is printed, not judged: `cargo test --release --test cli interrupt -- --nocapture`.
+/// The time until it stops is printed, not checked: `cargo test --release --test cli interrupt -- --nocapture`.
 #[test]
-fn an_interrupt_stops_at_once_and_leaves_nothing() {
+fn an_interrupt_stops_at_once_and_leaves_no_files() {
     let scratch = folder();
     let folder = scratch.path();
     let path = |name: &str| folder.join(name).display().to_string();
-    // Hours of work.
+    // A sweep that would take hours.
     let line = format!(
         "sweep heptagon --side 3 --thickness 1 --x0 5:5.999:0.001 --y0 5:5.999:0.001 --angle 0:359.999:0.001 --quiet --memory 900000T --atlas {} --poses {}",
         path("a.npz"),
@@ -28,7 +29,7 @@ fn an_interrupt_stops_at_once_and_leaves_nothing() {
         .spawn()
         .expect("the program starts");
     let id = i32::try_from(child.id()).expect("a process");
-    // It listens to signals before it opens a file, which may have no name yet.
+    // The program listens for signals before it opens a file, which may have no name yet.
     let opened = format!("/proc/{id}/fd");
     let is_open = || {
         let files = fs::read_dir(&opened).into_iter().flatten().flatten();
@@ -40,7 +41,7 @@ fn an_interrupt_stops_at_once_and_leaves_nothing() {
         assert_eq!(ended, None, "it ended before it was interrupted");
         is_open()
     });
-    // Somewhere on its way.
+    // Now the sweep is under way.
     std::thread::sleep(Duration::from_millis(200));
     let start = Instant::now();
     let id = rustix::process::Pid::from_raw(id).expect("a process");
@@ -51,9 +52,9 @@ fn an_interrupt_stops_at_once_and_leaves_nothing() {
     assert_eq!(names(folder), [""; 0]);
 }
 
-/// Hours of work are not lost to a slip of the hand, and not done in vain either: it is told before.
+/// Hours of work are not lost by a mistake, and not done in vain either: the refusal comes first.
 #[test]
-fn files_are_replaced_by_force_only() {
+fn files_are_only_replaced_with_force() {
     let scratch = folder();
     let path = |name: &str| scratch.path().join(name);
     let sweep = |files: &str| {
@@ -75,7 +76,7 @@ fn files_are_replaced_by_force_only() {
     assert_eq!(fs::read(path("a.NPZ")).ok().as_deref(), Some(&b"mine"[..]));
     assert_eq!(sweep(&format!("--atlas {atlas} --force")).status, Some(0));
     assert_eq!(fs::read(path("a.NPZ")).ok(), Some(first));
-    // Neither does a merge replace its own shard.
+    // A merge does not replace its own shard, either.
     let run = taxel(&format!("merge {atlas} --atlas {atlas} --quiet"), "");
     refused(
         &run,

@@ -1,4 +1,4 @@
-//! `taxel watch`: frames as they come, from pipes, pseudo-terminals and recordings, and recordings of them.
+//! Tests of `taxel watch`: live frames from pipes, pseudo-terminals and recordings, and their recording.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
@@ -26,7 +26,7 @@ pub(super) fn lines(text: &str) -> Vec<Value> {
         .collect()
 }
 
-/// Frames of 2 x 2 in lines, whose first values are these numbers.
+/// Returns frames of 2 × 2 as lines; the first values are these numbers.
 pub(super) fn stream(frames: std::ops::Range<u32>) -> String {
     frames
         .map(|number| format!("{number} 2\n3 4\n\n"))
@@ -34,7 +34,7 @@ pub(super) fn stream(frames: std::ops::Range<u32>) -> String {
 }
 
 #[test]
-fn a_recording_is_answered_as_by_frames() {
+fn watch_and_frames_answer_a_recording_alike() {
     for (name, shape) in [
         ("tekscan.asf", ""),
         ("named.csv", ""),
@@ -46,10 +46,10 @@ fn a_recording_is_answered_as_by_frames() {
         assert_eq!(watched, listed, "{name}");
         assert_eq!(lines(&watched.stdout).len(), 3, "{name}");
     }
-    // A recording without a threshold has no imprints, but frames.
+    // A recording without a threshold has frames, but no imprints.
     let run = taxel(&format!("watch --once {}", sample("u2.npy")), "");
     assert_eq!(lines(&run.stdout)[0]["imprint"], Value::Null);
-    // At ten thousand times its rate, from time to time.
+    // At ten thousand times its speed.
     let run = taxel(&format!("watch --speed 10000 {}", sample("named.csv")), "");
     assert_eq!(lines(&run.stdout).len(), 3);
 }
@@ -94,7 +94,7 @@ fn a_stream_is_a_filter_in_a_pipeline() {
         (run.status, run.stderr.as_str()),
         (Some(1), "error: standard input is empty\n")
     );
-    // Numbers are of a known form, but these are no frame.
+    // The lines are numbers, but do not make up a frame.
     let run = taxel("watch -", "1 2\n3\n\n");
     let numbers = "7 bytes but no frame; check --rows, --columns and --format";
     assert!(run.stderr.contains(numbers), "{}", run.stderr);
@@ -102,7 +102,7 @@ fn a_stream_is_a_filter_in_a_pipeline() {
     misused("watch - --write touch.txt", "invalid value 'touch.txt'");
 }
 
-/// What numpy reads in a file, which it must be able to load.
+/// Returns what numpy reads from a file, which it must be able to load.
 fn numpy(path: &Path) -> String {
     let script = "import sys, numpy; a = numpy.load(sys.argv[1]); print(len(a), a.dtype.names, a['values'].sum())";
     let run = Command::new("python3")
@@ -143,7 +143,7 @@ fn a_recording_of_a_stream_is_read_by_taxel_and_numpy() {
         (&beside["format"], &beside["source"]),
         (&"taxel-touch/1".into(), &"standard input".into())
     );
-    // It is not replaced by mistake.
+    // The recording is not replaced by mistake.
     let run = taxel(&line, stream(0..1));
     assert_eq!(run.status, Some(1));
     assert!(run.stderr.contains("--force replaces it"), "{}", run.stderr);
@@ -159,12 +159,13 @@ pub(super) fn started(arguments: &[&str]) -> Child {
         .expect("the program starts")
 }
 
-/// Killed at many moments: what was recorded until then opens, and no frame of it is wrong.
+/// The program is killed at many moments: the file that was recorded until then opens, and none of its frames is
+/// wrong.
 #[test]
 fn after_a_kill_the_recording_opens_and_every_frame_is_right() {
     let folder = tempfile::tempdir().expect("a folder");
     let has_numpy = python_has("numpy");
-    // Together: most of their time they wait.
+    // The rounds run together, because they mostly wait.
     std::thread::scope(|scope| {
         for round in 0..12 {
             let file = folder.path().join(format!("touch-{round}.npy"));
@@ -178,13 +179,13 @@ fn after_a_kill_the_recording_opens_and_every_frame_is_right() {
     });
 }
 
-/// Kills a recording after more frames and a longer time in each round.
+/// Kills a recording; each round records more frames and takes longer.
 fn is_right_after_a_kill(round: u32, file: &Path) {
     let path = file.to_str().expect("UTF-8");
     let mut child = started(&["watch", "-", "--format", "lines", "--write", path]);
     let mut input = child.stdin.take().expect("piped");
     let mut output = BufReader::new(child.stdout.take().expect("piped"));
-    // Longer than the records wait, in some rounds.
+    // In some rounds longer than records are kept in memory.
     let mut answer = String::new();
     for piece in 0..=round / 3 {
         let frames = stream(piece * 100..(piece + 1) * 100);
@@ -208,14 +209,14 @@ fn is_right_after_a_kill(round: u32, file: &Path) {
             run.stderr
         );
     }
-    // A second and more after the first hundred they are in the file.
+    // More than a second after the first hundred frames, these are in the file.
     assert!(
         round < 9 || lines(&run.stdout).len() >= 100,
         "round {round}"
     );
 }
 
-/// Only of a recording it has to be known first that no other channel comes.
+/// Only a recording must first be searched for other channels.
 #[test]
 fn the_first_frame_of_a_stream_is_answered_before_the_second_comes() {
     let mut watch = started(&[
@@ -234,7 +235,7 @@ fn the_first_frame_of_a_stream_is_answered_before_the_second_comes() {
     std::thread::spawn(move || {
         let mut answer = String::new();
         let read = BufReader::new(output).read_line(&mut answer);
-        // Nobody waits any longer.
+        // The receiver may have stopped waiting.
         let _ = sender.send(read.map(|_| answer));
     });
     input.write_all(stream(7..8).as_bytes()).expect("written");
@@ -246,7 +247,7 @@ fn the_first_frame_of_a_stream_is_answered_before_the_second_comes() {
 }
 
 #[test]
-fn a_first_frame_that_does_not_fit_is_an_error() {
+fn a_first_frame_that_does_not_fit_the_gain_is_an_error() {
     let folder = tempfile::tempdir().expect("a folder");
     let gain = folder.path().join("gain.csv");
     fs::write(&gain, "1,2,3\n").expect("written");
@@ -266,7 +267,7 @@ fn a_fifo_is_read_until_its_writer_closes_it() {
     }
     let child = started(&["watch", fifo.to_str().expect("UTF-8")]);
     let mut writer = wait::writer_of(&fifo);
-    // Torn anywhere.
+    // The frames are split anywhere.
     for piece in stream(0..40).as_bytes().chunks(7) {
         writer.write_all(piece).expect("it is read");
     }
@@ -281,7 +282,7 @@ fn a_fifo_is_read_until_its_writer_closes_it() {
 }
 
 #[test]
-fn a_signal_before_the_first_frame_is_no_error() {
+fn a_signal_before_the_first_frame_is_not_an_error() {
     let folder = tempfile::tempdir().expect("a folder");
     let fifo = folder.path().join("frames");
     if !wait::fifo(&fifo) {
@@ -291,7 +292,7 @@ fn a_signal_before_the_first_frame_is_no_error() {
         let child = started(&["watch", fifo.to_str().expect("UTF-8")]);
         let mut writer = wait::writer_of(&fifo);
         writer.write_all(sent.as_bytes()).expect("it is read");
-        // It listens for signals before it opens its source.
+        // The program listens for signals before it opens its source.
         let id = rustix::process::Pid::from_child(&child);
         rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("it runs still");
         let run = super::finish(child, b"");
@@ -301,7 +302,7 @@ fn a_signal_before_the_first_frame_is_no_error() {
 }
 
 #[test]
-fn a_file_of_another_kind_is_no_stream() {
+fn a_file_of_another_kind_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.csv");
     fs::write(&path, b"\xff\xfe1\0,\x002\0\n\0").expect("written");
@@ -315,7 +316,7 @@ fn a_file_of_another_kind_is_no_stream() {
 }
 
 #[test]
-fn only_a_serial_line_has_a_speed() {
+fn only_a_serial_line_has_a_baud_rate() {
     let run = taxel("watch - --baud 9600", stream(0..3));
     let message = "--baud has no effect on standard input: it is for serial lines";
     super::refused(&run, 2, message);
@@ -328,7 +329,7 @@ fn only_a_serial_line_has_a_speed() {
 }
 
 #[test]
-fn frames_of_another_size_do_not_end_it() {
+fn frames_of_another_size_do_not_end_the_stream() {
     let wide = "1 2 3\n\n".repeat(5);
     let input = stream(0..3) + &wide + &stream(3..7);
     let run = taxel("watch - --crop 0,0,2x2 --at-least 1", &input);
@@ -337,7 +338,7 @@ fn frames_of_another_size_do_not_end_it() {
         .iter()
         .map(|line| line["frame"].as_u64().expect("a number"))
         .collect();
-    // Two frames of each new size are dropped before it counts as one.
+    // Two frames of each new size are dropped before it counts as the new size.
     assert_eq!(frames, [0, 1, 2, 6, 7]);
     for said in [
         "standard input: 1 x 3 cells from frame 3 on",
@@ -349,7 +350,7 @@ fn frames_of_another_size_do_not_end_it() {
     }
 }
 
-/// Whether a program has locked a file, which is how it claims a serial line.
+/// Returns true if a program has locked a file, which is how it claims a serial line.
 fn has_locked(program: &Child, file: &Path) -> bool {
     let id = program.id().to_string();
     let inode = fs::metadata(file).expect("it is there").ino().to_string();
@@ -364,9 +365,9 @@ fn has_locked(program: &Child, file: &Path) -> bool {
     })
 }
 
-/// A pair of pseudo-terminals in place of a serial line; its torn start is dropped.
+/// A pair of pseudo-terminals acts as a serial line; its incomplete start is dropped.
 #[test]
-fn a_serial_line_is_read_and_a_busy_one_is_said_to_be_busy() {
+fn a_serial_line_is_read_and_a_busy_one_is_reported_as_busy() {
     let folder = tempfile::tempdir().expect("a folder");
     let (ours, theirs) = (folder.path().join("ours"), folder.path().join("theirs"));
     let end = |path: &Path| format!("pty,raw,echo=0,link={}", path.display());
@@ -412,7 +413,7 @@ fn a_serial_line_is_read_and_a_busy_one_is_said_to_be_busy() {
 }
 
 #[test]
-fn of_several_channels_nothing_is_answered_before_one_is_named() {
+fn a_recording_of_several_channels_needs_the_name_of_one() {
     let line = format!("watch --once --at-least 9 {}", sample("xsensor.csv"));
     let run = taxel(&line, "");
     assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""));
@@ -426,7 +427,7 @@ fn of_several_channels_nothing_is_answered_before_one_is_named() {
     assert_eq!(run.status, Some(0), "{}", run.stderr);
 }
 
-/// What lies beside a recording holds when it is read again: threshold, unit and tare.
+/// The description beside a recording applies when it is read again: threshold, unit and tare.
 #[test]
 fn the_description_of_a_recording_is_read_with_it() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -457,7 +458,7 @@ fn the_description_of_a_recording_is_read_with_it() {
         (&channel["unit"], &channel["pitch_mm"]),
         (&"raw".into(), &serde_json::json!([2.5, 2.5]))
     );
-    // Flags come first.
+    // Flags override it.
     let plain = taxel(
         &format!("frames {path} --peak --json --at-least 9 --tare 0"),
         "",
@@ -468,7 +469,7 @@ fn the_description_of_a_recording_is_read_with_it() {
         serde_json::json!({"at_least": 9, "from": "flag"})
     );
     assert_eq!(plain.get("tare"), None);
-    // A description that is broken is told, one of another program is not.
+    // A broken description is reported, one of another program is not.
     for (text, told) in [
         (
             "{\"format\":\"taxel-touch/1\",\"rule\":{\"percent\":0}}",
@@ -480,7 +481,7 @@ fn the_description_of_a_recording_is_read_with_it() {
         fs::write(file.with_extension("json"), text).expect("written");
         warns_of(path, told);
     }
-    // Nor can one be read that leads to itself.
+    // A description that links to itself cannot be read, either.
     let beside = file.with_extension("json");
     fs::remove_file(&beside).expect("removed");
     warns_of(path, "");
@@ -488,7 +489,8 @@ fn the_description_of_a_recording_is_read_with_it() {
     warns_of(path, "touch.json: cannot read: ");
 }
 
-/// What lies beside a recording is told by both commands, and its frames are read all the same; empty: nothing is.
+/// Checks that both commands warn about the file beside a recording, and still read its frames; no warning if `told`
+/// is empty.
 fn warns_of(path: &str, told: &str) {
     for line in [
         format!("frames {path} --peak --at-least 9"),
@@ -503,9 +505,9 @@ fn warns_of(path: &str, told: &str) {
     }
 }
 
-/// A connection that is cut is tried again each second; every whole frame of it counts.
+/// A lost connection is tried again each second; every whole frame of it counts.
 #[test]
-fn a_connection_that_is_lost_is_made_again() {
+fn a_lost_connection_is_made_again() {
     let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
     let port = listener.local_addr().expect("an address").port();
     let source = format!("tcp://127.0.0.1:{port}");
@@ -517,7 +519,7 @@ fn a_connection_that_is_lost_is_made_again() {
         assert_eq!(lines(&answer)[0]["sum"], 9 + expected);
     };
     let mut first = wait::connection(&listener);
-    // What comes first may be torn.
+    // The first frame may be incomplete.
     first
         .write_all(("3 4\n\n".to_owned() + &stream(0..5) + "1 ").as_bytes())
         .expect("it reads");
@@ -538,7 +540,7 @@ fn a_connection_that_is_lost_is_made_again() {
         "{}",
         ended.stderr
     );
-    // Nothing listens there. A port that was just given up might be another test's by now.
+    // Nothing listens on this port. A port that was just released might be another test's by now.
     let refused = taxel("watch tcp://127.0.0.1:1", "");
     assert_eq!(refused.status, Some(1));
     assert!(
@@ -549,7 +551,7 @@ fn a_connection_that_is_lost_is_made_again() {
 }
 
 #[test]
-fn a_connection_without_its_beginning_says_how_it_is_written() {
+fn an_address_without_tcp_is_refused_with_a_hint() {
     let message = "robot:7000: cannot open it: No such file or directory (os error 2)";
     let told = format!("{message}; a connection is written tcp://robot:7000");
     super::refused(&taxel("watch robot:7000", ""), 1, &told);
@@ -560,9 +562,9 @@ fn a_connection_without_its_beginning_says_how_it_is_written() {
     }
 }
 
-/// Frames of JSON lines a tenth of a second apart, by a clock of their own.
+/// Returns frames as JSON lines at intervals of a tenth of a second, by the clock of the sensor.
 fn clocked(from: f64, frames: u32) -> String {
-    // What comes first may be torn.
+    // The first frame may be incomplete.
     let lines = (0..frames).map(|number| {
         let time = from + f64::from(number) / 10.0;
         format!("{{\"t\": {time:.1}, \"frame\": [[1, 2], [3, 4]]}}\n")
@@ -570,10 +572,10 @@ fn clocked(from: f64, frames: u32) -> String {
     "torn\n".to_owned() + &lines.collect::<String>()
 }
 
-/// As where the connection to the machine is lost; but not under `nohup`.
+/// The hangup of a lost connection to the machine ends it, but not under `nohup`.
 #[test]
 fn a_hangup_ends_a_recording_in_a_pipeline() {
-    // The tests themselves may run under `nohup`, and what a shell ignores at its start it cannot trap.
+    // The tests may run under `nohup`, too, and a shell cannot trap signals that are ignored when it starts.
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status
         .lines()
@@ -622,9 +624,9 @@ fn a_hangup_ends_a_recording_in_a_pipeline() {
     }
 }
 
-/// The clock of the sensor may go on while the connection is lost, begin anew, or be set.
+/// While the connection is lost, the clock of the sensor may continue, restart, or be set.
 #[test]
-fn times_count_on_when_a_connection_is_made_again() {
+fn times_continue_when_a_connection_is_made_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("touch.npy");
     let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
@@ -648,13 +650,13 @@ fn times_count_on_when_a_connection_is_made_again() {
     rustix::process::kill_process(id, rustix::process::Signal::INT).expect("it runs still");
     let ended = super::finish(child, b"");
     assert_eq!(ended.status, Some(130), "{}", ended.stderr);
-    // It went on.
+    // The clock continued.
     assert_eq!((times[0], times[23], times[24]), (0.0, 2.3, 3.5));
     for (index, pair) in times.windows(2).enumerate() {
         let step = pair[1] - pair[0];
         let expected = match index {
             23 => 1.2..1.3,
-            // So long it was gone.
+            // The time that the connection was lost.
             47 | 71 => 1.0..20.0,
             _ => 0.099_999..0.100_001,
         };
@@ -672,7 +674,8 @@ fn times_count_on_when_a_connection_is_made_again() {
     );
 }
 
-/// The same at a hundred random moments, with the figures: `cargo test --test cli a_hundred -- --ignored --nocapture`.
+/// Kills at a hundred random moments and prints the numbers: `cargo test --test cli a_hundred -- --ignored
+/// --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn a_hundred_kills_at_random_lose_at_most_a_second() {
@@ -709,7 +712,7 @@ fn a_hundred_kills_at_random_lose_at_most_a_second() {
         for (number, frame) in frames.iter().enumerate() {
             assert_eq!(frame["sum"], 9 + number, "{frame}");
         }
-        // The last whole frame that is missing was sent so long before.
+        // The time from the sending of the first missing frame to the kill.
         let lost = times
             .get(frames.len())
             .map_or(0.0, |sent| killed.saturating_sub(*sent).as_secs_f64());

@@ -1,5 +1,5 @@
-//! `taxel watch` and the files around it: sources that are also targets, files that are cut or replaced while they grow,
-//! recordings that lack a channel, disks that are full.
+//! `taxel watch` and the files around it: a source that is also the target, files that are truncated or replaced while
+//! they grow, missing channels, full disks.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
@@ -15,7 +15,7 @@ use super::array::{self, array};
 use super::watch::{lines, sample, started, stream};
 use super::{finish, program, run_in, taxel};
 
-/// Why a command that must fail has failed.
+/// Runs a command that must fail, and returns its message.
 fn refused(line: &str, input: impl AsRef<[u8]>) -> String {
     let run = taxel(line, input);
     assert_eq!(run.status, Some(1), "{line}: {}", run.stderr);
@@ -53,7 +53,7 @@ fn a_source_is_never_its_own_target() {
     assert!(!folder.path().join("s.json").exists());
 }
 
-/// Neither an error nor a source that is silent leaves a recording of no frames.
+/// Neither an error nor a silent source leaves a recording without frames.
 #[test]
 fn a_recording_appears_with_its_first_frame() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -75,7 +75,7 @@ fn a_recording_appears_with_its_first_frame() {
 }
 
 #[test]
-fn of_two_recordings_in_one_file_the_later_is_refused() {
+fn the_second_recording_to_one_file_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("both.npy");
     let begun = || FrameRecorder::create(&file, Existing::Kept, &RecordingMetadata::default());
@@ -92,9 +92,9 @@ fn of_two_recordings_in_one_file_the_later_is_refused() {
     assert_eq!(both(), before);
 }
 
-/// A recording is replaced by frames, and by nothing less.
+/// Only frames replace a recording.
 #[test]
-fn an_old_recording_stays_until_the_first_frame_comes() {
+fn an_old_recording_is_kept_until_the_first_frame() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("touch.npy");
     let write = format!("--once --write {} --force", file.display());
@@ -121,10 +121,10 @@ fn an_old_recording_stays_until_the_first_frame_comes() {
     assert_eq!(names, 2, "nothing is left behind");
 }
 
-/// Each of these begins a file from its start, with whatever was torn before. What has the form of a recording is
-/// followed, too, as soon as it grows.
+/// Each of these changes begins the file anew, after an incomplete end. A file in the format of a recording is also
+/// followed as soon as it grows.
 #[test]
-fn a_growing_file_is_read_on_after_it_was_cut_or_replaced() {
+fn a_growing_file_is_followed_after_it_was_truncated_or_replaced() {
     for flags in [&["--format", "lines"][..], &[]] {
         read_on(flags);
     }
@@ -153,13 +153,13 @@ fn read_on(flags: &[&str]) {
     let grown = grown.as_mut().expect("opened");
     grown.write_all(b"20 2\n3 4\n\n99").expect("written");
     numbers(20..21);
-    // Shorter.
+    // The new contents are shorter.
     fs::write(&file, stream(31..33)).expect("written");
     numbers(31..33);
-    // As long as before.
+    // The new contents are as long as before.
     fs::write(&file, stream(41..43)).expect("written");
     numbers(41..43);
-    // Another one of that name, at once, and after there was none.
+    // Another file with this name, at once, and after there was none.
     fs::rename(&file, folder.path().join("g.1")).expect("renamed");
     fs::write(&file, stream(51..59)).expect("written");
     numbers(51..59);
@@ -174,7 +174,7 @@ fn read_on(flags: &[&str]) {
 }
 
 #[test]
-fn a_first_frame_that_is_not_whole_yet_is_waited_for() {
+fn an_incomplete_first_frame_is_waited_for() {
     let folder = tempfile::tempdir().expect("a folder");
     for (index, (flags, pieces)) in [
         ("", ["1 2\n3", " 4\n", "\n", "5 6\n7 8\n\n"]),
@@ -214,7 +214,7 @@ fn a_first_frame_that_is_not_whole_yet_is_waited_for() {
     }
 }
 
-/// Each frame of a board is shown when it is written, not when a piece of many is full.
+/// Each frame of a board is shown when it is written, not when a block of many is full.
 #[test]
 fn the_bytes_of_a_board_are_followed_frame_by_frame() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -229,7 +229,7 @@ fn the_bytes_of_a_board_are_followed_frame_by_frame() {
         output.read_line(&mut answer).expect("it answers");
         lines(&answer)[0]["sum"].clone()
     };
-    // A frame is whole when the next one begins.
+    // A frame is complete when the next one begins.
     assert_eq!([sum(), sum(), sum()], [4, 8, 12]);
     let grown = fs::File::options().append(true).open(&file);
     let appended = grown
@@ -237,7 +237,7 @@ fn the_bytes_of_a_board_are_followed_frame_by_frame() {
         .write_all(&[frame(5), frame(6)].concat());
     appended.expect("written");
     assert_eq!([sum(), sum()], [16, 20]);
-    // Another kind of recording in its place is called by its name.
+    // If another kind of recording takes its place, the message names that kind.
     fs::copy(sample("records.npy"), folder.path().join("other")).expect("copied");
     fs::rename(folder.path().join("other"), &file).expect("renamed");
     let run = child.wait().expect("it ends");
@@ -258,7 +258,7 @@ fn frames_of_another_size_do_not_end_a_recording() {
     let stream: String = [2, 3, 2, 3, 3, 3, 3, 2, 2, 2].map(frame).concat();
     let run = taxel(&format!("watch - --format jsonl --write {name}"), stream);
     assert_eq!(run.status, Some(0), "{run:?}");
-    // The sizes are those of the stream, which changes its own after three frames.
+    // The size is the stream's, which changes after three frames of another size.
     let sums: Vec<Value> = lines(&run.stdout)
         .iter()
         .map(|line| line["sum"].clone())
@@ -276,7 +276,7 @@ fn frames_of_another_size_do_not_end_a_recording() {
 }
 
 #[test]
-fn a_file_that_was_not_changed_lately_ends_where_it_ends() {
+fn a_file_that_no_longer_grows_ends_at_its_end() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("old.txt");
     for (text, expected) in [("1 2\n3 4\n\n", ""), ("1 2\n3", "line 2: found 1 value")] {
@@ -296,7 +296,7 @@ fn a_file_that_was_not_changed_lately_ends_where_it_ends() {
 }
 
 #[test]
-fn a_channel_that_is_not_there_is_refused_and_one_of_a_stream_is_said() {
+fn a_missing_channel_is_refused_in_a_recording_and_reported_in_a_stream() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("touch.npy");
     let one = "no channel is called \"nope\": the recording has one channel, without a name; leave out --channel\n";
@@ -368,7 +368,7 @@ fn the_channels_of_json_lines_are_chosen_by_name() {
 }
 
 #[test]
-fn only_frames_that_arrive_in_a_growing_file_have_the_time_of_their_arrival() {
+fn only_frames_that_arrive_later_in_a_file_have_the_time_of_arrival() {
     let folder = tempfile::tempdir().expect("a folder");
     for flags in [&["--format", "lines"][..], &[]] {
         let file = folder.path().join("g.txt");
@@ -393,7 +393,7 @@ fn only_frames_that_arrive_in_a_growing_file_have_the_time_of_their_arrival() {
             .expect("opened");
         let mut last = -1.0;
         for number in 3..6 {
-            // Until it has read all.
+            // Waits until everything has been read.
             std::thread::sleep(std::time::Duration::from_millis(300));
             let added = grown.write_all(stream(number..number + 1).as_bytes());
             added.expect("written");
@@ -409,9 +409,9 @@ fn only_frames_that_arrive_in_a_growing_file_have_the_time_of_their_arrival() {
     }
 }
 
-/// A limit of the system in place of a full disk: the last record that is begun is torn by it.
+/// A limit of the system acts as a full disk: it cuts off the last record.
 #[test]
-fn a_recording_that_has_no_more_room_ends_with_its_last_whole_record() {
+fn a_recording_on_a_full_disk_ends_with_its_last_whole_record() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("touch.npy");
     let own = program(&["watch", "-", "--format", "lines", "--write"], "C.UTF-8");
@@ -426,7 +426,7 @@ fn a_recording_that_has_no_more_room_ends_with_its_last_whole_record() {
         .stderr(Stdio::piped())
         .spawn()
         .expect("there is a shell");
-    // More than wait in memory.
+    // More frames than are kept in memory.
     let run = finish(child, stream(0..6000).as_bytes());
     assert_eq!(run.status, Some(1), "{}", run.stderr);
     assert!(run.stderr.contains("cannot record: File too large"));
@@ -456,7 +456,7 @@ fn a_recording_that_has_no_more_room_ends_with_its_last_whole_record() {
 }
 
 #[test]
-fn dots_mean_that_values_were_left_out_only_where_they_stand_for_values() {
+fn dots_in_place_of_values_mean_omitted_values_and_nothing_else_does() {
     let line = "watch - --once --format ros2 --rows 1 --columns 2";
     let noise =
         "a...b\n[0, 1]\n---\nname: '...'\n[2, 3]\n---\n[0 x ...]\n---\n[...]\n---\n[4, 5]\n---\n";
@@ -485,7 +485,7 @@ fn dots_mean_that_values_were_left_out_only_where_they_stand_for_values() {
 }
 
 #[test]
-fn an_echo_without_dimensions_that_was_cut_is_refused_with_the_missing_flag() {
+fn a_shortened_echo_without_dimensions_is_refused_with_the_missing_flag() {
     let values: Vec<String> = (0..128).map(|value| value.to_string()).collect();
     let echo = format!("0,{},...\n", values.join(",")).repeat(2);
     for line in [
@@ -500,7 +500,7 @@ fn an_echo_without_dimensions_that_was_cut_is_refused_with_the_missing_flag() {
 }
 
 #[test]
-fn why_lines_of_json_are_no_frames_is_said() {
+fn the_message_says_why_lines_of_json_are_not_frames() {
     let line = "watch - --once --at-least 9";
     let text = "{\"t\":0.1,\"frame\":[[0,30],[40,50]],\"label\":\"L1\"}\n";
     for (input, reason) in [
@@ -521,7 +521,7 @@ fn why_lines_of_json_are_no_frames_is_said() {
 }
 
 #[test]
-fn noise_and_greetings_before_the_first_frame_do_not_decide_the_format() {
+fn noise_and_greetings_before_the_first_frame_do_not_affect_the_format() {
     let frames: String = (1..5).map(|n| format!("1 2\r\n3 {n}\r\n\r\n")).collect();
     for greeting in [
         &b"\xf8\x80 3\r\n"[..],
@@ -544,7 +544,7 @@ fn noise_and_greetings_before_the_first_frame_do_not_decide_the_format() {
 }
 
 #[test]
-fn why_lines_of_numbers_are_no_frames_is_said() {
+fn the_message_says_why_lines_of_numbers_are_not_frames() {
     let timed = "50,1,2,3,1\n100,1,2,3,2\n150,1,2,3,3\n";
     let said = refused("watch - --once --rows 2 --columns 2", timed);
     let expected = "35 bytes but no frame; the last line: 5 numbers, expected 4 for a frame of 2 x 2, or 2 for a row";
@@ -560,7 +560,7 @@ fn why_lines_of_numbers_are_no_frames_is_said() {
 }
 
 #[test]
-fn what_is_wrong_with_a_recording_is_called_by_its_name() {
+fn bad_values_and_a_torn_recording_are_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
     let one = |value: f64| array("(1, 1, 1)", false, &[value]);
@@ -591,7 +591,7 @@ fn what_is_wrong_with_a_recording_is_called_by_its_name() {
 }
 
 #[test]
-fn a_tare_that_does_not_fit_is_said_to_be_left_out() {
+fn a_tare_that_does_not_fit_is_reported_as_not_used() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("touch.npy");
     let file = file.to_str().expect("UTF-8");
@@ -614,10 +614,10 @@ fn a_tare_that_does_not_fit_is_said_to_be_left_out() {
     }
 }
 
-/// On Linux a name is bytes, of which not all are UTF-8.
+/// On Linux a file name is any bytes, not always UTF-8.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_recording_takes_any_name() {
+fn a_recording_may_have_any_file_name() {
     use std::ffi::{OsStr, OsString};
     use std::os::unix::ffi::OsStrExt;
 
@@ -658,7 +658,7 @@ fn a_channel_whose_rows_and_columns_are_unknown_is_refused() {
 }
 
 #[test]
-fn a_recording_without_frames_is_refused_and_not_repeated() {
+fn a_recording_without_frames_is_refused_also_with_loop() {
     let folder = tempfile::tempdir().expect("a folder");
     let empty = folder.path().join("empty.npy");
     fs::write(&empty, array("(0, 4, 4)", false, &[])).expect("written");
@@ -677,7 +677,7 @@ fn a_recording_without_frames_is_refused_and_not_repeated() {
             super::refused(&run, 2, &expected);
         }
     }
-    // What is wrong with the source comes before the tare that lacks frames.
+    // An error in the source is reported before the missing frames for the tare.
     let bad = folder.path().join("bad.csv");
     fs::write(&bad, "r0c0,r0c1\n1,2\n3,x\n").expect("written");
     let run = taxel(&format!("watch {} --tare 3 --once", bad.display()), "");
@@ -688,7 +688,7 @@ fn a_recording_without_frames_is_refused_and_not_repeated() {
     super::refused(&run, 1, &expected);
     let run = taxel("watch nowhere.npy --tare 3 --once", "");
     assert!(!run.stderr.contains("tare"), "{}", run.stderr);
-    // A device without an end that cannot be set up as a line.
+    // An endless device that cannot be set up as a serial line.
     for device in ["/dev/urandom", "/dev/zero"] {
         let said = refused(&format!("watch {device}"), "");
         let line = "it is not a serial line; 'taxel watch -' reads it";
