@@ -1,6 +1,6 @@
-//! Drawings of touches: the SVG as it is, the PNG pixel by pixel where it matters.
+//! Drawings of touches: the SVG as a whole, the PNG at the pixels that matter.
 //!
-//! `INSTA_UPDATE=always cargo test --test files drawing` writes the SVG files anew; then look at them.
+//! `INSTA_UPDATE=always cargo test --test files drawing` rewrites the SVG files; then look at them.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use taxel::picture::Picture;
 use taxel::sensor::Sensor;
 use taxel::touch::Plane;
 
-/// The paper's Fig. 1.
+/// Returns the ring of the paper's Fig. 1 and its imprint.
 fn ring() -> (Figure, Imprint) {
     let sensor = Sensor::default();
     let figure = Figure::ellipse(4.0, 4.0)
@@ -33,7 +33,7 @@ fn golden(name: &str, svg: &str) {
 }
 
 #[test]
-fn the_papers_figure_in_millimetres() {
+fn the_papers_ring_is_drawn_in_millimetres() {
     let (figure, imprint) = ring();
     let drawing = Drawing::new(&imprint).with_outline(&figure);
     let drawing = drawing.with_pitch(2.5).with_title("Fig. 1 <of the paper>");
@@ -41,7 +41,7 @@ fn the_papers_figure_in_millimetres() {
 }
 
 #[test]
-fn pieces_a_hole_and_a_picture_in_cells() {
+fn pieces_a_hole_and_a_picture_are_drawn_in_cells() {
     let imprint: Imprint = "#####..\n#...#..\n#.#.#.#\n#...#.#\n#####.."
         .parse()
         .expect("rows");
@@ -55,7 +55,7 @@ fn pieces_a_hole_and_a_picture_in_cells() {
 }
 
 #[test]
-fn what_there_is_not_is_not_drawn() {
+fn absent_parts_are_not_drawn() {
     let empty = Drawing::new(&Imprint::empty(1, 2)).svg();
     golden("empty", &empty);
     for absent in ["rectangle", "CG", "CD", "outline", "cg"] {
@@ -103,7 +103,7 @@ fn every_size_and_title_has_a_page_of_bounded_size() {
 mod pixels {
     use super::*;
 
-    /// Width, height and pixels of a file.
+    /// Decodes a file: its width, height and pixels.
     fn decoded(file: &[u8]) -> (usize, usize, Vec<u8>) {
         let decoder = png::Decoder::new(std::io::Cursor::new(file));
         let mut reader = decoder.read_info().expect("a PNG");
@@ -120,7 +120,7 @@ mod pixels {
         (width, height, pixels)
     }
 
-    /// The left and top of the plane, and the side of a cell, in points, as the SVG has them.
+    /// Returns the left and top edge of the plane and the side of a cell, in points, as in the SVG.
     fn frame(svg: &str, columns: u8) -> (f64, f64, f64) {
         let axes = svg.split("class=\"axes\"").nth(1).expect("axes");
         let data = axes.split("d=\"M").nth(1).expect("a path");
@@ -139,7 +139,7 @@ mod pixels {
         clippy::cast_sign_loss,
         reason = "pixels of a page"
     )]
-    fn taxels_lines_and_text_are_where_the_svg_has_them() {
+    fn the_png_has_taxels_lines_and_text_where_the_svg_has_them() {
         let (figure, imprint) = ring();
         let drawing = Drawing::new(&imprint).with_outline(&figure);
         let (left, top, cell) = frame(&drawing.svg(), imprint.columns());
@@ -148,7 +148,7 @@ mod pixels {
             let (x, y) = ((left + x * cell) * 4.0, (top + y * cell) * 4.0);
             pixels[y as usize * width + x as usize]
         };
-        // A quarter of a cell off the corner: away from the outline in these taxels, and from the lines of the cells.
+        // A quarter of a cell from the corner: in these taxels this is off the outline and off the lines of the cells.
         let mut compared = 0;
         for (column, row) in [
             (4, 3),
@@ -168,16 +168,16 @@ mod pixels {
             compared += usize::from(imprint.get(column, row));
         }
         assert!(compared >= 4);
-        // The outline is black where it is: to the right of its centre, by its radius.
+        // The outline is black: to the right of its centre, at the distance of its radius.
         assert!(at(5.99 + 4.0, 5.47) < 30 && at(5.99 + 2.0, 5.47) < 30);
-        // CG and CD: (6, 5.5), the cross in the middle of the circle.
+        // CG and CD: the cross at (6, 5.5), in the middle of the circle.
         assert!(at(6.0, 5.5) < 30 && at(6.0 + 3.5 / cell, 5.5) < 60);
         assert_eq!(
             at(6.0 + 1.5 / cell, 5.5 + 1.3 / cell),
             255,
             "between cross and circle"
         );
-        // Some ink above the plane, where the numbers of the columns stand.
+        // There is some ink above the plane, where the column numbers are.
         let row = |y: f64| ((top + y) * 4.0) as usize;
         let ink = pixels[row(-12.0) * width..row(-5.0) * width]
             .iter()
@@ -186,7 +186,7 @@ mod pixels {
     }
 
     #[test]
-    fn what_reaches_beyond_the_sensor_is_cut_off() {
+    fn an_outline_beyond_the_sensor_is_cut_off() {
         let far = Figure::ellipse(4.0, 4.0)
             .at(12.0, 4.0)
             .on(&Sensor::default())
@@ -196,7 +196,7 @@ mod pixels {
         let (width, height, without) = decoded(&drawing.png().expect("it is encoded"));
         let (left, top, cell) = frame(&drawing.svg(), 16);
         let (_, _, with) = decoded(&drawing.with_outline(&far).png().expect("it is encoded"));
-        // The legend below has a line more, so the page is longer; above it only the plane may differ.
+        // The legend below has one line more, so the page is longer. Above it, only the plane may differ.
         let side = 16.0 * cell;
         let mut differing = 0;
         for y in 0..height {
@@ -234,7 +234,7 @@ fn a_confusion_matrix_has_its_numbers_and_shades() {
         assert!(svg.contains(text), "{text}");
     }
     assert_eq!(map.svg().matches(">·</text>").count(), 3);
-    // What is missing counts as nothing, and what is too much is left out.
+    // A missing count is 0, and an excess row or column is ignored.
     let odd = ConfusionMap::new(&labels, [vec![1; 9]]).expect("few shapes");
     assert_eq!(odd.svg().matches(">·</text>").count(), 6);
     let many = vec!["x".to_owned(); 65];
@@ -251,7 +251,7 @@ fn curves_have_axes_and_a_legend() {
         );
     golden("curves", &plot.svg());
     assert_eq!(plot.svg().matches("class=\"curve\"").count(), 2);
-    // Without a point there is a page as well, and never more than 32 curves.
+    // There is a page even without points, and never more than 32 curves.
     let empty = LinePlot::new(&"x".repeat(500), "y").with_curve("", &[]);
     assert!(empty.svg().contains("viewBox") && !empty.svg().contains("NaN"));
     let many = (0..99).fold(LinePlot::new("x", "y"), |plot, _| {
@@ -260,9 +260,9 @@ fn curves_have_axes_and_a_legend() {
     assert_eq!(many.svg().matches("class=\"curve\"").count(), 32);
 }
 
-/// The axes begin where the points do; curves have gaps where there is no value, and each its name.
+/// The axes begin at the points; curves have gaps at missing values, and each has its name.
 #[test]
-fn points_have_axes_that_begin_anywhere() {
+fn the_axes_of_points_need_not_begin_at_0() {
     let points = [
         (40.0, 10.5),
         (44.0, 11.25),
@@ -307,7 +307,7 @@ fn points_have_axes_that_begin_anywhere() {
         2,
         "a dashed curve and its sample"
     );
-    // Without a point, or with one only, there is a page as well.
+    // There is a page even without points, or with only one.
     for points in [&[][..], &[(5.0, 5.0)], &[(1e300, -1e300), (-1e300, 1e300)]] {
         let svg = PointPlot::new("x", "y")
             .with_points(points)
@@ -321,15 +321,15 @@ fn points_have_axes_that_begin_anywhere() {
     }
 }
 
-/// Areas of one imprint have no lines in them, and every line parts two areas.
+/// There are no lines inside the area of an imprint, and every line separates two areas.
 #[test]
-fn a_map_has_areas_with_borders() {
+fn a_map_of_poses_has_areas_with_borders() {
     let ids = [0, 0, 1, 0, 2, 1].map(Some);
     let map = PoseMap::new((5.0, 5.02), (7.0, 7.01), 3, &ids).expect("two rows");
     let svg = map.clone().with_title("angle 30").with_chosen(2, 1).svg();
     golden("map", &svg);
     let borders = svg.lines().find(|line| line.contains("class=\"borders\""));
-    // Between the rows below the second cell, and beside it on both sides; above it to the right.
+    // Between the rows below the second cell; to the left and right of that cell; and above it to the right.
     assert_eq!(
         borders.map(|line| line.matches('M').count()),
         Some(3),
@@ -356,7 +356,7 @@ fn a_map_has_areas_with_borders() {
 
 #[cfg(feature = "png")]
 #[test]
-fn matrices_and_curves_are_drawn_in_pixels() {
+fn different_contents_give_different_pixels() {
     let labels = ["a", "b"].map(str::to_owned);
     let map = |row| {
         let map = ConfusionMap::new(&labels, [row, vec![0, 10]]);
@@ -372,7 +372,7 @@ fn matrices_and_curves_are_drawn_in_pixels() {
         let map = PoseMap::new((0.0, 1.0), (0.0, 1.0), 2, &values);
         map.expect("a row").png()
     };
-    // Two of each with the same axes: only what is drawn differs.
+    // Two of each kind with the same axes: only the contents differ.
     for pair in [
         [map(vec![5, 5]), map(vec![9, 1])],
         [
@@ -401,7 +401,7 @@ fn matrices_and_curves_are_drawn_in_pixels() {
 }
 
 #[test]
-fn a_format_writes_what_its_method_does() {
+fn content_in_a_format_equals_the_method_for_it() {
     let plot = LinePlot::new("x", "y").with_curve("c", &[(0.0, 0.0), (1.0, 1.0)]);
     for format in DrawingFormat::ALL {
         assert_eq!(format.name().parse(), Ok(*format));

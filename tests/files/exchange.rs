@@ -1,4 +1,4 @@
-//! Imprints to other programs and back: every form, every size, and bytes that are none of them.
+//! Imprints to other programs and back: every format, every size, and bytes in none of the formats.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -6,7 +6,7 @@ use taxel::formats::imprint_file::MAX_BYTES;
 use taxel::formats::{ImprintFormat, ImprintFormatError, read_imprint};
 use taxel::imprint::Imprint;
 
-/// An imprint of any size; rows of few bits, of many, or of all.
+/// An imprint of any size, with rows of few, many or all bits.
 fn imprints() -> impl Strategy<Value = Imprint> {
     let word = prop_oneof![
         any::<u64>(),
@@ -32,12 +32,12 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn what_is_written_reads_back(imprint in imprints(), form in form()) {
+    fn every_format_reads_back(imprint in imprints(), form in form()) {
         prop_assert_eq!(read_imprint(&form.write(&imprint)), Ok(imprint));
     }
 
     #[test]
-    fn what_is_cut_off_or_changed_is_an_imprint_or_an_error_that_is_short(
+    fn damaged_files_are_an_imprint_or_a_short_error(
         imprint in imprints(), form in form(), cut in any::<usize>(), changes in vec((any::<usize>(), any::<u8>()), 0..4)
     ) {
         let mut bytes = form.write(&imprint);
@@ -69,7 +69,8 @@ proptest! {
     }
 }
 
-/// A table of an imprint as some program writes it: what stands for an active taxel, what parts values, what is around.
+/// Writes an imprint as a table like some program's, with its marks for active taxels, separators, and surrounding
+/// lines.
 fn decorated(imprint: &Imprint, style: [usize; 5]) -> String {
     let active = ["1", "255", "1.000000e+00", "True", "\"1\"", "7"][style[0]];
     let zero = ["0", "0", "0.000000e+00", "False", "\"0\"", "0"][style[0]];
@@ -92,7 +93,7 @@ fn decorated(imprint: &Imprint, style: [usize; 5]) -> String {
         text += end;
     }
     if named {
-        // A column without a name cannot be seen between spaces.
+        // Between spaces, a column without a name would be invisible, so its name is quoted.
         let empty = if mark == " " { "\"\"" } else { "" };
         let first = index.then(|| empty.to_owned());
         let names = (0..imprint.columns()).map(|column| format!("c{column}"));
@@ -125,12 +126,12 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn tables_are_read_whatever_is_around_them(
+    fn tables_are_read_with_any_decoration(
         imprint in imprints(),
         style in (0..6_usize, 0..4_usize, 0..2_usize, 0..3_usize, 0..4_usize),
     ) {
         let style = [style.0, style.1, style.2, style.3, style.4];
-        // What is 7 everywhere is not a mask.
+        // A table that is 7 everywhere is not a mask.
         prop_assume!(style[0] != 5 || imprint.count() < u32::from(imprint.columns()) * u32::from(imprint.rows()));
         let text = decorated(&imprint, style);
         prop_assert_eq!(read_imprint(text.as_bytes()), Ok(imprint), "{}", text);
@@ -146,7 +147,7 @@ proptest! {
                 shades.push(if imprint.get(column, row) { low + step } else { low });
             }
         }
-        // One shade says which it is only where it is black or the brightest.
+        // A picture of a single shade is only clear if the shade is black or the brightest.
         prop_assume!(shades.contains(&low) && shades.contains(&(low + step)));
         let head = |kind| format!("{kind} {columns} {rows} {brightest}\n");
         let plain = shades.iter().map(|shade| format!("{shade}\n")).collect::<String>();
@@ -161,7 +162,7 @@ proptest! {
 }
 
 #[test]
-fn each_form_is_told_by_its_first_bytes() {
+fn each_format_is_recognised_by_its_first_bytes() {
     let cup: Imprint = "#.#\n###".parse().expect("rows");
     for bytes in [
         &b"#.#\n###"[..],
@@ -173,7 +174,7 @@ fn each_form_is_told_by_its_first_bytes() {
         b"+1\t-0\t1\n1\t1\t1",
         b"True,False,True\nTrue,True,True",
         b"True False True\nTrue True True",
-        // Whatever the extension: numpy.savetxt, a heading, a mask, an old line end, blanks.
+        // The extension does not matter: numpy.savetxt, a heading, a mask, old line ends, spaces.
         b"# cup\n1.0e+00 0.0e+00 1.0e+00\n1.0e+00 1.0e+00 1.0e+00\n",
         b"left middle right\n255 0 255\n255 255 255",
         b"P1,P2,P3\n1,0,1\n1,1,1",
@@ -194,7 +195,7 @@ fn each_form_is_told_by_its_first_bytes() {
 }
 
 #[test]
-fn errors_name_the_form_and_the_place() {
+fn errors_name_the_format_and_the_place() {
     let told = |bytes: &[u8]| read_imprint(bytes).map_err(|error| error.to_string());
     for (bytes, message) in [
         (&b""[..], "found 0 lines, expected 1 to 64"),
@@ -213,7 +214,7 @@ fn errors_name_the_form_and_the_place() {
     }
 }
 
-/// Of what is not read the name, and what is read instead.
+/// The message names a format that is not supported, and the supported ones.
 #[test]
 fn files_of_other_kinds_are_refused_by_name() {
     for (bytes, kind) in [
@@ -240,7 +241,7 @@ fn files_of_other_kinds_are_refused_by_name() {
 }
 
 #[test]
-fn endings_tell_the_form() {
+fn file_extensions_give_the_format() {
     assert_eq!(ImprintFormat::of_ending("PBM"), Some(ImprintFormat::Pbm));
     assert_eq!(ImprintFormat::of_ending("npy"), Some(ImprintFormat::Npy));
     assert_eq!(ImprintFormat::of_ending("pbm-plain"), None);

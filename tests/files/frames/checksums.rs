@@ -1,23 +1,23 @@
-//! Archives and MCAP files in which a byte has another value than was written, but which are whole otherwise.
+//! Archives and MCAP files that are complete, except that one byte was changed.
 
 use taxel::frame::Frame;
 
 use super::samples::sample;
 use super::{Recorded, recorded};
 
-/// What is read of `bytes` after the byte at `index` was changed.
+/// Reads `bytes` after the byte at `index` was changed.
 fn with_another_byte(bytes: &[u8], index: usize) -> Recorded {
     let mut bytes = bytes.to_vec();
     bytes[index] ^= 0x40;
     recorded(&bytes, Some((4, 5)))
 }
 
-/// The values of the first two frames.
+/// Returns the values of the first two frames.
 fn first_two(found: &Recorded) -> Vec<&[f64]> {
     found.frames[..2].iter().map(Frame::values).collect()
 }
 
-/// Where `part` is.
+/// Returns the position of `part`.
 fn position(bytes: &[u8], part: &[u8]) -> usize {
     let mut windows = bytes.windows(part.len());
     windows
@@ -29,7 +29,7 @@ fn error(found: &Recorded) -> Option<String> {
     found.error.as_ref().map(ToString::to_string)
 }
 
-/// An archive with one entry that is not compressed, and its CRC-32.
+/// Returns an archive with one uncompressed entry and its CRC-32.
 fn archive(name: &str, content: &[u8]) -> Vec<u8> {
     let length = u32::try_from(content.len()).expect("short").to_le_bytes();
     let sizes = [&crc32(content).to_le_bytes()[..], &length, &length].concat();
@@ -69,7 +69,7 @@ fn crc32(bytes: &[u8]) -> u32 {
 }
 
 #[test]
-fn an_array_whose_checksum_does_not_hold_is_a_damage() {
+fn a_wrong_checksum_of_an_array_is_reported_as_damage() {
     let array = sample("u2.npy");
     let bytes = archive("pad.npy", &array);
     let whole = recorded(&bytes, None);
@@ -79,7 +79,7 @@ fn an_array_whose_checksum_does_not_hold_is_a_damage() {
     assert_eq!(first_two(&damaged), first_two(&whole));
     let expected = "pad: the array is damaged, so some of its values may be wrong";
     assert_eq!(error(&damaged).as_deref(), Some(expected));
-    // Behind the last frame.
+    // A byte after the last frame.
     let longer = recorded(&archive("pad.npy", &[&array[..], &[7]].concat()), None);
     let expected = "pad: more bytes than 3 frames of the header take";
     assert_eq!(
@@ -93,19 +93,19 @@ fn record(kind: u8, content: &[u8]) -> Vec<u8> {
     [&[kind][..], &(content.len() as u64).to_le_bytes(), content].concat()
 }
 
-/// A text behind its length.
+/// Returns a text preceded by its length.
 fn text(text: &str) -> Vec<u8> {
     let length = u32::try_from(text.len()).expect("short");
     [&length.to_le_bytes()[..], text.as_bytes()].concat()
 }
 
-/// A file with three frames of 1 × 2 bytes. The checksums are computed if they are 1.
+/// Returns a file with three frames of 1 × 2 bytes. A checksum is computed if its argument is 1.
 fn mcap(of_chunk: u32, of_data: u32) -> Vec<u8> {
     let array = |value: u8| [&[0; 8][..], &[2, 0, 0, 0, value, value]].concat();
     mcap_of(&[1, 2, 3].map(array), of_chunk, of_data)
 }
 
-/// A file with these arrays, each with its layout.
+/// Returns a file with these arrays, each with its layout.
 fn mcap_of(arrays: &[Vec<u8>], of_chunk: u32, of_data: u32) -> Vec<u8> {
     let schema = [
         &[1, 0][..],
@@ -134,7 +134,7 @@ fn mcap_of(arrays: &[Vec<u8>], of_chunk: u32, of_data: u32) -> Vec<u8> {
     [data, record(15, &sum), record(2, &[0; 20]), magic.to_vec()].concat()
 }
 
-/// Ones, with a layout that states rows and columns.
+/// Returns an array of ones, with a layout that gives rows and columns.
 fn laid_out(rows: u8, columns: u8) -> Vec<u8> {
     let side = |side: u8| [1, 0, 0, 0, 0, 0, 0, 0, side, 0, 0, 0, 0, 0, 0, 0];
     let (offset, cells) = ([0; 4], rows * columns);
@@ -150,7 +150,7 @@ fn laid_out(rows: u8, columns: u8) -> Vec<u8> {
 }
 
 #[test]
-fn rows_and_columns_that_are_named_count_in_place_of_a_layout_of_as_many_cells() {
+fn given_rows_and_columns_replace_a_layout_with_the_same_number_of_cells() {
     let bytes = mcap_of(&[laid_out(1, 20), laid_out(1, 20)], 0, 0);
     for (named, found) in [
         (None, (1, 20)),
@@ -166,7 +166,7 @@ fn rows_and_columns_that_are_named_count_in_place_of_a_layout_of_as_many_cells()
 }
 
 #[test]
-fn a_channel_whose_frames_change_their_size_is_a_damage() {
+fn a_channel_whose_frames_change_their_size_is_reported_as_damaged() {
     let bytes = mcap_of(&[laid_out(4, 5), laid_out(3, 5), laid_out(4, 5)], 0, 0);
     let read = recorded(&bytes, None);
     let expected = "/pad: found 3 rows of 5, expected 4 of 5 as before";
@@ -177,14 +177,14 @@ fn a_channel_whose_frames_change_their_size_is_a_damage() {
 }
 
 #[test]
-fn a_chunk_or_a_file_of_messages_whose_checksum_does_not_hold_is_a_damage() {
+fn a_wrong_checksum_of_a_chunk_or_a_file_is_reported_as_damage() {
     let of_chunk = "the checksum of a chunk does not hold, so a message in it is damaged";
     let of_data = "the checksum of the file does not hold, so a message in it is damaged";
     for (sums, expected) in [
         ((1, 1), Some(of_chunk)),
         ((1, 0), Some(of_chunk)),
         ((0, 1), Some(of_data)),
-        // They were not computed.
+        // With 0, no checksum was computed.
         ((0, 0), None),
     ] {
         let bytes = mcap(sums.0, sums.1);

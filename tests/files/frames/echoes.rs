@@ -1,11 +1,11 @@
-//! What `ros2 topic echo` prints beside messages, and layouts with an offset.
+//! Lines that `ros2 topic echo` prints between messages, and layouts with an offset.
 
 use super::recorded;
 
 const NOTICE: &str = "A message was lost!!!\n\ttotal count change:1\n\ttotal count: 1---\n";
 
 #[test]
-fn notices_between_messages_are_passed_over() {
+fn notices_between_messages_are_skipped() {
     let messages = [
         "array('H', [1, 2, 3, 4])\n---\n",
         "array('H', [5, 6, 7, 8])\n---\n",
@@ -26,7 +26,7 @@ fn notices_between_messages_are_passed_over() {
 }
 
 #[test]
-fn values_before_the_offset_of_a_layout_are_no_cells() {
+fn values_before_the_offset_of_a_layout_are_not_cells() {
     for text in [
         "rows,2,4,columns,2,2,1,99,1,2,3,4\n",
         "layout:\n  dim:\n  - label: rows\n    size: 2\n    stride: 4\n  - label: columns\n    size: 2\n    \
@@ -39,7 +39,7 @@ fn values_before_the_offset_of_a_layout_are_no_cells() {
 }
 
 #[test]
-fn rows_and_columns_that_are_named_count_in_place_of_a_layout_of_as_many_cells() {
+fn given_rows_and_columns_replace_a_layout_with_the_same_number_of_cells() {
     let text = b"rows,1,4,columns,4,4,0,1,2,3,4\n";
     for (named, found) in [
         (None, (1, 4)),
@@ -52,7 +52,7 @@ fn rows_and_columns_that_are_named_count_in_place_of_a_layout_of_as_many_cells()
 }
 
 #[test]
-fn messages_that_change_their_size_are_a_damage() {
+fn messages_that_change_their_size_are_reported_as_damage() {
     let text = b"rows,2,4,columns,2,2,0,1,2,3,4\nrows,1,2,columns,2,2,0,5,6\n";
     let found = recorded(text, None);
     let error = found.error.map(|error| error.to_string());

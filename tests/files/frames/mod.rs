@@ -1,4 +1,4 @@
-//! Recordings of sensors: those of `../shared/reference`, where they are at hand, and small ones made up here.
+//! Recordings of sensors: those of `../shared/reference`, if they are available, and small ones made up here.
 
 mod checksums;
 
@@ -22,7 +22,7 @@ use taxel::formats::recording::{
 };
 use taxel::frame::Frame;
 
-/// All that a recording has.
+/// Everything that was read from a recording.
 #[derive(Debug, Default)]
 pub(crate) struct Recorded {
     pub(crate) format: Option<&'static str>,
@@ -32,7 +32,7 @@ pub(crate) struct Recorded {
     pub(crate) error: Option<RecordingError>,
 }
 
-/// Reads all of a recording; of a damaged one, all that is before the damage.
+/// Reads a whole recording, or the part of a damaged one before the damage.
 pub(crate) fn recorded(bytes: &[u8], shape: Option<(u16, u16)>) -> Recorded {
     let mut options = ReadOptions::default();
     if let Some((rows, columns)) = shape {

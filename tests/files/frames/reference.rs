@@ -1,5 +1,5 @@
-//! Frames of real sensors, answered by independent software, where these files are at hand; they are not part of the
-//! project.
+//! Compares frames of real sensors with the answers of independent software, if these files are available; they are
+//! not part of the project.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -13,7 +13,7 @@ use taxel::matrix::Matrix;
 use super::{Recorded, recorded};
 use crate::skip::skipped;
 
-/// The folder; where it is missing, the tests are skipped.
+/// Returns the folder of these files; reports the test as skipped if it is missing.
 fn folder() -> Option<PathBuf> {
     let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/reference"));
     if folder.join("frames.jsonl").is_file() {
@@ -23,7 +23,7 @@ fn folder() -> Option<PathBuf> {
     None
 }
 
-/// A recording that is read to its end.
+/// Reads a recording to its end; it must have no error.
 fn whole(name: &str, shape: Option<(u16, u16)>) -> Option<Recorded> {
     let bytes = std::fs::read(folder()?.join(name)).expect("a file of the reference");
     let found = recorded(&bytes, shape);
@@ -46,7 +46,7 @@ fn rule(case: &Value) -> Result<(Rule, u32), FrameError> {
 }
 
 #[test]
-fn every_reference_frame_is_answered_alike() {
+fn every_reference_frame_has_the_same_answer() {
     let Some(folder) = folder() else {
         return;
     };
@@ -101,7 +101,7 @@ fn every_reference_frame_is_answered_alike() {
     assert!(text.lines().count() >= 12, "the file is cut short");
 }
 
-/// Whether two answers are equal: numbers with a fraction within 1e-9.
+/// Returns true if two answers are equal; numbers with a fraction may differ by 1e-9.
 fn same(found: &Value, expected: &Value) -> bool {
     match (found, expected) {
         (Value::Number(a), Value::Number(b)) => {
@@ -121,11 +121,11 @@ fn same(found: &Value, expected: &Value) -> bool {
 }
 
 #[test]
-fn tekscan_states_the_sum_of_each_frame() {
+fn the_sums_that_tekscan_states_are_right() {
     let Some(found) = whole("data/pressuRe/iscan_test.csv", None) else {
         return;
     };
-    // Each frame states its sum; a reader that misreads one value reports it.
+    // Each frame states its sum, so a reader that misreads a value reports a note.
     assert_eq!((found.frames.len(), found.notes), (309, Vec::new()));
     let info = &found.channels[0];
     assert_eq!(info.unit.as_deref(), Some("raw"));
@@ -155,7 +155,7 @@ fn a_wrong_sum_is_reported_with_the_number_of_its_frame() {
 }
 
 #[test]
-fn xsensor_states_peak_and_mean_of_each_frame() {
+fn the_peaks_and_means_that_xsensor_states_are_right() {
     let Some(found) = whole("data/xsensor/xsensor_3frames.csv", None) else {
         return;
     };
@@ -165,7 +165,7 @@ fn xsensor_states_peak_and_mean_of_each_frame() {
             .join("data/xsensor/xsensor_3frames.csv"),
     );
     let text = String::from_utf8(text.expect("a file")).expect("UTF-8");
-    // Those of sensors come before those of groups, which have no rows.
+    // Frames of sensors come before those of groups, which have no rows.
     let mut stated = Vec::new();
     for block in text.split("SENSOR,").skip(1) {
         let value = |key: &str| -> f64 {
@@ -208,7 +208,7 @@ fn xsensor_states_peak_and_mean_of_each_frame() {
 }
 
 #[test]
-fn emed_states_the_force_of_each_row() {
+fn the_forces_that_emed_states_are_right() {
     let Some(found) = whole("data/emed/emed_3pictures.lst", None) else {
         return;
     };
@@ -221,7 +221,7 @@ fn emed_states_the_force_of_each_row() {
 }
 
 #[test]
-fn zebris_counts_lines_as_x() {
+fn the_lines_of_zebris_are_read_as_x() {
     let Some(found) = whole("data/zebris/MDwalk2.apd", None) else {
         return;
     };
@@ -231,7 +231,7 @@ fn zebris_counts_lines_as_x() {
     assert_eq!(info.pitch_mm, Some([8.46591, 8.46591]));
 }
 
-/// The topics of the MCAP file that have the whole matrix.
+/// Checks the topics of the MCAP file that contain the whole matrix.
 fn mcap(iscan: &Recorded) {
     let found = whole("data/made/frames.mcap", Some((28, 28))).expect("it is there");
     let names: Vec<_> = found
@@ -268,9 +268,9 @@ fn mcap(iscan: &Recorded) {
     );
 }
 
-/// Frames 61 to 72 of the I-Scan file in other forms, each with what must be named.
+/// Frames 61 to 72 of the I-Scan file in other formats, with the rows and columns that must be given.
 #[test]
-fn the_same_frames_in_other_forms_give_the_same_imprints() {
+fn the_same_frames_in_other_formats_give_the_same_imprints() {
     let Some(iscan) = whole("data/pressuRe/iscan_test.csv", None) else {
         return;
     };

@@ -1,4 +1,4 @@
-//! The same three frames, made up, in every form of recordings.
+//! The same three made-up frames in every format of recordings.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::array::array;
 
 use super::{Recorded, recorded};
 
-/// From 9 on.
+/// The imprints at a threshold of 9.
 const IMPRINTS: [&str; 3] = [
     ".....\n..#..\n..#..\n.....",
     ".....\n..#..\n.###.\n.....",
@@ -20,7 +20,7 @@ pub(crate) fn sample(name: &str) -> Vec<u8> {
     std::fs::read(folder.join(name)).expect(name)
 }
 
-/// The imprints of a channel.
+/// Returns the imprints of a channel.
 fn imprints(found: &Recorded, channel: usize, threshold: f64) -> Vec<String> {
     let mut processing = Processing::default();
     processing.rule = Some(Rule::at_least(threshold).expect("a number"));
@@ -32,7 +32,7 @@ fn imprints(found: &Recorded, channel: usize, threshold: f64) -> Vec<String> {
         .collect()
 }
 
-/// Name, form, what must be named, the time of the second frame.
+/// The name, the format, whether rows and columns must be given, and the time of the second frame.
 const SAMPLES: [(&str, &str, bool, Option<f64>); 17] = [
     ("tekscan.asf", "tekscan", false, Some(0.05)),
     ("tekscan_spreadsheet.csv", "tekscan", false, Some(0.05)),
@@ -54,7 +54,7 @@ const SAMPLES: [(&str, &str, bool, Option<f64>); 17] = [
 ];
 
 #[test]
-fn every_form_gives_the_same_imprints() {
+fn every_format_gives_the_same_imprints() {
     for (name, form, named, time) in SAMPLES {
         let bytes = sample(name);
         let found = recorded(&bytes, named.then_some((4, 5)));
@@ -75,7 +75,7 @@ fn every_form_gives_the_same_imprints() {
 }
 
 #[test]
-fn sensors_are_channels_and_groups_are_none() {
+fn sensors_of_xsensor_are_channels_but_groups_are_not() {
     let found = recorded(&sample("xsensor.csv"), None);
     assert_eq!(found.channels.len(), 2);
     assert_eq!(imprints(&found, 1, 18.0), IMPRINTS);
@@ -91,7 +91,7 @@ fn sensors_are_channels_and_groups_are_none() {
 }
 
 #[test]
-fn the_first_rows_count_and_comments_are_no_frames() {
+fn the_first_rows_are_used_and_comments_are_not_frames() {
     let found = recorded(&sample("tekscan.asf"), None);
     assert_eq!(found.channels[0].shape, Some((4, 5)));
     assert_eq!(found.channels[0].pitch_mm, Some([2.5, 2.5]));
@@ -100,15 +100,15 @@ fn the_first_rows_count_and_comments_are_no_frames() {
 }
 
 #[test]
-fn a_window_says_where_it_begins() {
+fn a_window_of_emed_has_its_position() {
     let found = recorded(&sample("emed.lst"), None);
     assert_eq!(found.frames[2].first, Some((12, 7)));
-    // The page that summarises is not a frame.
+    // The summary page is not a frame.
     assert_eq!(found.frames.len(), 3);
 }
 
 #[test]
-fn a_picture_of_lines_counted_as_x() {
+fn a_zebris_picture_counts_lines_as_x() {
     let found = recorded(&sample("zebris.apd"), None);
     assert_eq!(imprints(&found, 0, 9.0), IMPRINTS[..1]);
     assert_eq!(found.channels[0].pitch_mm, Some([8.0, 8.5]));
@@ -119,7 +119,7 @@ fn a_picture_of_lines_counted_as_x() {
 }
 
 #[test]
-fn numbers_beside_the_cells_are_told_by_how_they_grow() {
+fn numbers_and_times_beside_the_cells_are_recognised_by_their_growth() {
     let read = |text: &str| recorded(text.as_bytes(), Some((1, 2)));
     let first = |text: &str| -> Vec<f64> {
         let found = read(text);
@@ -128,10 +128,10 @@ fn numbers_beside_the_cells_are_told_by_how_they_grow() {
     };
     assert_eq!(first("5,6,0,0\n7,8,1,40\n"), [5.0, 7.0]);
     assert_eq!(first("0,0.0,5,6\n1,0.1,7,8\n"), [5.0, 7.0]);
-    // For two lines the cells, too, grow as a number and a time do.
+    // In only two lines, cells may grow like a number and a time, too.
     assert_eq!(first("0,0.0,5,6\n1,0.1,6,6\n2,0.2,9,6\n"), [5.0, 6.0, 9.0]);
     assert_eq!(first("5,6,0,0\n6,6,1,40\n9,6,2,80\n"), [5.0, 6.0, 9.0]);
-    // Only times have decimals here.
+    // Here only times have decimals.
     assert_eq!(first("0,0.0,5,6\n1,0.1,6,8\n"), [5.0, 6.0]);
     let error = read("0,0,5,6\n1,4,6,8\n")
         .error
@@ -156,15 +156,15 @@ fn numbers_beside_the_cells_are_told_by_how_they_grow() {
 }
 
 #[test]
-fn a_line_of_commas_between_frames_is_one_without_cells() {
+fn a_line_of_commas_between_frames_is_a_frame_without_values() {
     for (text, cells) in [
         ("1,2\n,\n,\n3,4\n", &[2, 0, 0, 2][..]),
         ("r0c0,r0c1\n,\n1,2\n,\n3,\n", &[2, 0, 1]),
-        // Padding.
+        // Lines of commas at the end are padding.
         ("1,2\n3,4\n,\n,\n", &[2, 2]),
         ("frame,r0c0,r0c1\n0,1,2\n,,\n1,3,4\n", &[2, 2]),
         ("1,2\n,,,\n3,4\n", &[2, 2]),
-        // One more ends the line.
+        // An additional comma ends each line.
         ("1,2,\n,,\n3,4,\n", &[2, 0, 2]),
     ] {
         let found = recorded(text.as_bytes(), Some((1, 2)));
@@ -176,7 +176,7 @@ fn a_line_of_commas_between_frames_is_one_without_cells() {
     }
 }
 
-/// What comes before a damage is given, then the damage with its place.
+/// Checks that the frames before the damage are read, and that the damage is reported with its place.
 fn damaged(name: &str, from: &str, to: &str, frames: usize, message: &str) {
     let text = String::from_utf8(sample(name)).expect("a text");
     assert!(text.contains(from), "{name} has {from:?}");
@@ -187,7 +187,7 @@ fn damaged(name: &str, from: &str, to: &str, frames: usize, message: &str) {
 }
 
 #[test]
-fn a_damage_is_reported_with_its_place_after_the_frames_before_it() {
+fn damage_is_reported_with_its_place_after_the_frames_before_it() {
     damaged(
         "tekscan.asf",
         "0,5,14,2,0",
@@ -261,30 +261,30 @@ fn a_damage_is_reported_with_its_place_after_the_frames_before_it() {
 }
 
 #[test]
-fn a_recording_that_is_cut_off_gives_its_whole_frames() {
+fn the_whole_frames_of_a_truncated_recording_are_read() {
     for (name, _, named, _) in SAMPLES {
-        // An archive has its list of contents at its end; the records of taxel may end anywhere.
+        // An archive has its list of contents at the end; a recording of taxel may end anywhere.
         if ["touch.npz", "records.npy", "f8_big_fortran.npy"].contains(&name) {
             continue;
         }
         let whole = sample(name);
         let cut = recorded(&whole[..whole.len() - 9], named.then_some((4, 5)));
         assert!(cut.frames.len() >= 2, "{name}: {:?}", cut.error);
-        // Not the last frame, but what follows it, was cut off.
+        // In these files only lines after the last frame were cut off.
         let harmless = ["xsensor.csv", "emed.lst", "tekscan_spreadsheet.csv"].contains(&name);
         assert_eq!(cut.error.is_none(), harmless, "{name}");
     }
 }
 
 #[test]
-fn a_sensor_that_ends_before_its_cells_is_a_damage() {
+fn a_sensor_block_without_cells_is_reported_as_damage() {
     let text = String::from_utf8(sample("xsensor.csv")).expect("a text");
     let lines: Vec<&str> = text.split_inclusive('\n').collect();
     let begins = |line: &&str| line.starts_with("SENSOR,right");
     let cells = |line: &&str| line.starts_with("SENSELS");
     let sensor = lines.iter().position(begins).expect("two sensors");
     let last = sensor + lines[sensor..].iter().position(cells).expect("cells");
-    // The line before a block is no part of it.
+    // The line before a block is not part of it.
     assert!(
         recorded(lines[..sensor].concat().as_bytes(), None)
             .error
@@ -303,7 +303,7 @@ fn a_sensor_that_ends_before_its_cells_is_a_damage() {
 }
 
 #[test]
-fn records_beyond_those_of_the_header_are_read_and_a_torn_one_is_not() {
+fn more_records_than_the_header_counts_are_read_except_a_torn_one() {
     let mut records = sample("records.npy");
     assert_eq!(recorded(&records, None).frames.len(), 3);
     records.pop();
@@ -312,7 +312,7 @@ fn records_beyond_those_of_the_header_are_read_and_a_torn_one_is_not() {
 }
 
 #[test]
-fn a_table_of_words_is_no_recording() {
+fn a_table_of_words_is_not_a_recording() {
     for text in [
         "YEAR: 2023\nHOLDER: somebody",
         "a, b\nc, d\n",
@@ -325,7 +325,7 @@ fn a_table_of_words_is_no_recording() {
 }
 
 #[test]
-fn a_counted_header_of_a_square_is_reported() {
+fn a_header_that_only_counts_values_is_reported() {
     let header: Vec<String> = (0..9).map(|number| number.to_string()).collect();
     let text = format!("{}\n1,2,3,4,5,6,7,8,9\n", header.join(","));
     let found = recorded(text.as_bytes(), None);
@@ -342,7 +342,7 @@ fn topics_and_their_sensors_are_channels() {
     let bytes = sample("topics.mcap");
     let found = recorded(&bytes, Some((4, 5)));
     assert!(found.error.is_none(), "{:?}", found.error);
-    // The same in chunks that are packed, as the usual writers do it.
+    // The same topics in compressed chunks, as the usual writers make them.
     for packed in ["topics_lz4.mcap", "topics_zstd.mcap"] {
         let packed = recorded(&sample(packed), Some((4, 5)));
         assert!(packed.error.is_none(), "{:?}", packed.error);
@@ -374,14 +374,14 @@ fn topics_and_their_sensors_are_channels() {
             names[channel]
         );
     }
-    // Of three values nothing says how they lie.
+    // Three values do not show how they are arranged.
     assert_eq!(
         (found.channels[2].shape, found.channels[2].values),
         (None, Some(3))
     );
     let last = found.frames.last().expect("frames");
     assert_eq!((last.number, last.time), (2, Some(0.5)));
-    // Not closed: whole messages, then the error.
+    // A file that was not closed: whole messages, then the error.
     let open = recorded(&bytes[..bytes.len() - 80], Some((4, 5)));
     assert!(open.frames.len() >= 11, "{}", open.frames.len());
     let message = open.error.map(|error| error.to_string());
@@ -389,7 +389,7 @@ fn topics_and_their_sensors_are_channels() {
         message.as_deref(),
         Some("the file ends without a footer: it was not closed")
     );
-    // Nor is one closed that ends within its footer or the magic behind it.
+    // A file that ends inside its footer or the magic after it was not closed, either.
     for missing in 1..=8 + 20 + 9 {
         let open = recorded(&bytes[..bytes.len() - missing], Some((4, 5)));
         assert_eq!(open.frames.len(), found.frames.len(), "{missing}");
@@ -407,7 +407,7 @@ fn topics_and_their_sensors_are_channels() {
         }
         assert!(recorded(&broken, Some((4, 5))).error.is_some(), "{name}");
     }
-    // A schema of 99 bytes in a chunk of 19, and much behind it; and in a file that ends there.
+    // A schema of 99 bytes in a chunk of 19, with more bytes after it; and in a file that ends there.
     let record = |kind: u8, length: u64, content: &[u8]| {
         [&[kind][..], &length.to_le_bytes(), content].concat()
     };
@@ -427,7 +427,7 @@ fn topics_and_their_sensors_are_channels() {
 }
 
 #[test]
-fn an_axis_of_one_channel_is_no_axis_of_frames() {
+fn an_axis_for_a_single_channel_is_not_the_axis_of_frames() {
     let cells: Vec<f64> = (0..12).map(f64::from).collect();
     for shape in ["(2, 2, 3)", "(2, 2, 3, 1)", "(2, 1, 2, 3)"] {
         let found = recorded(&array(shape, false, &cells), None);
@@ -444,7 +444,7 @@ fn an_axis_of_one_channel_is_no_axis_of_frames() {
 }
 
 #[test]
-fn an_array_of_two_axes_that_is_larger_than_frames_is_noted() {
+fn an_array_of_two_axes_that_is_larger_than_any_frame_has_a_note() {
     let notes = |shape: &str, count: usize, asked| {
         let found = recorded(&array(shape, false, &vec![0.0; count]), asked);
         let notes: Vec<String> = found.notes.iter().map(ToString::to_string).collect();

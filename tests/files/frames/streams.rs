@@ -1,4 +1,4 @@
-//! Streams in pieces of any size, whole and damaged: every whole frame is found, and no false one.
+//! Streams in pieces of any size, intact and damaged: every whole frame is found, and no false one.
 
 use taxel::formats::recording::ChannelInfo;
 use taxel::formats::stream::{
@@ -11,7 +11,7 @@ use super::recorded;
 use super::samples::sample;
 use crate::common::Random;
 
-/// The values of all frames, decoded in pieces of random sizes; provisional ones are not among them.
+/// Returns the values of all frames, decoded in pieces of random sizes; without provisional frames.
 fn decoded(
     options: StreamOptions,
     bytes: &[u8],
@@ -51,7 +51,7 @@ fn text(frame: &[f64], columns: usize, separator: &str) -> String {
     rows.collect::<Vec<_>>().join("\r\n")
 }
 
-/// Frames of bytes, some of which have a marker inside.
+/// Returns frames of bytes; some contain a marker.
 fn made_up(count: usize, cells: usize, random: &mut Random) -> Vec<Vec<f64>> {
     let mut frames = Vec::new();
     for _ in 0..count {
@@ -73,7 +73,7 @@ fn bytes(frame: &[f64]) -> Vec<u8> {
 }
 
 #[test]
-fn every_stream_is_recognised_and_decoded_whole() {
+fn every_kind_of_stream_is_recognised_and_decoded_completely() {
     let mut random = Random::new(61);
     let frames = made_up(9, 256, &mut random);
     let shape = Some((16, 16));
@@ -137,7 +137,7 @@ fn every_stream_is_recognised_and_decoded_whole() {
         assert_eq!(counts.dropped, 0, "{what}: {:?}", counts.sample);
         assert!(found == frames, "{what}: {} frames", found.len());
         assert_eq!(counts.bytes, stream.len() as u64, "{what}");
-        // What precedes the first boundary is dropped, and not counted.
+        // Bytes before the first boundary are dropped, and not counted as a frame.
         let mut torn = options(shape);
         torn.from_start = false;
         let (found, counts) = decoded(torn, &stream[5..], &mut random);
@@ -150,9 +150,9 @@ fn every_stream_is_recognised_and_decoded_whole() {
     }
 }
 
-/// Three of forty frames lose, gain or have wrong bytes; markers occur inside of all.
+/// Three of forty frames lose, gain or have wrong bytes; markers occur inside of frames.
 #[test]
-fn in_a_damaged_stream_37_of_37_frames_are_found_and_no_false_one() {
+fn in_a_damaged_stream_all_whole_frames_and_no_false_ones_are_found() {
     for seed in 0..40 {
         let mut random = Random::new(700 + seed);
         let frames = made_up(40, 256, &mut random);
@@ -173,7 +173,8 @@ fn in_a_damaged_stream_37_of_37_frames_are_found_and_no_false_one() {
         assert_eq!((whole.len(), found.len()), (37, 37), "seed {seed}");
         assert!(found == whole, "seed {seed}: a false frame");
         assert_eq!(counts.dropped, 3, "seed {seed}");
-        // The first marker of all that are confirmed reads frames from their middle: the nearest does not.
+        // There are so many markers in the stream that choosing the first confirmed one would read frames from their
+        // middle.
         assert!(
             stream
                 .windows(2)
@@ -184,10 +185,10 @@ fn in_a_damaged_stream_37_of_37_frames_are_found_and_no_false_one() {
     }
 }
 
-/// Two cells that are a marker in all frames are told from the marker by where the stream begins, also if its first frame has
-/// lost a byte.
+/// Two cells that look like a marker in all frames are distinguished from the marker by the start of the stream, even
+/// if its first frame has lost a byte.
 #[test]
-fn a_stream_from_its_start_is_never_read_from_cells_that_look_like_a_marker() {
+fn cells_that_look_like_a_marker_do_not_confuse_a_stream_read_from_its_start() {
     for false_marker in 0..14 {
         let frame = |number: u8| {
             let mut cells = vec![number; 16];
@@ -209,7 +210,7 @@ fn a_stream_from_its_start_is_never_read_from_cells_that_look_like_a_marker() {
     }
 }
 
-/// A frame is shown at its last byte, and taken back if no marker follows.
+/// A frame is shown at its last byte, and withdrawn if no marker follows.
 #[test]
 fn a_provisional_frame_is_confirmed_or_withdrawn() {
     let given = options(Some((1, 3))).with_format(StreamFormat::Flexitac);
@@ -229,11 +230,11 @@ fn a_provisional_frame_is_confirmed_or_withdrawn() {
 }
 
 #[test]
-fn the_start_of_a_frame_of_flexitac_alone_is_a_torn_frame() {
+fn the_start_of_a_flexitac_frame_alone_counts_as_a_torn_frame() {
     let given = options(Some((1, 3))).with_format(StreamFormat::Flexitac);
     let (found, counts) = decoded(given, &[0xaa, 0x55, 1, 2], &mut Random::new(4));
     assert_eq!((found.len(), counts.dropped), (0, 1));
-    // Without a marker it is none.
+    // Without a marker, it is no frame.
     let (found, counts) = decoded(given, &[1, 2, 3, 4], &mut Random::new(5));
     assert_eq!((found.len(), counts.dropped), (0, 0));
 }
@@ -249,7 +250,7 @@ fn a_line_that_is_too_long_is_dropped_and_the_next_one_is_read() {
         }
     };
     decoder.push(b"1 2\n", &mut sink);
-    // Blanks are no values.
+    // Spaces are no values.
     decoder.push(&vec![b' '; 9 << 20], &mut sink);
     decoder.push(b"3 4\n5 6\n", &mut sink);
     decoder.finish(&mut sink);
@@ -273,7 +274,7 @@ fn torn_short_long_and_garbled_frames_are_counted_and_never_joined() {
     let json = b"{\"frame\":[[1]]}\n{\"frame\":[[1],[2,3]]}\nnonsense\n{\"frame\":[[2]]}";
     let (found, counts) = decoded(options(None), json, &mut Random::new(3));
     assert_eq!((found, counts.dropped), (vec![vec![1.0], vec![2.0]], 2));
-    // One of another size is dropped, too, until such ones come again and again.
+    // A frame of another size is dropped, too, until that size comes several times in a row.
     let json =
         [1, 2, 2, 1, 2, 2, 2, 2, 1].map(|rows| format!("{{\"frame\":{:?}}}\n", vec![[5]; rows]));
     let (found, counts) = decoded(options(None), json.concat().as_bytes(), &mut Random::new(3));
@@ -295,10 +296,10 @@ fn torn_short_long_and_garbled_frames_are_counted_and_never_joined() {
     assert_eq!((found.len(), counts.dropped), (5, 4));
 }
 
-/// Frames of two sensors of different sizes in turn, and what was found of them: names, and channel, number, time and sum of
-/// each frame.
+/// Frames of two sensors of different sizes in turn. For each frame the channel, number, time and sum are checked, and
+/// the names of the channels.
 #[test]
-fn the_channels_of_json_lines_are_told_apart_in_files_and_streams() {
+fn channels_of_json_lines_are_distinguished_in_files_and_streams() {
     let line = |time: u32, channel: &str, frame: &str| {
         format!("{{\"t\":{time},\"channel\":{channel},\"frame\":{frame}}}\n")
     };
@@ -326,7 +327,7 @@ fn the_channels_of_json_lines_are_told_apart_in_files_and_streams() {
     };
     let mut decoder = StreamDecoder::new(options(None));
     decoder.push(lines.as_bytes(), &mut sink);
-    // Numbers and channels go on over a gap.
+    // Numbers and channels continue after a gap.
     decoder.restart(&mut sink);
     let after = "torn\n".to_owned() + &line(15, "\"l\"", left);
     decoder.push(after.as_bytes(), &mut sink);
@@ -337,7 +338,7 @@ fn the_channels_of_json_lines_are_told_apart_in_files_and_streams() {
     );
     assert_eq!(decoder.counts().frames, 7);
 
-    // One without a name is reported as soon as another one has a name.
+    // A channel without a name is reported as soon as another one has a name.
     let mut names = Vec::new();
     let mut sink = |event: StreamEvent<'_>| {
         if let StreamEvent::Channel(info) = event {
@@ -360,7 +361,7 @@ fn the_channels_of_json_lines_are_told_apart_in_files_and_streams() {
 }
 
 #[test]
-fn what_is_missing_is_named() {
+fn frames_without_rows_and_columns_are_counted_by_their_values() {
     let unshaped = |bytes: &[u8]| {
         decoded(options(None), bytes, &mut Random::new(5))
             .1
@@ -369,7 +370,7 @@ fn what_is_missing_is_named() {
     assert_eq!(unshaped(&[0xff; 200]), Some(0));
     assert_eq!(unshaped(b"1 2 3\n4 5 6\n"), Some(3));
     assert_eq!(unshaped(b"array('B', [1, 2])\n---\n"), Some(2));
-    // In a stream without empty lines, as soon as there are more rows than a frame can have.
+    // In a stream without empty lines, this is known as soon as there are more rows than a frame can have.
     let mut live = StreamDecoder::new(options(None));
     live.push("1 2 3\n".repeat(513).as_bytes(), &mut |_| {});
     assert_eq!(live.counts().unshaped, Some(3));

@@ -4,7 +4,7 @@ use taxel::frame::Frame;
 
 use super::{Recorded, recorded};
 
-/// Label, time and values of each frame of a table.
+/// Returns the label, time and values of each frame of a table.
 fn frames(text: &str, shape: Option<(u16, u16)>) -> Vec<(Option<i64>, Option<f64>, Vec<f64>)> {
     let found = recorded(text.as_bytes(), shape);
     assert!(found.error.is_none(), "{text}: {:?}", found.error);
@@ -24,7 +24,7 @@ fn error(found: &Recorded) -> String {
 }
 
 #[test]
-fn a_first_line_with_a_text_is_a_frame_if_the_next_line_has_one_there_too() {
+fn a_first_line_with_a_text_is_a_frame_if_the_next_one_has_a_text_there() {
     let both = [vec![1.0, 2.0, 3.0, 4.0], vec![5.0, 6.0, 7.0, 8.0]];
     for [first, second] in [
         [
@@ -42,21 +42,21 @@ fn a_first_line_with_a_text_is_a_frame_if_the_next_line_has_one_there_too() {
         ],
         ["1,2,3,4,cup", "5,6,7,8,cup"],
         ["cup,1,2,3,4,s1", "ring,5,6,7,8,s2"],
-        // A number beside it is told by how it grows.
+        // A number beside the text is recognised by its growth.
         ["cup,7,1,2,3,4", "cup,8,5,6,7,8"],
         ["0,cup,1,2,3,4", "1,cup,5,6,7,8"],
     ] {
         let text = format!("{first}\n{second}\n");
         assert_eq!(values(&text, Some((2, 2))), both, "{text}");
     }
-    // These are names.
+    // These first lines are names.
     for text in [
         "label,0,1,2,3\ncup,5,6,7,8\n",
         "label,1,2,3,4\ncup,5,6,7,8\n",
     ] {
         assert_eq!(values(text, Some((2, 2))), both[1..], "{text}");
     }
-    // A text between the cells is none of them.
+    // A text between the cells is not a cell.
     let found = recorded(b"1,2,x,3,4\n5,6,x,7,8\n", Some((2, 2)));
     assert_eq!(
         error(&found),
@@ -65,7 +65,7 @@ fn a_first_line_with_a_text_is_a_frame_if_the_next_line_has_one_there_too() {
 }
 
 #[test]
-fn an_index_of_pandas_is_no_cell() {
+fn an_index_of_pandas_is_not_a_cell() {
     let text = ",0,1,2,3\n0,1,2,3,4\n1,5,6,7,8\n";
     let expected = [
         (Some(0), None, vec![1.0, 2.0, 3.0, 4.0]),
@@ -79,13 +79,13 @@ fn an_index_of_pandas_is_no_cell() {
         (found[1].0, found[1].1, &found[1].2),
         (Some(8), Some(0.25), &expected[1].2)
     );
-    // Behind an offset of ROS, the values of the first line only look as if they counted.
+    // After an offset of ROS, the values of the first line only look like consecutive numbers.
     let text = "0,1,2,3,4\n0,5,6,7,2\n";
     assert_eq!(values(text, Some((2, 2))).len(), 2);
 }
 
 #[test]
-fn of_one_line_with_two_numbers_more_nothing_says_where_they_are() {
+fn two_more_numbers_than_cells_in_a_single_line_are_ambiguous() {
     let unclear = "line 1: found 2 numbers besides the 4 cells, and cannot tell which";
     for text in ["17,0.25,1,2,3,4\n", "1,2,3,4,17,40\n"] {
         let found = recorded(text.as_bytes(), Some((2, 2)));
@@ -97,11 +97,11 @@ fn of_one_line_with_two_numbers_more_nothing_says_where_they_are() {
 }
 
 #[test]
-fn numbers_beside_the_cells_are_told_by_how_they_grow() {
+fn numbers_and_times_beside_the_cells_are_recognised_by_their_growth() {
     let with = |label, time: f64| (label, Some(time));
     let (counted, timed) = (|label| (Some(label), None), |time| (None, Some(time)));
     for (text, expected, first_cells) in [
-        // The time behind the cells, while the first cell rises, too: between two lines or all.
+        // The time follows the cells, while the first cell also rises: between two lines, or between all.
         (
             "5,1,2,9,0.00\n7,1,2,9,0.05\n6,1,2,9,0.10\n",
             vec![timed(0.0), timed(0.05), timed(0.1)],
@@ -117,13 +117,13 @@ fn numbers_beside_the_cells_are_told_by_how_they_grow() {
             vec![timed(0.0), timed(50.0), timed(101.0)],
             vec![5.0, 9.0, 60.0],
         ),
-        // The first cell stays 0, as the offset of a message of ROS does.
+        // The first cell stays 0, like the offset of a ROS message.
         (
             "0,1,2,9,0.00\n0,1,2,9,0.05\n0,1,2,9,0.11\n",
             vec![timed(0.0), timed(0.05), timed(0.11)],
             vec![0.0, 0.0, 0.0],
         ),
-        // A clock that counts from 1970 is no cell, however evenly the last cell rises.
+        // A clock that counts from 1970 is not a cell, however evenly the last cell rises.
         (
             "1714564800000,10,20,30,0\n1714564800050,11,19,30,1\n1714564800092,10,21,29,2\n",
             vec![timed(0.0), timed(0.05), timed(0.092)],
@@ -138,13 +138,13 @@ fn numbers_beside_the_cells_are_told_by_how_they_grow() {
             ],
             vec![0.0, 3.0, 4.0],
         ),
-        // A number before a timestamp is no cell.
+        // A number before a timestamp is not a cell.
         (
             "0,12:00:00.00,1,2,3,4\n1,12:00:00.05,2,3,4,5\n2,12:00:00.10,3,4,5,6\n",
             vec![with(Some(0), 0.0), with(Some(1), 0.05), with(Some(2), 0.1)],
             vec![1.0, 2.0, 3.0],
         ),
-        // The number or the time before the cells, while the last cell rises.
+        // The number or the time precedes the cells, while the last cell rises.
         (
             "0,1,2,3,4\n1,5,6,7,8\n2,5,6,7,9\n",
             vec![counted(0), counted(1), counted(2)],
@@ -160,7 +160,7 @@ fn numbers_beside_the_cells_are_told_by_how_they_grow() {
             vec![timed(0.0), timed(0.0504), timed(0.0992)],
             vec![1.0, 1.0, 1.0],
         ),
-        // The number before the cells, the time behind them; a cell that does not change is no time.
+        // The number precedes the cells, and the time follows them; a cell that does not change is not a time.
         (
             "0,1,2,9,4,0.00\n1,1,2,8,4,0.05\n2,1,2,9,4,0.10\n",
             vec![with(Some(0), 0.0), with(Some(1), 0.05), with(Some(2), 0.1)],
@@ -177,7 +177,7 @@ fn numbers_beside_the_cells_are_told_by_how_they_grow() {
         let cells: Vec<f64> = found.iter().map(|own| own.2[0]).collect();
         assert_eq!((beside, cells), (expected, first_cells), "{text}");
     }
-    // Nothing tells which of both it is.
+    // Nothing shows which of the two it is.
     for text in [
         "0,1,2,9,0\n0,1,2,9,3\n0,1,2,9,3\n",
         "0,10,20,30,0\n50,11,19,30,1\n100,10,21,29,2\n150,12,21,29,3\n",
@@ -193,13 +193,13 @@ fn numbers_beside_the_cells_are_told_by_how_they_grow() {
             found.error
         );
     }
-    // None of both grows.
+    // Neither of the two grows.
     let found = recorded(b"5,1,2,3,4\n4,5,6,7,3\n", Some((2, 2)));
     assert_eq!(error(&found), "line 1: found 5 values, expected 4");
 }
 
 #[test]
-fn a_first_line_that_counts_may_have_values() {
+fn a_first_line_of_consecutive_numbers_may_be_values() {
     let block = "0 1 2 3\n4 5 6 7\n8 9 10 11\n12 13 14 15\n\n";
     let other = "0,1,2,3\n5,5,5,5\n\n0,1,2,3\n6,6,6,6\n\n";
     for (text, rows, count) in [
@@ -213,7 +213,7 @@ fn a_first_line_that_counts_may_have_values() {
         assert_eq!(found.frames.len(), count, "{text}");
         assert_eq!(found.frames[0].values()[..4], [0.0, 1.0, 2.0, 3.0]);
     }
-    // The same values again.
+    // The same values again, in more frames.
     let text = "# ramp\n0,1,2,3\n0,1,2,3\n0,1,2,9\n";
     assert_eq!(values(text, Some((2, 2))).len(), 3);
     // These are names, also above groups of frames.
@@ -228,7 +228,7 @@ fn a_first_line_that_counts_may_have_values() {
     }
 }
 
-/// The times of the frames of a table, and its notes.
+/// Returns the times of the frames of a table, and its notes.
 fn times(text: &str) -> (Vec<Option<f64>>, Vec<String>) {
     let found = recorded(text.as_bytes(), None);
     assert!(found.error.is_none(), "{text}: {:?}", found.error);
@@ -247,7 +247,7 @@ fn a_time_in_two_columns_is_their_sum() {
         let text = format!("{seconds},{rest},r0c0,r0c1\n{rows}");
         let expected = [0.0, 2e-9, 0.050_000_001].map(Some).to_vec();
         assert_eq!(times(&text), (expected.clone(), vec![]), "{text}");
-        // Behind the cells, and the other way round.
+        // After the cells, and in the opposite order.
         let rows = "1,2,999999999,1714564800\n3,4,1,1714564801\n3,4,50000000,1714564801\n";
         let text = format!("r0c0,r0c1,{rest},{seconds}\n{rows}");
         assert_eq!(times(&text), (expected, vec![]), "{text}");
@@ -255,7 +255,7 @@ fn a_time_in_two_columns_is_their_sum() {
 }
 
 #[test]
-fn times_since_1970_are_exact_and_their_size_is_a_unit() {
+fn times_since_1970_are_exact_and_their_size_shows_their_unit() {
     let start = 1_714_564_800_123_456_789_u64;
     for (name, unit, parts, noted) in [
         ("time_ns", 1, 1, ""),
@@ -284,14 +284,14 @@ fn times_since_1970_are_exact_and_their_size_is_a_unit() {
         };
         assert_eq!(notes, expected, "{text}");
     }
-    // As exact with 20 digits.
+    // With 20 digits they are as exact.
     let text = "time_s,r0c0,r0c1\n1714564800.1234567890,1,2\n1714564800.1234567910,3,4\n";
     assert_eq!(times(text), (vec![Some(0.0), Some(2e-9)], vec![]));
     let line = |step| format!("{{\"timestamp\":{},\"frame\":[[1,2]]}}\n", start + step);
     let noted = "the times have no unit and are taken as nanoseconds since 1970".to_owned();
     let found = times(&(line(0) + &line(1_000_001)));
     assert_eq!(found, (vec![Some(0.0), Some(0.001_000_001)], vec![noted]));
-    // A unit that is named counts, and so do seconds since anything else.
+    // A unit in the name takes precedence, and seconds may be counted from any moment.
     let text = "time_s,r0c0,r0c1\n1714564800123,1,2\n1714564800125,1,2\n";
     assert_eq!(times(text), (vec![Some(0.0), Some(2.0)], vec![]));
     let text = "t,r0c0,r0c1\n12345,1,2\n12395,1,2\n";
@@ -299,11 +299,11 @@ fn times_since_1970_are_exact_and_their_size_is_a_unit() {
 }
 
 #[test]
-fn words_for_no_value_are_no_cells() {
+fn words_for_a_missing_value_are_cells_without_a_value() {
     for none in [
         "", "nan", "-nan", "NULL", "None", "NA", "N/A", "#N/A", "<NA>",
     ] {
-        // Also at the beginning of a line, which is no comment.
+        // Also at the beginning of a line, where `#` does not begin a comment.
         let text = format!("r0c0,r0c1\n{none},1\n2,{none}\n");
         let found = values(&text, None);
         assert!(found[0][0].is_nan() && found[1][1].is_nan(), "{text}");
@@ -313,7 +313,7 @@ fn words_for_no_value_are_no_cells() {
 }
 
 #[test]
-fn comments_and_units_are_no_frames() {
+fn comments_and_units_are_not_frames() {
     for comment in ["# a, b", "% a, b", "%% 1, 2", "%", "// 1, 2"] {
         let text = format!("{comment}\n1 2\n3 4\n{comment}\n\n5 6\n7 8\n");
         assert_eq!(values(&text, None).len(), 2, "{text}");
@@ -322,15 +322,15 @@ fn comments_and_units_are_no_frames() {
     let found = recorded(text.as_bytes(), None);
     assert_eq!(found.channels[0].unit.as_deref(), Some("kPa"));
     assert_eq!(frames(text, None)[1], (Some(8), Some(0.05), vec![3.0, 4.0]));
-    // Cells have different units; the name of the time has one.
+    // The cells have different units; the name of the time contains one.
     let text = "time_s,r0c0,r0c1\nms,kPa,N\n\n1,1,2\n3,3,4\n";
     let found = recorded(text.as_bytes(), None);
     assert_eq!(found.channels[0].unit, None);
     assert_eq!(frames(text, None)[1].1, Some(2.0));
-    // A dash is no unit.
+    // A dash is not a unit.
     let text = "time_s,r0c0,r0c1\ns,-,-\n1,1,2\n3,3,4\n";
     assert_eq!(recorded(text.as_bytes(), None).channels[0].unit, None);
-    // A duration before the time is none.
+    // A duration before the time is not the time.
     let text = "latency_ms,timestamp,r0c0,r0c1\n3,0.5,1,2\n4,0.75,3,4\n";
     assert_eq!(frames(text, None)[1].1, Some(0.25));
     // A first frame without values is a frame.
@@ -342,19 +342,19 @@ fn comments_and_units_are_no_frames() {
         assert_eq!(found.frames.len(), 2, "{text}");
         assert_eq!(found.channels[0].unit, None);
     }
-    // The index of pandas may have the times.
+    // An index of pandas may contain the times.
     for text in [
         ",r0c0,r0c1\n2024-05-01 12:00:00.000,1,2\n2024-05-01 12:00:00.050,5,6\n",
         ",r0c0,r0c1\n0 days 00:00:00,1,2\n0 days 00:00:00.050000,5,6\n",
     ] {
         assert_eq!(frames(text, None)[1], (None, Some(0.05), vec![5.0, 6.0]));
     }
-    // Words above words are not a table.
+    // Two lines of words are not the header of a table.
     assert!(recorded(b"a,b\nc,d\n1,2\n", None).error.is_some());
 }
 
 #[test]
-fn a_duration_is_a_time_and_no_beginning() {
+fn a_duration_is_a_time_but_not_the_start_of_the_recording() {
     let text = "time,r0c0,r0c1\n0 days 00:00:01,1,2\n0 days 00:00:01.050000,3,4\n";
     let found = recorded(text.as_bytes(), None);
     assert_eq!(
@@ -366,7 +366,7 @@ fn a_duration_is_a_time_and_no_beginning() {
 }
 
 #[test]
-fn a_row_block_may_begin_with_a_moment() {
+fn a_block_of_rows_may_begin_with_a_date_and_time() {
     let blocks = "12:00:00.00 1 2\n3 4\n\n12:00:00.05 5 6\n7 8\n\n";
     let both = "2024-05-01 23:59:59.95,1,2\n2024-05-02 00:00:00,3,4\n\n2024-05-02 00:00:00,5,6\n2024-05-02 00:00:01,7,8\n";
     for (text, start) in [(blocks, "12:00:00.00"), (both, "2024-05-01 23:59:59.95")] {
@@ -389,7 +389,7 @@ fn a_row_block_may_begin_with_a_moment() {
 }
 
 #[test]
-fn the_letters_of_names_say_which_number_is_the_column() {
+fn letters_in_names_show_which_number_is_the_column() {
     let text = "c0r0,c1r0,c2r0,c0r1,c1r1,c2r1\n1,2,3,4,5,6\n";
     let found = recorded(text.as_bytes(), None);
     assert_eq!(found.channels[0].shape, Some((2, 3)));
@@ -400,13 +400,13 @@ fn the_letters_of_names_say_which_number_is_the_column() {
 fn a_separator_in_quotes_is_part_of_a_field() {
     let text = "time,\"(0,0)\",\"(0,1)\",\"(1,0)\",\"(1,1)\"\n1,1,2,3,4\n";
     assert_eq!(values(text, None), [[1.0, 2.0, 3.0, 4.0]]);
-    // A quote that is not closed is a letter.
+    // A quote that is not closed is an ordinary character.
     let text = "time,width 5\",r0c0,r0c1\n1,0.5,1,2\n";
     assert_eq!(values(text, None), [[1.0, 2.0]]);
 }
 
 #[test]
-fn values_are_counted_where_names_do_not_say_rows_and_columns() {
+fn names_without_clear_rows_and_columns_are_only_counted() {
     let found = recorded(b"t,S00,S01,S10,S11\n0.5,1,2,3,4\n", None);
     assert!(
         error(&found).starts_with("4 values a frame"),
@@ -416,7 +416,7 @@ fn values_are_counted_where_names_do_not_say_rows_and_columns() {
 }
 
 #[test]
-fn the_line_with_the_separator_of_a_spreadsheet_is_passed_over() {
+fn a_line_that_names_the_separator_is_skipped() {
     for named in ["sep=;", "SEP=;", "\"sep=;\"", "sep=;;;"] {
         let text = format!("{named}\r\ntime;r0c0;r0c1\r\n0,5;1,5;2\r\n1;3;4\r\n");
         assert_eq!(values(&text, None), [[1.5, 2.0], [3.0, 4.0]], "{named}");
@@ -426,7 +426,7 @@ fn the_line_with_the_separator_of_a_spreadsheet_is_passed_over() {
 }
 
 #[test]
-fn a_moment_beside_the_cells_is_the_time() {
+fn a_date_and_time_beside_the_cells_is_the_time() {
     let times = |text: &str, shape| {
         let found = recorded(text.as_bytes(), shape);
         assert!(found.error.is_none(), "{text}: {:?}", found.error);
@@ -434,21 +434,21 @@ fn a_moment_beside_the_cells_is_the_time() {
         (found.channels[0].start.clone(), times)
     };
     for (text, shape, start, second) in [
-        // Under any name, past midnight.
+        // The time under any name, past midnight.
         (
             "when,note,r0c0,r0c1\n2024-05-01T23:59:59.5Z,a,1,2\n2024-05-02T00:00:00.25Z,b,3,4\n",
             None,
             "2024-05-01T23:59:59.5Z",
             0.75,
         ),
-        // A date alone is passed over, so is a unit that a moment does not need.
+        // A date alone is ignored, and so is a unit, which a moment does not need.
         (
             "date;time (ms);r0c0;r0c1\n2024-05-01;12:00:00,1;1;2\n2024-05-01;12:00:00,3;3;4\n",
             None,
             "12:00:00,1",
             0.2,
         ),
-        // Without names, with a number that counts.
+        // Without names, beside a number that counts.
         (
             "0,2024-05-01 12:00:00+02:00,1,2\n1,2024-05-01 12:00:01+02:00,3,4\n",
             Some((1, 2)),
@@ -459,7 +459,7 @@ fn a_moment_beside_the_cells_is_the_time() {
         let expected = (Some(start.to_owned()), vec![Some(0.0), Some(second)]);
         assert_eq!(times(text, shape), expected, "{text}");
     }
-    // Numbers go before it; what cannot be read is no time.
+    // A column of numbers takes precedence over it; an unreadable text is not a time.
     let numbers = "date,t,r0c0,r0c1\n2024-05-01 12:00:00,3,1,2\n2024-05-01 12:00:09,4.5,3,4\n";
     assert_eq!(times(numbers, None), (None, vec![Some(0.0), Some(1.5)]));
     let midnight = "t,r0c0,r0c1\n23:59:59.5,1,2\n00:00:00.5,3,4\n00:00:00.25,5,6\n23:59:00,7,8\n00:01:00,9,1\n";
@@ -473,7 +473,7 @@ fn a_moment_beside_the_cells_is_the_time() {
 }
 
 #[test]
-fn a_line_of_more_fields_than_a_frame_has_is_refused_before_they_are_collected() {
+fn a_line_with_too_many_fields_is_refused_early() {
     let line = |fields: usize| format!("{}\n", "0,".repeat(fields));
     assert_eq!(values(&line(512 * 512), Some((512, 512))).len(), 1);
     for fields in [512 * 512 + 17, 4 << 20] {
@@ -486,7 +486,7 @@ fn a_line_of_more_fields_than_a_frame_has_is_refused_before_they_are_collected()
 }
 
 #[test]
-fn bare_rows_of_json_are_refused_as_json() {
+fn a_list_of_rows_without_an_object_is_refused_as_json() {
     let found = recorded(b"[[1,2,3],[4,5,60]]\n", None);
     assert_eq!(
         error(&found),
@@ -495,7 +495,7 @@ fn bare_rows_of_json_are_refused_as_json() {
 }
 
 #[test]
-fn objects_in_a_list_are_refused_as_such() {
+fn a_list_of_objects_is_refused_with_a_hint() {
     let expected = "line 1, column 1: found a list of objects, expected one object a line, as `jq -c '.[]'` writes them";
     for text in [
         "[{\"t\":0,\"frame\":[[1,2]]},{\"t\":1,\"frame\":[[1,2]]}]\n",
@@ -506,13 +506,13 @@ fn objects_in_a_list_are_refused_as_such() {
 }
 
 #[test]
-fn nan_of_python_is_no_cell_in_json() {
+fn the_nan_of_python_is_a_cell_without_a_value_in_json() {
     let text = "{\"t\":NaN,\"frame\":[[1,NaN],[NaN,3]],\"note\":\"a \\\"NaN\"}\n{\"frame\":[[1,2],[3,4]]}\n";
     let found = frames(text, None);
     assert_eq!(found[0].1, None);
     let cells: Vec<bool> = found[0].2.iter().map(|value| value.is_nan()).collect();
     assert_eq!(cells, [false, true, true, false]);
-    // Columns are those of the line as it is written.
+    // Columns in messages are those of the original line.
     for (text, expected) in [
         (
             "{\"frame\":[[NaN,NaN,x]]}\n",
@@ -528,7 +528,7 @@ fn nan_of_python_is_no_cell_in_json() {
 }
 
 #[test]
-fn a_key_that_is_the_name_of_a_time_gives_it_where_t_does_not() {
+fn other_names_for_the_time_are_used_if_there_is_no_t() {
     for (keys, expected) in [
         (["\"timestamp\":1.5", "\"timestamp\":1.75"], Some(0.25)),
         (["\"t_ms\":10", "\"t_ms\":60"], Some(0.05)),
@@ -576,7 +576,7 @@ fn a_key_that_is_the_name_of_a_time_gives_it_where_t_does_not() {
 }
 
 #[test]
-fn a_line_of_json_gives_a_key_once() {
+fn a_key_given_twice_in_a_line_of_json_is_refused() {
     for (keys, message) in [
         ("\"t\":1,\"t\":2", "\"t\" is given twice"),
         ("\"time\":1,\"time\":1", "\"time\" is given twice"),
@@ -607,7 +607,7 @@ fn the_time_of_a_line_of_json_may_come_after_many_other_keys() {
 }
 
 #[test]
-fn rows_that_are_parted_one_by_one_do_not_say_how_many_are_a_frame() {
+fn single_rows_between_empty_lines_need_given_rows_and_columns() {
     let found = recorded(b"1,2\n\n3,4\n\n5,6\n\n", None);
     assert!(error(&found).contains("--rows"), "{}", error(&found));
     assert_eq!(values("1,2\n\n3,4\n\n5,6\n\n", Some((1, 2))).len(), 3);

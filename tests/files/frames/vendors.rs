@@ -1,4 +1,4 @@
-//! What programs of vendors write in some versions or settings, made up here.
+//! Made-up files of vendors' programs in certain versions or settings.
 
 use std::fmt::Write;
 
@@ -15,14 +15,14 @@ fn notes(found: &Recorded) -> Vec<String> {
     found.notes.iter().map(ToString::to_string).collect()
 }
 
-/// Label, time and first value of each frame of a channel.
+/// Returns the label, time and first value of each frame of a channel.
 fn frames(found: &Recorded, channel: usize) -> Vec<(Option<i64>, Option<f64>, f64)> {
     let own = found.frames.iter().filter(|frame| frame.channel == channel);
     let parts = |frame: &Frame| (frame.label, frame.time, frame.values()[0]);
     own.map(parts).collect()
 }
 
-/// A zebris file with a section for each name; its number is its first value.
+/// Returns a zebris file with a section for each name; the first value of a section is its number.
 fn zebris(sections: &[&str]) -> String {
     let mut text = "[General]\nDate=1/2/2021\nTime=10.11.12\nUnitDistance=mm\nUnitPressure=N/cm2\nUnitTime=ms\n\
                     [Technical]\nSensCountX=2\nSensCountY=3\nLDistX=8\nLDistY=8\nTimeDiff=20\nMinIdx=4\nMaxIdx=6\n"
@@ -34,7 +34,7 @@ fn zebris(sections: &[&str]) -> String {
 }
 
 #[test]
-fn numbered_pictures_of_zebris_are_frames_and_their_maximum_is_none() {
+fn the_numbered_pictures_of_zebris_are_frames_but_their_maximum_is_not() {
     let text = zebris(&["Data", "Data4", "Data5", "Data6"]);
     let found = recorded(text.as_bytes(), None);
     assert_eq!(error(&found), None);
@@ -46,11 +46,11 @@ fn numbered_pictures_of_zebris_are_frames_and_their_maximum_is_none() {
     assert_eq!(found.channels[0].seconds_per_frame, Some(0.02));
     let maximum = "the picture [Data] is the maximum of the numbered ones and is left out";
     assert_eq!(notes(&found), [maximum]);
-    // Alone, it is the picture.
+    // Alone, this section is the picture.
     let found = recorded(zebris(&["Data"]).as_bytes(), None);
     assert_eq!(frames(&found, 0), [(Some(1), None, 1.0)]);
     assert_eq!((error(&found), notes(&found).len()), (None, 0));
-    // Cut off between two pictures, and inside of one.
+    // The file is cut off between two pictures, and inside of one.
     let found = recorded(zebris(&["Data4", "Data5"]).as_bytes(), None);
     let cut = "the file was cut off: it has 2 of the 3 frames that its header counts";
     assert_eq!(
@@ -63,7 +63,7 @@ fn numbered_pictures_of_zebris_are_frames_and_their_maximum_is_none() {
 }
 
 #[test]
-fn the_last_unit_of_tekscan_counts_and_metres_are_a_length() {
+fn the_last_unit_of_tekscan_is_used_and_metres_are_converted() {
     let text = "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nROW_SPACING 1.27e-003 meters\nCOL_SPACING 1.27 mm\n\
                 COMMENTS the pad\nASCII_DATA was chosen\nUNITS kPa\nROWS 9\nUNITS raw\nASCII_DATA @@\nFrame 1\n1,2\n\n@@\n";
     let found = recorded(text.as_bytes(), None);
@@ -76,7 +76,7 @@ fn the_last_unit_of_tekscan_counts_and_metres_are_a_length() {
     );
 }
 
-/// The header of a page of emed.
+/// Returns the header of a page of emed.
 fn emed_header(label: i64) -> String {
     format!(
         "\t\t\t\tPage 1\n\n\tFile: made up \tMatrix: 20x30\n\tSensor area: 1.00 cm2\tTime/picture:20.0 ms\n\
@@ -84,7 +84,7 @@ fn emed_header(label: i64) -> String {
     )
 }
 
-/// Two pages of one picture of three columns, and two of the next one.
+/// Returns two pages of a picture with three columns, and two pages of the next picture.
 fn emed_pages(left: &str, right: &str) -> String {
     let pages = [(1, left), (1, right), (2, left), (2, right)];
     let page = |(label, window): (i64, &str)| format!("{}{window}\u{c}\n", emed_header(label));
@@ -126,12 +126,12 @@ fn the_pages_of_a_picture_of_emed_are_one_frame() {
         assert_eq!(first.values(), [0.0, 20.0, 10.0, 30.0, 0.0, 0.0]);
         assert_eq!((first.first, first.label), (Some((4, 7)), Some(1)));
         assert_eq!((second.label, second.time), (Some(2), Some(0.02)));
-        // A picture whose second page is damaged is not whole.
+        // A picture is incomplete if its second page is damaged.
         let torn = text.rfind("Page").expect("a page") + 150;
         let cut = recorded(&text.as_bytes()[..torn], None);
         assert_eq!(cut.frames.len(), 1);
         assert!(cut.error.is_some());
-        // Nor is one whose second page is missing.
+        // A picture is also incomplete if its second page is missing.
         let between = text.rfind("\t\t\t\tPage").expect("a page");
         let cut = recorded(&text.as_bytes()[..between], None);
         assert_eq!(cut.frames.len(), 1);
@@ -160,7 +160,7 @@ fn the_header_of_emed_gives_the_pitch_and_the_time_of_a_picture() {
     assert_eq!(millimetres, (Some([5.0, 7.5]), Some(0.02)));
     let seconds = of("20.0 ms", "0.5 s");
     assert_eq!(seconds, (Some([10.0, 10.0]), Some(0.5)));
-    // 0 is none.
+    // 0 means that there is no time.
     assert_eq!(of("20.0 ms", "0.0 ms"), (Some([10.0, 10.0]), None));
 }
 
@@ -195,7 +195,7 @@ fn every_force_of_emed_is_checked() {
             "2.00\t7.00",
             "the force of all cells should be 7, but the values give 5",
         ),
-        // Each sum was rounded, and then their sum.
+        // Each sum is rounded, and the sum of the sums as well, so a small difference is allowed.
         (
             "2.00\t5.00",
             "2.00\t5.02",
@@ -213,7 +213,7 @@ fn every_force_of_emed_is_checked() {
     assert_eq!(found.frames.len(), 1);
     let expected = "line 11: found 3 values, expected 4";
     assert_eq!(error(&found).as_deref(), Some(expected));
-    // The next page lacks its number, or its values.
+    // The next page has no number, or no values.
     for end in [emed_header(2).find("File"), emed_header(2).find("Force")] {
         let header = &emed_header(2)[..end.expect("it is there")];
         let found = read(&format!("{window}\u{c}\n{header}"));
@@ -226,7 +226,7 @@ fn every_force_of_emed_is_checked() {
     }
 }
 
-/// An export of XSENSOR with two sensors, two frames and the clocks `times`.
+/// Returns an export of XSENSOR with two sensors, two frames and the clocks `times`.
 fn xsensor(times: [&str; 2]) -> String {
     let mut text = "Units:,mmHg\nThreshold:,9.5\n".to_owned();
     for (label, time) in (100..).zip(times) {
@@ -243,7 +243,7 @@ fn xsensor(times: [&str; 2]) -> String {
     text
 }
 
-/// The same with quotes around all fields.
+/// Puts quotes around all fields.
 fn quoted(text: &str) -> String {
     let field = |field: &str| format!("\"{field}\"");
     let line = |line: &str| line.split(',').map(field).collect::<Vec<_>>().join(",");
@@ -258,7 +258,7 @@ fn quoted(text: &str) -> String {
 }
 
 #[test]
-fn exports_of_xsensor_differ_in_quotes_colons_and_units() {
+fn xsensor_exports_are_read_with_any_quotes_colons_and_units() {
     let plain = xsensor(["08:21:17.9", "08:21:18.4"]);
     let whole = recorded(plain.as_bytes(), None);
     assert_eq!((error(&whole), whole.channels.len()), (None, 2));
@@ -301,10 +301,10 @@ fn exports_of_xsensor_differ_in_quotes_colons_and_units() {
             assert_eq!(frames(&found, channel), frames(&whole, channel), "{text}");
         }
     }
-    // A time in seconds; a single sensor without a name.
+    // The time is in seconds; and a single sensor has no name.
     let found = recorded(xsensor(["0.25", "0.3755"]).as_bytes(), None);
     assert_eq!(found.frames[2].time, Some(0.1255));
-    // Clocks that are too large for a number of seconds are none, and differences of times are finite.
+    // A clock that is too large for a number of seconds is ignored, and differences of times are finite.
     let found = recorded(xsensor(["1e306:21:17.9", "1e306:21:18.4"]).as_bytes(), None);
     assert_eq!((error(&found), found.frames[2].time), (None, None));
     let found = recorded(xsensor(["-1e308", "1e308"]).as_bytes(), None);
@@ -319,7 +319,7 @@ fn exports_of_xsensor_differ_in_quotes_colons_and_units() {
 }
 
 #[test]
-fn an_export_of_xsensor_that_ends_inside_a_frame_is_a_damage() {
+fn an_xsensor_export_that_ends_inside_a_frame_is_reported_as_damaged() {
     let text = xsensor(["08:21:17.9", "08:21:18.4"]);
     let last = text.rfind("FRAME").expect("a frame");
     let right = text.rfind("SENSOR").expect("a sensor");
@@ -382,6 +382,6 @@ fn both_sheets_of_popu_are_channels() {
 }
 
 #[test]
-fn the_sample_frames_have_all_their_sums() {
+fn the_sums_in_the_sample_are_right() {
     assert_eq!(notes(&recorded(&sample("emed.lst"), None)), [""; 0]);
 }

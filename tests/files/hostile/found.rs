@@ -1,4 +1,4 @@
-//! What was found, by the targets and while they were written.
+//! Errors that the fuzz targets found, or that were found while the targets were written.
 
 use std::io::Cursor;
 
@@ -10,7 +10,8 @@ use taxel::pose::DecimalRange;
 use super::bodies::{body, session_of, with_spread};
 use super::malice;
 
-/// A form that shows a smaller sensor: the cursor stood beside it, and the coverage of another taxel was told.
+/// With a form that shows a smaller sensor, the cursor was beside the sensor, and the coverage of another taxel was
+/// shown.
 #[test]
 fn the_cursor_is_on_the_sensor_that_a_form_shows() {
     body("session")(&[0, 0, 0x07, b'S', b'1']);
@@ -20,9 +21,10 @@ fn the_cursor_is_on_the_sensor_that_a_form_shows() {
     assert!(accepted.screen().contains("column 7, row 7"));
 }
 
-/// A form shows a figure that covers no taxel by half: the region that was chosen before is there again without it.
+/// A form shows a figure that covers no taxel by half. Without the form, the region that was chosen before is there
+/// again.
 #[test]
-fn a_chosen_region_outlasts_a_form_that_shows_none() {
+fn a_chosen_region_is_kept_while_a_form_shows_no_region() {
     let form = "<Space><Right><Right><Space><Tab>f<Tab><C-u>0.1<Tab><C-u>0.1";
     let session = session_of(form);
     let app = session.app();
@@ -33,9 +35,9 @@ fn a_chosen_region_outlasts_a_form_that_shows_none() {
     body("session")(b"\0\0 \x01\x01 \x0cf\x0c\x930.1\x0c\x930.1");
 }
 
-/// Two decimals of 16 digits can be one `f64`: they were taken, and written as another range.
+/// Two decimals of 16 digits can be the same `f64`: such ranges were accepted, and written as another range.
 #[test]
-fn ranges_come_back_as_they_were() {
+fn ranges_read_back_unchanged() {
     for text in ["9007.199254740991", "1:1.5:7", "1.0:2.55:1", "-0:0.10:0.05"] {
         body("range")(text.as_bytes());
     }
@@ -45,9 +47,9 @@ fn ranges_come_back_as_they_were() {
     assert_eq!(read("1.0:2.55:1"), read("1:2:1"));
 }
 
-/// A turn in the sums of an archive says how many look like it: each was added up by itself.
+/// A turn in the sums of an archive has a count of equal turns; these were added one by one.
 #[test]
-fn turns_that_stand_for_many_are_added_at_once() {
+fn a_turn_that_counts_for_many_is_added_at_once() {
     let archive = with_spread(1, |words| {
         let turn = words.split_off(3 * features().len());
         assert_eq!(turn.len(), 3 + 5 * features().len(), "one is open");
@@ -59,7 +61,7 @@ fn turns_that_stand_for_many_are_added_at_once() {
     body("archive")(&archive);
 }
 
-/// Sums that say that directions cancel at each angle, while all together do not: the deviation was infinite.
+/// Sums in which directions cancel at each angle, but not all together, gave an infinite deviation.
 #[test]
 fn directions_that_contradict_each_other_have_a_finite_deviation() {
     let archive = with_spread(2, |words| {
@@ -89,17 +91,17 @@ fn a_long_pattern_is_refused() {
     assert!(error.to_string().contains("has 20000 bytes"), "{error}");
 }
 
-/// By the fuzzer: what was quoted is longer than it was, where each character of it has to be escaped.
+/// Found by the fuzzer: a quoted word grows if each of its characters is escaped.
 #[test]
-fn unknown_words_are_quoted_in_short() {
+fn unknown_words_are_quoted_briefly() {
     body("command")(&[&b"x"[..], &[0x1e; 200]].concat());
     body("script")(&[&b"Set "[..], &[0x05; 200]].concat());
     body("script")(&[&b"Set ascii "[..], &[0x05; 200]].concat());
 }
 
-/// Which form a stream has was told by all that had come so far, so it depended on how the stream was cut.
+/// The format of a stream was determined from all bytes so far, so it depended on how the stream was split.
 #[test]
-fn the_form_of_a_stream_does_not_depend_on_its_pieces() {
+fn the_format_of_a_stream_does_not_depend_on_its_pieces() {
     // Rows and columns are known, and the first piece has 304 bytes.
     let begin = [38];
     let frame: Vec<u8> = [0xaa, 0x55].into_iter().chain([0; 20]).collect();
@@ -115,10 +117,10 @@ fn the_form_of_a_stream_does_not_depend_on_its_pieces() {
     );
 }
 
-/// Packed, a name of sixteen megabytes takes a few kilobytes: 65,536 topics took all memory.
+/// A compressed name of sixteen megabytes takes a few kilobytes: 65,536 topics used up all memory.
 #[cfg(feature = "mcap")]
 #[test]
-fn a_topic_has_a_short_name() {
+fn a_long_topic_name_is_refused() {
     let record = |kind: u8, fields: &[&[u8]]| {
         let fields = fields.concat();
         [&[kind][..], &(fields.len() as u64).to_le_bytes(), &fields].concat()

@@ -1,4 +1,4 @@
-//! A mebibyte of input, each of another kind of malice.
+//! Malicious inputs of a mebibyte, each of another kind.
 
 mod archives;
 
@@ -6,16 +6,17 @@ mod frames;
 
 mod packed;
 
-/// How long an input is, and a file may be.
+/// The length of an input, which is also the limit for files.
 pub(crate) const SIZE: usize = 1 << 20;
 
-/// What it is, and its bytes.
+/// A description, and a function that makes the bytes.
 pub(crate) type Malice = (&'static str, fn() -> Vec<u8>);
 
-/// What the reader of recordings unpacks as a whole, up to 256 MiB: the values of a frame are all over the array.
+/// An input that the reader of recordings unpacks completely, up to 256 MiB, because the values of a frame are spread
+/// over the whole array.
 pub(crate) const UNPACKED: &str = "an array in the other order that unpacks to much";
 
-/// Those for a body.
+/// Returns the malicious inputs for a body.
 pub(crate) fn all(body: &str) -> Vec<Malice> {
     let general: [Malice; 5] = [
         ("zeros", || vec![0; SIZE]),
@@ -39,43 +40,43 @@ pub(crate) fn all(body: &str) -> Vec<Malice> {
         "model" => archives::MODELS,
         "recording" => &frames::of_recordings(),
         "stream" => &frames::of_streams(),
-        // What is general is all that these can be told at such length.
+        // For the other bodies, only the general ones make sense at this length.
         _ => &[],
     };
     [&general[..], own].concat()
 }
 
-/// The bytes of the one with that name.
+/// Returns the bytes of the input with a description.
 pub(crate) fn of(body: &str, what: &str) -> Vec<u8> {
     let mut all = all(body).into_iter();
     let found = all.find(|(name, _)| *name == what);
     found.expect("there is one of that name").1()
 }
 
-/// The bytes of one of them, as the body takes them.
+/// Returns the bytes of an input, as its body expects them.
 pub(crate) fn bytes(body: &str, index: usize) -> Vec<u8> {
     let mut bytes = all(body)[index].1();
     if body == "stream" {
-        // Nothing is known of it but that it is read from its start.
+        // This first byte says that the stream is read from its start, and nothing else.
         bytes.insert(0, b'd');
         bytes.truncate(SIZE);
     }
     bytes
 }
 
-/// A beginning, something again and again, an end: as many times as fit.
+/// Returns a start, as many repetitions as fit, and an end.
 fn filled(start: &str, again: &str, end: &str) -> Vec<u8> {
     let times = (SIZE - start.len() - end.len()) / again.len();
     [start, &again.repeat(times), end].concat().into_bytes()
 }
 
-/// The same of bytes.
+/// Like [`filled`], for bytes.
 fn repeated(start: &[u8], again: &[u8], end: &[u8]) -> Vec<u8> {
     let times = (SIZE - start.len() - end.len()) / again.len();
     [start, &again.repeat(times), end].concat()
 }
 
-/// A beginning, then pieces with numbers from 0 on, as many as fit.
+/// Returns a start, followed by as many pieces with numbers from 0 as fit.
 fn numbered(start: &str, piece: &dyn Fn(u32) -> String) -> Vec<u8> {
     let mut text = start.to_owned();
     for number in 0.. {
@@ -88,7 +89,7 @@ fn numbered(start: &str, piece: &dyn Fn(u32) -> String) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// A shape up to what is filled.
+/// A stored shape in which one part is repeated as often as fits.
 macro_rules! in_shape {
     ($start:expr, $again:expr, $end:expr) => {
         || {

@@ -1,6 +1,7 @@
-//! Hostile input: random and mutated bytes, and a mebibyte of each kind of malice. No panic, and at most 64 MiB of memory;
-//! 320 MiB where a recording must be unpacked as a whole ([`malice::UNPACKED`]). Times are printed, not judged:
-//! `cargo test --release --test files hostile -- --nocapture --test-threads=1` measures them.
+//! Hostile input: random and mutated bytes, and a mebibyte of each kind of malice. The program must not panic, and may
+//! use at most 64 MiB of memory, or 320 MiB if a recording must be unpacked completely ([`malice::UNPACKED`]). Times
+//! are printed, not checked: `cargo test --release --test files hostile -- --nocapture --test-threads=1` measures
+//! them.
 
 mod bodies;
 
@@ -18,7 +19,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use taxel::tui::app::message::Message;
 
-/// The usual inputs of a body, by their names.
+/// Returns the usual inputs of a body, with their names.
 fn seeds(folder: &str) -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/files/hostile/seeds")
@@ -36,7 +37,7 @@ fn seeds(folder: &str) -> Vec<(String, Vec<u8>)> {
     files.iter().map(read).collect()
 }
 
-/// A change of some bytes: where, how many go, what comes.
+/// Changes of some bytes: the place, the number of bytes to remove, the bytes to insert.
 fn changes() -> impl Strategy<Value = Vec<(usize, usize, Vec<u8>)>> {
     let piece = prop_oneof![
         vec(any::<u8>(), 0..4),
@@ -55,7 +56,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(3000))]
 
     #[test]
-    fn random_bytes_do_no_harm(index in 0..BODIES.len(), bytes in vec(any::<u8>(), 0..200)) {
+    fn random_bytes_cause_no_panic(index in 0..BODIES.len(), bytes in vec(any::<u8>(), 0..200)) {
         BODIES[index].2(&bytes);
     }
 
@@ -75,20 +76,20 @@ proptest! {
 }
 
 #[test]
-fn what_is_usual_is_read() {
+fn usual_inputs_are_read() {
     for (body, folder, read) in BODIES {
         for (name, seed) in seeds(folder) {
             let is_read = read(&seed);
-            // Two bodies change the arrays of a sound archive, which may be refused then.
+            // Two bodies change the arrays of a valid archive, which may then be refused.
             let changes = folder.ends_with("arrays") && name != "nothing";
             assert!(is_read || changes, "{body} refuses its seed {name}");
         }
     }
 }
 
-/// Wherever text can be pasted, so much of it is taken as there is room for, and the program goes on.
+/// A paste is accepted anywhere as far as there is room, and the program continues.
 #[test]
-fn a_mebibyte_is_pasted_everywhere() {
+fn a_mebibyte_can_be_pasted_anywhere() {
     for (opens, leaves) in [
         ("", "q"),
         ("f<Tab>", "<Esc>q"),
@@ -113,7 +114,7 @@ fn a_mebibyte_is_pasted_everywhere() {
 
 const VARIABLE: &str = "TAXEL_HOSTILE";
 
-/// One input in a process of its own, which this test is when the variable is set.
+/// Runs one input; this test runs in a process of its own, with a variable that names the input.
 #[test]
 #[ignore = "only as a child of other tests"]
 fn one() {
@@ -125,24 +126,24 @@ fn one() {
     let start = Instant::now();
     body(name)(&bytes);
     println!("TOOK {} µs", start.elapsed().as_micros());
-    // The most memory that this process has ever had.
+    // The highest memory use of this process so far.
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     if let Some(line) = status.lines().find(|line| line.starts_with("VmHWM:")) {
         println!("{line}");
     }
 }
 
-/// Reads a number behind a word.
+/// Reads the number after a word.
 fn number(said: &str, word: &str) -> Option<u64> {
     let line = said.lines().find(|line| line.contains(word))?;
     let digits = line.split(word).nth(1)?.trim().split(' ').next()?;
     digits.parse().ok()
 }
 
-/// Each in a process of its own, two at a time: the processes do all the work. Some bodies take much longer than others, so
-/// each thread takes the next one that is left.
+/// Each input runs in a process of its own, two at a time: the processes do all the work. Some bodies take much longer
+/// than others, so each thread takes the next one that is left.
 #[test]
-fn a_mebibyte_of_malice_takes_little_memory() {
+fn a_mebibyte_of_malicious_input_takes_little_memory() {
     let next = AtomicUsize::new(0);
     std::thread::scope(|scope| {
         for _ in 0..2 {
@@ -155,7 +156,7 @@ fn a_mebibyte_of_malice_takes_little_memory() {
     });
 }
 
-/// All malice for one body.
+/// Runs all malicious inputs of a body.
 fn all_malice(name: &str) {
     let mut slowest = (0, "");
     let mut largest = (0, "");
@@ -174,7 +175,7 @@ fn all_malice(name: &str) {
         );
         let took = number(&said, "TOOK").expect("it says how long it took");
         slowest = slowest.max((took, what));
-        // Only where the system tells.
+        // The system may not report the memory.
         let kibibytes = number(&said, "VmHWM:").unwrap_or_default();
         let most = if what == malice::UNPACKED { 320 } else { 64 };
         assert!(kibibytes <= most << 10, "{name}, {what}: {kibibytes} KiB");

@@ -1,4 +1,4 @@
-//! Links, folders, pipes, read-only places and broken files: each told, none in the way of the others.
+//! Links, folders, pipes, read-only places and broken files: each is reported, and none affects the other shapes.
 #![cfg(unix)]
 
 use std::fs::{self, Permissions};
@@ -20,7 +20,7 @@ fn pipe(path: &Path) {
     mknodat(CWD, path, FileType::Fifo, Mode::from_raw_mode(0o666), 0).expect("a pipe");
 }
 
-/// Fails where something waits, as opening a pipe does.
+/// Fails if an action waits, as when opening a pipe.
 fn soon<T: Send + 'static>(act: impl FnOnce() -> T + Send + 'static) -> T {
     let (done, waiting) = channel();
     std::thread::spawn(move || done.send(act()));
@@ -29,7 +29,7 @@ fn soon<T: Send + 'static>(act: impl FnOnce() -> T + Send + 'static) -> T {
 }
 
 #[test]
-fn what_is_no_file_is_told_and_left_alone() {
+fn entries_that_are_not_files_are_reported_and_left_alone() {
     let scratch = Scratch::with(&["good"]);
     let outside = tempfile::NamedTempFile::new().expect("a file");
     fs::write(outside.path(), shape("out", 7).write()).expect("written");
@@ -74,7 +74,7 @@ fn what_is_no_file_is_told_and_left_alone() {
 }
 
 #[test]
-fn a_pipe_or_a_link_in_place_of_a_lock_blocks_no_start() {
+fn a_pipe_or_a_link_instead_of_a_lock_does_not_block_the_start() {
     for make in [pipe, |path: &Path| {
         symlink("/dev/null", path).expect("a link");
     }] {
@@ -101,7 +101,7 @@ fn a_pipe_or_a_link_in_place_of_a_lock_blocks_no_start() {
 }
 
 #[test]
-fn a_library_that_is_no_folder_is_told() {
+fn a_library_path_that_is_not_a_folder_is_reported() {
     let scratch = Scratch::new();
     scratch.put("file", "");
     symlink("nowhere", scratch.path("dangling")).expect("a link");
@@ -161,7 +161,7 @@ fn trash_and_journal_cannot_lead_out_of_the_library() {
 }
 
 #[test]
-fn broken_files_are_listed_told_and_harm_nothing() {
+fn broken_files_are_listed_and_reported_without_affecting_others() {
     let scratch = Scratch::with(&["good"]);
     let good = shape("x", 1).write();
     for (name, content, message) in [
@@ -212,7 +212,7 @@ fn broken_files_are_listed_told_and_harm_nothing() {
     ];
     assert_eq!(scratch.own(), all);
     assert_eq!(scratch.number("good"), Some(1));
-    // A broken file goes into the trash as it is, and comes back as it was.
+    // A broken file is moved into the trash and back unchanged.
     scratch.library.delete("cut").expect("deleted");
     scratch.library.restore("cut").expect("restored");
     let back = fs::read_to_string(scratch.path("cut.json")).expect("there");
@@ -220,7 +220,7 @@ fn broken_files_are_listed_told_and_harm_nothing() {
 }
 
 #[test]
-fn files_of_others_are_passed_over_and_told() {
+fn foreign_files_are_skipped_and_reported() {
     let scratch = Scratch::with(&["good"]);
     for file in [
         "notes.txt",
@@ -261,7 +261,7 @@ fn files_of_others_are_passed_over_and_told() {
 }
 
 #[test]
-fn a_file_that_is_read_only_is_not_replaced_and_the_mode_of_others_stays() {
+fn read_only_files_are_not_replaced_and_modes_are_kept() {
     let scratch = Scratch::with(&["kept", "own"]);
     let mode = |name: &str| {
         let found = fs::metadata(scratch.path(name)).expect("there");
@@ -287,7 +287,7 @@ fn a_file_that_is_read_only_is_not_replaced_and_the_mode_of_others_stays() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_to_can_be_read() {
+fn a_read_only_folder_can_be_read() {
     if is_root() {
         skipped("root may write everywhere; tests/crash does this with a read-only disk");
         return;
@@ -307,7 +307,7 @@ fn a_folder_that_cannot_be_written_to_can_be_read() {
             "{message}"
         );
     }
-    // A lock that somebody else has made is enough where the folder can be written to.
+    // In a writable folder, another user's lock file is sufficient.
     fs::set_permissions(scratch.path(".lock"), Permissions::from_mode(0o444)).expect("set");
     scratch.save("new", 1);
 }

@@ -1,4 +1,4 @@
-//! Unsaved work: kept, offered back, never taken from a program that runs.
+//! Unsaved work is kept and offered back, but never taken from a running program.
 
 use std::time::{Duration, Instant};
 
@@ -15,8 +15,8 @@ fn offered(scratch: &Scratch) -> Vec<StoredShape> {
     orphans.into_iter().map(|orphan| orphan.shape).collect()
 }
 
-/// The same once something is offered: programs that other tests start inherit open files, and so the locks of journals,
-/// for a moment.
+/// Like [`offered`], but waits until something is offered: programs that other tests start inherit open files, and so
+/// the locks of journals, for a moment.
 fn offered_soon(scratch: &Scratch) -> Vec<StoredShape> {
     let end = Instant::now() + Duration::from_secs(10);
     loop {
@@ -28,7 +28,7 @@ fn offered_soon(scratch: &Scratch) -> Vec<StoredShape> {
     }
 }
 
-/// Work that a program left when it died.
+/// Leaves work like a program that died.
 fn left(scratch: &Scratch, work: &StoredShape) {
     let mut journal = Journal::new(&scratch.library);
     journal.keep(work).expect("kept");
@@ -53,9 +53,9 @@ fn work_of_a_dead_program_is_offered_until_it_is_discarded() {
     assert_eq!(files(&scratch.path(".journal")), [""; 0]);
 }
 
-/// Names begin with the number of a process, which does not grow with time.
+/// A name begins with the number of a process, which does not grow with time.
 #[test]
-fn the_newest_work_comes_last_whatever_its_name() {
+fn the_newest_work_comes_last_regardless_of_its_name() {
     let scratch = Scratch::new();
     left(&scratch, &shape("work", 1));
     let folder = scratch.path(".journal");
@@ -87,7 +87,7 @@ fn cleared_work_is_gone_and_more_can_be_kept() {
     assert_eq!(offered_soon(&scratch), [shape("work", 2)]);
 }
 
-/// Somebody has tidied up while the program ran.
+/// The user has removed the folder while the program runs.
 #[test]
 fn a_folder_that_was_removed_is_made_again() {
     let scratch = Scratch::new();
@@ -100,7 +100,7 @@ fn a_folder_that_was_removed_is_made_again() {
 }
 
 #[test]
-fn several_programs_keep_each_their_own() {
+fn each_of_several_programs_keeps_its_own_work() {
     let scratch = Scratch::new();
     let mut journals: Vec<Journal> = (0..5).map(|_| Journal::new(&scratch.library)).collect();
     for (number, journal) in journals.iter_mut().enumerate() {
@@ -108,7 +108,7 @@ fn several_programs_keep_each_their_own() {
     }
     let running = journals.split_off(3);
     drop(journals);
-    // An empty matrix is nothing to be lost.
+    // An empty matrix is not worth recovering.
     assert_eq!(offered_soon(&scratch), [shape("work", 1), shape("work", 2)]);
     drop(running);
     assert_eq!(offered(&scratch).len(), 4);
@@ -135,7 +135,7 @@ fn only_work_that_is_not_saved_is_offered() {
 }
 
 #[test]
-fn a_figure_that_leaves_nothing_is_work_all_the_same() {
+fn a_figure_with_an_empty_imprint_is_also_offered() {
     let scratch = Scratch::new();
     let sensor = Sensor::default();
     let dot = Figure::rectangle(0.5, 0.5).on(&sensor).expect("in range");
@@ -150,7 +150,7 @@ fn a_figure_that_leaves_nothing_is_work_all_the_same() {
 }
 
 #[test]
-fn of_much_work_the_newest_hundred_are_offered() {
+fn only_the_newest_hundred_works_are_offered() {
     let scratch = Scratch::new();
     left(&scratch, &shape("work", 1));
     let folder = scratch.path(".journal");
@@ -171,7 +171,7 @@ fn of_much_work_the_newest_hundred_are_offered() {
 }
 
 #[test]
-fn what_cannot_be_read_is_left_alone_and_what_is_half_written_goes() {
+fn unreadable_work_is_kept_and_half_written_files_are_removed() {
     let scratch = Scratch::new();
     left(&scratch, &shape("work", 1));
     let newer = shape("work", 2).write().replace("shape/1", "shape/2");
@@ -188,7 +188,7 @@ fn what_cannot_be_read_is_left_alone_and_what_is_half_written_goes() {
         left,
         ["1-0.json", "1-0.lock", "2-0.json", "2-0.lock", "notes.txt"]
     );
-    // And the journal of a program with the same number is not written over.
+    // The journal of another program with the same process number is not overwritten.
     let own = std::process::id();
     scratch.put(&format!(".journal/{own}-1.json"), &newer);
     let mut journals = [0, 1].map(|_| Journal::new(&scratch.library));

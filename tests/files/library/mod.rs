@@ -1,4 +1,4 @@
-//! The library: files in the way, names, stamps, the trash, the journal, the shapes that come with the program.
+//! The library: obstacles, names, stamps, the trash, the journal, the shipped shapes.
 
 mod in_the_way;
 
@@ -24,7 +24,7 @@ use taxel::sensor::Sensor;
 use taxel::storage::{Expected, Library, LibraryError, ShapeOrigin};
 use tempfile::TempDir;
 
-/// A library in a folder that goes with it.
+/// A library in a temporary folder.
 struct Scratch {
     _outside: TempDir,
     folder: PathBuf,
@@ -43,7 +43,7 @@ impl Scratch {
         }
     }
 
-    /// With shapes of these names, numbered from 1.
+    /// Makes a library with shapes of these names, numbered from 1.
     fn with(names: &[&str]) -> Self {
         let scratch = Self::new();
         for (index, name) in names.iter().enumerate() {
@@ -56,25 +56,25 @@ impl Scratch {
         self.folder.join(file)
     }
 
-    /// Saves under a new name.
+    /// Saves a shape under a new name.
     fn save(&self, name: &str, number: usize) -> u64 {
         let saved = self.library.save(&shape(name, number), Expected::Nothing);
         saved.expect("a new name")
     }
 
-    /// Puts a file there as another program would.
+    /// Writes a file like another program would.
     fn put(&self, file: &str, content: impl AsRef<[u8]>) {
         std::fs::write(self.path(file), content).expect("written");
     }
 
-    /// The number of a shape.
+    /// Returns the number of a shape.
     fn number(&self, name: &str) -> Option<usize> {
         let loaded = self.library.load(name).ok()?;
         let word = loaded.shape.imprint.words()[0];
         usize::try_from(word).ok()
     }
 
-    /// The names of one's own shapes as they are listed.
+    /// Returns the names of the user's own shapes, as listed.
     fn own(&self) -> Vec<String> {
         let entries = self.library.list().expect("listed").into_iter();
         let own = entries.filter(|entry| entry.origin == ShapeOrigin::Own);
@@ -82,7 +82,7 @@ impl Scratch {
     }
 }
 
-/// What lies in a folder, by name.
+/// Returns the names of the files in a folder, sorted.
 fn files(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
@@ -91,7 +91,7 @@ fn files(folder: &Path) -> Vec<String> {
     names
 }
 
-/// A shape that carries a number below 65,536.
+/// Returns a shape that encodes a number below 65,536.
 fn shape(name: &str, number: usize) -> StoredShape {
     let mut imprint = Imprint::empty(16, 16);
     imprint.set_word(0, u64::try_from(number).expect("small"));
@@ -99,13 +99,13 @@ fn shape(name: &str, number: usize) -> StoredShape {
     StoredShape::new(name, Sensor::default(), imprint, None).expect("16 x 16 both")
 }
 
-/// The message of a refusal, without the folder.
+/// Returns the message of a refusal, with FOLDER for the folder.
 fn refusal<T: std::fmt::Debug>(result: Result<T, LibraryError>, scratch: &Scratch) -> String {
     let message = result.expect_err("refused").to_string();
     message.replace(&scratch.folder.display().to_string(), "FOLDER")
 }
 
-/// Whether this user may do everything, so that permissions keep nothing away.
+/// Returns true if this user is root, whom permissions do not stop.
 #[cfg(unix)]
 fn is_root() -> bool {
     rustix::process::geteuid().is_root()

@@ -1,4 +1,4 @@
-//! Names: none leads out of the folder, upper and lower case are one, the file's name counts.
+//! Names never lead out of the folder, ignore case, and follow the file's name.
 
 use taxel::formats::{Name, NameError};
 use taxel::storage::{Expected, LibraryError};
@@ -27,7 +27,7 @@ fn no_name_leads_out_of_the_folder() {
         "o\u{301}ne",
         "*",
         "~",
-        // Letters and format characters that show nothing.
+        // Letters and format characters that are invisible.
         "\u{3164}",
         "a\u{115f}\u{1160}",
         "\u{ffa0}b",
@@ -52,7 +52,7 @@ fn no_name_leads_out_of_the_folder() {
 #[test]
 fn the_longest_names_are_stored_deleted_and_restored() {
     let scratch = Scratch::new();
-    // One, two, three and four bytes a character.
+    // One, two, three and four bytes per character.
     for (letter, longest) in [("a", 64), ("é", 64), ("字", 64), ("𝔸", 50)] {
         let name = letter.repeat(longest);
         scratch.save(&name, 5);
@@ -65,7 +65,7 @@ fn the_longest_names_are_stored_deleted_and_restored() {
 }
 
 #[test]
-fn upper_and_lower_case_are_one_name() {
+fn names_that_differ_only_in_case_are_the_same() {
     let scratch = Scratch::with(&["Washing Line", "ÉTÉ"]);
     for name in ["washing line", "WASHING LINE", "Washing Line"] {
         assert_eq!(scratch.number(name), Some(1), "{name}");
@@ -90,17 +90,17 @@ fn upper_and_lower_case_are_one_name() {
     assert_eq!(deleted, "Washing Line");
     let restored = scratch.library.restore("WASHING LINE").expect("restored");
     assert_eq!(restored, "Washing Line");
-    // A letter with two lower ones is one letter all the same.
+    // A letter with two lower-case forms is one letter, too.
     scratch.save("ΟΔΟΣ", 5);
     for name in ["οδος", "οδοσ", "Οδος"] {
         assert_eq!(scratch.number(name), Some(5), "{name}");
     }
-    // So is one with two upper ones.
+    // So is a letter with two upper-case forms.
     scratch.save("Maß", 6);
     for name in ["MAẞ", "mass", "maß"] {
         assert_eq!(scratch.number(name), Some(6), "{name}");
     }
-    // So it is for the shapes that come with the program.
+    // The same applies to shipped shapes.
     assert_eq!(
         refusal(
             scratch.library.save(&shape("WASHER", 1), Expected::Nothing),
@@ -112,13 +112,13 @@ fn upper_and_lower_case_are_one_name() {
 }
 
 #[test]
-fn a_file_that_was_renamed_goes_by_its_new_name() {
+fn a_renamed_file_has_its_new_name() {
     let scratch = Scratch::new();
     scratch.put("new.json", shape("old", 8).write());
     let loaded = scratch.library.load("new").expect("loaded");
     assert_eq!(loaded.shape, shape("new", 8));
     assert_eq!(scratch.number("old"), None);
-    // A shape of one's own that has the name of one that comes with the program hides it.
+    // A user's shape with the name of a shipped shape hides it.
     scratch.put("Washer.json", shape("Washer", 6).write());
     assert_eq!(scratch.number("washer"), Some(6));
     let listed = scratch.library.list().expect("listed").into_iter();

@@ -1,4 +1,4 @@
-//! What is saved is what is loaded, for any shape.
+//! Any shape is loaded as it was saved.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -47,7 +47,7 @@ fn sources(sensor: Sensor) -> impl Strategy<Value = Option<Source>> {
     let picture = (imprints(), -reach..=reach, 1e-9..=64.0);
     let picture = picture.prop_map(move |(imprint, y0, zoom)| {
         Source::Picture(
-            // At home only where the picture is no larger than the sensor.
+            // The picture is only in its own place if it is not larger than the sensor.
             Picture::at_home(imprint)
                 .with(Parameter::X0, 0.0, &sensor)
                 .and_then(|picture| picture.with(Parameter::Y0, y0, &sensor))
@@ -78,13 +78,13 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn what_is_saved_is_loaded(first in shapes(), second in shapes()) {
+    fn a_saved_shape_is_loaded_unchanged(first in shapes(), second in shapes()) {
         let scratch = Scratch::new();
         let stamp = scratch.library.save(&first, Expected::Nothing).expect("saved");
         let loaded = scratch.library.load(first.name.as_str()).expect("loaded");
         prop_assert_eq!(&loaded.shape, &first);
         prop_assert_eq!((loaded.stamp, loaded.origin), (stamp, ShapeOrigin::Own));
-        // Another in its place, then through the trash.
+        // Another shape replaces it, and then goes through the trash.
         let second = second.renamed(first.name.clone());
         scratch.library.save(&second, Expected::Stamp(stamp)).expect("replaced");
         scratch.library.delete(second.name.as_str()).expect("deleted");

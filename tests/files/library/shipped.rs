@@ -1,4 +1,4 @@
-//! The shapes that come with the program: each is what its command makes, and moves as a picture does.
+//! The shipped shapes: each equals the output of its command, and moves like a picture.
 
 use std::path::Path;
 
@@ -36,7 +36,7 @@ fn every_file_is_compiled_in_and_listed() {
 }
 
 #[test]
-fn there_are_shapes_of_all_sorts() {
+fn there_are_shipped_shapes_of_all_kinds() {
     let all = all();
     assert!(all.len() >= 16, "{}", all.len());
     let with = |sort: fn(usize, usize) -> bool| {
@@ -65,7 +65,7 @@ fn there_are_shapes_of_all_sorts() {
 
 #[cfg(unix)]
 #[test]
-fn each_is_what_its_command_makes() {
+fn each_shipped_shape_equals_the_output_of_its_command() {
     let scratch = Scratch::new();
     let made = std::process::Command::new("bash")
         .arg(format!("{FOLDER}/make"))
@@ -85,7 +85,7 @@ fn each_is_what_its_command_makes() {
     assert_eq!(scratch.own().len(), shipped::names().count());
 }
 
-/// An imprint moved by whole cells; what leaves the sensor must not.
+/// Returns an imprint moved by whole cells; nothing may leave the sensor.
 fn shifted(imprint: &Imprint, right: i16, down: i16) -> Imprint {
     let mut shifted = Imprint::empty(imprint.columns(), imprint.rows());
     for (column, row) in imprint.active() {
@@ -96,7 +96,7 @@ fn shifted(imprint: &Imprint, right: i16, down: i16) -> Imprint {
 }
 
 #[test]
-fn a_picture_without_angle_and_zoom_is_a_plain_shift_everywhere() {
+fn without_angle_and_zoom_a_picture_is_only_shifted() {
     let mut positions = 0;
     for LoadedShape { shape, .. } in all() {
         let (imprint, sensor) = (shape.imprint, shape.sensor);

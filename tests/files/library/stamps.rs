@@ -1,4 +1,4 @@
-//! Two programs on one library: neither overwrites the other's work unseen.
+//! Two programs on one library: neither overwrites the other's work unnoticed.
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -10,7 +10,7 @@ use super::refusal;
 use super::shape;
 
 #[test]
-fn what_was_changed_meanwhile_is_not_overwritten() {
+fn a_shape_that_was_changed_meanwhile_is_not_overwritten() {
     let scratch = Scratch::with(&["one"]);
     let other = Library::open(scratch.folder.clone());
     let mine = scratch.library.load("one").expect("loaded").stamp;
@@ -26,13 +26,13 @@ fn what_was_changed_meanwhile_is_not_overwritten() {
         "\"one\" was changed by another program since it was loaded"
     );
     assert_eq!(scratch.number("one"), Some(2));
-    // Asked, the user wants it all the same.
+    // When asked, the user wants to overwrite it.
     let saved = scratch
         .library
         .save(&shape("one", 3), Expected::Stamp(theirs));
     assert!(saved.is_ok());
     assert_eq!(scratch.number("one"), Some(3));
-    // What was deleted meanwhile is stored again: nothing is overwritten by that.
+    // A shape that was deleted meanwhile is stored again, since this overwrites nothing.
     other.delete("one").expect("deleted");
     let saved = scratch
         .library
@@ -44,10 +44,10 @@ fn what_was_changed_meanwhile_is_not_overwritten() {
 
 const VARIABLE: &str = "TAXEL_LIBRARY_COUNTER";
 
-/// How often each program counts on.
+/// The number of increments by each program.
 const COUNTS: usize = 40;
 
-/// The other program, which this test is when the variable is set: counts on in "counter", and begins a new shape.
+/// The other program, which is this test with a variable set: it increments "counter", and also saves a new shape.
 #[test]
 fn counter() {
     let Ok(asked) = std::env::var(VARIABLE) else {

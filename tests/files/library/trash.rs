@@ -1,4 +1,4 @@
-//! Deleting and bringing back.
+//! Deleting and restoring.
 
 use taxel::storage::{Library, LibraryError, TRASH_KEPT};
 
@@ -8,7 +8,7 @@ use super::refusal;
 use super::shape;
 
 #[test]
-fn what_is_deleted_comes_back_as_it_was() {
+fn a_deleted_shape_is_restored_unchanged() {
     let scratch = Scratch::with(&["one", "two"]);
     let before = std::fs::read(scratch.path("one.json")).expect("there");
     assert_eq!(scratch.library.delete("one").expect("deleted"), "one");
@@ -27,7 +27,7 @@ fn what_is_deleted_comes_back_as_it_was() {
 }
 
 #[test]
-fn the_last_deleted_comes_back_first_and_never_over_another() {
+fn the_last_deleted_shape_is_restored_first_and_never_over_another() {
     let scratch = Scratch::new();
     for number in 1..=3 {
         scratch.save("one", number);
@@ -54,20 +54,20 @@ fn a_name_that_was_deleted_more_than_once_is_listed_once() {
     }
     scratch.save("ONE", 2);
     scratch.library.delete("one").expect("deleted");
-    // The newest first.
+    // The newest comes first.
     let listed = scratch.library.in_trash().expect("listed");
     assert_eq!(listed, ["ONE", "two"]);
 }
 
 #[test]
-fn the_last_deleted_comes_back_without_its_name() {
+fn the_last_deleted_shape_is_restored_without_naming_it() {
     let scratch = Scratch::with(&["one", "two"]);
     let empty = "the trash is empty";
     assert_eq!(refusal(scratch.library.restore_last(), &scratch), empty);
     for name in ["two", "one"] {
         scratch.library.delete(name).expect("deleted");
     }
-    // Another program knows it as well.
+    // Another program knows it, too.
     let other = Library::open(scratch.folder.clone());
     assert_eq!(other.restore_last().expect("restored"), "one");
     scratch.save("TWO", 3);
@@ -78,7 +78,7 @@ fn the_last_deleted_comes_back_without_its_name() {
 }
 
 #[test]
-fn the_last_fifty_are_kept() {
+fn the_last_fifty_deleted_shapes_are_kept() {
     let scratch = Scratch::new();
     for number in 0..TRASH_KEPT + 5 {
         let name = format!("shape {number}");
@@ -94,7 +94,7 @@ fn the_last_fifty_are_kept() {
     assert!(scratch.library.restore("shape 4").is_err());
     assert!(scratch.library.restore("shape 5").is_ok());
     assert!(scratch.library.restore("shape 54").is_ok());
-    // Numbers go on where they were, so that nothing in the trash is overwritten.
+    // Numbers continue, so that nothing in the trash is overwritten.
     scratch.library.delete("shape 5").expect("deleted");
     let trash = files(&scratch.path(".trash"));
     assert_eq!(
@@ -104,7 +104,7 @@ fn the_last_fifty_are_kept() {
 }
 
 #[test]
-fn shapes_that_come_with_the_program_are_not_deleted() {
+fn shipped_shapes_cannot_be_deleted() {
     let scratch = Scratch::new();
     let message = "\"Washer\" is shipped with taxel and cannot be deleted";
     assert_eq!(refusal(scratch.library.delete("Washer"), &scratch), message);
@@ -121,7 +121,7 @@ fn shapes_that_come_with_the_program_are_not_deleted() {
 }
 
 #[test]
-fn a_trash_with_anything_in_it_is_used_all_the_same() {
+fn a_trash_with_foreign_files_is_still_used() {
     let scratch = Scratch::with(&["one"]);
     let trash = scratch.path(".trash");
     std::fs::create_dir(&trash).expect("made");
@@ -147,7 +147,7 @@ fn a_trash_with_anything_in_it_is_used_all_the_same() {
 }
 
 #[test]
-fn a_trash_whose_last_number_is_taken_is_numbered_anew() {
+fn a_trash_whose_last_number_is_taken_is_renumbered() {
     let scratch = Scratch::with(&["old", "new"]);
     let trash = scratch.path(".trash");
     std::fs::create_dir(&trash).expect("made");
@@ -179,9 +179,9 @@ fn a_trash_whose_last_number_is_taken_is_numbered_anew() {
     );
 }
 
-/// Under a name that is in the way of nothing, here and in the trash.
+/// It gets a free name, both in the library and in the trash.
 #[test]
-fn what_was_never_stored_is_thrown_away_and_comes_back() {
+fn a_shape_that_was_never_stored_can_be_thrown_away_and_restored() {
     let scratch = Scratch::with(&["lost 2"]);
     for name in ["lost 1", "lost 3"] {
         let thrown = scratch.library.throw_away(&shape("lost", 7));

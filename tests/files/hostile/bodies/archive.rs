@@ -1,4 +1,4 @@
-//! Archives of an atlas, which `taxel merge` reads: any bytes, and sound archives with arrays that are not.
+//! Archives of an atlas, which `taxel merge` reads: any bytes, and valid archives with changed arrays.
 
 use std::cell::LazyCell;
 use std::io::{Cursor, Read, Write};
@@ -18,7 +18,7 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use super::{is_short, refused};
 
-/// Any bytes.
+/// Reads any bytes.
 pub(crate) fn archive(bytes: &[u8]) -> bool {
     match read(Cursor::new(bytes)) {
         Ok(result) => {
@@ -29,7 +29,7 @@ pub(crate) fn archive(bytes: &[u8]) -> bool {
     }
 }
 
-/// A result that was read: it can be written, in every form, and is the same when it is read again.
+/// Checks a result that was read: it can be written in every format, and it is the same when it is read again.
 fn is_sound(result: SweepResult) {
     let written = bytes_of(&result);
     let again = read(Cursor::new(&written)).expect("what was read can be read again");
@@ -76,10 +76,11 @@ fn bytes_of(result: &SweepResult) -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// Some bytes of an array in place of others: a byte for the array, two for the place, one for how many go, one for
-/// how many come, and these. The first byte of all chooses the archive that is changed.
+/// Replaces some bytes in the arrays of a valid archive. The first byte chooses the archive. Each change is a byte for
+/// the array, two for the place, one for the number of bytes to remove, one for the number of bytes to insert, and
+/// these bytes.
 ///
-/// The archive's own sums are those of what is in it, so that readers get to see the arrays.
+/// The checksums of the archive are those of its contents, so that the arrays are read.
 pub(crate) fn arrays(bytes: &[u8]) -> bool {
     thread_local! {
         static SOUND: LazyCell<Vec<Arrays>> = const { LazyCell::new(sound) };
@@ -88,7 +89,7 @@ pub(crate) fn arrays(bytes: &[u8]) -> bool {
     changed.is_some_and(|changed| archive(&changed))
 }
 
-/// One of some archives with other bytes in its arrays, see [`arrays`]; None without a first byte.
+/// Returns one of the archives with other bytes in its arrays, as described at [`arrays`]; None without a first byte.
 pub(super) fn changed(sound: &[Arrays], bytes: &[u8]) -> Option<Vec<u8>> {
     let (&choice, mut rest) = bytes.split_first()?;
     let mut arrays = sound[usize::from(choice) % sound.len()].clone();
@@ -104,7 +105,7 @@ pub(super) fn changed(sound: &[Arrays], bytes: &[u8]) -> Option<Vec<u8>> {
     Some(packed(&arrays))
 }
 
-/// One of the sound archives, its sums about the turns in place of which `change` puts others.
+/// Returns one of the valid archives, after `change` has changed the words of its last array, the sums.
 pub(crate) fn with_spread(choice: usize, change: impl FnOnce(&mut Vec<u64>)) -> Vec<u8> {
     let mut arrays = sound().swap_remove(choice);
     let (_, content) = arrays.last_mut().expect("the sums are the last array");
@@ -116,10 +117,10 @@ pub(crate) fn with_spread(choice: usize, change: impl FnOnce(&mut Vec<u64>)) -> 
     packed(&arrays)
 }
 
-/// The arrays of an archive: name and content.
+/// The arrays of an archive, with their names.
 pub(super) type Arrays = Vec<(String, Vec<u8>)>;
 
-/// The arrays that are read; the others are for people.
+/// The arrays that are read; the others are meant for people.
 const READ: [&str; 5] = [
     "header.npy",
     "rows.npy",
@@ -128,7 +129,7 @@ const READ: [&str; 5] = [
     "spread.npy",
 ];
 
-/// A figure's whole grid, a part of one with turns that are not complete, and a picture's grid.
+/// Archives of a figure's whole grid, of a shard of it with incomplete turns, and of a shard of a picture's grid.
 fn sound() -> Vec<Arrays> {
     let sensor = Sensor::new(5, 4).expect("a sensor in range");
     let range = |text: &str| text.parse().expect("a range");

@@ -1,4 +1,4 @@
-//! Texts and arrays: shapes, jobs, imprints in every form, ranges, headers of numpy, settings.
+//! Texts and arrays: shapes, jobs, imprints in every format, ranges, numpy headers, settings.
 
 use taxel::cli::settings::file::Config;
 use taxel::formats::npy::{Dtype, content, header, words};
@@ -11,7 +11,7 @@ use taxel::touch::Plane;
 
 use super::{is_short, refused};
 
-/// A file of the library.
+/// Reads a file of the library.
 pub(crate) fn shape(bytes: &[u8]) -> bool {
     match StoredShape::read(bytes) {
         Ok(shape) => {
@@ -23,7 +23,7 @@ pub(crate) fn shape(bytes: &[u8]) -> bool {
     }
 }
 
-/// A line of `taxel batch`.
+/// Reads a line of `taxel batch`.
 pub(crate) fn job(bytes: &[u8]) -> bool {
     let lookup = |name: &str| match name {
         "washer" => Ok(Imprint::empty(16, 16)),
@@ -42,7 +42,7 @@ pub(crate) fn job(bytes: &[u8]) -> bool {
     }
 }
 
-/// An imprint as text.
+/// Reads an imprint as text.
 pub(crate) fn imprint(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
         return false;
@@ -56,7 +56,7 @@ pub(crate) fn imprint(bytes: &[u8]) -> bool {
     }
 }
 
-/// An imprint as other programs write it: text, PBM, CSV, NPY.
+/// Reads an imprint in other programs' formats: text, PBM, CSV, NPY.
 pub(crate) fn exchange(bytes: &[u8]) -> bool {
     match imprint_file::read(bytes) {
         Ok(imprint) => {
@@ -69,7 +69,7 @@ pub(crate) fn exchange(bytes: &[u8]) -> bool {
     }
 }
 
-/// The file of settings.
+/// Reads a settings file.
 pub(crate) fn config(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
         return false;
@@ -87,7 +87,7 @@ pub(crate) fn config(bytes: &[u8]) -> bool {
     }
 }
 
-/// A range `start:end:step`, and a shard `K/N`.
+/// Reads a range `start:end:step`, and a shard `K/N`.
 pub(crate) fn range(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
         return false;
@@ -98,7 +98,7 @@ pub(crate) fn range(bytes: &[u8]) -> bool {
             assert_eq!(range.to_string().parse().as_ref(), Ok(range), "{text:?}");
             assert!((1..=MAX_VALUES).contains(&range.count()));
             assert!(range.step() > 0.0 && range.last().is_finite());
-            // Every value is another one, and none is beyond the last.
+            // All values differ, and none is beyond the last.
             let middle = range.count() / 2;
             let some = [0, 1, middle, middle + 1, range.count() - 1];
             for index in some {
@@ -120,7 +120,7 @@ pub(crate) fn range(bytes: &[u8]) -> bool {
     range.is_ok() || shard.is_ok()
 }
 
-/// A file of numpy.
+/// Reads a numpy file.
 pub(crate) fn npy(bytes: &[u8]) -> bool {
     let mut read = false;
     for kind in [Dtype::U8, Dtype::U16, Dtype::U32, Dtype::U64, Dtype::F64] {

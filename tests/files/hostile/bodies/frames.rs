@@ -9,7 +9,7 @@ use taxel::frame::{Processing, Rule};
 
 use super::{is_short, refused};
 
-/// A recording of any form, without and with a shape that may fit.
+/// Reads a recording in any format, without and with rows and columns that may fit.
 pub(crate) fn recording(bytes: &[u8]) -> bool {
     let with_shape = ReadOptions::default().with_shape(4, 5);
     let mut is_read = false;
@@ -40,7 +40,7 @@ pub(crate) fn recording(bytes: &[u8]) -> bool {
     is_read
 }
 
-/// What lies beside a recording. What is read is written and read as the same.
+/// Reads the description beside a recording. It must be the same when it is written and read again.
 pub(crate) fn description(bytes: &[u8]) -> bool {
     match RecordingMetadata::read(bytes) {
         Some(Ok(metadata)) => {
@@ -55,7 +55,8 @@ pub(crate) fn description(bytes: &[u8]) -> bool {
     }
 }
 
-/// A stream of any form: the first byte says what is known of it. It is decoded alike in pieces and as a whole.
+/// Reads a stream in any format; the first byte says what is known about it. It must be decoded alike in pieces and as
+/// a whole.
 pub(crate) fn stream(bytes: &[u8]) -> bool {
     let Some((&first, bytes)) = bytes.split_first() else {
         return false;

@@ -5,13 +5,13 @@ use taxel::tui::terminal::input::{Input, InputReader};
 
 use super::refused;
 
-/// Keys in notation.
+/// Reads keys in notation.
 pub(crate) fn keys(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
         return false;
     };
     match parse(text) {
-        // The way back takes longer, and is no other where there are more.
+        // Writing more keys and reading them again would take too long, and test nothing new.
         Ok(keys) if keys.len() > 10_000 => true,
         Ok(keys) => {
             let written: String = keys.iter().map(ToString::to_string).collect();
@@ -22,7 +22,7 @@ pub(crate) fn keys(bytes: &[u8]) -> bool {
     }
 }
 
-/// What a terminal sends: the same keys in one piece and byte by byte. Any bytes are some input.
+/// Reads input from a terminal: it must be the same in one piece and byte by byte. Any bytes are valid input.
 pub(crate) fn terminal(bytes: &[u8]) -> bool {
     let mut reader = InputReader::default();
     let mut whole = reader.read(bytes);
@@ -45,7 +45,7 @@ pub(crate) fn terminal(bytes: &[u8]) -> bool {
 
     for input in whole {
         if let Input::Paste(text) = input {
-            // Bytes that are not text become a character of three.
+            // Each byte that is not text becomes a character of three bytes.
             assert!(text.len() <= 3 * bytes.len() && !text.contains('\r'));
         }
     }

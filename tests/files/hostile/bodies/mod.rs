@@ -1,6 +1,6 @@
-//! What is done with hostile bytes: by property tests here, by the fuzz targets in `fuzz/`. Each must end without a
-//! panic, whatever the bytes are; what is read must come back the same when it is written and read again; and a
-//! message stays short however long the input is that it quotes. A body returns whether the bytes could be read.
+//! Functions that hostile bytes are given to: by property tests here, by the fuzz targets in `fuzz/`. None may panic,
+//! whatever the bytes are. A value that is read must be the same when it is written and read again, and a message must
+//! be short however long the quoted input is. A body returns true if the bytes could be read.
 
 mod archive;
 
@@ -17,11 +17,11 @@ mod screen;
 pub(crate) use archive::with_spread;
 pub(crate) use screen::session_of;
 
-/// A body: what it is called, here and as a fuzz target; the folder of usual inputs in `tests/files/hostile/seeds`; and what it
-/// does with bytes.
+/// A body: its name, here and as a fuzz target; the folder of its usual inputs in `tests/files/hostile/seeds`; and the
+/// function that is given the bytes.
 pub(crate) type Body = (&'static str, &'static str, fn(&[u8]) -> bool);
 
-/// All of them.
+/// All bodies.
 pub(crate) const BODIES: [Body; 21] = [
     ("shape", "shape", formats::shape),
     ("job", "job", formats::job),
@@ -46,16 +46,16 @@ pub(crate) const BODIES: [Body; 21] = [
     ("description", "description", frames::description),
 ];
 
-/// The body of that name.
+/// Returns the body with a name.
 pub(crate) fn body(name: &str) -> fn(&[u8]) -> bool {
     let found = BODIES.into_iter().find(|(own, ..)| *own == name);
     found.expect("there is a body of that name").2
 }
 
-/// No message is longer, however long the input that it quotes.
+/// The length limit of messages, however long the quoted input is.
 const LONGEST_MESSAGE: usize = 1000;
 
-/// Holds that the message of a refusal is short; false, since nothing was read.
+/// Checks that the message of a refusal is short; returns false, since nothing was read.
 fn refused(message: &str) -> bool {
     is_short(message);
     false

@@ -1,4 +1,4 @@
-//! Models, which `taxel recognise` reads, and the shapes of a set: any bytes, and sound models with arrays that are not.
+//! Models, which `taxel recognise` reads, and the shapes of a set: any bytes, and valid models with changed arrays.
 
 use std::cell::LazyCell;
 use std::io::Cursor;
@@ -15,7 +15,7 @@ use taxel::sweep::Shard;
 use super::archive::{Arrays, changed, unpacked};
 use super::{is_short, refused};
 
-/// Any bytes.
+/// Reads any bytes.
 pub(crate) fn model(bytes: &[u8]) -> bool {
     match read_model(Cursor::new(bytes)) {
         Ok(model) => {
@@ -26,7 +26,7 @@ pub(crate) fn model(bytes: &[u8]) -> bool {
     }
 }
 
-/// Some bytes of an array in place of others, as in [`arrays`](super::archive::arrays).
+/// Replaces some bytes in the arrays of a valid model, as in [`arrays`](super::archive::arrays).
 pub(crate) fn model_arrays(bytes: &[u8]) -> bool {
     thread_local! {
         static SOUND: LazyCell<Vec<Arrays>> = const { LazyCell::new(sound) };
@@ -35,7 +35,7 @@ pub(crate) fn model_arrays(bytes: &[u8]) -> bool {
     changed.is_some_and(|changed| model(&changed))
 }
 
-/// A shape of a set, as a line of JSON and in words.
+/// Reads a shape of a set, as a line of JSON and in words.
 pub(crate) fn named(bytes: &[u8]) -> bool {
     let lookup = |name: &str| match name {
         "corner" => Ok("##\n#.".parse().expect("rows")),
@@ -64,7 +64,7 @@ pub(crate) fn named(bytes: &[u8]) -> bool {
     is_read
 }
 
-/// The centre of the largest sensor.
+/// Returns ranges with a single pose: the centre of the largest sensor.
 fn one_pose() -> Ranges {
     let at = |text: &str| text.parse().expect("a range");
     Ranges::default()
@@ -73,7 +73,7 @@ fn one_pose() -> Ranges {
         .with(Axis::Angle, at("0"))
 }
 
-/// A model that was read: its counts sum up, it answers, and it is the same when it is written and read again.
+/// Checks a model that was read: its counts add up, it answers, and it is the same when it is written and read again.
 fn is_sound(model: &Model) {
     let written = bytes_of(model);
     let again = read_model(Cursor::new(&written)).expect("what was read can be read again");
@@ -103,7 +103,7 @@ fn bytes_of(model: &Model) -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// All arrays of a model; the header comes first.
+/// The arrays of a model; the header comes first.
 const READ: [&str; 7] = [
     "header.npy",
     "height.npy",
@@ -114,14 +114,14 @@ const READ: [&str; 7] = [
     "count.npy",
 ];
 
-/// A whole model and a shard.
+/// A whole model, and a shard of one.
 fn sound() -> Vec<Arrays> {
     [Shard::WHOLE, Shard::new(1, 2).expect("a shard")]
         .map(|shard| unpacked(&bytes_of(&small(shard)), &READ))
         .to_vec()
 }
 
-/// A bar that weighs twice, and a corner.
+/// Returns a model of a bar with weight 2, and a corner.
 fn small(shard: Shard) -> Model {
     let sensor = Sensor::new(8, 8).expect("in range");
     let corner: Imprint = "##\n#.".parse().expect("rows");

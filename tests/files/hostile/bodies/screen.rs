@@ -1,8 +1,8 @@
-//! The program on a screen in memory: its command line, its scripts, and all that a user can do.
+//! The program on a screen in memory: its command line, its scripts, and everything that a user can do.
 //!
-//! The world is a library in a scratch folder, which is emptied before each input. No journal is kept, whose thread
-//! would make a run depend on the clock. Sweeps and trainings are stopped early, as by a user who does not wait for them:
-//! what they compute is tested elsewhere.
+//! Its world is a library in a scratch folder, which is emptied before each input. There is no journal, because its
+//! thread would make a run depend on the clock. Sweeps and trainings are stopped early, as if the user did not wait
+//! for them: their results are tested elsewhere.
 
 use std::cell::LazyCell;
 use std::io;
@@ -28,7 +28,7 @@ use tempfile::TempDir;
 
 use super::refused;
 
-/// This thread's scratch folder. The files are in it.
+/// Returns this thread's scratch folder, which contains [`FILES`].
 fn folder() -> PathBuf {
     thread_local! {
         static SCRATCH: LazyCell<TempDir> = LazyCell::new(|| {
@@ -43,10 +43,10 @@ fn folder() -> PathBuf {
     SCRATCH.with(|scratch| scratch.path().to_owned())
 }
 
-/// The folder of the models that can be asked, beside the library.
+/// The folder of the models that can be used, beside the library.
 const MODELS: &str = "models";
 
-/// A recording that can be watched and a small model.
+/// A recording that can be watched, and a small model.
 const FILES: [(&str, &[u8]); 2] = [
     (
         "touch.jsonl",
@@ -55,7 +55,8 @@ const FILES: [(&str, &[u8]); 2] = [
     ("models/bar.npz", include_bytes!("../seeds/model/bar.npz")),
 ];
 
-/// An empty library in the scratch folder, below which files are written. What the last input has left there is removed.
+/// Makes an empty library in the scratch folder; other files are written below it. Files of the last input are
+/// removed.
 fn world() -> World {
     let folder = folder();
     let models = folder.join(MODELS);
@@ -79,21 +80,21 @@ fn remove(path: &Path) -> io::Result<()> {
     }
 }
 
-/// The most poses of a sweep or a training here.
+/// The highest number of poses of a sweep or a training here.
 const MOST_POSES: u64 = 20;
 
 fn options() -> Options {
     Options::plain(false)
 }
 
-/// The program on an empty screen of usual size, after some keys.
+/// Starts the program with an empty screen of the usual size, and presses some keys.
 pub(crate) fn session_of(keys: &str) -> Session {
     let mut session = Session::new(&options(), world(), 80, 24);
     session.keys(keys).expect("the keys are right");
     session
 }
 
-/// What must hold of every state.
+/// Checks the properties that hold in every state.
 fn is_sound(app: &App) {
     let shown = app.shown();
     let (column, row) = app.cursor();
@@ -101,11 +102,11 @@ fn is_sound(app: &App) {
     let seen = app.reading();
     assert_eq!(seen.imprint.columns(), shown.sensor.columns());
     assert_eq!(seen.imprint.rows(), shown.sensor.rows());
-    // A form may show nothing for a while; the region that was chosen is there again without it.
+    // A form may show nothing for a while; when it is closed, the chosen region is there again.
     assert!(seen.regions.is_empty() || seen.region(app.chosen()).is_some());
 }
 
-/// What must hold of every screen: as many rows as it has, each of what can be seen.
+/// Checks the properties of every screen: it has the right number of rows, all of visible characters.
 fn shows_text(session: &Session) {
     let screen = session.screen();
     assert_eq!(screen.lines().count(), usize::from(session.size().1));
@@ -113,7 +114,7 @@ fn shows_text(session: &Session) {
     assert_eq!(control, None, "a control character on the screen");
 }
 
-/// A line of the command line. The first byte chooses what is on the matrix.
+/// Reads a line of the command line. The first byte chooses the contents of the matrix.
 pub(crate) fn command(bytes: &[u8]) -> bool {
     thread_local! {
         static APPS: [App; 3] = ["", "f<Enter>g", ":picture washer<Enter><Enter>"].map(|keys| {
@@ -123,7 +124,7 @@ pub(crate) fn command(bytes: &[u8]) -> bool {
     let Some((&first, line)) = bytes.split_first() else {
         return false;
     };
-    // The field takes no more.
+    // The field accepts no more characters.
     let Some(line) = str::from_utf8(line)
         .ok()
         .filter(|line| line.chars().count() <= 200)
@@ -137,7 +138,7 @@ pub(crate) fn command(bytes: &[u8]) -> bool {
         match read_command(line, app) {
             Ok(message) => {
                 let mut app = app.clone();
-                // What is wished of the world is not done here.
+                // Requests to the outside world are not performed here.
                 let _ = update(&mut app, message).or_else(|| next_work(&mut app));
                 is_sound(&app);
                 true
@@ -147,7 +148,7 @@ pub(crate) fn command(bytes: &[u8]) -> bool {
     })
 }
 
-/// A script that is read only.
+/// Reads a script without running it.
 pub(crate) fn script(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
         return false;
@@ -155,14 +156,14 @@ pub(crate) fn script(bytes: &[u8]) -> bool {
     read(text).map_or_else(|error| refused(&error.to_string()), |_| true)
 }
 
-/// The most keys and drawn cells of a script here, a key counted as many cells, so that no input takes long. A script
-/// that is longer is none that the program must refuse: it takes as long as it says.
+/// The limit of work in a script here, in drawn cells, with a key counted as several cells, so that no input takes
+/// long. The program itself need not refuse a longer script.
 const MOST_WORK: u64 = 200_000;
 
-/// About as many cells are drawn in the time that a key takes.
+/// The number of cells that are drawn in about the time that a key takes.
 const CELLS_OF_A_KEY: u64 = 100;
 
-/// A script that is run, to its end if it is read.
+/// Runs a script if it is valid; returns true if it runs to its end.
 pub(crate) fn play(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
         return false;
@@ -171,7 +172,7 @@ pub(crate) fn play(bytes: &[u8]) -> bool {
         Ok(commands) => commands,
         Err(error) => return refused(&error.to_string()),
     };
-    // A library that is named is one of the world outside.
+    // A named library would be outside of this test's folder.
     let outside = |(_, command): &(usize, ScriptCommand)| {
         matches!(command, ScriptCommand::Set(ScriptSetting::Library(_)))
     };
@@ -207,7 +208,7 @@ pub(crate) fn play(bytes: &[u8]) -> bool {
     ended
 }
 
-/// About how much a script does, in cells that are drawn.
+/// Estimates the work of a script in drawn cells.
 fn work(commands: &[(usize, ScriptCommand)]) -> u64 {
     let mut cells = 80 * 24;
     let mut all = 0;
@@ -234,9 +235,9 @@ fn work(commands: &[(usize, ScriptCommand)]) -> u64 {
     all
 }
 
-/// How the program may have come so far, after a small model was asked once: from nothing, with a ring drawn by hand, or
-/// with something that was swept in a few poses, whose ranges are remembered; on the matrix or on one of the pages. So a
-/// short input does something anywhere.
+/// Keys that lead to different starting points, after a small model was used once: nothing, a ring drawn by hand, or a
+/// finished sweep of a few poses, whose ranges are remembered; on the matrix or on one of the pages. So even a short
+/// input reaches every part.
 const STARTS: [&str; 12] = [
     "",
     "f<Enter>:explore --x0 5:5.5:0.5 --y0 5 --angle 0:90:45<Enter><Esc>",
@@ -252,7 +253,7 @@ const STARTS: [&str; 12] = [
     "r:separate --scale 1:2:1 --positions 1 --angle 0<Enter>",
 ];
 
-/// A program that has come so far. It holds what it has found, so that no input has to find it again.
+/// Returns the program at a starting point. It keeps its results, so that no input has to compute them again.
 fn start(number: u8) -> App {
     thread_local! {
         static APPS: [App; STARTS.len()] = STARTS.map(|keys| {
@@ -262,8 +263,8 @@ fn start(number: u8) -> App {
     APPS.with(|apps| apps[usize::from(number) % apps.len()].clone())
 }
 
-/// Keys, pastes, the mouse, new sizes and frames of a source, as bytes say; the state must hold throughout, and the screen
-/// whenever it is drawn. Any bytes are some input.
+/// Sends keys, pastes, mouse events, resizes and frames of a source, as the bytes say. The state is checked
+/// throughout, and the screen when it is drawn. Any bytes are valid input.
 pub(crate) fn session(bytes: &[u8]) -> bool {
     let mut bytes = Bytes(bytes);
     let app = start(bytes.next().unwrap_or_default());
@@ -280,13 +281,13 @@ pub(crate) fn session(bytes: &[u8]) -> bool {
         if session.app().ended() {
             break;
         }
-        // As in a terminal: what comes at once is drawn at once.
+        // As in a terminal, input that arrives together is drawn together.
         if number % 32 == 31 || matches!(byte, 0xf0..0xf2) {
             shows_text(&session);
         }
     }
     shows_text(&session);
-    // Whatever is open, there is a way out of it.
+    // There is a way out of everything that is open.
     for _ in 0..4 {
         session.press(Key::Esc);
         is_sound(session.app());
@@ -295,7 +296,7 @@ pub(crate) fn session(bytes: &[u8]) -> bool {
     true
 }
 
-/// Does what a byte says, perhaps with more of them.
+/// Performs the action of a byte, which may use more bytes.
 fn act(session: &mut Session, byte: u8, bytes: &mut Bytes<'_>) {
     match byte {
         b' '..=b'~' => session.press(Key::Char(byte.into())),
@@ -351,7 +352,7 @@ const NAMED: [Key; 16] = [
     Key::Delete,
 ];
 
-/// Letters, a wide one, one without a width, a control character, one from the right to the left.
+/// Letters, a wide one, one without width, a control character, and a right-to-left letter.
 const FOREIGN: [char; 7] = ['é', '漢', '\u{301}', '\u{200d}', '\u{85}', 'ש', '👩'];
 
 const MOUSE: [MouseKind; 5] = [
@@ -362,7 +363,7 @@ const MOUSE: [MouseKind; 5] = [
     MouseKind::ScrollDown,
 ];
 
-/// Sizes of terminals: usual ones, narrow and low ones, and those at which what is shown changes.
+/// Sizes of terminals: usual, narrow and low ones, and those at which the layout changes.
 const SIZES: [(u16, u16); 12] = [
     (80, 24),
     (100, 30),
@@ -378,7 +379,7 @@ const SIZES: [(u16, u16); 12] = [
     (24, 10),
 ];
 
-/// Bytes that are used up one by one; after the last one there are zeros.
+/// Bytes that are consumed one by one; after the last one, there are zeros.
 struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
@@ -392,7 +393,8 @@ impl<'a> Bytes<'a> {
         self.next().unwrap_or(0).into()
     }
 
-    /// Columns and rows by a number up to 63: mostly those of terminals, now and then any from 1 to 64, 128 or 256.
+    /// Returns columns and rows for a number up to 63: mostly sizes of terminals, sometimes any from 1 to 64, 128 or
+    /// 256.
     fn size(&mut self, number: u8) -> (u16, u16) {
         let most = match number {
             0..48 => return SIZES[usize::from(number) % SIZES.len()],

@@ -1,4 +1,4 @@
-//! Malice for atlases and models: zip entries that claim terabytes or unpack to much, headers without an end.
+//! Malicious atlases and models: zip entries that claim terabytes or unpack to huge arrays, endless headers.
 
 use std::io::{Cursor, Read};
 
@@ -7,13 +7,13 @@ use zip::ZipArchive;
 use super::packed::{Packing, Zip, zeros_after};
 use super::{Malice, SIZE, filled};
 
-/// A sound atlas and a sound model.
+/// A valid atlas and a valid model.
 const SOUND: [&[u8]; 2] = [
     include_bytes!("../seeds/archive/ellipse.npz"),
     include_bytes!("../seeds/model/bar.npz"),
 ];
 
-/// Both, with an array in place of one of theirs.
+/// Returns both, with one array replaced.
 fn with(name: &str, packing: Packing, content: &[u8], claimed: u64) -> [Zip; 2] {
     SOUND.map(|sound| {
         let mut archive = ZipArchive::new(Cursor::new(sound)).expect("a sound archive");
@@ -31,7 +31,7 @@ fn with(name: &str, packing: Packing, content: &[u8], claimed: u64) -> [Zip; 2] 
     })
 }
 
-/// An array of numpy's with this header.
+/// Returns a numpy array with this header.
 fn array(kind: &str, shape: &str) -> Vec<u8> {
     let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
     [
@@ -41,7 +41,7 @@ fn array(kind: &str, shape: &str) -> Vec<u8> {
     .concat()
 }
 
-/// A header in JSON.
+/// Returns both with a JSON header that repeats a part.
 fn header(start: &str, again: &str) -> [Zip; 2] {
     let json = filled(start, again, "");
     let json = &json[..SIZE - 20_000];
@@ -54,24 +54,24 @@ fn header(start: &str, again: &str) -> [Zip; 2] {
     )
 }
 
-/// An array that begins like this, unpacked from almost a mebibyte to 158 times as many bytes.
+/// Returns both with an array that begins with `start` and unpacks from almost a mebibyte to 158 times that size.
 fn unpacking(name: &str, start: &[u8]) -> [Zip; 2] {
     let content = zeros_after(start, SIZE - 20_000);
     with(name, Packing::Deflated, &content, 1 << 26)
 }
 
-/// Malice for both, under a name each.
+/// Malicious inputs for both, with a description each.
 macro_rules! both {
     ($($what:literal => $zips:expr;)+) => {
-        /// For atlases.
+        /// Inputs for atlases.
         pub(super) const ATLASES: &[Malice] = &[$(($what, || finished::<0>($zips))),+];
 
-        /// For models.
+        /// Inputs for models.
         pub(super) const MODELS: &[Malice] = &[$(($what, || finished::<1>($zips))),+];
     };
 }
 
-/// The atlas or the model.
+/// Finishes the atlas (0) or the model (1).
 fn finished<const WHICH: usize>(zips: [Zip; 2]) -> Vec<u8> {
     zips.into_iter().nth(WHICH).expect("there are two").finish()
 }

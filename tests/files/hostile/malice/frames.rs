@@ -1,28 +1,28 @@
-//! Malice for recordings and streams: lines and marks without end, sizes that are not there, channels without number.
+//! Malicious recordings and streams: endless lines and markers, false sizes, countless channels.
 
 use super::packed::{Packing, Zip, zeros_after};
 use super::{Malice, SIZE, filled, numbered, repeated};
 
-/// An array of numpy with this header, and what follows it.
+/// Returns a numpy array with this header, followed by `content`.
 fn array(header: &str, content: &[u8]) -> Vec<u8> {
     let length = u16::try_from(header.len()).expect("short");
     let start = [&b"\x93NUMPY\x01\0"[..], &length.to_le_bytes()].concat();
     [&start, header.as_bytes(), content].concat()
 }
 
-/// The same, filled up with zeros.
+/// Returns the array filled up with zeros.
 fn long_array(header: &str) -> Vec<u8> {
     let mut array = array(header, &[]);
     array.resize(SIZE, 0);
     array
 }
 
-/// A header of an array of 64-bit numbers with that shape.
+/// Returns a header with this kind of numbers, order and shape.
 fn shaped(kind: &str, fortran: &str, shape: &str) -> String {
     format!("{{'descr': '{kind}', 'fortran_order': {fortran}, 'shape': {shape}, }}\n")
 }
 
-/// Text that goes on, in the forms of each vendor.
+/// Endless texts in the formats of each vendor.
 const TEXTS: [Malice; 35] = [
     ("deep JSON", || filled("{\"frame\":", "[", "")),
     ("deep objects", || filled("", "{\"frame\":", "")),
@@ -139,7 +139,7 @@ const TEXTS: [Malice; 35] = [
     ("numbers in a line", || filled("1 1\n", "1 ", "\n")),
 ];
 
-/// Bytes, in the forms of recordings only.
+/// Bytes in the formats of recordings only.
 const FILES: [Malice; 16] = [
     ("an array of more than all memory", || {
         long_array(&shaped("<f8", "False", "(18446744073709551615, 64, 64)"))
@@ -209,7 +209,7 @@ const FILES: [Malice; 16] = [
         )
     }),
     ("many long headers", || {
-        // Each has a mebibyte of blanks when it is unpacked.
+        // Each entry unpacks to a mebibyte of spaces.
         let one = zeros_after(b"\x93NUMPY\x02\0\xf0\xff\x0f\0{'descr': [('a', '<f8", 3900);
         let zip = (0..250).fold(Zip::default(), |zip, number| {
             zip.with(&format!("{number}.npy"), Packing::Deflated, &one, 1 << 20)
@@ -235,7 +235,7 @@ const FILES: [Malice; 16] = [
     }),
 ];
 
-/// An archive of one entry that begins with some bytes and goes on with zeros, 158 for each byte of the archive.
+/// Returns an archive with one entry: some bytes, followed by 158 zeros for each byte of the archive.
 fn packed(name: &str, start: &[u8]) -> Vec<u8> {
     let content = zeros_after(start, SIZE - 1000);
     Zip::default()
@@ -254,7 +254,7 @@ fn text(text: &str) -> Vec<u8> {
     [&length.to_le_bytes()[..], text.as_bytes()].concat()
 }
 
-/// A topic with a number, of arrays of bytes.
+/// Returns a topic with a number, for arrays of bytes.
 fn topic(number: u16, name: &str) -> Vec<u8> {
     let id = number.to_le_bytes();
     record(
@@ -263,7 +263,7 @@ fn topic(number: u16, name: &str) -> Vec<u8> {
     )
 }
 
-/// The beginning of an MCAP file whose first schema has arrays of bytes.
+/// Returns the beginning of an MCAP file whose first schema is an array of bytes.
 fn mcap() -> Vec<u8> {
     let schema = [
         text("std_msgs/msg/UInt8MultiArray"),
@@ -278,7 +278,7 @@ fn mcap() -> Vec<u8> {
     .concat()
 }
 
-/// A message of topic 1 with an array that claims to have this many bytes.
+/// Returns a message of topic 1 with an array that claims this number of bytes.
 fn message(claimed: u32) -> Vec<u8> {
     let data = [
         &[0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0][..],
@@ -289,7 +289,7 @@ fn message(claimed: u32) -> Vec<u8> {
     record(5, &[&[1, 0][..], &[0; 20], &data].concat())
 }
 
-/// The head of a chunk: times, the size unpacked, no checksum, how it is packed, the size.
+/// Returns the head of a chunk: times, unpacked size, no checksum, compression, size.
 fn chunk(unpacked: u64, packing: &str, content: &[u8]) -> Vec<u8> {
     let size = (content.len() as u64).to_le_bytes();
     let parts = [
@@ -334,14 +334,14 @@ const TOPICS: [Malice; 9] = [
         [mcap(), chunk(u64::MAX, "", &vec![5; SIZE - 1000])].concat()
     }),
     ("a chunk by Zstandard", || {
-        // The largest window, then blocks of one byte that is repeated 128 Ki times.
+        // The largest window, then blocks that repeat one byte 128 Ki times.
         let frame = b"\x28\xb5\x2f\xfd\x00\xf8";
         let block = [&(((128_u32 << 10) << 3) | 2).to_le_bytes()[..3], &[5]].concat();
         let content = repeated(frame, &block, &[]);
         [mcap(), chunk(1 << 40, "zstd", &content[..SIZE - 1000])].concat()
     }),
     ("a chunk by LZ4", || {
-        // Blocks that say that they have four megabytes.
+        // Blocks that claim four megabytes.
         let frame = b"\x04\x22\x4d\x18\x60\x70\x73";
         let content = repeated(
             frame,
@@ -359,7 +359,7 @@ const TOPICS: [Malice; 9] = [
     }),
 ];
 
-/// Bytes, in the forms of streams only.
+/// Bytes in the formats of streams only.
 const STREAMS: [Malice; 6] = [
     ("marks", || repeated(&[], b"\xaa\x55", &[])),
     ("a mark, then nothing", || repeated(b"\xaa\x55", &[1], &[])),
@@ -376,7 +376,7 @@ const STREAMS: [Malice; 6] = [
     }),
 ];
 
-/// For recordings.
+/// Returns the inputs for recordings.
 pub(super) fn of_recordings() -> Vec<Malice> {
     let mut all = [&TEXTS[..], &FILES].concat();
     if cfg!(feature = "mcap") {
@@ -385,7 +385,7 @@ pub(super) fn of_recordings() -> Vec<Malice> {
     all
 }
 
-/// For streams, whose first byte says what is known of them: nothing here, but that they are read from their start.
+/// Returns the inputs for streams. Their first byte says what is known: here only that they are read from their start.
 pub(super) fn of_streams() -> Vec<Malice> {
     [&TEXTS[..], &STREAMS].concat()
 }

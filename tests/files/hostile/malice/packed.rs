@@ -1,27 +1,27 @@
-//! Archives and compressed bytes as no program writes them, put together byte by byte.
+//! Archives and compressed bytes that no program would write, put together byte by byte.
 
-/// A zip archive. What it says of its entries need not be true.
+/// A zip archive. The sizes of its entries need not be true.
 #[derive(Default)]
 pub(crate) struct Zip {
-    /// The entries, each behind its header.
+    /// The entries, each after its header.
     bytes: Vec<u8>,
-    /// The directory at the end.
+    /// The directory, which comes at the end.
     directory: Vec<u8>,
-    /// How many entries it has.
+    /// The number of entries.
     count: u16,
 }
 
-/// How an entry is packed.
+/// The compression of an entry.
 #[derive(Clone, Copy)]
 pub(crate) enum Packing {
-    /// Not at all.
+    /// No compression.
     Stored = 0,
-    /// By deflate.
+    /// Deflate.
     Deflated = 8,
 }
 
 impl Zip {
-    /// Adds an entry that claims to have `claimed` bytes when it is unpacked.
+    /// Adds an entry that claims an unpacked size of `claimed` bytes.
     pub(crate) fn with(
         mut self,
         name: &str,
@@ -39,7 +39,7 @@ impl Zip {
         self
     }
 
-    /// Adds another entry to the directory whose bytes are those at `offset`.
+    /// Adds an entry to the directory that refers to the bytes at `offset`.
     fn refer(&mut self, name: &str, packing: Packing, content: &[u8], claimed: u64, offset: usize) {
         let head = head(name, packing, content, claimed);
         self.directory.extend(b"PK\x01\x02\x2d\x00");
@@ -51,7 +51,7 @@ impl Zip {
         self.count += 1;
     }
 
-    /// Adds as many more entries that share the bytes of the first one.
+    /// Adds `count` more entries that share the bytes of the first one.
     pub(crate) fn with_shared(mut self, count: u16, content: &[u8]) -> Self {
         for number in 0..count {
             let name = format!("{number:05}.npy");
@@ -60,7 +60,7 @@ impl Zip {
         self
     }
 
-    /// The archive.
+    /// Returns the finished archive.
     pub(crate) fn finish(mut self) -> Vec<u8> {
         let (start, length) = (least(self.bytes.len()), least(self.directory.len()));
         self.bytes.append(&mut self.directory);
@@ -77,8 +77,8 @@ fn least(number: usize) -> u32 {
     u32::try_from(number).expect("it is short")
 }
 
-/// What both headers of an entry have: from the version to the lengths of name and extra field. The sizes stand in the
-/// extra field.
+/// Returns the part that both headers of an entry share, from the version to the lengths of name and extra field. The
+/// sizes are in the extra field.
 fn head(name: &str, packing: Packing, content: &[u8], claimed: u64) -> Vec<u8> {
     let checksum = if claimed == content.len() as u64 {
         checksum(content)
@@ -89,7 +89,7 @@ fn head(name: &str, packing: Packing, content: &[u8], claimed: u64) -> Vec<u8> {
         &45_u16.to_le_bytes()[..],
         &[0; 2],
         &(packing as u16).to_le_bytes(),
-        // The first of January 1980.
+        // 1 January 1980.
         &[0, 0, 0x21, 0],
         &checksum.to_le_bytes(),
         &[0xff; 8],
@@ -99,7 +99,7 @@ fn head(name: &str, packing: Packing, content: &[u8], claimed: u64) -> Vec<u8> {
     .concat()
 }
 
-/// The name, and the extra field with both sizes in 64 bits.
+/// Returns the name, and the extra field with both sizes in 64 bits.
 fn tail(name: &str, content: &[u8], claimed: u64) -> Vec<u8> {
     [
         name.as_bytes(),
@@ -110,7 +110,7 @@ fn tail(name: &str, content: &[u8], claimed: u64) -> Vec<u8> {
     .concat()
 }
 
-/// CRC-32 as zip has it.
+/// Computes the CRC-32 as used by zip.
 fn checksum(bytes: &[u8]) -> u32 {
     let mut sum = u32::MAX;
     for &byte in bytes {
@@ -122,10 +122,10 @@ fn checksum(bytes: &[u8]) -> u32 {
     !sum
 }
 
-/// Deflated: some bytes, then 158 zeros for each byte that this has up to `length`.
+/// Returns deflated data: `start`, then 158 zeros for each further byte up to `length`.
 pub(crate) fn zeros_after(start: &[u8], length: usize) -> Vec<u8> {
     let stored = u16::try_from(start.len()).expect("short");
-    // A block that is not packed, then one with the fixed code.
+    // An uncompressed block, then one with the fixed code.
     let mut packed = [
         &[0][..],
         &stored.to_le_bytes(),
@@ -135,7 +135,7 @@ pub(crate) fn zeros_after(start: &[u8], length: usize) -> Vec<u8> {
     .concat();
     let mut bits: Vec<bool> = Vec::new();
     bits.extend([false, true, false]);
-    // A zero, and copies of the 258 bytes before that end one byte back.
+    // A zero, then copies of 258 bytes at a distance of one byte.
     bits.extend("00110000".bytes().map(|bit| bit == b'1'));
     let copy: Vec<bool> = "1100010100000".bytes().map(|bit| bit == b'1').collect();
     while packed.len() + bits.len() / 8 < length {
