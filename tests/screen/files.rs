@@ -1,4 +1,4 @@
-//! Files of the user: opened, written, completed; and the commands that are remembered.
+//! The user's files: opening, writing, completion; and the commands that are remembered.
 
 use taxel::storage::Library;
 use taxel::tui::runtime::World;
@@ -10,7 +10,7 @@ fn folder() -> tempfile::TempDir {
 }
 
 #[test]
-fn the_matrix_is_written_by_the_ending_and_opened_by_the_content() {
+fn files_are_written_by_extension_and_opened_by_content() {
     let folder = folder();
     let place = folder.path().to_str().expect("a name in ASCII").to_owned();
     let mut session = session("f<Enter><Space>");
@@ -28,7 +28,7 @@ fn the_matrix_is_written_by_the_ending_and_opened_by_the_content() {
             &["opened\n", "NA 51 in all"],
         );
     }
-    // Some editors begin a text with a byte order mark.
+    // Some editors write a byte order mark before a text.
     let shape = std::fs::read(folder.path().join("made.json")).expect("written");
     let marked = [b"\xef\xbb\xbf", &shape[..]].concat();
     std::fs::write(folder.path().join("marked.json"), marked).expect("written");
@@ -37,7 +37,7 @@ fn the_matrix_is_written_by_the_ending_and_opened_by_the_content() {
         &format!("n:open {place}/marked.json<Enter>"),
         &["ellipse rx 4.00"],
     );
-    // A shape brings back what touched.
+    // A shape restores the figure that made it.
     then(
         &mut session,
         &format!("n:open {place}/made.json<Enter>"),
@@ -54,7 +54,7 @@ fn the_matrix_is_written_by_the_ending_and_opened_by_the_content() {
 }
 
 #[test]
-fn what_cannot_be_opened_or_written_is_said() {
+fn files_that_cannot_be_opened_or_written_are_reported() {
     let folder = folder();
     let place = folder.path().to_str().expect("a name in ASCII").to_owned();
     std::fs::write(folder.path().join("a.png"), b"\x89PNG\r\n\x1a\n").expect("written");
@@ -81,7 +81,7 @@ fn what_cannot_be_opened_or_written_is_said() {
 }
 
 #[test]
-fn recordings_to_watch_are_completed() {
+fn names_of_recordings_are_completed() {
     shows(
         ":watch tests/scripts/touch.c<Tab>",
         &[":watch tests/scripts/touch.csv"],
@@ -126,7 +126,7 @@ fn forms_begin_with_the_values_that_were_accepted_last() {
     let folder = folder();
     let world = || World::new(Library::open(folder.path().to_owned()));
     press(&mut started(world(), ""), "f<Tab>2.5<Enter>u");
-    // Nothing is left behind that would be offered. What is given up is not remembered.
+    // The matrix is left empty, so no unsaved work would be offered. Cancelled values are not remembered.
     press(&mut started(world(), ""), "f<Tab>7<Esc>");
     press(
         &mut started(world(), ""),
@@ -134,19 +134,19 @@ fn forms_begin_with_the_values_that_were_accepted_last() {
     );
     let mut third = started(world(), "f");
     shows(&third, &["rectangle length 5.00"]);
-    // Each kind has its own; one that was never accepted has its defaults.
+    // Each kind has its own values; a kind that was never accepted has its defaults.
     then(&mut third, "e", &["ellipse rx 2.50"]);
     then(&mut third, "<Left>", &["octagon side"]);
-    // The angles suit any shape, the places of x0 and y0 are proposed anew.
+    // The angles suit any shape; the ranges of x0 and y0 are proposed anew.
     press(&mut third, "<Esc>lcross<Enter>e");
     shows(&third, &["0:80:20"]);
-    // A shape on the matrix goes before.
+    // A shape on the matrix takes precedence.
     then(
         &mut third,
         "<Esc>:figure ellipse --radius-x 1<Enter>f",
         &["ellipse rx 1.00"],
     );
-    // Without reminders, as a script and a record have it, a form begins with the defaults.
+    // Without reminders, as in a script and a record, a form begins with the defaults.
     shows(
         &started(world().without_reminders(), "f"),
         &["ellipse rx 4.00 ry 4.00"],
@@ -159,7 +159,7 @@ fn a_key_gives_forms_their_defaults_and_another_sensor_has_its_own_values() {
     let world = || World::new(Library::open(folder.path().to_owned()));
     let accepted = "f<Tab>2.5<Enter>e<Down><Down><C-u>0:80:20<Enter>qu";
     press(&mut started(world(), ""), accepted);
-    // What was placed on a sensor of another size may lie anywhere on this one.
+    // On a sensor of another size, a remembered position may be anywhere, so the values do not apply.
     let mut other = started(world(), ":sensor --columns 20 --rows 16<Enter>f");
     shows(&other, &["ellipse rx 4.00"]);
     press(&mut other, "<Esc>");
@@ -177,7 +177,7 @@ fn a_key_gives_forms_their_defaults_and_another_sensor_has_its_own_values() {
     press(&mut second, "<C-d>");
     hides(&second, &["0:80:20"]);
     shows(&second, &["0:359:1"]);
-    // A picture is back in its place, a sensor is that of the paper.
+    // A picture returns to its place, and a sensor becomes that of the paper.
     then(&mut second, "<Esc>pwasher<Enter>", &["zoom 1.00"]);
     then(&mut second, "3", &["at 3.00, 2.00"]);
     then(&mut second, "<C-d>", &["at 2.00, 2.00"]);

@@ -1,5 +1,5 @@
-//! The bytes of a frame: this program's writer beside ratatui's own backend, on the screens that people see most.
-//! The figures are printed: `cargo test --test screen frames -- --nocapture`.
+//! Compares the bytes of a frame from this program's writer with those from ratatui's own backend, on the most common
+//! screens. The numbers are printed: `cargo test --test screen frames -- --nocapture`.
 
 use std::cell::Cell;
 use std::io::{self, Write};
@@ -15,10 +15,11 @@ use taxel::tui::terminal::settings::Abilities;
 
 use crate::session::session;
 
-/// Results of the paper's grid.
+/// Keys that lead to the results of the paper's grid.
 const SWEPT: &str = "f<CR>:explore --x0 5:5.99:0.01 --y0 5:5.99:0.01<CR>";
 
-/// A name, the keys before the frame, its own keys (none: the first frame), and the most bytes that it may have.
+/// A name, the keys before the frame, the keys of the frame (empty for the first frame), and the highest number of
+/// bytes.
 const SCENES: [(&str, &str, &str, usize); 9] = [
     ("first frame", "", "", 2200),
     ("cursor move", "", "<Right>", 60),
@@ -36,7 +37,7 @@ const SCENES: [(&str, &str, &str, usize); 9] = [
     ("a row of Explore", SWEPT, "<Down>", 360),
 ];
 
-/// The bytes of the frame after `keys`, by the program's own writer.
+/// Returns the bytes of the frame from the program's own writer.
 fn own(before: &Session, after: Option<&Session>) -> usize {
     let abilities = Abilities {
         styles: true,
@@ -54,7 +55,7 @@ fn own(before: &Session, after: Option<&Session>) -> usize {
     bytes
 }
 
-/// The same by ratatui's backend into a buffer.
+/// Returns the bytes of the same frame from ratatui's backend, written into a buffer.
 fn stock(before: &Session, after: Option<&Session>) -> usize {
     let area = ratatui::layout::Rect::new(0, 0, 80, 24);
     let options = TerminalOptions {
@@ -74,7 +75,7 @@ fn stock(before: &Session, after: Option<&Session>) -> usize {
     written.get()
 }
 
-/// Counts what is written.
+/// Counts the bytes that are written.
 struct Counter(Rc<Cell<usize>>);
 
 impl Write for Counter {
@@ -89,7 +90,7 @@ impl Write for Counter {
 }
 
 #[test]
-fn every_frame_fits_its_budget_and_takes_fewer_bytes_than_by_the_stock_backend() {
+fn every_frame_fits_its_budget_and_is_shorter_than_the_stock_backends() {
     println!("{:26} {:>6} {:>6}", "", "own", "stock");
     let mut over = Vec::new();
     for (name, before, keys, most) in SCENES {

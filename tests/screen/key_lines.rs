@@ -1,11 +1,11 @@
-//! The two lines that name keys: the menu and the hints, on each page, and clicks on them.
+//! The two lines that show keys, the menu and the hints, on each page; and clicks on them.
 
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::script::Session;
 
 use crate::session::{Screen, press, session, shows, sized};
 
-/// The first and the last line of a screen.
+/// Returns the first and the last line of a screen.
 fn lines(of: &(impl Screen + ?Sized)) -> (String, String) {
     let (screen, _) = of.screen();
     let mut lines = screen.lines();
@@ -13,7 +13,7 @@ fn lines(of: &(impl Screen + ?Sized)) -> (String, String) {
     (menu, lines.last().unwrap_or_default().to_owned())
 }
 
-/// A click on a text of the first line or of the last one.
+/// Clicks on a text in the first or the last line.
 fn click(session: &mut Session, text: &str) {
     let screen = Session::screen(session);
     let rows = [0, screen.lines().count() - 1];
@@ -29,7 +29,7 @@ fn click(session: &mut Session, text: &str) {
 }
 
 #[test]
-fn the_menu_names_the_keys_of_the_page() {
+fn the_menu_shows_the_keys_of_the_page() {
     let paper = "n New   l Load   f Figure   p Picture   s Save   d Delete   q Quit   ? Help";
     for (keys, menu, hints) in [
         ("", paper, "Space toggle"),
@@ -69,7 +69,7 @@ fn the_menu_names_the_keys_of_the_page() {
             "{keys}: once is enough: {last}"
         );
     }
-    // The way out is named on a narrow screen, too.
+    // The way out is shown on a narrow screen, too.
     for (keys, menu) in [
         (
             "f<CR>:explore --angle 0<CR>",
@@ -84,7 +84,7 @@ fn the_menu_names_the_keys_of_the_page() {
     assert!(hints.starts_with("i matrix"), "{hints}");
     let (_, hints) = lines(&sized((60, 20), false, "ri"));
     assert!(hints.starts_with("i answer"), "{hints}");
-    // Keys that can do nothing at the moment are not named.
+    // Keys that can do nothing at the moment are not shown.
     for (keys, has, lacks) in [
         ("?", "/ search", "n N match"),
         ("?/zoom<CR>", "n N match", "nothing"),
@@ -119,12 +119,12 @@ fn the_menu_names_the_keys_of_the_page() {
         menu.ends_with("? Help") || menu.ends_with("? help"),
         "{menu}"
     );
-    // There o is the next set, and not the outline.
+    // On this page, o chooses the next set instead of the outline.
     assert!(
         hints.starts_with("Space toggle") && !hints.contains("outline"),
         "{hints}"
     );
-    // What the menu has no room for stands in the hints.
+    // Keys that do not fit into the menu are in the hints.
     let narrow = sized((20, 20), false, "f");
     let (menu, hints) = lines(&narrow);
     assert_eq!(
@@ -150,7 +150,7 @@ fn clicks_on_the_lines_of_keys_do_what_the_keys_do() {
     shows(&session, &["ellipse rx 2.00 ry 4.00"]);
     click(&mut session, "accept");
     shows(&session, &["Region 1 of 1", "n New"]);
-    // The second key of two, and four arrows, on which there is nothing to click.
+    // The second of two keys, and four arrows, on which a click does nothing.
     click(&mut session, "g grab");
     click(&mut session, "arrows");
     click(&mut session, "+ -");
@@ -167,7 +167,7 @@ fn clicks_on_the_lines_of_keys_do_what_the_keys_do() {
     assert!(session.app().ended());
 }
 
-/// The way out of a narrow screen is named, and so is help: the other options are there by their keys.
+/// A narrow screen shows the way out and help in full; the other options are shown by their keys.
 #[test]
 fn the_menu_of_a_narrow_screen_has_every_option() {
     let menu = |width| sized((width, 12), false, "").screen();

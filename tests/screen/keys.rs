@@ -1,4 +1,4 @@
-//! What keys do: keys in, then what must and what must not be on the screen.
+//! The effects of keys: each test presses keys, then checks the texts on the screen.
 
 use taxel::tui::app::message::Message;
 use taxel::tui::keys::binding::Context;
@@ -17,7 +17,7 @@ fn the_cursor_stays_on_the_matrix() {
 }
 
 #[test]
-fn taxels_are_turned_over_and_undone() {
+fn taxels_are_toggled_and_toggles_are_undone() {
     shows(
         "<Space>",
         &[
@@ -31,7 +31,7 @@ fn taxels_are_turned_over_and_undone() {
     shows("<Space><Right><Space>u", &["NA 1 in all"]);
     shows("<Space><Right><Space>uu", &["NA 0 in all"]);
     shows("<Space><Right><Space>uuu", &["nothing to undo"]);
-    // A count that is too large ends at the first step, which stays named.
+    // A count that is too large ends at the first step, which is still named.
     shows("<Space><Right><Space>9u", &["undone: taxel 8, 8 on"]);
     shows("<Space><Right><Space>uu9<C-r>", &["redone: taxel 9, 8 on"]);
     shows("9u", &["nothing to undo"]);
@@ -44,7 +44,7 @@ fn taxels_are_turned_over_and_undone() {
 }
 
 #[test]
-fn a_figure_follows_while_it_is_typed_and_escape_restores() {
+fn a_figure_follows_the_form_and_escape_restores_the_matrix() {
     shows("f<Tab>2", &["ellipse rx 2.00 ry 4.00", "NA 28  NAE 28"]);
     shows("f<Tab>2<Esc>", &["empty", "NA 0 in all"]);
     shows(
@@ -54,7 +54,7 @@ fn a_figure_follows_while_it_is_typed_and_escape_restores() {
     shows("<Space>f<Tab>2<Esc>", &["drawn by hand", "NA 1 in all"]);
     shows("f<Tab>2<C-g>", &["empty"]);
     shows("f<Tab>2<C-c>", &["empty", "n New"]);
-    // A wrong field keeps the last figure on the matrix, and Enter is refused until it is right.
+    // A wrong field keeps the last figure on the matrix, and Enter is refused until the field is right.
     shows(
         "f<Tab>2<Tab>x<Enter>",
         &[
@@ -70,7 +70,7 @@ fn a_figure_follows_while_it_is_typed_and_escape_restores() {
 }
 
 #[test]
-fn the_matrix_does_not_stay_at_the_beginning_of_a_wrong_number() {
+fn the_matrix_does_not_show_the_beginning_of_a_wrong_number() {
     shows("f<Tab>1", &["ellipse rx 1.00 ry 4.00"]);
     shows(
         "f<Tab>17",
@@ -81,7 +81,7 @@ fn the_matrix_does_not_stay_at_the_beginning_of_a_wrong_number() {
         &["ellipse rx 4.00 ry 4.00", "! not a number; write 2.5"],
     );
     shows("f<Tab>2,<BS>.5", &["ellipse rx 2.50 ry 4.00"]);
-    // What was reached by a step, or before the field was left, stays.
+    // A value that was reached by a step, or before the field was left, is kept.
     shows("f<Tab><PageUp><PageUp>x", &["ellipse rx 4.02 ry 4.00"]);
     shows("f<Tab>2<Tab>3<S-Tab>x", &["ellipse rx 2.00 ry 3.00"]);
     shows(
@@ -91,7 +91,7 @@ fn the_matrix_does_not_stay_at_the_beginning_of_a_wrong_number() {
 }
 
 #[test]
-fn a_form_says_what_a_thickness_means() {
+fn a_form_explains_the_thickness() {
     shows(
         "f",
         &[
@@ -113,12 +113,12 @@ fn a_form_says_what_a_thickness_means() {
 }
 
 #[test]
-fn the_step_is_told_where_there_is_something_to_move() {
+fn the_step_is_shown_if_there_is_something_to_move() {
     hides("<Space>", &["step"]);
     shows("f<Enter>", &["NA 52 in all  step 0.01"]);
     shows("f<Enter>g+", &["NA 52 in all  held, step 0.1"]);
     shows("f<Enter>g++g", &["NA 52 in all  step 1"]);
-    // Nor need it be held for that.
+    // The step is also shown if the shape is not held.
     shows("f<Enter>+", &["NA 52 in all  step 0.1"]);
     shows("f<Enter>++-", &["NA 52 in all  step 0.1"]);
     shows("f<Enter>+<S-Right>", &["at 4.10, 4.00"]);
@@ -126,7 +126,7 @@ fn the_step_is_told_where_there_is_something_to_move() {
 }
 
 #[test]
-fn kinds_are_chosen_by_arrow_and_by_letter() {
+fn kinds_are_chosen_by_arrows_and_letters() {
     shows("f<Right>", &["< rectangle >", "Length", "Width"]);
     shows("f<Left>", &["< octagon "]);
     shows("f<7x:Right>", &["< ellipse "]);
@@ -135,14 +135,14 @@ fn kinds_are_chosen_by_arrow_and_by_letter() {
     shows("fhhh", &["< hexagon "]);
     shows("ft<Enter>", &["triangle side 4.00 at 4.00, 4.00"]);
     shows("fz", &["< ellipse "]);
-    // What was typed stays when the kind changes, and comes back with it.
+    // Values remain when the kind changes, and are there again when it changes back.
     shows("f<Tab><Tab><Tab>1.5<4x:S-Tab>", &["< ellipse ", "1.5 "]);
     shows("f<Tab>2<S-Tab>rp<S-Tab>", &["< pentagon "]);
     shows("f<Tab>2<S-Tab>re", &["ellipse rx 2.00"]);
 }
 
 #[test]
-fn fields_are_edited_and_stepped() {
+fn fields_are_edited_and_changed_in_steps() {
     shows("f<Tab><PageUp>", &["rx 4.01"]);
     shows("f<Tab><PageDown><PageDown>", &["rx 3.98"]);
     shows("f<Tab>9.99<PageUp>", &["rx 10.0"]);
@@ -159,9 +159,9 @@ fn fields_are_edited_and_stepped() {
     shows("fr<Tab><Up>t", &["< triangle "]);
 }
 
-/// A form takes what files, flags and commands take, and a minus is a character like others.
+/// A form accepts the values that files, flags and commands accept, and a minus is an ordinary character.
 #[test]
-fn a_form_takes_the_values_that_a_command_takes() {
+fn a_form_accepts_the_values_that_a_command_accepts() {
     let typed = |x0: &str, angle: &str| {
         session(&format!("fh<Tab><Tab>{x0}<Tab><Tab>{angle}<Enter>")).screen()
     };
@@ -187,7 +187,7 @@ fn a_form_takes_the_values_that_a_command_takes() {
     shows("fh<4x:Tab>-1", &["! expected 0 to below 360"]);
     shows("fh<4x:Tab>360", &["! expected 0 to below 360"]);
     shows("S<Tab><Tab>0.3333", &["0.3333"]);
-    // What was moved beyond the sensor stands in its field, and steps go on from there.
+    // A position beyond the sensor is shown in its field, and steps continue from there.
     shows(
         "fr<Enter><C-u>:move -8 0<Enter>f<3x:Tab>",
         &["-4.00", "-16 to 16", "PageUp/Down step"],
@@ -196,11 +196,11 @@ fn a_form_takes_the_values_that_a_command_takes() {
 }
 
 #[test]
-fn pasted_text_goes_into_fields_only() {
+fn pasted_text_only_goes_into_fields() {
     let mut form = session("f<Tab>");
     form.send(Message::Paste(" 2.5\n".to_owned()));
     shows(&form, &["rx 2.50"]);
-    // On the row of kinds too: a name, or the first field's number.
+    // Also on the row of kinds: a name, or a number for the first field.
     let mut form = session("f");
     form.send(Message::Paste("Hexagon\n".to_owned()));
     shows(&form, &["< hexagon   >"]);
@@ -215,7 +215,7 @@ fn pasted_text_goes_into_fields_only() {
 }
 
 #[test]
-fn a_shape_is_nudged_and_turned() {
+fn a_shape_is_moved_and_turned() {
     shows("f<Enter>g", &["held, step 0.01", "let go"]);
     shows("f<Enter>g<Right><Down><Down>", &["at 4.01, 4.02, 0°"]);
     shows("f<Enter>g<Right><Down>uu", &["at 4.00, 4.00, 0°"]);
@@ -245,12 +245,12 @@ fn a_shape_is_nudged_and_turned() {
     );
     shows("g", &["nothing to move"]);
     shows("<Space>>", &["a drawing cannot be moved"]);
-    // A hundred steps of a hundredth are exactly one.
+    // A hundred steps of 0.01 are exactly 1.
     shows("f<Enter>g<100x:Right>", &["at 5.00, 4.00"]);
 }
 
 #[test]
-fn toggles_that_a_new_touch_drops_are_said_to_be_dropped() {
+fn toggles_that_a_new_touch_drops_are_reported() {
     shows("f<Enter><Space>", &["+ 1 by hand"]);
     shows(
         "f<Enter><Space>>",
@@ -265,14 +265,14 @@ fn toggles_that_a_new_touch_drops_are_said_to_be_dropped() {
 }
 
 #[test]
-fn regions_are_gone_through() {
+fn tab_selects_the_next_region() {
     let ring = "f<6x:Tab>2<Enter>";
     shows(ring, &["Region 1 of 2: exterior"]);
     shows(&format!("{ring}<Tab>"), &["Region 2 of 2: hole"]);
     shows(&format!("{ring}<Tab><Tab>"), &["Region 1 of 2: exterior"]);
     shows(&format!("{ring}<S-Tab>"), &["Region 2 of 2: hole"]);
     shows("<Tab>", &["no region: the matrix is empty"]);
-    // The largest piece is described first, not the first one.
+    // The largest piece is described first, not the one that comes first.
     shows(
         "<Space><Right><Right><Space><Right><Space>",
         &["Region 2 of 2: exterior"],
@@ -280,7 +280,7 @@ fn regions_are_gone_through() {
 }
 
 #[test]
-fn quitting_asks_where_work_would_be_lost() {
+fn quitting_asks_if_work_would_be_lost() {
     assert!(session("q").app().ended());
     assert!(session("<C-c>").app().ended());
     let asked = session("f<Enter>q");
@@ -302,14 +302,14 @@ fn quitting_asks_where_work_would_be_lost() {
         session("f<Enter>uq").app().ended(),
         "nothing is left to lose"
     );
-    // What was left for something else would be lost too: only undo has it.
+    // A drawing that was left for something else would be lost, too: only undo has it.
     for left in ["<Space>nq", "<Space><Right><Space>lwasher<Enter>q"] {
         shows(
             left,
             &["An earlier drawing is not saved. Quit anyway? (y: lose it, n: stay)"],
         );
     }
-    // Both may be, and saving one does not give up the other.
+    // Both may be unsaved, and saving one does not discard the other.
     let both = "<Space>n<Right><Space>q";
     shows(
         both,
@@ -326,7 +326,7 @@ fn quitting_asks_where_work_would_be_lost() {
         "{screen}"
     );
     assert!(session("<Space>qsa name<Enter>").app().ended());
-    // A figure too thin to leave an imprint may be missed, but cannot be saved.
+    // A figure that is too thin to leave an imprint may be missed, but cannot be saved.
     shows(
         ":figure ellipse --thickness 0.1<Enter>q",
         &["not saved. Quit anyway? (y: lose it, n: stay)"],
@@ -335,7 +335,7 @@ fn quitting_asks_where_work_would_be_lost() {
         "<Space><Space>nq",
         "<Space>saa<Enter>nq",
         "<Space>nuuq",
-        // What is empty is not worth a question, however it became so, or on which sensor.
+        // An empty matrix is not worth a question, however it became empty, and on whatever sensor.
         "<Space>saa<Enter><Space>q",
         "f<Enter>saa<Enter>uq",
         "S<Tab>9<Enter>q",
@@ -346,7 +346,7 @@ fn quitting_asks_where_work_would_be_lost() {
 }
 
 #[test]
-fn the_screen_of_a_lone_or_full_or_empty_matrix_has_no_impossible_numbers() {
+fn nearly_empty_and_full_matrices_have_no_impossible_numbers() {
     for keys in [
         "",
         "<Space>",
@@ -368,7 +368,7 @@ fn the_screen_of_a_lone_or_full_or_empty_matrix_has_no_impossible_numbers() {
     );
 }
 
-/// Every row of the table of keys is in help, fits its line, and does something where it says so.
+/// Every row of the table of keys is in help, fits on its line, and works in its context.
 #[test]
 fn every_key_is_in_help() {
     let pages = help(Context::Matrix, &Keymap::default()).len().div_ceil(10);
@@ -390,9 +390,9 @@ fn every_key_is_in_help() {
     }
 }
 
-/// No key stands twice in one place: the second row could never be reached.
+/// No key is bound twice in one context: the second row could never be reached.
 #[test]
-fn no_key_means_two_things_in_one_place() {
+fn no_key_has_two_meanings_in_one_context() {
     for context in Context::ALL {
         let rows = DEFAULT_KEYS
             .iter()
@@ -406,9 +406,9 @@ fn no_key_means_two_things_in_one_place() {
     }
 }
 
-/// However long it is held, and whatever is looked at meanwhile.
+/// However long the shape is held, and whatever is opened meanwhile.
 #[test]
-fn what_is_put_back_leaves_no_step() {
+fn a_shape_that_is_put_back_leaves_no_step_to_undo() {
     for look in ["?<Esc>", "c", "+", ":coverage<Enter>", ""] {
         let moved = format!("f<Enter>g<Right>{look}<Right>");
         shows(&format!("{moved}<Esc>"), &["put back", "at 4.00, 4.00"]);
@@ -418,7 +418,7 @@ fn what_is_put_back_leaves_no_step() {
 }
 
 #[test]
-fn a_figure_that_a_smaller_sensor_does_not_allow_is_said_to_be_a_drawing() {
+fn a_figure_that_a_smaller_sensor_does_not_allow_becomes_a_drawing() {
     let smaller = ":figure rectangle --length 10<Enter>:sensor --columns 4 --rows 4<Enter>";
     shows(
         smaller,
@@ -427,9 +427,9 @@ fn a_figure_that_a_smaller_sensor_does_not_allow_is_said_to_be_a_drawing() {
     shows(&format!("{smaller}u"), &["rectangle length 10.0"]);
 }
 
-/// Nothing moves, so nothing that was set by hand goes.
+/// Nothing moves, so taxels that were set by hand remain.
 #[test]
-fn a_move_by_nothing_changes_nothing() {
+fn a_move_by_zero_changes_nothing() {
     for nothing in [":move 0 0", ":turn 0", ":turn 360"] {
         shows(
             &format!("f<Enter><Space>{nothing}<Enter>"),
@@ -451,7 +451,7 @@ fn another_shape_is_not_held() {
 }
 
 #[test]
-fn what_is_copied_is_said() {
+fn copying_is_confirmed() {
     shows("y", &["! no region: the matrix is empty"]);
     shows(
         "Y",
@@ -469,11 +469,11 @@ fn a_list_without_a_row_has_nothing_to_choose() {
     shows("d<Enter>", &["! there is no shape to choose"]);
 }
 
-/// What is typed is seen, however many columns its characters have.
+/// Typed text is visible, however wide its characters are.
 #[test]
 fn wide_characters_in_a_number_are_seen() {
     shows("f<Tab>字字字字字字1", &["… 字字1"]);
-    // Without the cursor a number is read from its start, and with it the digit under the cursor is seen.
+    // Without the cursor, a number is shown from its start; with it, the digit under the cursor is visible.
     let long = "f<Tab>3.2109876543";
     shows(long, &["Radius x  …9876543 "]);
     shows(&format!("{long}<Tab>"), &["Radius x  3.210987… "]);
@@ -498,7 +498,7 @@ fn recognise_names_the_shape_and_follows_the_matrix() {
         ],
     );
     shows("f<Enter>r<Space>u", &["certain: ellipse"]);
-    // What is held moves, and the arrows are the matrix's otherwise.
+    // A held shape is moved by the arrows; otherwise they move the cursor of the matrix.
     shows("f<Enter>rg<Right>", &["at 4.01, 4.00", "certain: ellipse"]);
     shows(
         "f<Enter>r<Right>",
@@ -510,17 +510,17 @@ fn recognise_names_the_shape_and_follows_the_matrix() {
             &["Region 1 of 1", "NA     52"],
         );
     }
-    // The answer is there again at once.
+    // The answer is shown again at once.
     shows("f<Enter>r<Esc>r", &["certain: ellipse"]);
 }
 
 #[test]
-fn recognise_goes_through_sets_and_takes_one_by_name() {
+fn recognise_steps_through_sets_and_accepts_a_name() {
     shows("ro", &["model figures-30"]);
     shows("roO", &["certain 100.0 %"]);
     shows(":recognise figures-30<Enter>", &["model figures-30"]);
     shows(":reco<Tab>figures-<Tab><Enter>", &["model figures-30"]);
-    // The set in use stays, with the touches that were kept and their answer.
+    // The current set is kept, with the kept touches and their answer.
     let hexagon = ":figure hexagon --side 3.4 --x0 4.31 --y0 4.52 --angle 17<Enter>";
     shows(
         &format!(":recognise figures-30<Enter>{hexagon}a:recognise nothing<Enter>"),
@@ -537,11 +537,11 @@ fn recognise_goes_through_sets_and_takes_one_by_name() {
 }
 
 #[test]
-fn touches_are_kept_multiplied_and_forgotten() {
+fn touches_are_kept_combined_and_forgotten() {
     let hexagon = ":figure hexagon --side 3.4 --x0 4.31 --y0 4.52 --angle 17<Enter>";
     let one = format!(":recognise figures-30<Enter>{hexagon}");
     shows(&one, &["likely: hexagon", "45.3 %"]);
-    // The touch that was kept counts once, however long it stays on the matrix.
+    // A touch that was kept counts once, however long it remains on the matrix.
     shows(&format!("{one}a"), &["1 touch kept", "45.3 %"]);
     shows(
         &format!("{one}aa"),
@@ -557,7 +557,7 @@ fn touches_are_kept_multiplied_and_forgotten() {
         &["the kept touches are forgotten", "45.3 %"],
     );
     shows(":recognise figures-30<Enter>a", &["nothing is touched"]);
-    // What is on the matrix, although it came while the page was closed.
+    // The touch on the matrix is kept, although it was made while the page was closed.
     let closed = format!(":recognise figures-30<Enter><Esc>{hexagon}:keep<Enter>");
     shows(&closed, &["1 touch kept", "45.3 %"]);
     shows(
@@ -651,7 +651,7 @@ fn the_confusion_matrix_starts_at_the_worst_pair() {
 }
 
 #[test]
-fn a_turn_beyond_a_whole_one_has_no_digits_of_computing() {
+fn a_turn_beyond_360_degrees_shows_no_rounding_error() {
     shows(
         ":figure hexagon --angle 350<Enter>:turn 15.3<Enter>",
         &["5.3°"],
@@ -659,19 +659,19 @@ fn a_turn_beyond_a_whole_one_has_no_digits_of_computing() {
 }
 
 #[test]
-fn esc_takes_a_count_back() {
+fn esc_cancels_a_count() {
     let screen = session("12<Esc>").screen();
     assert!(
         !screen.contains("12 times") && !screen.contains("does nothing"),
         "{screen}"
     );
-    // Another key without a meaning is named, and takes it back too.
+    // Another key without a meaning is named, and also cancels the count.
     let screen = session("12a").screen();
     assert!(
         !screen.contains("12 times") && screen.contains("a does nothing"),
         "{screen}"
     );
-    // Again, when the keys without a meaning have been named.
+    // The same again, after keys without a meaning have been named.
     let screen = session("<Esc>12<Esc>").screen();
     assert!(!screen.contains("12 times"), "{screen}");
     shows("1", &["1 time"]);
@@ -683,25 +683,25 @@ fn esc_takes_a_count_back() {
 #[test]
 fn a_function_key_without_a_meaning_is_named() {
     shows("<F5>", &["F5 does nothing here; ? lists the keys"]);
-    // In a line of text as well, where ? is a character.
+    // Also in a text field, where ? is a character.
     shows(
         "<Space>s<F12>",
         &["F12 does nothing here; F1 lists the keys"],
     );
 }
 
-/// On the page of recognition the keys that hold a shape are in force, not those of the page.
+/// On the page of recognition, a held shape has its own keys instead of those of the page.
 #[test]
 fn help_lists_the_keys_of_a_held_shape() {
     shows("f<Enter>rg?", &["While a shape is held"]);
     shows("f<Enter>r?", &["Recognising"]);
-    // A prompt has its own keys, whatever is held below.
+    // A prompt has its own keys, even while a shape is held.
     shows("f<Enter>g:<F1>", &["In the command line"]);
 }
 
-/// A page of help goes on where the one before ended: its last line comes first.
+/// A page of help continues where the previous one ended: it begins with the last line of that.
 #[test]
-fn help_is_read_page_by_page() {
+fn pages_of_help_overlap_by_a_line() {
     let body = |keys: &str| {
         let screen = session(keys).screen();
         let lines = screen.lines().skip(1).take(19);
@@ -712,9 +712,9 @@ fn help_is_read_page_by_page() {
     assert_eq!(body("?<PageDown><PageUp>"), first);
 }
 
-/// Its ends are reached as those of other lists, and what does nothing there is answered by its own keys.
+/// Home and End reach its ends as in other lists, and an unknown key is answered with the keys of help.
 #[test]
-fn help_has_a_first_and_a_last_line() {
+fn home_and_end_reach_the_ends_of_help() {
     let first = session("?").screen();
     shows("?<End>", &["; the end", "redraw the screen"]);
     assert_eq!(session("?<End><Home>").screen(), first);
@@ -724,9 +724,9 @@ fn help_has_a_first_and_a_last_line() {
     );
 }
 
-/// Those of the other pages stand below the keys that work here, so that a search finds them.
+/// The keys of the other pages are listed below those of this page, so that a search finds them.
 #[test]
-fn help_on_a_page_of_explore_lists_those_of_the_others() {
+fn help_on_a_page_of_explore_lists_the_keys_of_the_others() {
     let mut help = session("fr<Enter>:explore --x0 5 --y0 5<Enter>?");
     shows(
         &help,
@@ -737,7 +737,7 @@ fn help_on_a_page_of_explore_lists_those_of_the_others() {
         "/zoom<Enter>",
         &["match 1 of", "On the map", "+ -"],
     );
-    // Enter opens the histogram from the statistics, whatever it means on this page.
+    // Enter opens the histogram from the statistics; on this page, it has another meaning.
     then(
         &mut help,
         "/its histogram<Enter>",

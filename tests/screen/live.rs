@@ -1,4 +1,4 @@
-//! What the keys of the live page do, on a recording with a clock that stands still.
+//! The keys of the live page, on a recording with a clock that stands still.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use taxel::tui::script::Session;
 use crate::array::{self, array};
 use crate::session::{hides, session, shows, sized, started, then, world};
 
-/// The page after this number of frames, and then these keys.
+/// Opens the page, and presses keys after this number of frames.
 fn watched(frames: usize, keys: &str) -> Session {
     let mut session = session(":watch tests/scripts/touch.csv<Enter>");
     session.frames(frames);
@@ -24,7 +24,7 @@ fn watched(frames: usize, keys: &str) -> Session {
     session
 }
 
-/// The page with settings of the command line, before the first frame.
+/// Opens the page with settings of the command line, before the first frame.
 fn set(change: impl FnOnce(&mut WatchRequest)) -> Session {
     let mut request = WatchRequest::new("tests/scripts/touch.csv");
     change(&mut request);
@@ -33,7 +33,7 @@ fn set(change: impl FnOnce(&mut WatchRequest)) -> Session {
     session
 }
 
-/// Sets a threshold, as a flag does.
+/// Sets a threshold like a flag does.
 fn ruled(request: &mut WatchRequest, rule: Rule) {
     request.rule = Some(SetRule {
         rule,
@@ -42,14 +42,14 @@ fn ruled(request: &mut WatchRequest, rule: Rule) {
     });
 }
 
-/// A threshold by noise, with a tare of the first frames.
+/// Sets a threshold by noise, with a tare of the first frames.
 fn by_noise(request: &mut WatchRequest, tare: u64) {
     ruled(request, Rule::noise(4.0).expect("in range"));
     request.tare = tare;
 }
 
 #[test]
-fn an_imprint_without_taxels_has_none_and_no_imprint_has_no_count() {
+fn an_empty_imprint_has_0_taxels_and_a_missing_one_has_no_count() {
     let mut page = set(|request| ruled(request, Rule::at_least(999.0).expect("in range")));
     page.frames(1);
     shows(&page, &["NA         0\n", "NAE        0\n", "P          –"]);
@@ -67,7 +67,7 @@ fn a_source_is_shown_frame_by_frame() {
 }
 
 #[test]
-fn a_source_that_cannot_be_read_opens_no_page() {
+fn an_unreadable_source_opens_no_page() {
     let keys = ":watch nowhere.csv<Enter>";
     shows(
         keys,
@@ -79,7 +79,7 @@ fn a_source_that_cannot_be_read_opens_no_page() {
         keys,
         &["! tcp://robot: cannot open it: expected tcp://HOST"],
     );
-    // The page that is open stays.
+    // The open page remains.
     let mut page = watched(2, "");
     let refused = page.watch("nowhere.csv");
     assert!(refused.is_err_and(|reason| reason.contains("nowhere.csv")));
@@ -90,13 +90,13 @@ fn a_source_that_cannot_be_read_opens_no_page() {
 }
 
 #[test]
-fn the_threshold_goes_up_and_down_and_changes_its_unit() {
+fn keys_raise_and_lower_the_threshold_and_change_its_unit() {
     shows(&watched(6, "+"), &["threshold  5", "NA         91"]);
     shows(&watched(6, "++"), &["threshold  6"]);
     shows(&watched(6, "+-"), &["threshold  4"]);
     shows(&watched(6, "+%"), &["threshold  6 % of the peak"]);
     shows(&watched(6, "+%+"), &["threshold  11 % of the peak"]);
-    // Back to the very same one, also from a peak below it.
+    // Back to exactly the same threshold, also from a peak below it.
     let threshold = |keys: &str| {
         let screen = watched(6, keys).screen();
         let line = screen.lines().find(|line| line.contains("threshold"));
@@ -110,14 +110,14 @@ fn the_threshold_goes_up_and_down_and_changes_its_unit() {
 }
 
 #[test]
-fn the_unit_changes_by_the_values_that_the_threshold_goes_by() {
+fn changing_the_unit_uses_the_values_that_the_threshold_applies_to() {
     let threshold = |keys: &str| {
         let screen = watched(6, keys).screen();
         let line = screen.lines().find(|line| line.contains("threshold"));
         let line = line.and_then(|line| line.split_once("threshold"));
         line.expect("it is shown").1.trim().to_owned()
     };
-    // Whichever values are shown: tared, raw ones, or the imprint.
+    // The values that are shown do not matter: tared values, raw ones, or the imprint.
     let expected = threshold("t+%");
     assert!(expected.ends_with("% of the peak"), "{expected}");
     assert_eq!([threshold("t+v%"), threshold("t+vv%")], [&*expected; 2]);
@@ -126,7 +126,7 @@ fn the_unit_changes_by_the_values_that_the_threshold_goes_by() {
 }
 
 #[test]
-fn a_tare_is_subtracted_and_given_up() {
+fn a_tare_is_set_and_given_up() {
     shows(
         &watched(6, "t"),
         &["tare of the last 6 frames", "tare       6 frames"],
@@ -137,7 +137,7 @@ fn a_tare_is_subtracted_and_given_up() {
 }
 
 #[test]
-fn a_tare_that_is_being_made_says_how_far_it_is() {
+fn the_progress_of_a_tare_is_shown() {
     let mut page = set(|request| request.tare = 4);
     shows(&page, &["tare: 0 of 4 frames"]);
     page.frames(3);
@@ -152,11 +152,11 @@ fn a_tare_that_is_being_made_says_how_far_it_is() {
     page.frames(1);
     shows(&page, &["frame 3", "tared", "tare       4 frames"]);
     hides(&page, &["tare:"]);
-    // Watched anew before it is made, it begins anew.
+    // If the source is watched again before the tare is made, the tare starts again.
     let mut page = set(|request| request.tare = 4);
     page.frames(3);
     then(&mut page, "<Esc>w", &["tare: 0 of 4 frames"]);
-    // A key makes it of what is there, or gives it up.
+    // A key makes the tare from the frames so far, or gives it up.
     page.frames(2);
     then(&mut page, "T", &["tare       none", "no tare"]);
     hides(&page, &["tare:"]);
@@ -194,7 +194,7 @@ fn frames_are_shown_while_a_threshold_by_noise_has_no_tare() {
     then(&mut page, "m", &["frame 4: marked"]);
     then(&mut page, "t", &["tare of the last 5 frames"]);
     hides(&page, &["needs a tare"]);
-    // It is made too late.
+    // The recording ends before the tare is made.
     let mut page = set(|request| by_noise(request, 9));
     page.frames(20);
     shows(&page, &["frame 7", "! frames for the tare: found 8"]);
@@ -202,7 +202,7 @@ fn frames_are_shown_while_a_threshold_by_noise_has_no_tare() {
 }
 
 #[test]
-fn a_notice_does_not_hide_that_the_source_is_lost() {
+fn a_notice_does_not_hide_a_lost_source() {
     let lost = "lost: Connection reset by peer; trying again each second";
     for (width, height) in [(80, 24), (60, 20)] {
         let mut page = watched(2, "t");
@@ -218,7 +218,7 @@ fn a_notice_does_not_hide_that_the_source_is_lost() {
 }
 
 #[test]
-fn a_source_that_is_silent_has_no_rate() {
+fn a_silent_source_has_no_rate() {
     let mut page = watched(3, "");
     shows(&page, &["rate       10/s"]);
     let mut batch = FrameBatch::default();
@@ -231,7 +231,7 @@ fn a_source_that_is_silent_has_no_rate() {
 }
 
 #[test]
-fn the_question_at_the_end_says_that_a_recording_ends() {
+fn the_question_before_quitting_mentions_the_recording() {
     let mut page = watched(6, "+");
     let event = LiveEvent::Recording("touch-1.npy".to_owned());
     page.send(Message::Worker(WorkerEvent::Live(1, event)));
@@ -243,7 +243,7 @@ fn the_question_at_the_end_says_that_a_recording_ends() {
 }
 
 #[test]
-fn a_frame_that_cannot_be_processed_has_come_all_the_same() {
+fn a_frame_that_cannot_be_processed_is_still_shown() {
     let mut page = set(|request| {
         request.processing.gain = Some(Matrix::filled(2, 2, 1.0));
     });
@@ -258,7 +258,7 @@ fn a_frame_that_cannot_be_processed_has_come_all_the_same() {
 }
 
 #[test]
-fn a_frame_that_has_left_the_history_is_told_from_none() {
+fn a_frame_that_has_left_the_history_is_distinguished_from_no_frame() {
     // Memory for the newest frame only.
     let mut page = set(|request| request.history_bytes = 1);
     page.frames(2);
@@ -275,7 +275,7 @@ fn a_frame_that_has_left_the_history_is_told_from_none() {
 }
 
 #[test]
-fn the_history_is_scrubbed_while_frames_come() {
+fn the_history_can_be_viewed_while_frames_arrive() {
     shows(
         &watched(6, "<Left><Left>"),
         &["frame 3", "frozen, 2 frames behind"],
@@ -293,7 +293,7 @@ fn the_history_is_scrubbed_while_frames_come() {
 }
 
 #[test]
-fn a_narrow_title_keeps_what_is_not_usual() {
+fn a_narrow_title_keeps_unusual_states() {
     let mut page = watched(6, "p<Left>m");
     shows(
         &page,
@@ -315,7 +315,7 @@ fn a_narrow_title_keeps_what_is_not_usual() {
 }
 
 #[test]
-fn a_narrow_title_says_that_maxima_are_shown_and_that_frames_are_recorded() {
+fn a_narrow_title_mentions_maxima_and_recording() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a-recording-of-the-left-hand.npy");
     let values: Vec<f64> = (0..5 * 48 * 48).map(f64::from).collect();
@@ -356,7 +356,7 @@ fn the_peak_of_each_cell_is_held() {
 }
 
 #[test]
-fn the_imprint_goes_to_the_matrix_and_the_source_stays() {
+fn the_imprint_is_put_on_the_matrix_and_the_source_stays_open() {
     shows(
         &watched(6, "<Enter>"),
         &["! no threshold, so no imprint; + sets one"],
@@ -370,7 +370,7 @@ fn the_imprint_goes_to_the_matrix_and_the_source_stays() {
             "\nimprint of frame 5, touch.csv\n",
         ],
     );
-    // The history names the frame, and not the sensor that came with it.
+    // The undo history names the frame, not the sensor that came with it.
     then(&mut page, "u", &["undone: imprint of frame 5"]);
     then(&mut page, "<C-r>", &["redone: imprint of frame 5"]);
     then(&mut page, "w", &["frame 5", "threshold  5"]);
@@ -392,7 +392,7 @@ fn an_imprint_of_cells_that_are_not_square_has_no_lengths_in_mm() {
 }
 
 #[test]
-fn an_imprint_from_a_frame_is_not_saved() {
+fn an_imprint_from_a_frame_is_unsaved_work() {
     let mut page = watched(6, "+<Enter>");
     then(&mut page, "q", &["The imprint is not saved. Quit anyway?"]);
     then(&mut page, "<Esc>stouched<Enter>", &["saved as touched"]);
@@ -400,7 +400,7 @@ fn an_imprint_from_a_frame_is_not_saved() {
     hides(&page, &["not saved"]);
     let mut page = watched(6, "+<Enter>nq");
     shows(&page, &["An earlier drawing is not saved. Quit anyway?"]);
-    // Back on the page nothing was taken yet.
+    // Back on the page, nothing has been taken yet.
     then(&mut page, "<Esc>uq", &["not saved"]);
     then(&mut page, "<Esc>uq", &[]);
     hides(&page, &["not saved"]);
@@ -420,7 +420,7 @@ fn a_frame_is_marked_and_unmarked() {
     then(&mut page, "<End>", &["frame 5", "marked"]);
 }
 
-/// The page after two frames, and three more that are recorded in a folder.
+/// Opens the page, and records three frames in a folder after the first two.
 fn recording_in(folder: &Path) -> Session {
     let world = world().confined_to(folder.to_owned());
     let mut page = started(world, ":watch tests/scripts/touch.csv<Enter>");
@@ -455,9 +455,9 @@ fn a_script_records_each_frame_once() {
     assert_eq!(beside["marks"][0]["number"], 5, "{beside}");
 }
 
-/// Nothing can come into a recording that is begun after the end; one that runs can still be ended.
+/// A recording that is begun after the end would remain empty; one that is running can still be ended.
 #[test]
-fn nothing_is_recorded_of_a_source_that_has_ended() {
+fn a_source_that_has_ended_cannot_be_recorded() {
     let folder = tempfile::tempdir().expect("a folder");
     let world = world().confined_to(folder.path().to_owned());
     let mut page = started(world, ":watch tests/scripts/touch.csv<Enter>");
@@ -477,7 +477,7 @@ fn nothing_is_recorded_of_a_source_that_has_ended() {
 }
 
 #[test]
-fn a_recording_has_the_threshold_and_the_tare_of_its_end() {
+fn a_recording_stores_the_threshold_and_tare_at_its_end() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut page = recording_in(folder.path());
     let beside = || {
@@ -499,7 +499,7 @@ fn a_recording_has_the_threshold_and_the_tare_of_its_end() {
 }
 
 #[test]
-fn an_error_is_shown_at_once_in_place_of_an_older_notice() {
+fn an_error_replaces_an_older_notice_at_once() {
     let mut page = watched(6, "t");
     shows(&page, &["tare of the last 6 frames"]);
     let frame = Arc::new(taxel::frame::Frame::new(3, 3));
@@ -518,7 +518,7 @@ fn an_error_is_shown_at_once_in_place_of_an_older_notice() {
 }
 
 #[test]
-fn the_shape_is_named_by_sets_of_shapes_in_turn() {
+fn a_key_selects_the_next_model_that_names_shapes() {
     let mut page = watched(6, "nnn");
     shows(&page, &["shapes are named by model shapes"]);
     then(&mut page, "n", &["shapes are not named"]);
@@ -528,7 +528,7 @@ fn the_shape_is_named_by_sets_of_shapes_in_turn() {
         "n",
         &["shapes are named by model figures", "shape      –"],
     );
-    // The ring of the recording is none of the figures: only the nearest of their imprints can be said.
+    // The ring of the recording is none of the figures: only the nearest of their imprints can be named.
     then(
         &mut page,
         "+++++++",
@@ -545,7 +545,7 @@ fn the_shape_is_named_by_sets_of_shapes_in_turn() {
 }
 
 #[test]
-fn a_name_is_short_where_there_is_little_room() {
+fn a_name_is_shortened_if_there_is_little_room() {
     let keys = ":watch<Space>examples/recording.csv<Space>--at-least<Space>10<Enter>";
     for (columns, shape) in [
         (80, "shape      hexagon 100 %, certain"),
@@ -559,9 +559,9 @@ fn a_name_is_short_where_there_is_little_room() {
     }
 }
 
-/// The error of a source names flags that can be typed behind it.
+/// The error of a source names flags that can be appended to the command.
 #[test]
-fn a_source_is_named_with_the_flags_of_the_command_line() {
+fn watch_accepts_the_flags_of_the_command_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("two by three.csv");
     std::fs::write(&file, "1,2,3,4,5,9\n1,2,3,4,5,8\n1,2,3,4,5,7\n").expect("written");
@@ -593,7 +593,7 @@ fn a_source_is_named_with_the_flags_of_the_command_line() {
     );
 }
 
-/// No frame comes after the end, so nothing but the key can begin the search.
+/// No frame comes after the end, so only the key can start the search.
 #[test]
 fn the_last_imprint_of_a_source_that_has_ended_is_named() {
     let mut page = watched(6, "+++++++");
@@ -608,7 +608,7 @@ fn the_last_imprint_of_a_source_that_has_ended_is_named() {
 
 #[test]
 fn a_name_that_noise_does_not_explain_is_doubted() {
-    // The ring is none of the figures: as many taxels differ as flip at one in five.
+    // The ring is none of the figures; the number of differing taxels is what a noise of one in five explains.
     for (flip, how_sure) in [(0.001, " %, perhaps none"), (0.2, " %, likely")] {
         let mut page = set(|request| {
             request.noise = Some(Noise::new(flip).expect("in range"));
@@ -622,21 +622,21 @@ fn a_name_that_noise_does_not_explain_is_doubted() {
 }
 
 #[test]
-fn a_page_that_is_opened_again_names_by_the_model_that_it_shows() {
+fn a_reopened_page_uses_the_model_that_it_shows() {
     let mut page = watched(6, "n+++++++");
     shows(&page, &["shape      unknown", "model      figures"]);
     then(&mut page, "<Esc>w", &["model      figures"]);
     page.frames(5);
     shows(&page, &["frame 4", "shape      ", "nearest    "]);
     hides(&page, &["…", "training or"]);
-    // Nor does it name by a model that was given up.
+    // The page does not name shapes with a model that was given up, either.
     then(&mut page, "nnn<Esc>w", &[]);
     page.frames(6);
     hides(&page, &["nearest"]);
 }
 
 #[test]
-fn marks_and_the_age_of_the_tare_end_with_the_source_that_they_belong_to() {
+fn marks_and_the_age_of_the_tare_end_with_their_source() {
     let mut page = watched(3, "mt");
     page.frames(3);
     shows(
@@ -651,11 +651,11 @@ fn marks_and_the_age_of_the_tare_end_with_the_source_that_they_belong_to() {
 }
 
 #[test]
-fn frames_of_an_earlier_watch_have_none_of_the_present_marks() {
+fn frames_of_an_earlier_watch_do_not_have_the_present_marks() {
     let mut page = watched(2, "<Esc>w");
     page.frames(1);
     then(&mut page, "m", &["frame 0: marked", "marked     frame 0"]);
-    // The frame 0 of before, behind the frame 1 of before.
+    // The earlier frame 0, behind the earlier frame 1.
     then(&mut page, "<Left><Left>", &["frame 0", "2 frames behind"]);
     hides(&page, &["behind  marked", "marked  frozen"]);
     let refused = "! frame 0 came before the source was watched again";
@@ -665,7 +665,7 @@ fn frames_of_an_earlier_watch_have_none_of_the_present_marks() {
 }
 
 #[test]
-fn a_tare_of_the_users_own_stays_where_the_page_is_opened_again() {
+fn a_tare_set_by_the_user_stays_when_the_page_is_reopened() {
     let mut page = watched(6, "tp");
     shows(&page, &["tare       6 frames", "peak held"]);
     then(&mut page, "<Esc>w", &[]);
@@ -683,7 +683,7 @@ fn values_far_below_1_have_shades_and_fine_steps() {
     page.frames(1);
     shows(&page, &["frame 0", "0.005"]);
     then(&mut page, "++", &["threshold  0.00055"]);
-    // The least number that has four decimals is still far too large for these.
+    // The smallest number with four decimals is still far too large for these values.
     std::fs::write(&path, "time,r0c0,r0c1\n0.0,0.000001,0.0000042\n").expect("written");
     let mut page = session(&format!(":watch {}<Enter>", path.display()));
     page.frames(1);
@@ -692,13 +692,13 @@ fn values_far_below_1_have_shades_and_fine_steps() {
 }
 
 #[test]
-fn a_broken_description_beside_a_recording_is_told() {
+fn a_broken_description_beside_a_recording_is_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.npy");
     std::fs::write(&path, array("(1, 1, 2)", false, &[9.0, 1.0])).expect("written");
     let broken = "{\"format\":\"taxel-touch/1\",\"unit\":3}";
     std::fs::write(path.with_extension("json"), broken).expect("written");
-    // The path goes first, and its end may not fit.
+    // The path comes first, and the end of the message may not fit.
     let mut page = sized(
         (160, 24),
         false,
@@ -758,7 +758,7 @@ fn a_sensor_larger_than_the_screen_is_seen_in_parts() {
     then(&mut page, "i#", &[]);
     page.resize(40, 12);
     shows(&page, &["tall.npy  frame 0  at 0-19, 20-35"]);
-    // Where all are visible, there are none to go to.
+    // If all taxels are visible, there are no others to scroll to.
     hides(&watched(1, ""), &["other taxels"]);
     shows(&watched(1, "<S-Down>"), &["all taxels are visible"]);
 }
@@ -775,7 +775,7 @@ fn the_marks_on_taxels_are_explained() {
 }
 
 #[test]
-fn the_numbers_can_have_the_whole_page() {
+fn a_key_gives_the_numbers_the_whole_page() {
     let mut page = watched(6, "+");
     page.resize(40, 20);
     hides(&page, &["not drawn"]);
@@ -785,10 +785,10 @@ fn the_numbers_can_have_the_whole_page() {
 }
 
 #[test]
-fn the_range_and_the_first_threshold_go_by_the_values_that_are_shown() {
+fn the_range_and_the_first_threshold_depend_on_the_values_shown() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("offset.npy");
-    // A cell that is stuck, and one that rests at 1000 and is touched in the last frames.
+    // One cell is stuck; another rests at 1000 and is touched in the last frames.
     let frames = [1000.0, 1000.0, 1000.0, 1040.0, 1040.0, 1040.0];
     let values: Vec<f64> = frames.iter().flat_map(|&value| [4095.0, value]).collect();
     std::fs::write(&path, array("(6, 1, 2)", false, &values)).expect("written");
@@ -808,7 +808,7 @@ fn the_range_and_the_first_threshold_go_by_the_values_that_are_shown() {
     then(&mut page, "+", &["threshold  5\n", "NA         1"]);
     then(&mut page, "vv", &["range      0 ░▒▓█ 5000"]);
     then(&mut page, "vT", &["range      0 ░▒▓█ 5000"]);
-    // A cell without a value does not count, whatever it sends.
+    // A masked cell is ignored, whatever it sends.
     let mask: Imprint = "#.".parse().expect("an imprint");
     let mut page = opened(&|request| request.processing.view.mask = Some(mask));
     shows(&page, &["range      0 ░▒▓█ 1000"]);
@@ -821,9 +821,9 @@ fn the_range_and_the_first_threshold_go_by_the_values_that_are_shown() {
     then(&mut page, "+", &["threshold  5\n"]);
 }
 
-/// On a narrow panel a line says less, but no word and no number is cut.
+/// On a narrow panel a line says less, but no word and no number is cut off.
 #[test]
-fn narrow_numbers_are_whole() {
+fn numbers_on_a_narrow_panel_are_not_cut_off() {
     let mut page = watched(3, "t+");
     page.frames(3);
     shows(

@@ -1,4 +1,4 @@
-//! The program's screen: in memory, driven by keys and scripts, and the real program in a pseudo-terminal.
+//! Tests of the screen: in memory, driven by keys and scripts, and of the real program in a pseudo-terminal.
 
 #[path = "../common/array.rs"]
 mod array;

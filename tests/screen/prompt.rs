@@ -1,4 +1,4 @@
-//! The command line at the foot of the screen, and help in every place.
+//! The command line at the foot of the screen, and help everywhere.
 
 use taxel::tui::keys::action::Action;
 use taxel::tui::keys::binding::Context;
@@ -7,9 +7,9 @@ use taxel::tui::prompt::commands::{commands, find};
 
 use crate::session::{hides, press, session, shows, then};
 
-/// Whoever has no such key, or cannot press it, has a word.
+/// Users who have no such key, or cannot press it, can use a word.
 #[test]
-fn every_action_has_a_command() {
+fn every_action_has_a_command_word() {
     let listed = commands();
     let said: Vec<&Action> = listed
         .iter()
@@ -20,7 +20,7 @@ fn every_action_has_a_command() {
         .iter()
         .filter(|binding| places.contains(&binding.context))
         .flat_map(|binding| binding.keys.iter());
-    // The digits of a count belong to the key that follows them.
+    // The digits of a count belong to the following key.
     let counts = |action: &Action| action.name.starts_with("count-");
     for (key, action) in bound.filter(|(_, action)| !counts(action)) {
         assert!(said.contains(action), "{key}: {action:?}");
@@ -29,7 +29,7 @@ fn every_action_has_a_command() {
     }
 }
 
-/// No name stands twice, and none is the short form of another.
+/// All names differ, and none is the short form of another.
 #[test]
 fn commands_are_found_by_their_names() {
     for command in commands() {
@@ -39,7 +39,7 @@ fn commands_are_found_by_their_names() {
 }
 
 #[test]
-fn the_cursor_and_the_shape_are_moved_by_words() {
+fn the_cursor_and_the_shape_are_moved_by_commands() {
     for (line, shown) in [
         ("cursor left", "column  7, row  8"),
         ("cursor start", "column  0, row  8"),
@@ -76,9 +76,9 @@ fn the_cursor_and_the_shape_are_moved_by_words() {
 }
 
 #[test]
-fn restore_says_what_it_misses() {
+fn restore_says_if_there_is_nothing_to_restore() {
     let mut session = session("<Space>:restore<Enter>");
-    // It used to take back the toggle.
+    // An earlier version undid the toggle instead.
     shows(&session, &["! the trash is empty", "drawn by hand"]);
     press(
         &mut session,
@@ -91,7 +91,7 @@ fn restore_says_what_it_misses() {
         ":delete one<Enter>y:restore<Enter>",
         &["one is back"],
     );
-    // What was deleted before something else was done, perhaps by an earlier run.
+    // This shape was deleted before another action, perhaps in an earlier run.
     then(&mut session, "<Space>:restore<Enter>", &["two is back"]);
 }
 
@@ -100,7 +100,7 @@ fn names_and_flags_are_completed() {
     let mut session = session("<Space>:save mine<Enter>:load mi<Tab>");
     shows(&session, &[":load mine"]);
     then(&mut session, "<Enter>", &["mine loaded"]);
-    // Only one's own can be deleted.
+    // Only the user's own shapes can be deleted.
     then(&mut session, ":delete <Tab>", &[":delete mine"]);
     then(
         &mut session,
@@ -114,9 +114,9 @@ fn names_and_flags_are_completed() {
     );
 }
 
-/// Names may have spaces, so that one space would not say where a name ends.
+/// Names may contain spaces, so a single space would not show where a name ends.
 #[test]
-fn two_spaces_part_the_names_that_are_offered() {
+fn offered_names_are_separated_by_two_spaces() {
     let mut session = session("<Space>sa b<Enter>n<Space>sa c<Enter>");
     for command in ["load", "compare", "delete"] {
         let keys = format!(":{command} a <Tab>");
@@ -128,7 +128,7 @@ fn two_spaces_part_the_names_that_are_offered() {
     then(&mut session, ":restore <Tab>", &[":restore a    a c  a b"]);
 }
 
-/// As many candidates as fit, and how many more there are.
+/// Only as many candidates are shown as fit, with the number of the others.
 #[test]
 fn candidates_fit_on_the_screen() {
     for width in [80, 60, 40] {
@@ -149,7 +149,7 @@ fn candidates_fit_on_the_screen() {
 }
 
 #[test]
-fn earlier_lines_come_back_one_by_one() {
+fn up_and_down_recall_earlier_lines() {
     let mut session = session(":new<Enter>:grab<Enter>:new<Enter>:new<Enter>:z<Up>");
     for (keys, shown) in [
         ("", ":new"),
@@ -158,7 +158,7 @@ fn earlier_lines_come_back_one_by_one() {
         ("<Up>", ":new"),
         ("<Down>", ":grab"),
         ("<Down><Down>", ":z"),
-        // Below what was typed are the offers.
+        // Below the typed line are the offers.
         ("<Down>", ":zoom"),
         ("<Up>", ":z"),
     ] {
@@ -169,9 +169,9 @@ fn earlier_lines_come_back_one_by_one() {
     }
 }
 
-/// Help tells the keys of the place where it is asked for, and leads back there.
+/// Help shows the keys of the place where it is opened, and returns to it.
 #[test]
-fn help_is_everywhere() {
+fn help_is_available_everywhere() {
     for (keys, back, title, row, foreign) in [
         (
             "f?",
@@ -237,12 +237,12 @@ fn help_is_everywhere() {
         assert!(!session.screen().contains(row), "{keys}: help is closed");
         shows(&session, &[back]);
     }
-    // Text is text where it can be some.
+    // In a text field, ? is a character.
     shows(&session("<Space>sa?"), &["'?' cannot be in a name"]);
     shows(&session(":a?"), &[":a?"]);
 }
 
-/// A long list says where one is, and that there is more.
+/// A long list shows the position, and that there is more.
 #[test]
 fn a_long_help_says_that_there_is_more() {
     let mut session = session("?");
@@ -366,7 +366,7 @@ fn the_shape_is_turned_and_zoomed_by_commands() {
     );
 }
 
-/// What one types next belongs to the prompt, not to the matrix.
+/// The next keys belong to the prompt, not to the matrix.
 #[test]
 fn a_refused_prompt_stays_open() {
     for (line, refusal) in [
@@ -392,7 +392,7 @@ fn a_refused_prompt_stays_open() {
         let mut session = session(&format!("f<Enter>:{line}<Enter>"));
         shows(&session, &[refusal, &format!("\n:{line}")]);
         then(&mut session, " x", &[&format!(":{line} x")]);
-        // Once it is closed, it stays closed.
+        // A prompt that was closed stays closed.
         press(&mut session, "<Esc><Right>");
         hides(&session, &[&format!(":{line}")]);
     }
@@ -444,7 +444,7 @@ fn a_seed_is_confirmed() {
 }
 
 #[test]
-fn an_unknown_flag_is_answered_by_those_of_the_command() {
+fn an_unknown_flag_is_answered_with_the_flags_of_the_command() {
     shows(
         ":sensor --cols 3<Enter>",
         &["! --cols is unknown, expected one of --columns, --rows, --threshold, --pitch"],

@@ -1,4 +1,4 @@
-//! Recognition on the screen: stored models, the cache, work that is stopped, what is remembered.
+//! Recognition on the screen: stored models, the cache, stopping work, and what is remembered.
 
 use std::fs;
 use std::path::Path;
@@ -26,7 +26,7 @@ use crate::session::{hides, models, press, session, sized, started, untrained, w
 /// The longest time that work may take.
 const DEADLINE: Duration = Duration::from_secs(120);
 
-/// A library with a stored model: a bar, and one shape under two names.
+/// Makes a library with a stored model: a bar, and one shape under two names.
 fn with_model(folder: &Path) -> Library {
     let library = Library::open(folder.join("library"));
     let sensor = Sensor::default();
@@ -57,7 +57,7 @@ fn shows(session: &Session, texts: &[&str]) {
 }
 
 #[test]
-fn a_stored_model_is_completed_answers_and_is_remembered() {
+fn a_stored_model_is_completed_used_and_remembered() {
     let folder = tempfile::tempdir().expect("a folder");
     let library = with_model(folder.path());
     let world = || World::new(library.clone()).with_model_cache(Some(models()));
@@ -76,11 +76,11 @@ fn a_stored_model_is_completed_answers_and_is_remembered() {
         &["unknown: no shape of the model leaves this", "nearest: "],
     );
     shows(&begin("r"), &["Recognise: model my parts"]);
-    // With another one chosen, that is remembered.
+    // When another model is chosen, that one is remembered.
     begin("rO");
     shows(&begin("r"), &["Recognise: model shapes"]);
     shows(&begin(":recognise <Tab>"), &["figures-30", "my parts"]);
-    // A file is named by its path, and not remembered: the next run may begin in another folder.
+    // A file is named by its path and not remembered, because the next run may start in another folder.
     let models = ModelFolder::beside(library.folder());
     let file = folder.path().join("parts of today.npz");
     fs::copy(models.file(&Name::new("my parts").expect("a name")), &file).expect("copied");
@@ -98,24 +98,24 @@ fn a_stored_model_is_completed_answers_and_is_remembered() {
         &begin(":recognise ./Cargo.t<Tab>"),
         &[":recognise ./Cargo.toml"],
     );
-    // So is one in the working folder by its name; this one holds no model.
+    // A file in the working folder is named without a path; this one contains no model.
     shows(&begin(":recognise Cargo.toml<Enter>"), &["Cargo.toml: "]);
-    // One that does not exist is refused by what there is, and not remembered.
+    // A model that does not exist is refused with a list of the others, and not remembered.
     let all = "no model or file \"nonsense\"; there are figures, figures-30, shapes, my parts";
     shows(&begin(":recognise nonsense<Enter>"), &[all]);
     shows(&begin("r"), &["Recognise: model shapes"]);
 }
 
 #[test]
-fn the_pose_is_that_of_the_shape_that_the_touches_name() {
-    // Two touches: the octagon is the likeliest of the second one alone, the ellipse of both.
+fn the_pose_belongs_to_the_shape_that_all_touches_name() {
+    // Of two touches, the octagon is the likeliest for the second one alone, but the ellipse for both.
     let begin = ":seed 4<Enter>:recognise figures-30<Enter>t<Space><Esc>";
     let mut session = started(world(), begin);
     shows(&session, &["likely: ellipse", "any angle"]);
     hides(&session, &["repeats every"]);
     press(&mut session, "x");
     shows(&session, &["likely: octagon", "repeats every 45°"]);
-    // Touches that contradict each other: nothing is named, so the pose says whose it is.
+    // Touches that contradict each other name no shape, so the pose says whose it is.
     let contradicts = ":recognise figures<Enter>\
         :figure rectangle --length 4 --width 6 --x0 5 --y0 5<Enter>a\
         :figure triangle --side 6 --x0 5 --y0 5<Enter>";
@@ -130,7 +130,7 @@ fn the_pose_is_that_of_the_shape_that_the_touches_name() {
 }
 
 #[test]
-fn the_pose_has_its_units() {
+fn the_pose_is_shown_with_its_unit() {
     shows(
         &session("f<Enter>r"),
         &["centre 8.00 ± 0.09, 8.00 ± 0.09 cells"],
@@ -142,9 +142,9 @@ fn the_pose_has_its_units() {
     );
 }
 
-/// Beside a large sensor there are few columns: what does not fit into one line goes on in the next.
+/// There are few columns beside a large sensor, so long lines are wrapped.
 #[test]
-fn nothing_is_cut_beside_a_large_sensor() {
+fn nothing_is_cut_off_beside_a_large_sensor() {
     let sensor = ":sensor --columns 64 --rows 64<Enter>:seed 4<Enter>";
     let mut session = started(
         world(),
@@ -154,7 +154,7 @@ fn nothing_is_cut_beside_a_large_sensor() {
         session.resize(size.0, size.1);
         let screen = session.screen();
         assert!(!screen.contains('…'), "{size:?}\n{screen}");
-        // The panel alone, as one text.
+        // The text of the panel alone.
         let panel = screen.lines().map(|line| {
             let columns: Vec<char> = line.chars().collect();
             let first = columns.len().min(usize::from(size.0) - 30);
@@ -188,7 +188,7 @@ fn a_set_that_does_not_exist_changes_nothing() {
     press(&mut session, "<Esc>r");
     shows(&session, &["Recognise: model figures", "t quiz"]);
     shows_no(&session, "not read");
-    // With the page open it stays open, with the set that it has.
+    // The open page stays open, with the set that it has.
     press(&mut session, ":recognise nope<Enter>");
     shows(&session, &[refused, "Recognise: model figures"]);
     press(&mut session, "<Esc><Esc>:recognise nope<Enter><Esc>");
@@ -196,7 +196,7 @@ fn a_set_that_does_not_exist_changes_nothing() {
 }
 
 #[test]
-fn a_damaged_or_older_model_of_the_cache_is_made_again() {
+fn a_damaged_or_outdated_model_in_the_cache_is_trained_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let cache = folder.path().join("cache");
     let open = || {
@@ -223,7 +223,7 @@ fn a_damaged_or_older_model_of_the_cache_is_made_again() {
     }
 }
 
-/// A program whose workers run beside it, and what they tell.
+/// A program whose workers run beside it, and the events that they report.
 struct Beside {
     session: Session,
     told: Receiver<WorkerEvent>,
@@ -233,14 +233,14 @@ impl Beside {
     fn new(keys: &str) -> Self {
         let (post, told) = channel();
         let world = untrained().with_workers(Arc::new(move |told| {
-            // The test may be over.
+            // The test may have ended.
             let _ = post.send(told);
         }));
         let session = started(world, keys);
         Self { session, told }
     }
 
-    /// Passes on what workers tell until something is on the screen.
+    /// Passes on the events of workers until a text is on the screen.
     fn until(&mut self, text: &str) {
         while !self.session.screen().contains(text) {
             let told = self.told.recv_timeout(DEADLINE);
@@ -251,7 +251,7 @@ impl Beside {
 }
 
 #[test]
-fn work_with_more_poses_than_the_limit_of_a_world_is_stopped() {
+fn work_beyond_the_pose_limit_is_stopped() {
     let of_eleven = "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0<Enter>";
     let stopped = "stopped before anything was complete";
     let looks = |poses| started(untrained().with_pose_limit(poses), of_eleven);
@@ -269,7 +269,7 @@ fn work_with_more_poses_than_the_limit_of_a_world_is_stopped() {
 }
 
 #[test]
-fn escape_stops_a_training_and_enter_begins_it_again() {
+fn escape_stops_a_training_and_enter_restarts_it() {
     let mut program = Beside::new(":recognise shapes<Enter>");
     program.until("training: ");
     shows(&program.session, &["Esc stops"]);
@@ -283,7 +283,7 @@ fn escape_stops_a_training_and_enter_begins_it_again() {
 }
 
 #[test]
-fn escape_stops_the_sizes_and_what_was_found_stays() {
+fn escape_stops_the_sizes_and_keeps_the_results() {
     let mut program = Beside::new("r");
     program.until("best possible error");
     press(
@@ -303,7 +303,7 @@ fn escape_stops_the_sizes_and_what_was_found_stays() {
 }
 
 #[test]
-fn a_search_for_poses_ends_with_its_page_and_with_its_imprint() {
+fn a_search_for_poses_is_stopped_when_its_page_or_imprint_changes() {
     let after = |app: &mut App, message| update(app, message).or_else(|| next_work(app));
     let mut app = started(world(), "fr<Enter>r").app().clone();
     let begun = after(&mut app, Message::Toggle);

@@ -1,4 +1,4 @@
-//! Screens of every size and every character set.
+//! Screens in every size and character set.
 
 use taxel::sensor::Sensor;
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
@@ -7,7 +7,7 @@ use taxel::tui::widget::theme::{ColorDepth, Palette, Theme};
 
 use crate::session::{hides, on, press, shows, sized, then, world};
 
-/// No size is too small for any screen, and none panics.
+/// No size is too small for any screen, and none causes a panic.
 #[test]
 fn every_size_of_every_screen_is_drawn() {
     let screens = [
@@ -52,7 +52,7 @@ fn every_size_of_every_screen_is_drawn() {
             for width in (0..=120).step_by(7).chain(17..=24).chain(58..70) {
                 for height in (0..=50).step_by(3) {
                     session.resize(width, height);
-                    // Who looks at it has it drawn.
+                    // Asking for the cursor draws the screen.
                     let _ = session.cursor();
                 }
             }
@@ -64,10 +64,10 @@ fn every_size_of_every_screen_is_drawn() {
     }
 }
 
-/// On a matrix that is too large for the screen the described region comes into sight, wherever the cursor is, and a step
-/// of the cursor leads back to it.
+/// On a matrix that is too large for the screen, the described region scrolls into view, wherever the cursor is, and a
+/// move of the cursor scrolls back to it.
 #[test]
-fn the_described_region_comes_into_sight_and_so_does_a_cursor_that_moves() {
+fn the_described_region_and_a_moving_cursor_scroll_into_view() {
     let options = Options {
         sensor: Sensor::new(64, 64).expect("in range"),
         ..Options::plain(false)
@@ -96,7 +96,7 @@ fn the_described_region_comes_into_sight_and_so_does_a_cursor_that_moves() {
     }
 }
 
-/// A locale without Unicode gets nothing but ASCII, on every screen.
+/// In a locale without Unicode, every screen is pure ASCII.
 #[test]
 fn ascii_screens_are_ascii() {
     for keys in [
@@ -128,14 +128,14 @@ fn ascii_screens_are_ascii() {
     }
 }
 
-/// The lines of a screen as one text, as a reader puts a broken line together.
+/// Returns the lines of a screen as one text, joining lines that were broken.
 fn joined(screen: &str) -> String {
     let lines: Vec<&str> = screen.lines().map(str::trim).collect();
     lines.join(" ")
 }
 
 #[test]
-fn questions_and_notices_are_read_to_their_end_on_narrow_screens() {
+fn questions_and_notices_are_complete_on_narrow_screens() {
     for (keys, text) in [
         (
             "<Space>q",
@@ -158,7 +158,7 @@ fn questions_and_notices_are_read_to_their_end_on_narrow_screens() {
 }
 
 #[test]
-fn what_does_not_fit_ends_in_an_ellipsis() {
+fn text_that_does_not_fit_ends_in_an_ellipsis() {
     let touched = "f<6x:Tab>2<Enter><Space>";
     let whole = "wall 2.00 + 1 by hand";
     shows(&sized((80, 24), false, touched), &[whole]);
@@ -169,12 +169,12 @@ fn what_does_not_fit_ends_in_an_ellipsis() {
         assert!(line.ends_with(end), "{line}");
         assert_eq!(line.chars().count(), 60, "{line}");
     }
-    // That something is cut off is said whatever is before it.
+    // The note that something is cut off is shown, whatever is before it.
     for ascii in [false, true] {
         let screen = sized((60, 24), ascii, "f<6x:Tab>2<Enter>g++<5x:Left>").screen();
         assert!(screen.contains("; reaches beyond the sensor\n"), "{screen}");
     }
-    // Of the taxel under the cursor what matters most comes first, and no word is cut.
+    // For the taxel under the cursor, the most important information comes first, and no word is cut off.
     shows(
         &sized((40, 24), false, "f<Enter>"),
         &["\n 8,  8  1.000000    active  step 0.01\n"],
@@ -186,11 +186,11 @@ fn what_does_not_fit_ends_in_an_ellipsis() {
 }
 
 #[test]
-fn a_long_name_is_typed_and_told_in_whole() {
+fn a_long_name_can_be_typed_and_is_shown_completely() {
     let name = format!("{}end", "abcdefgh".repeat(8));
     for (size, seen) in [((80, 24), 67), ((40, 24), 29), ((30, 8), 19)] {
         let screen = sized(size, false, &format!("<Space>s{name}")).screen();
-        // What is hidden before its end is marked, and the text cursor has a column behind it.
+        // The hidden beginning is marked, and there is a column for the text cursor after the end.
         let (hidden, end) = name.split_at(name.len() - seen);
         let mark = if hidden.is_empty() { "" } else { "…" };
         assert!(
@@ -203,7 +203,7 @@ fn a_long_name_is_typed_and_told_in_whole() {
 }
 
 #[test]
-fn a_list_tells_what_is_out_of_sight() {
+fn a_list_shows_how_many_rows_are_out_of_view() {
     let name = "a name of more than twenty-four characters";
     let mut session = sized((80, 24), false, &format!("<Space>s{name}<Enter>l"));
     let screen = session.screen();
@@ -221,7 +221,7 @@ fn a_list_tells_what_is_out_of_sight() {
         !screen.contains(" above, "),
         "all of it is in sight\n{screen}"
     );
-    // What made it is longer than the preview is wide, and is broken.
+    // The source is longer than the preview is wide, so it is wrapped.
     let whole = "ellipse rx 4.00 ry 4.00 at 1.99,";
     assert!(screen.contains(whole), "{screen}");
     assert!(screen.contains("1.47, 0°, wall 2.00"), "{screen}");
@@ -236,12 +236,12 @@ fn a_list_tells_what_is_out_of_sight() {
 }
 
 #[test]
-fn matrix_and_descriptors_change_places_only_where_one_of_them_is_seen() {
+fn matrix_and_descriptors_are_swapped_only_if_one_is_visible() {
     let mut wide = sized((80, 24), false, "i");
     assert!(wide.screen().contains("both visible"), "{}", wide.screen());
     wide.resize(40, 24);
     assert!(!wide.screen().contains("NA     –"), "{}", wide.screen());
-    // The hint names what the key leads to.
+    // The hint names what the key will show.
     let hints = |keys: &str| {
         let screen = sized((60, 20), false, keys).screen();
         screen.lines().last().map(str::to_owned)
@@ -254,7 +254,7 @@ fn matrix_and_descriptors_change_places_only_where_one_of_them_is_seen() {
     named("f<Enter>i", "i matrix");
     named(":recognise figures-30<Enter>t", "Tab matrix");
     named(":recognise figures-30<Enter>t<Tab>", "Tab list");
-    // A click on the descriptors draws nothing on the matrix that they hide.
+    // A click on the descriptors does not draw on the matrix that they hide.
     press(&mut wide, "f<Enter>i");
     let before = wide.app().shown().clone();
     for kind in [MouseKind::Press, MouseKind::Release] {
@@ -267,9 +267,9 @@ fn matrix_and_descriptors_change_places_only_where_one_of_them_is_seen() {
     assert_eq!(wide.app().shown(), &before);
 }
 
-/// A number of the ruler is left out where it would touch what stands beside the matrix.
+/// A number of the ruler is omitted if it would touch the text beside the matrix.
 #[test]
-fn rulers_keep_off_the_descriptors() {
+fn rulers_do_not_touch_the_descriptors() {
     let ruler = |keys: &str| {
         let screen = sized((60, 19), false, keys).screen();
         let line = screen
@@ -283,9 +283,9 @@ fn rulers_keep_off_the_descriptors() {
     }
 }
 
-/// Help says all of what keys do, on narrow screens in more lines, and nothing that does not hold where it is asked for.
+/// Help explains all keys completely, wrapped on narrow screens, and lists only keys that work where it was opened.
 #[test]
-fn help_is_whole_and_holds_where_it_is() {
+fn help_is_complete_and_fits_its_context() {
     for size in [(80, 24), (60, 20), (46, 20), (40, 24), (24, 20)] {
         let help = joined(&sized(size, false, "?").screen());
         let text = "New: empty the matrix, to draw by hand";
@@ -294,15 +294,15 @@ fn help_is_whole_and_holds_where_it_is() {
         assert!(end.contains("the keys that work here"), "{end}");
     }
     let held = sized((80, 60), false, "f<Enter>g?");
-    // What an outer context has under other keys too stays with those.
+    // If an outer context has other keys for the same action, these are still listed.
     shows(&held, &["move the shape by a step", "  Ctrl-C   "]);
     hides(&held, &["move the cursor"]);
     shows("f<Enter>e?", &["Ranges of a sweep"]);
 }
 
-/// The title has the sensor, the pitch where one is set, and the name; on a low screen the name stands with the source.
+/// The title has the sensor, the pitch if one is set, and the name; on a low screen, the name is beside the source.
 #[test]
-fn a_title_names_sensor_and_shape() {
+fn the_title_names_sensor_and_shape() {
     let title = |screen: String| screen.lines().nth(1).unwrap_or_default().to_owned();
     let at = |keys: &str| title(sized((80, 24), false, keys).screen());
     assert_eq!(at(""), "16 × 16 · threshold 0.50");
@@ -312,7 +312,7 @@ fn a_title_names_sensor_and_shape() {
     assert_eq!(loaded, "16 × 16 · threshold 0.50 · washer");
     let changed = at("lwasher<Enter><Space>");
     assert_eq!(changed, "16 × 16 · threshold 0.50 · washer*");
-    // It follows a form, and a page over the whole body covers it.
+    // The title follows a form, and a full page covers it.
     assert_eq!(at("S<Tab><Tab><C-u>0.3"), "16 × 16 · threshold 0.30");
     assert!(!at("?").contains("threshold"));
     let low = sized((60, 22), false, "lwasher<Enter><Space>").screen();
@@ -322,9 +322,9 @@ fn a_title_names_sensor_and_shape() {
     assert_eq!(ascii, "16 x 16, threshold 0.50");
 }
 
-/// A low and narrow screen shows every value to its end.
+/// A low and narrow screen shows every value completely.
 #[test]
-fn no_descriptor_is_cut_on_a_small_screen() {
+fn no_descriptor_is_cut_off_on_a_small_screen() {
     for keys in ["f<Enter>i", "fr<Enter>i"] {
         let screen = sized((40, 12), false, keys).screen();
         assert!(!screen.contains('…'), "{keys}\n{screen}");
@@ -333,7 +333,7 @@ fn no_descriptor_is_cut_on_a_small_screen() {
             assert!(screen.contains(symbol), "{keys}: no {symbol}\n{screen}");
         }
     }
-    // Beside a small sensor there is room for both, but perhaps not for all of the values.
+    // Beside a small sensor there is room for both, but perhaps not for all values.
     let figure = ":figure rectangle --length 2 --width 3 --x0 1.3 --y0 0.7 --angle 17<Enter>";
     for (size, sensor) in [
         ((52, 14), (8, 8)),
@@ -358,9 +358,9 @@ fn no_descriptor_is_cut_on_a_small_screen() {
     }
 }
 
-/// Where not all descriptors have room, those that are there are whole, and it says how many are not.
+/// If there is no room for all descriptors, those that are shown are complete, and the number of the others is given.
 #[test]
-fn descriptors_without_room_are_counted() {
+fn the_number_of_descriptors_without_room_is_shown() {
     for ascii in [false, true] {
         let panel = sized((30, 10), ascii, "f<Enter>i");
         shows(
@@ -374,9 +374,9 @@ fn descriptors_without_room_are_counted() {
     hides(&sized((40, 12), false, "f<Enter>i"), &["more"]);
 }
 
-/// A form leaves the matrix enough room to show something of it, or takes that room.
+/// A form leaves enough room for the matrix to show something, or takes that room as well.
 #[test]
-fn no_ruler_is_left_above_a_form() {
+fn no_ruler_is_shown_above_a_form_without_the_matrix() {
     for keys in ["f", "S", "f<Enter>e"] {
         hides(&sized((40, 12), false, keys), &["   0    5    10"]);
     }
@@ -387,7 +387,7 @@ fn no_ruler_is_left_above_a_form() {
 }
 
 #[test]
-fn what_is_compared_scrolls_where_it_does_not_fit() {
+fn the_comparison_scrolls_if_it_does_not_fit() {
     let whole = sized((80, 24), false, "f<Enter>=");
     hides(&whole, &["scroll", "↓"]);
     shows(
@@ -411,7 +411,7 @@ fn what_is_compared_scrolls_where_it_does_not_fit() {
         &["only B  ↑\n", "\n10 · · ·", "\n15 · · ·"],
     );
     then(&mut low, "<PageUp>", &["only B  ↓\n", "\n 0 · · ·"]);
-    // The descriptors go the same way, and a large sensor to the side, too.
+    // The descriptors scroll the same way, and a large sensor also scrolls sideways.
     then(&mut low, "<Tab><Tab><Tab><End>", &["dir "]);
     let mut wide = sized((40, 24), false, ":sensor --columns 64<Enter>f<Enter>=");
     shows(&wide, &["only B  →", "   0    5    10"]);
@@ -420,7 +420,7 @@ fn what_is_compared_scrolls_where_it_does_not_fit() {
 }
 
 #[test]
-fn a_pitch_of_one_counts_as_none() {
+fn a_pitch_of_1_means_none() {
     shows(
         "S",
         &["Pitch     1.000     above 0, up to 1000 mm", "1: not set"],

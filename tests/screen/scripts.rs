@@ -1,7 +1,7 @@
-//! The program's own screens: each `tests/scripts/NAME.taxel` prints what stands in `NAME.snap` beside it.
+//! The program's own screens: the output of each `tests/scripts/NAME.taxel` must equal `NAME.snap` beside it.
 //!
-//! `INSTA_UPDATE=always cargo test --test screen scripts` rewrites them; then read the difference. The same scripts run
-//! on the real program in a pseudo-terminal (`tests/screen/pty`).
+//! `INSTA_UPDATE=always cargo test --test screen scripts` rewrites them; then read the difference. The same scripts
+//! run on the real program in a pseudo-terminal (`tests/screen/pty`).
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -64,14 +64,14 @@ fn every_script_prints_its_screens() {
             .file_stem()
             .and_then(|name| name.to_str())
             .expect("a name");
-        // Every row ends in a bar, so that no editor takes blanks away.
+        // Every row ends in a bar, so that no editor removes trailing spaces.
         let shown: String = printed.lines().map(|line| format!("{line}|\n")).collect();
         settings.bind(|| insta::assert_snapshot!(name, shown));
     }
 }
 
 #[test]
-fn a_script_answers_alike_every_time() {
+fn a_script_gives_the_same_answers_every_time() {
     let script = "Keys f<Enter>smine<Enter><Tab>c\nScreen one\nState\nKeys l\nScreen two\n";
     let first = output(script, true).expect("it holds");
     assert_eq!(output(script, true).expect("it holds"), first);
@@ -81,7 +81,7 @@ fn a_script_answers_alike_every_time() {
     }
 }
 
-/// Where a page hides the cursor, it has no place: not that where an earlier screen had it.
+/// On a page that hides the cursor, it has no place, not even that of an earlier screen.
 #[test]
 fn a_hidden_cursor_has_no_place() {
     let script = "Keys f\nScreen\nKeys <Esc>?\nScreen\n";
@@ -106,7 +106,7 @@ fn a_hidden_cursor_has_no_place() {
 }
 
 #[test]
-fn what_does_not_hold_is_told_with_its_line() {
+fn failed_expectations_are_reported_with_their_line() {
     let told = |script: &str| {
         output(script, false)
             .expect_err("it does not hold")
@@ -234,9 +234,9 @@ fn a_signal_keeps_unsaved_work() {
 const PAIR: &str = "{\"format\":\"taxel-shape/1\",\"name\":\"pair\",\"sensor\":{\"columns\":4,\"rows\":3},\
                     \"imprint\":[\"....\",\".##.\",\"....\"]}";
 
-/// A script says how the program starts and what it finds.
+/// A script sets the options of the program and the shapes in its library.
 #[test]
-fn a_script_sets_the_scene() {
+fn a_script_sets_options_and_shapes() {
     let script = format!(
         "Size 60x20\nSet ascii on\nSet columns 4\nSet rows 3\nSet threshold 0.75\nSet pitch 2\nSet shape {PAIR}\n\
          Expect /column 2, row 1/\nState /document/sensor\nKeys lpair<Enter>\nExpect /pair loaded/\nScreen"
@@ -265,9 +265,9 @@ fn a_script_sets_the_scene() {
     );
 }
 
-/// What is printed is there before the script is at its end.
+/// Output is printed before the script has ended.
 #[test]
-fn a_script_prints_as_it_goes() {
+fn a_script_prints_while_it_runs() {
     let mut printed = 0;
     let stopped = run(
         "Screen\nScreen\nScreen",
@@ -287,9 +287,9 @@ fn a_script_prints_as_it_goes() {
     assert_eq!(printed, 2);
 }
 
-/// A wide character has two columns, and nothing is seen of what stood in the second.
+/// A wide character covers two columns, and nothing remains visible of the second.
 #[test]
-fn wide_characters_cover_what_was_there() {
+fn wide_characters_cover_two_columns() {
     let script = "Keys <Space>sfoobar<Enter>s<C-u>\nType \"字字\"\nKeys <Enter>\n\
                   Expect /saved as 字字/\nExpect /(?m)0.50 · 字字$/\n\
                   ExpectAt 27,1 \"字字\"\nExpectAt 29,1 \"字\"";

@@ -1,4 +1,4 @@
-//! The program on a screen in memory, with a library of its own.
+//! The program on a screen in memory, with its own library.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -8,44 +8,44 @@ use taxel::tui::app::state::Options;
 use taxel::tui::runtime::World;
 use taxel::tui::script::Session;
 
-/// An empty library in a temporary folder, which is deleted with the session. A set that any of these tests has trained is
-/// not trained again.
+/// Makes an empty library in a temporary folder, which is deleted with the session. A set that any of these tests has
+/// trained is not trained again.
 pub(crate) fn world() -> World {
     untrained().with_model_cache(Some(models()))
 }
 
-/// The same where every set has to be trained.
+/// Like [`world`], but every set has to be trained.
 pub(crate) fn untrained() -> World {
     World::scratch().expect("a temporary folder can be made")
 }
 
-/// The models of these tests. The first one to ask throws away those of an earlier build.
+/// Returns the models of these tests. The first call deletes those of an earlier build.
 pub(crate) fn models() -> ModelCache {
     static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("screen-models");
-        // There is none in a new checkout.
+        // In a new checkout there are none.
         let _ = std::fs::remove_dir_all(&folder);
         folder
     });
     ModelCache::in_folder(&*FOLDER)
 }
 
-/// 16 × 16 taxels on 80 × 24, after these keys.
+/// Starts with 16 × 16 taxels on a screen of 80 × 24, and presses keys.
 pub(crate) fn session(keys: &str) -> Session {
     started(world(), keys)
 }
 
-/// The same with another library or with workers.
+/// Like [`session`], with another library or with workers.
 pub(crate) fn started(world: World, keys: &str) -> Session {
     on(world, &Options::plain(false), (80, 24), keys)
 }
 
-/// The same on a screen of another size, perhaps in ASCII only.
+/// Like [`session`], on a screen of another size, perhaps in ASCII only.
 pub(crate) fn sized(size: (u16, u16), ascii: bool, keys: &str) -> Session {
     on(world(), &Options::plain(ascii), size, keys)
 }
 
-/// The same with all of it given.
+/// Like [`session`], with everything given.
 pub(crate) fn on(world: World, options: &Options, size: (u16, u16), keys: &str) -> Session {
     let mut session = Session::new(options, world, size.0, size.1);
     press(&mut session, keys);
@@ -57,9 +57,9 @@ pub(crate) fn press(session: &mut Session, keys: &str) {
     session.keys(keys).expect("the keys of a test are right");
 }
 
-/// What a test looks at: a session, or the keys that lead to one.
+/// The subject of a check: a session, or the keys that lead to one.
 pub(crate) trait Screen {
-    /// The screen, and the keys if they are known.
+    /// Returns the screen, and the keys if they are known.
     fn screen(&self) -> (String, &str);
 }
 
@@ -81,7 +81,7 @@ impl Screen for String {
     }
 }
 
-/// Every text is on the screen.
+/// Checks that every text is on the screen.
 pub(crate) fn shows(of: &(impl Screen + ?Sized), texts: &[&str]) {
     let (screen, keys) = of.screen();
     for text in texts {
@@ -89,7 +89,7 @@ pub(crate) fn shows(of: &(impl Screen + ?Sized), texts: &[&str]) {
     }
 }
 
-/// None of the texts is on the screen.
+/// Checks that none of the texts is on the screen.
 pub(crate) fn hides(of: &(impl Screen + ?Sized), texts: &[&str]) {
     let (screen, keys) = of.screen();
     for text in texts {
@@ -97,7 +97,7 @@ pub(crate) fn hides(of: &(impl Screen + ?Sized), texts: &[&str]) {
     }
 }
 
-/// Presses keys; then every text is on the screen.
+/// Presses keys, then checks that every text is on the screen.
 pub(crate) fn then(session: &mut Session, keys: &str, texts: &[&str]) {
     press(session, keys);
     shows(session, texts);

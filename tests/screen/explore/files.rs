@@ -1,4 +1,4 @@
-//! What was found is written to files.
+//! Writing the results of a sweep to files.
 
 use std::path::Path;
 use std::process::Command;
@@ -23,9 +23,9 @@ fn export(session: &mut Session, path: &Path) {
     press(session, "<Enter>");
 }
 
-/// The same bytes as the command line writes, each of them whole.
+/// The files have the same bytes as those of the command line, and each is complete.
 #[test]
-fn files_are_those_of_the_command_line() {
+fn exported_files_equal_those_of_the_command_line() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let mut session = session("fp<Enter>");
     press(&mut session, SHORT);
@@ -52,7 +52,7 @@ fn files_are_those_of_the_command_line() {
         assert!(status.status.success(), "{status:?}");
         let read = |path: &Path| std::fs::read(path).expect("it is there");
         if name == "a.npz" {
-            // The header holds where the shape was.
+            // The header contains where the shape was, so only the lengths can be compared.
             assert_eq!(read(&own).len(), read(&other).len());
         } else {
             assert!(read(&own) == read(&other), "{name}");
@@ -60,9 +60,9 @@ fn files_are_those_of_the_command_line() {
     }
 }
 
-/// The tables of two pages, with the numbers of the command line's summary and of the screen.
+/// The tables of two pages have the numbers of the command line's summary and of the screen.
 #[test]
-fn the_pages_of_statistics_and_the_histogram_write_their_own_table() {
+fn statistics_and_histogram_export_their_own_tables() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let mut session = session("fp<Enter>");
     press(&mut session, SHORT);
@@ -92,7 +92,7 @@ fn the_pages_of_statistics_and_the_histogram_write_their_own_table() {
             assert_eq!(field.parse().ok(), own[column].as_f64(), "{line}: {column}");
         }
     }
-    // Another descriptor of the histogram, and what is there is asked about.
+    // Another descriptor of the histogram; the file is there already, so the program asks.
     press(&mut session, "3");
     export(&mut session, &path);
     shows(&session, &["already exists. Replace it?"]);
@@ -107,13 +107,13 @@ fn the_pages_of_statistics_and_the_histogram_write_their_own_table() {
         poses.parse::<u64>().expect("a number")
     });
     assert_eq!(poses.sum::<u64>(), 600, "{histogram}");
-    // All imprints have a name of another form.
+    // The extension of this name asks for all imprints instead of the page.
     export(&mut session, &folder.path().join("a.jsonl"));
     shows(&session, &["written: "]);
 }
 
 #[test]
-fn a_file_that_is_there_is_asked_about() {
+fn the_program_asks_before_it_replaces_a_file() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let path = folder.path().join("mine.csv");
     std::fs::write(&path, "mine").expect("written");
@@ -127,7 +127,7 @@ fn a_file_that_is_there_is_asked_about() {
     export(&mut program.session, &path);
     program.until("already exists. Replace it?");
     program.press("n");
-    // Help that lies over the work gives way to the question.
+    // Help that covers the page gives way to the question.
     export(&mut program.session, &path);
     program.press("<F1>");
     program.until("already exists. Replace it?");
@@ -140,7 +140,7 @@ fn a_file_that_is_there_is_asked_about() {
     assert_eq!(names, 1, "nothing else is left there");
 }
 
-/// What is under way when the program ends is given up, and no part of a file stays.
+/// An export that is running when the program ends is cancelled, and no partial file is left.
 #[test]
 fn no_part_of_a_file_is_left_at_the_end() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
@@ -155,9 +155,9 @@ fn no_part_of_a_file_is_left_at_the_end() {
     assert_eq!(names, 0);
 }
 
-/// The drawings of pages with a plot are those that the library draws, in both forms.
+/// The drawings of pages with a plot are those that the library draws, in both formats.
 #[test]
-fn a_plot_is_written_as_a_drawing() {
+fn a_plot_is_exported_as_a_drawing() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let mut session = session("fp<Enter>");
     press(&mut session, SHORT);
@@ -179,7 +179,7 @@ fn a_plot_is_written_as_a_drawing() {
         let png = std::fs::read(&path).expect("it is there");
         assert!(png.starts_with(b"\x89PNG"));
     }
-    // A file that is there is asked about.
+    // The program asks before it replaces a file.
     let path = folder.path().join("6.svg");
     std::fs::write(&path, "mine").expect("written");
     export(&mut session, &path);

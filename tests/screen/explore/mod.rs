@@ -1,4 +1,4 @@
-//! Exploring with workers beside the program: what is shown while they run, stopping, files, and any keys at any time.
+//! Exploring with workers beside the program: the display while they run, stopping, files, and any keys at any time.
 
 mod files;
 
@@ -15,15 +15,15 @@ use taxel::tui::script::Session;
 
 use crate::session::{hides, press, session, shows, sized, started, then, world};
 
-/// Hundreds of seconds of work, on any machine.
+/// A sweep of several hundred seconds on any machine.
 const LONG: &str = ":explore --x0 0:9.999:0.001 --y0 0:9.999:0.001<Enter>";
-/// Next to none.
+/// A sweep that is done almost at once.
 const SHORT: &str = ":explore --x0 5:5.9:0.1 --y0 5:5.9:0.1 --angle 0:50:10<Enter>";
 
-/// Nothing takes so long, on the busiest machine.
+/// The longest wait, even on the busiest machine.
 const DEADLINE: Duration = Duration::from_secs(60);
 
-/// A program whose workers run beside it, and what they tell.
+/// A program whose workers run beside it, and the events that they report.
 struct Beside {
     session: Session,
     told: Receiver<WorkerEvent>,
@@ -37,14 +37,14 @@ impl Beside {
     fn within(world: World, keys: &str) -> Self {
         let (post, told) = channel();
         let world = world.with_workers(Arc::new(move |told| {
-            // The test may be over.
+            // The test may have ended.
             let _ = post.send(told);
         }));
         let session = started(world, keys);
         Self { session, told }
     }
 
-    /// Passes on what workers tell until something is on the screen.
+    /// Passes on the events of workers until a text is on the screen.
     fn until(&mut self, text: &str) {
         while !self.session.screen().contains(text) {
             let told = self.told.recv_timeout(DEADLINE);
@@ -53,8 +53,8 @@ impl Beside {
         }
     }
 
-    /// Begins a long sweep and stops it, until a part of it is complete: on a busy machine that takes longer than the first
-    /// sign of progress.
+    /// Begins a long sweep and stops it, until a part of it is complete. On a busy machine, that takes longer than the
+    /// first sign of progress.
     fn sweeps_a_part(&mut self, stops: &str, texts: &[&str]) {
         for _ in 0..20 {
             self.press(LONG);
@@ -80,14 +80,14 @@ impl Beside {
         press(&mut self.session, keys);
     }
 
-    /// Presses keys; then every text is on the screen.
+    /// Presses keys, then checks that every text is on the screen.
     fn then(&mut self, keys: &str, texts: &[&str]) {
         then(&mut self.session, keys, texts);
     }
 }
 
 #[test]
-fn work_is_shown_and_stopped_and_what_is_complete_is_kept() {
+fn a_stopped_sweep_keeps_its_complete_part() {
     let mut program = Beside::new("fr<Enter>");
     program.then(
         LONG,
@@ -98,7 +98,7 @@ fn work_is_shown_and_stopped_and_what_is_complete_is_kept() {
         ],
     );
     program.until("poses a second, about");
-    // Nothing on the matrix changes meanwhile, and nothing else is begun.
+    // Meanwhile nothing on the matrix changes, and nothing else can be started.
     program.then(
         "n<Space>e<Enter>",
         &["of 36,000,000,000 poses", "rectangle length 6.00"],
@@ -111,7 +111,7 @@ fn work_is_shown_and_stopped_and_what_is_complete_is_kept() {
         &program.session,
         &["a part: ", " of 36,000,000,000 poses", "stopped after "],
     );
-    // What cannot be written is not offered.
+    // A format that cannot be written is not offered.
     program.then(
         "x",
         &["Export all imprints to: rectangle.csv   (.csv .jsonl .npz)"],
@@ -122,10 +122,10 @@ fn work_is_shown_and_stopped_and_what_is_complete_is_kept() {
 }
 
 #[test]
-fn escape_stops_too_and_the_end_does_not_wait() {
+fn escape_stops_a_sweep_and_quitting_does_not_wait_for_it() {
     let mut program = Beside::new("fr<Enter>");
     program.sweeps_a_part("<Esc>", &[]);
-    // Other ranges from there; the program ends while they are gone through.
+    // Another sweep from there; the program ends while it runs.
     program.press("e<C-u>");
     program.press("0:9.999:0.001<Enter>");
     program.until("poses a second");
@@ -140,7 +140,7 @@ fn ctrl_c_stops_a_sweep_before_it_quits() {
     assert!(!program.session.app().ended());
 }
 
-/// A second Ctrl-C asks nothing; the work on the matrix is offered by the next program.
+/// A second Ctrl-C quits without a question; the next program offers the work on the matrix.
 #[test]
 fn ctrl_c_while_a_sweep_runs_keeps_unsaved_work() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
@@ -159,7 +159,7 @@ fn ctrl_c_while_a_sweep_runs_keeps_unsaved_work() {
 }
 
 #[test]
-fn keys_do_not_wait_for_the_plot_of_angles() {
+fn keys_work_while_the_plot_of_angles_is_computed() {
     let mut program = Beside::new("fr<Enter>");
     program.press(":explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>");
     program.until("distinct imprints");
@@ -168,7 +168,7 @@ fn keys_do_not_wait_for_the_plot_of_angles() {
 }
 
 #[test]
-fn a_plot_of_angles_that_fails_says_so_and_is_not_waited_for() {
+fn a_plot_of_angles_that_fails_shows_the_error() {
     let mut program = Beside::new("fr<Enter>");
     program.press(":explore --x0 5:6:0.1 --y0 5 --angle 0:90:30<Enter>");
     program.until("distinct imprints");
@@ -176,7 +176,7 @@ fn a_plot_of_angles_that_fails_says_so_and_is_not_waited_for() {
     let (findings, place) = loop {
         match program.told.recv_timeout(DEADLINE).expect("it is told") {
             WorkerEvent::Angles(findings, place, Ok(_)) => break (findings, place),
-            // Of the disk, say.
+            // Other events, for example about the disk.
             other => program.session.send(Message::Worker(other)),
         }
     };
@@ -189,7 +189,7 @@ fn a_plot_of_angles_that_fails_says_so_and_is_not_waited_for() {
 }
 
 #[test]
-fn the_time_is_told_while_ranges_are_typed() {
+fn the_expected_time_is_shown_while_ranges_are_typed() {
     let mut program = Beside::new("fh<Enter>e");
     shows(&program.session, &["3,600,000 poses"]);
     program.until("3,600,000 poses, ");
@@ -198,7 +198,7 @@ fn the_time_is_told_while_ranges_are_typed() {
         &["359,352,291,600 poses"],
     );
     program.until("359,352,291,600 poses, about ");
-    // Help lies over the form while it is told, and a click asks as a key does.
+    // Help covers the form when the time arrives, and a click asks for it like a key.
     program.press("<BS><BS>9<F1>");
     let told = program.told.recv_timeout(DEADLINE).expect("it is told");
     program.session.send(Message::Worker(told));
@@ -216,7 +216,7 @@ fn the_time_is_told_while_ranges_are_typed() {
     anchor(&mut program);
     shows(&program.session, &["< centre >"]);
     program.until("poses, about ");
-    // What was measured before is not taken for another grid's.
+    // The time that was measured is not used for another grid.
     program.press("<S-Tab><End><BS>5");
     assert!(
         !program.session.screen().contains("poses, about"),
@@ -236,7 +236,7 @@ fn a_stored_shape_is_explored_under_its_name() {
         &["Export all imprints to: cross.csv   (.csv .jsonl .npz .npy)"],
     );
     page.then("<Esc>4x", &["Export to: cross-map.svg", ".npy .svg .png)"]);
-    // No imprint has a thousand taxels: there is none to compare, to follow or to put onto the matrix.
+    // No imprint has a thousand taxels, so there is none to compare, to follow or to put on the matrix.
     page.press("<Esc>1/na>=1000<Enter>");
     for key in ["=", "g", "<Enter>"] {
         page.then(key, &["nothing is selected here"]);
@@ -244,16 +244,16 @@ fn a_stored_shape_is_explored_under_its_name() {
 }
 
 #[test]
-fn results_wait_where_they_were() {
+fn results_are_kept_when_the_page_is_left() {
     let mut program = Beside::new("fp<Enter>");
     program.press(SHORT);
     program.until("pentagon: 600 poses");
     program.then("3ddq", &["pentagon side 4.00"]);
-    // Moved it is the same shape, larger it is not.
+    // When moved, it is the same shape; when enlarged, it is not.
     program.then("<S-Right>e", &["pentagon: 600 poses", "ce: outline taxels"]);
     program.then("qf<Tab>5<Enter>e", &["Explore: pentagon"]);
     program.then("<Esc>ue", &["pentagon: 600 poses"]);
-    // Another sensor is another matter.
+    // On another sensor, the results no longer apply.
     program.then("qS20<Enter>e", &["Explore: pentagon"]);
 }
 
@@ -293,9 +293,9 @@ fn the_imprint_of_a_row_is_the_one_on_the_matrix() {
     }
 }
 
-/// Whatever key closes the dialog of work under way, the work does not go on unseen.
+/// Any key that closes the dialog of running work also stops the work.
 #[test]
-fn work_is_stopped_by_every_key_that_leaves_it() {
+fn every_key_that_closes_the_dialog_stops_the_work() {
     let mut program = Beside::new("fr<Enter>");
     program.press(LONG);
     for leaving in [Message::Cancel, Message::Quit] {
@@ -308,8 +308,7 @@ fn work_is_stopped_by_every_key_that_leaves_it() {
     ) {}
 }
 
-/// The last column is the last that can be seen, so that one step back is seen too.
-/// Where only the chosen descriptor is visible, a notch of the wheel goes to the next one, as a key does.
+/// If only the chosen descriptor is visible, a notch of the wheel goes to the next one, like a key.
 #[test]
 fn the_wheel_skips_no_descriptor() {
     for page in ["3", "5", "6"] {
@@ -329,8 +328,9 @@ fn the_wheel_skips_no_descriptor() {
     }
 }
 
+/// Scrolling stops at the last column, so that one step back is visible at once.
 #[test]
-fn columns_of_statistics_end_with_the_last() {
+fn columns_of_statistics_scroll_no_further_than_the_last() {
     let mut session = session("fp<Enter>");
     press(&mut session, SHORT);
     session.resize(60, 24);
@@ -342,7 +342,7 @@ fn columns_of_statistics_end_with_the_last() {
     assert_eq!(session.screen(), last);
 }
 
-/// A key is among the hints where it can do something, and says elsewhere why it cannot.
+/// A key is shown among the hints if it can do something; otherwise it says why it cannot.
 #[test]
 fn keys_of_explore_that_can_do_nothing_say_so() {
     let swept = format!("fr<Enter>{SHORT}");
@@ -370,7 +370,7 @@ fn keys_of_explore_that_can_do_nothing_say_so() {
     shows(&session(&format!("{one}-")), &["this is the whole range"]);
 }
 
-/// The form of ranges leaves no line empty while it hides a field.
+/// The form of ranges leaves no line empty while a field is hidden.
 #[test]
 fn all_ranges_are_visible_on_a_small_screen() {
     let form = sized((30, 10), false, "fr<Enter>e");
@@ -455,10 +455,10 @@ fn any_keys() -> impl Strategy<Value = Vec<&'static str>> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever is pressed, on whatever size, whenever workers tell something: no panic, nothing impossible on the
+    /// For any keys, on any size, with events of workers at any time: nothing panics, nothing impossible is on the
     /// screen, and every key is answered.
     #[test]
-    fn any_keys_at_any_time(
+    fn any_keys_at_any_time_are_answered(
         keys in any_keys(),
         sizes in prop::collection::vec((1_u16..=120, 1_u16..=50), 60),
         clicks in prop::collection::vec((0_u16..120, 0_u16..50), 60),
@@ -471,7 +471,7 @@ proptest! {
                 break;
             }
             program.press(key);
-            // Some of what is told, at some time.
+            // Some of the events, at some time.
             if width % 3 != 0 {
                 while let Ok(told) = program.told.try_recv() {
                     program.session.send(Message::Worker(told));

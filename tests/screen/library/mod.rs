@@ -1,4 +1,4 @@
-//! The library on the screen: what Load, Save, Delete, Picture, the sensor and the mouse do.
+//! The library on the screen: Load, Save, Delete, Picture, the sensor and the mouse.
 
 mod unsaved;
 
@@ -13,7 +13,7 @@ use taxel::tui::script::Session;
 
 use crate::session::{hides, press, session, shows, started, then};
 
-/// On a library that stays.
+/// Starts a session on a library that outlasts it.
 fn session_on(folder: &Path, keys: &str) -> Session {
     started(World::new(Library::open(folder.to_owned())), keys)
 }
@@ -23,16 +23,16 @@ fn mouse(session: &mut Session, kind: MouseKind, column: u16, row: u16) {
 }
 
 #[test]
-fn what_is_typed_replaces_the_name_of_a_saved_shape() {
+fn typing_replaces_the_name_of_a_saved_shape() {
     let mut session = session("f<Enter>smy ring<Enter>s");
     shows(&session, &["Save as: my ring"]);
     then(&mut session, "yours<Enter>", &["saved as yours"]);
-    // The arrows keep it.
+    // The arrows keep the name.
     then(&mut session, "s<Left><Right>2<Enter>", &["saved as yours2"]);
 }
 
 #[test]
-fn a_shape_is_saved_and_comes_back() {
+fn a_shape_is_saved_and_loaded() {
     let mut session = session("f<Enter>smine");
     shows(&session, &["Save as: mine"]);
     then(
@@ -75,7 +75,7 @@ fn saving_over_another_shape_asks() {
     let mut session = session("<Space>sone<Enter>n<Space><Right><Space>sone<Enter>");
     shows(&session, &["\"one\" already exists. Replace it? (y/n)"]);
     then(&mut session, "nlone<Enter>", &["NA 1 in all"]);
-    // One's own shape too, and a name in other letters is the same name.
+    // Replacing the shape's own file also asks, and a name in another case is the same name.
     then(
         &mut session,
         "<Right><Right><Space>s<Enter>",
@@ -91,7 +91,7 @@ fn saving_over_another_shape_asks() {
 }
 
 #[test]
-fn two_programs_do_not_overwrite_each_other_unseen() {
+fn two_programs_do_not_overwrite_each_other_unnoticed() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let mut first = session_on(folder.path(), "<Space>sshared<Enter>");
     let mut second = session_on(folder.path(), "lshared<Enter><Right><Space>s<Enter>y");
@@ -106,7 +106,7 @@ fn two_programs_do_not_overwrite_each_other_unseen() {
 }
 
 #[test]
-fn undo_brings_back_the_name_too() {
+fn undo_also_restores_the_name() {
     let mut session = session("<Space>saaa<Enter>n<Space><Right><Space>sbbb<Enter>");
     then(
         &mut session,
@@ -124,13 +124,13 @@ fn undo_brings_back_the_name_too() {
         "<Esc>U",
         &["· bbb\n", "\nstored shape: p moves"],
     );
-    // Nothing is left to save of an empty matrix.
+    // An empty matrix has nothing to save.
     press(&mut session, "lwasher<Enter>nq");
     assert!(session.app().ended());
 }
 
 #[test]
-fn deleting_asks_and_is_undone() {
+fn deleting_asks_and_can_be_undone() {
     let mut session = session("<Space>sone<Enter>dn");
     shows(&session, &["Delete  filter: n", "> one"]);
     then(&mut session, "<Enter>", &["Delete one? (y/n)"]);
@@ -142,29 +142,29 @@ fn deleting_asks_and_is_undone() {
     then(&mut session, "d", &["there are no shapes of your own"]);
     then(&mut session, "<Esc>u", &["one is back"]);
     then(&mut session, "lone<Enter>", &["one loaded"]);
-    // After something else was done, u takes that back instead.
+    // After another action, u undoes that action instead.
     then(&mut session, "d<Enter>y<Right><Space>u", &["NA 1 in all"]);
-    // So it is after a save, even of the same name.
+    // The same after a save, even with the same name.
     let mut session = self::session("<Space><Right><Space>sone<Enter>done<Enter>ysone<Enter>");
     then(&mut session, "<Right>u", &["undone: taxel 9, 8 on"]);
 }
 
 #[test]
-fn a_shape_that_is_deleted_twice_comes_back_as_it_was_last() {
+fn the_last_version_of_a_shape_deleted_twice_is_restored() {
     let mut session =
         session("<Space>sone<Enter><Right><Space>done<Enter>ysone<Enter>done<Enter>y");
     then(&mut session, "u", &["one is back", "· one\n"]);
 }
 
 #[test]
-fn nothing_is_done_to_a_matrix_that_is_empty_already() {
+fn new_does_nothing_to_an_empty_matrix() {
     let mut session = session("n");
     shows(&session, &["the matrix is empty already"]);
     then(&mut session, "u", &["nothing to undo"]);
 }
 
 #[test]
-fn a_picture_starts_where_it_is_and_follows() {
+fn a_picture_starts_in_its_place_and_follows_the_form() {
     let mut session = session("<Space><Right><Space>spair<Enter>p");
     shows(
         &session,
@@ -207,7 +207,7 @@ fn a_picture_starts_where_it_is_and_follows() {
 }
 
 #[test]
-fn the_sensor_is_changed_and_what_is_cut_is_said() {
+fn the_sensor_is_changed_and_cut_taxels_are_reported() {
     let mut session = session("<Space>S");
     shows(
         &session,
@@ -235,7 +235,7 @@ fn the_sensor_is_changed_and_what_is_cut_is_said() {
 }
 
 #[test]
-fn a_shape_of_another_sensor_is_placed_where_it_fits() {
+fn a_shape_of_another_sensor_is_loaded_if_it_fits() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     drop(session_on(folder.path(), "<Space>smiddle<Enter>"));
     let mut session = session_on(folder.path(), "S32<Tab>32<Enter>lmiddle<Enter>");
@@ -248,21 +248,21 @@ fn a_shape_of_another_sensor_is_placed_where_it_fits() {
 }
 
 #[test]
-fn the_mouse_draws_and_points() {
+fn the_mouse_draws_and_clicks() {
     let mut session = session("");
-    // Column 2, row 1 of the matrix: 3 columns of ruler, 2 a taxel; menu, title and ruler above.
+    // Column 2, row 1 of the matrix: 3 columns of ruler and 2 for each taxel; menu, title and ruler above.
     mouse(&mut session, MouseKind::Press, 7, 4);
     shows(&session, &["column  2, row  1    active", "NA 1 in all"]);
     mouse(&mut session, MouseKind::Drag, 9, 4);
     mouse(&mut session, MouseKind::Drag, 11, 5);
     mouse(&mut session, MouseKind::Drag, 7, 4);
     mouse(&mut session, MouseKind::Release, 7, 4);
-    // Between two places that are told the line is drawn.
+    // A line is drawn between two reported places.
     shows(&session, &["NA 4 in all"]);
     mouse(&mut session, MouseKind::Drag, 20, 11);
     shows(&session, &["NA 4 in all"]);
     then(&mut session, "u", &["NA 0 in all"]);
-    // "f Figure", then the field Radius y, then a place without anything.
+    // "f Figure", then the field Radius y, then a place with nothing.
     mouse(&mut session, MouseKind::Press, 20, 0);
     shows(&session, &["Kind", "Radius x"]);
     mouse(&mut session, MouseKind::Press, 50, 7);
@@ -313,7 +313,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn whatever_was_done_is_saved_and_loaded_alike(keys in any_keys()) {
+    fn any_document_is_saved_and_loaded_unchanged(keys in any_keys()) {
         let folder = tempfile::tempdir().expect("there is a folder for temporary files");
         let mut session = session_on(folder.path(), &keys);
         press(&mut session, "<Esc><Esc>");
@@ -343,9 +343,9 @@ fn the_shape_whose_name_was_typed_comes_first() {
     assert_eq!(session.app().stored_name(), Some("washer"));
 }
 
-/// Only shapes of one's own are listed to be deleted: a name that is not says why.
+/// Only the user's own shapes are listed for deletion: for another name, the list says why it is missing.
 #[test]
-fn the_list_says_of_a_shipped_shape_that_it_cannot_be_deleted() {
+fn the_list_says_that_a_shipped_shape_cannot_be_deleted() {
     let why = "washer is shipped with taxel and cannot be\ndeleted";
     shows("dwasher", &[why]);
     shows("<Space>smine<Enter>dWash", &[why]);
@@ -353,7 +353,7 @@ fn the_list_says_of_a_shipped_shape_that_it_cannot_be_deleted() {
     shows("<Space>smine<Enter>dzzz", &["no name contains this"]);
 }
 
-/// The end of a filter is what one types, so it stays in sight.
+/// The end of a filter is being typed, so it remains visible.
 #[test]
 fn a_long_filter_shows_its_end() {
     let mut list = session("l");

@@ -1,4 +1,4 @@
-//! Work that is not saved: kept while the program runs, offered when it died, thrown away where that can be undone.
+//! Unsaved work is kept while the program runs, offered after a crash, and thrown away so that it can be restored.
 
 use std::sync::Arc;
 use std::sync::mpsc::channel;
@@ -19,7 +19,7 @@ use crate::session::then;
 fn unsaved_work_is_offered_back_once() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let lost = session_on(folder.path(), "f<Enter><Space>");
-    // Saved work is not offered, and a running program's work is its own.
+    // The work of a running program is not offered to another one.
     let running = session_on(folder.path(), "<Space>");
     assert!(!running.screen().contains("unsaved work"));
     drop((lost, running));
@@ -40,7 +40,7 @@ fn unsaved_work_is_offered_back_once() {
         "y",
         &["ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0° + 1 by hand"],
     );
-    // What was not wanted is in the trash.
+    // The work that was declined is in the trash.
     then(
         &mut later,
         ":restore unsaved 1<Enter>lunsaved 1<Enter>",
@@ -56,7 +56,7 @@ fn unsaved_work_is_offered_back_once() {
     );
 }
 
-/// Where it cannot be thrown away, nothing is left of the attempt, and it is not asked about again and again.
+/// If it cannot be thrown away, nothing is left of the attempt, and this program does not ask again.
 #[test]
 fn unsaved_work_that_cannot_go_to_the_trash_stays() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
@@ -81,7 +81,7 @@ fn unsaved_work_that_cannot_go_to_the_trash_stays() {
 }
 
 #[test]
-fn all_unsaved_work_that_is_thrown_away_can_be_brought_back() {
+fn all_unsaved_work_that_is_thrown_away_can_be_restored() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let first = session_on(folder.path(), "<Space>");
     let second = session_on(folder.path(), "<Space><Right><Space>");
@@ -99,9 +99,9 @@ fn all_unsaved_work_that_is_thrown_away_can_be_brought_back() {
     );
 }
 
-/// The journal and the question before quitting know the same unsaved work.
+/// The journal and the question before quitting agree on what is unsaved work.
 #[test]
-fn an_empty_matrix_is_no_work_wherever_it_comes_from() {
+fn an_empty_matrix_is_never_unsaved_work() {
     for keys in [
         "f<Enter>sx<Enter>u",
         "S<Tab>9<Enter>",
@@ -111,7 +111,7 @@ fn an_empty_matrix_is_no_work_wherever_it_comes_from() {
         let app = session.app();
         assert!(!app.unsaved() && app.unsaved_work().is_none(), "{keys}");
     }
-    // It differs from the stored shape all the same, and says so beside its name.
+    // Still, it differs from the stored shape, and this is marked beside its name.
     shows("f<Enter>sx<Enter>u", &["· x*\n"]);
     let drawn = session("f<Enter>sx<Enter><Space>");
     assert!(drawn.app().unsaved() && drawn.app().unsaved_work().is_some());
@@ -125,9 +125,9 @@ fn a_drawing_whose_file_was_deleted_is_unsaved() {
     then(&mut session, "a<Enter>", &["saved as a"]);
 }
 
-/// A journal that cannot be written is told of once, and what was not written is tried again at the end.
+/// A journal that cannot be written is reported once, and the work is written at the end.
 #[test]
-fn work_that_could_not_be_kept_is_kept_later() {
+fn work_that_could_not_be_kept_is_kept_at_the_end() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let journal = folder.path().join(".journal");
     std::fs::write(&journal, "in the way").expect("written");

@@ -1,20 +1,21 @@
-//! What it costs: bytes, wake-ups, memory, time. The figures are printed: `cargo test --test screen pty -- --nocapture`.
+//! The costs of the program: bytes, wake-ups, memory, time. The numbers are printed: `cargo test --test screen pty --
+//! --nocapture`.
 
 use std::time::{Duration, Instant};
 
 use super::program::{Program, Start};
 use super::screens::session;
 
-/// Most bytes of a move of the cursor.
+/// The highest number of bytes for a move of the cursor.
 const MOVE: usize = 60;
-/// Of a toggle: fourteen descriptors change, whose new digits alone are 70 bytes.
+/// The same for a toggle: fourteen descriptors change, whose new digits alone take 70 bytes.
 const TOGGLE: usize = 158;
-/// Of the first one on an empty matrix: all descriptors appear.
+/// The same for the first toggle on an empty matrix: all descriptors appear.
 const FIRST_TOGGLE: usize = 195;
 
 #[test]
-fn bytes_at_80_x_24() {
-    // Together: each waits for its program most of the time.
+fn screens_of_80_x_24_take_few_bytes() {
+    // The programs run together, because each test mostly waits for its program.
     std::thread::scope(|scope| {
         for variables in [
             &[("TERM", "xterm-256color"), ("LANG", "C.UTF-8")],
@@ -70,7 +71,7 @@ fn bytes_with(variables: &[(&str, &str)]) {
     for (name, notation, bytes) in arrows {
         press(name, notation, bytes, MOVE);
     }
-    // Esc says nothing here; what it had written would be counted with the move.
+    // Esc does nothing here; bytes that it wrote would be counted with the move.
     press(
         "nothing, then right",
         "<Esc><Right>",
@@ -78,7 +79,7 @@ fn bytes_with(variables: &[(&str, &str)]) {
         MOVE,
     );
     press("a figure", "f<CR>", b"f\r", 4000);
-    // Over all of it, its edges and the corners of the matrix.
+    // Over the whole figure, its edges and the corners of the matrix.
     for (turns, index) in [(10, 0), (5, 1), (10, 2), (6, 3), (12, 0), (7, 1)] {
         let (name, notation, bytes) = arrows[index];
         for turn in 0..turns {
@@ -98,7 +99,7 @@ fn bytes_with(variables: &[(&str, &str)]) {
     press("toggle that makes a hole", "<Space>", b" ", TOGGLE);
     press("toggle back", "<Space>", b" ", TOGGLE);
     press("help", "?", b"?", 2500);
-    // The menu of the matrix comes back with it.
+    // The menu of the matrix appears again.
     press("help closed", "<Esc>", b"\x1b\x1b", 2590);
     press("empty", "n", b"n", 2500);
     press("first toggle", "<Space>", b" ", FIRST_TOGGLE);
@@ -110,8 +111,8 @@ fn bytes_with(variables: &[(&str, &str)]) {
 }
 
 #[test]
-fn nothing_is_done_for_nothing() {
-    // Together: both wait.
+fn an_idle_program_does_not_wake_up() {
+    // Both run together, because they mostly wait.
     std::thread::scope(|scope| {
         scope.spawn(it_idles_after_its_start);
         scope.spawn(it_idles_after_a_stopped_sweep);
@@ -122,7 +123,7 @@ fn it_idles_after_its_start() {
     let mut program = Program::start(&Start::default());
     program.written(|program| program.shows("? Help"));
     let switches = |program: &Program| (program.status("voluntary_ctxt_switches"), program.cpu());
-    // On a busy machine it may still be on its way to sleep.
+    // On a busy machine, the program may not be idle yet.
     let mut before = switches(&program);
     program.until("sleep", |program| {
         program.read(Duration::from_millis(500));
@@ -142,11 +143,11 @@ fn it_idles_after_its_start() {
         program.status("VmHWM")
     );
     assert_eq!((after, written), (before, 0));
-    // Of the tests' build; 9.8 MB were measured.
+    // For the build of the tests; 9.8 MB were measured.
     assert!(program.status("VmHWM") <= 12 * 1024);
 }
 
-/// A sweep wakes the program about ten times a second, and when it is stopped nothing does.
+/// A sweep wakes the program about ten times a second; after it was stopped, nothing does.
 fn it_idles_after_a_stopped_sweep() {
     let mut program = Program::started(&Start::default());
     program.types(b"fr\r:explore --x0 0:9.999:0.001 --y0 0:9.999:0.001\r");
@@ -154,7 +155,7 @@ fn it_idles_after_a_stopped_sweep() {
     program.types(b"\x1b\x1b");
     program.shows("a part: ");
     let count = |program: &Program| (program.wake_ups(), program.bytes.len());
-    // Threads take a moment to fall asleep, on a busy machine a longer one; then nothing happens for three seconds.
+    // Threads take a moment to fall asleep, longer on a busy machine; then nothing happens for three seconds.
     let still = (0..10).any(|_| {
         let before = count(&program);
         let end = Instant::now() + Duration::from_secs(3);
@@ -171,13 +172,13 @@ fn it_idles_after_a_stopped_sweep() {
 }
 
 #[test]
-fn the_first_frame_comes() {
-    // How fast is printed, not held: a machine may do other work.
+fn the_first_frame_is_drawn() {
+    // The time is printed, not checked: the machine may be busy.
     let times = (0..7).map(|_| {
         let start = Instant::now();
         Program::started(&Start::default());
         start.elapsed()
     });
-    // The launcher's own time is in it.
+    // This includes the time of the launcher.
     println!("started and drawn in {:?}", times.min().expect("some"));
 }

@@ -1,4 +1,4 @@
-//! Screens as text that can be compared: what the program means to show, and what a terminal makes of its bytes.
+//! Screens as text for comparison: what the program intends to show, and what a terminal makes of its bytes.
 
 use std::fmt::Write as _;
 use std::num::NonZeroU16;
@@ -14,11 +14,11 @@ pub(crate) fn side(number: u16) -> NonZeroU16 {
     NonZeroU16::new(number).expect("not empty")
 }
 
-/// A screen as text: rows, the styles of all that is not blank, the cursor.
+/// Returns a screen as text: the rows, the styles of everything that is not blank, the cursor.
 pub(crate) fn of_session(session: &Session) -> String {
     let mut text = String::new();
     for (row, styles) in session.screen().lines().zip(session.styles().lines()) {
-        // Blanks at the end are cut off, but may be reversed.
+        // Blanks at the end of a row are cut off, but they may be reversed.
         let row = row.chars().chain(std::iter::repeat(' '));
         let cells: Vec<(char, char)> = row.zip(styles.chars()).collect();
         write_row(&mut text, &cells);
@@ -60,7 +60,7 @@ fn letter(cell: &vt100::Cell) -> char {
     theme::letter(&Style::new().add_modifier(set.collect()))
 }
 
-/// A blank has no style that matters unless it is reversed.
+/// The style of a blank only matters if it is reversed.
 fn write_row(text: &mut String, cells: &[(char, char)]) {
     let row: String = cells.iter().map(|(character, _)| *character).collect();
     let styles: String = cells

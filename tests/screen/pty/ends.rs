@@ -1,4 +1,4 @@
-//! How it ends: by a key, by a signal, by a lost line, by a panic. The terminal is left as it was, each time.
+//! The program ends by a key, a signal, a lost line or a panic. Each time, it leaves the terminal as it was.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use taxel::tui::terminal::{self, SessionEvent};
 
 use super::program::{Program, Start, TAXEL};
 
-/// What is open when the end comes: keys, and what then is on the screen.
+/// The states in which the program is ended: keys, and a text that is then on the screen.
 const STATES: [(&[u8], &str); 9] = [
     (b"", "? Help"),
     (b"f\t2", "rx 2.00"),
@@ -20,12 +20,12 @@ const STATES: [(&[u8], &str); 9] = [
     (b" ", "NA 1 in all"),
     (b"f\rq", "(y: lose it, n: stay, s: save first)"),
     (b"?", "On the matrix"),
-    // Running work: a sweep that takes minutes.
+    // A sweep that takes minutes is running.
     (
         b"fr\r:explore --x0 0:9.999:0.001 --y0 0:9.999:0.001\r",
         "poses a second",
     ),
-    // Half of a paste, half of a key: here a reader that waits for the rest would not hear anything else.
+    // Half of a paste, and half of a key: a reader that waited for the rest would not notice anything else.
     (b" \x1b[200~12", "NA 1 in all"),
     (b" \x1b[1;", "NA 1 in all"),
 ];
@@ -45,7 +45,7 @@ fn every_signal_in_every_state_leaves_the_terminal_as_it_was() {
             (Signal::INT, 130),
             (Signal::QUIT, 131),
             (Signal::TERM, 143),
-            // These mean nothing here; the system's way is to end the program at once.
+            // These signals mean nothing to the program; by default, they end it at once.
             (Signal::USR1, 138),
             (Signal::USR2, 140),
             (Signal::ALARM, 142),
@@ -60,7 +60,7 @@ fn every_signal_in_every_state_leaves_the_terminal_as_it_was() {
     }
 }
 
-/// What is not saved waits in the library, whatever the end was.
+/// Unsaved work waits in the library, however the program ended.
 #[test]
 fn unsaved_work_is_kept_at_every_end() {
     let ends = [
@@ -76,7 +76,7 @@ fn unsaved_work_is_kept_at_every_end() {
             library: Some(folder.path()),
             ..Start::default()
         };
-        // At once, before it is time to write the journal.
+        // The end comes at once, before the journal would be written.
         let mut program = in_state(&start, (b" \x1b[C \x1b[C ", "NA 3 in all"));
         match end {
             Some(signal) => program.signal(signal),
@@ -87,7 +87,7 @@ fn unsaved_work_is_kept_at_every_end() {
         let taxels: Vec<u32> = left.iter().map(|left| left.shape.imprint.count()).collect();
         assert_eq!(taxels, [3], "{end:?}");
     }
-    // Saved or given up, nothing is left.
+    // After work was saved or given up, nothing is offered.
     for keys in [&b"  q"[..], b" qy", b" sname\rq"] {
         let folder = tempfile::tempdir().expect("a folder");
         let start = Start {
@@ -103,7 +103,7 @@ fn unsaved_work_is_kept_at_every_end() {
 }
 
 #[test]
-fn keys_end_it_with_status_0() {
+fn keys_end_the_program_with_status_0() {
     for keys in [&b"q"[..], b"\x03", b" qy", b"f\r\x03y"] {
         let mut program = Program::started(&Start::default());
         program.types(keys);
@@ -111,9 +111,9 @@ fn keys_end_it_with_status_0() {
     }
 }
 
-/// Two Ctrl-C while a sweep runs: nobody waits for the sweep, and unsaved work is kept.
+/// Two Ctrl-C during a sweep: the program does not wait for the sweep, and unsaved work is kept.
 #[test]
-fn a_running_sweep_does_not_hold_it() {
+fn quitting_does_not_wait_for_a_running_sweep() {
     let took = (0..3).map(|_| {
         let mut program = in_state(&Start::default(), STATES[6]);
         program.types(b"\x03\x03");
@@ -125,9 +125,9 @@ fn a_running_sweep_does_not_hold_it() {
     println!("ended within {:?}", took.min().expect("three times"));
 }
 
-/// Whether the system says so or not, and whatever was half typed.
+/// With and without a signal from the system, and with any half-typed input.
 #[test]
-fn a_lost_line_ends_it() {
+fn a_lost_line_ends_the_program() {
     let ignoring = ["sh", "-c", "trap '' HUP; exec \"$0\"", TAXEL];
     let mut slowest = Duration::ZERO;
     for state in STATES {
@@ -144,20 +144,20 @@ fn a_lost_line_ends_it() {
             slowest = slowest.max(took);
         }
     }
-    // How long that takes depends on what else the machine does: told, not held.
+    // The time depends on the load of the machine, so it is printed, not checked.
     println!("a lost line ends it within {slowest:?}");
 }
 
-/// A terminal that takes no more output cannot keep it from its end.
+/// A terminal that accepts no more output cannot keep the program from ending.
 #[test]
-fn a_stuck_line_does_not_hold_it() {
+fn a_stuck_line_does_not_keep_the_program_from_ending() {
     let mut program = Program::started(&Start::default());
     for _ in 0..150 {
         program.types(b"\x0c");
         std::thread::sleep(Duration::from_millis(1));
     }
     program.signal(Signal::TERM);
-    // Nothing is read from it until it has ended.
+    // Nothing is read from the terminal until the program has ended.
     let master = program.take_master();
     let (ended, took) = program.ends();
     assert_eq!(ended.code(), Some(143));
@@ -165,7 +165,7 @@ fn a_stuck_line_does_not_hold_it() {
     drop(master);
 }
 
-/// The program with something that fails at the first key; a child of the next test.
+/// The program with a failure at the first key, as a child of the next test.
 #[test]
 #[ignore = "only as a child of other tests"]
 fn panics() {
@@ -204,6 +204,6 @@ fn a_panic_leaves_the_terminal_as_it_was() {
     let (ended, _) = program.ends();
     assert_ne!(ended.code(), Some(0));
     program.is_left();
-    // It is told after the screen is left.
+    // The panic is reported after the screen was left.
     program.shows("on purpose");
 }

@@ -1,5 +1,5 @@
-//! A system that does not answer or refuses, as `strace` makes it: a disk that hangs, threads that cannot be started.
-//! Where there is no `strace` that may trace, nothing is tested, which is said.
+//! A system that does not answer or refuses, simulated with `strace`: a disk that hangs, threads that cannot be
+//! started. Without a `strace` that is allowed to trace, the tests are skipped, and say so.
 
 use std::process::{Command, Stdio};
 use std::time::Instant;
@@ -10,7 +10,7 @@ use super::program::{Program, Start, TAXEL};
 use super::tracer::Tracer;
 use crate::skip;
 
-/// Starts the program with some of its calls tampered with; None where that is not possible.
+/// Starts the program with some of its calls tampered with; None if that is not possible.
 fn tampered(calls: &str, how: &str) -> Option<Program> {
     let traced = Command::new("strace")
         .args(["-qq", "-o", "/dev/null", "-e", "trace=?openat", "true"])
@@ -21,7 +21,7 @@ fn tampered(calls: &str, how: &str) -> Option<Program> {
         return None;
     }
     let (trace, inject) = (format!("trace={calls}"), format!("inject={calls}:{how}"));
-    // As a grandchild (-D): the program itself has the number that signals are sent to.
+    // With -D, strace is the grandchild, so the program itself has the process number that signals are sent to.
     let command = [
         "strace",
         "-D",
@@ -47,7 +47,7 @@ fn tampered(calls: &str, how: &str) -> Option<Program> {
     }))
 }
 
-/// The program, and its disk: every sync hangs until that is ended.
+/// Starts the program on a disk where every sync hangs until the tracer ends.
 fn on_a_hanging_disk() -> Option<(Program, Tracer)> {
     let mut program = Program::started(&Start::default());
     let disk = Tracer::hang(&mut program, "?fsync,?fdatasync", &[])?;
@@ -55,8 +55,8 @@ fn on_a_hanging_disk() -> Option<(Program, Tracer)> {
 }
 
 #[test]
-fn a_hanging_disk_holds_neither_keys_nor_the_end() {
-    // Together: most of their time they wait for that disk.
+fn a_hanging_disk_blocks_neither_keys_nor_the_end() {
+    // The cases run together, because they mostly wait for that disk.
     std::thread::scope(|scope| {
         for (keys, signal, status) in [
             (&b"q"[..], None, 0),
@@ -76,7 +76,7 @@ fn ends_before_the_disk(keys: &[u8], signal: Option<Signal>, status: i32) {
     program.shows("Saving name: waiting for the disk");
     program.types(b"\x1b[C ");
     program.shows("NA 2 in all");
-    // Back to what is being saved: nothing else is lost.
+    // Back to the version that is being saved, so that nothing else is lost.
     program.types(b"u");
     program.shows("undone");
     program.types(keys);
@@ -88,14 +88,14 @@ fn ends_before_the_disk(keys: &[u8], signal: Option<Signal>, status: i32) {
     program.shows("unsaved work may not be on the disk");
     program.is_left();
     println!("the shell has the terminal after {:?}", begun.elapsed());
-    // The system waits for the one who traces.
+    // The system waits for the tracer.
     disk.end();
     let (ended, _) = program.ends();
     assert_eq!(ended.code(), Some(status));
 }
 
 #[test]
-fn an_export_to_a_hanging_disk_does_not_hold_it() {
+fn an_export_to_a_hanging_disk_does_not_block_the_program() {
     let folder = tempfile::tempdir().expect("a folder");
     let Some((mut program, disk)) = on_a_hanging_disk() else {
         return;
@@ -113,9 +113,9 @@ fn an_export_to_a_hanging_disk_does_not_hold_it() {
     assert_eq!(ended.code(), Some(0));
 }
 
-/// All threads but the first, and all but the first three, are refused.
+/// All threads except the first, and all except the first three, are refused.
 #[test]
-fn threads_that_cannot_be_started_are_done_without() {
+fn the_program_works_if_threads_cannot_be_started() {
     for which in ["1+", "4+"] {
         let how = format!("error=EAGAIN:when={which}");
         let Some(mut program) = tampered("?clone,?clone3", &how) else {
@@ -123,7 +123,7 @@ fn threads_that_cannot_be_started_are_done_without() {
         };
         program.types(b"f\r");
         program.shows("NA ");
-        // A sweep, a training, a save, an export: each is done or says why not.
+        // A sweep, a training, a save, an export: each is done, or says why it is not.
         program.types(b":explore --x0 0:0.99:0.1 --y0 0 --angle 0\r");
         program.until("a sweep or a reason", |program| {
             let screen = program.screen().contents();

@@ -1,16 +1,16 @@
-//! Stopped and continued by a shell.
+//! The program is stopped and continued by a shell.
 
 use rustix::process::Signal;
 
 use super::program::{Program, Start, TAXEL};
 use super::screens::session;
 
-/// A shell with jobs: runs the program, then waits for a line and brings it back.
+/// A shell with job control: it runs the program, then waits for a line and continues the program.
 const SHELL: &str =
     "set -m; \"$0\"; echo stopped $?; read line; fg >/dev/null; echo ended $?; read line";
 
 #[test]
-fn ctrl_z_stops_it_and_fg_brings_it_back() {
+fn ctrl_z_stops_the_program_and_fg_continues_it() {
     let command = ["sh", "-c", SHELL, TAXEL];
     let mut program = Program::started(&Start {
         command: &command,
@@ -32,9 +32,9 @@ fn ctrl_z_stops_it_and_fg_brings_it_back() {
     program.is_left();
 }
 
-/// Everybody who waits for it is stopped too.
+/// The processes that wait for the program are stopped, too.
 #[test]
-fn the_whole_group_stops() {
+fn ctrl_z_stops_the_whole_process_group() {
     let outer = "set -m; sh -c '\"$0\"; echo inner' \"$0\"; echo stopped; read line; fg >/dev/null; echo ended; read line";
     let command = ["sh", "-c", outer, TAXEL];
     let mut program = Program::started(&Start {
@@ -53,9 +53,9 @@ fn the_whole_group_stops() {
     program.is_left();
 }
 
-/// The first process of a session has nobody who would continue it: it goes on, and keys still work.
+/// Nobody would continue the first process of a session, so it keeps running, and keys still work.
 #[test]
-fn without_a_shell_it_is_not_stopped() {
+fn without_a_shell_the_program_is_not_stopped() {
     let mut program = Program::started(&Start::default());
     program.types(b"\x1a");
     program.shows("! there is no shell to go back to");
@@ -66,9 +66,9 @@ fn without_a_shell_it_is_not_stopped() {
     program.ends_well(0);
 }
 
-/// Stopped from outside without a chance to tidy up, it takes the terminal anew.
+/// After a stop from outside that left no chance to clean up, the program takes over the terminal again.
 #[test]
-fn after_a_stop_from_outside_everything_is_drawn_anew() {
+fn after_a_stop_from_outside_everything_is_redrawn() {
     let mut program = Program::started(&Start::default());
     program.signal(Signal::STOP);
     program.until("a stop", |program| program.state() == 'T');

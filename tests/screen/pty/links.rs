@@ -1,4 +1,5 @@
-//! The live page over slow lines: at most one picture is under way, since the terminal is asked for its status after each.
+//! The live page over slow lines: at most one picture is in transit, because after each one the terminal is asked for
+//! its status.
 
 use std::io::Write;
 use std::time::{Duration, Instant};
@@ -9,12 +10,12 @@ use super::drawn::emulator;
 use super::live::Watched;
 use super::program::{Program, QUESTION, count};
 
-/// Leaves the second screen.
+/// The sequence that leaves the alternate screen.
 const LEFT: &[u8] = b"\x1b[?1049l";
-/// What a shell would show of the terminal's answer.
+/// The text that a shell would show if it received the terminal's answer.
 const TYPED: &[u8] = b"^[[0n";
 
-/// A frame of 16 x 16: an object of nine taxels across that wanders.
+/// Returns a frame of 16 × 16 with a moving object, nine taxels across.
 fn pressed(number: u32) -> String {
     let (x, y) = (5 + number % 6, 5 + number * 5 % 7);
     let value = |column: u32, row: u32| {
@@ -26,7 +27,7 @@ fn pressed(number: u32) -> String {
 }
 
 impl Watched {
-    /// Sends the next frame, which is shown with the question after it. Returns how many questions there are now.
+    /// Sends the next frame, which is shown with a question after it. Returns the number of questions so far.
     fn asks_after(&mut self, number: u32) -> usize {
         let before = self.program.questions();
         self.sends(number..number + 1);
@@ -37,18 +38,18 @@ impl Watched {
     }
 }
 
-/// A slow line with a terminal at its end. Buffers take everything at once, as those of SSH do.
+/// A slow line with a terminal at its end. Buffers accept everything at once, as with SSH.
 struct SlowLine {
-    /// How much of what the program has written the terminal has got.
+    /// The number of bytes that have reached the terminal.
     brought: usize,
-    /// How many questions were answered.
+    /// The number of questions that were answered.
     answers: usize,
     /// The terminal.
     terminal: vt100::Parser,
 }
 
 impl SlowLine {
-    /// Brings so many bytes.
+    /// Transfers up to `most` bytes.
     fn brings(&mut self, program: &mut Program, most: usize) {
         program.read(Duration::from_millis(1));
         let end = program.bytes.len().min(self.brought + most);
@@ -76,7 +77,7 @@ fn a_key_is_not_queued_behind_pictures() {
     for number in 0..100 {
         let frame = pressed(number).into_bytes();
         watched.pipe.write_all(&frame).expect("it is read");
-        // Two thousand bytes a second at most, twenty frames a second at most.
+        // At most two thousand bytes and twenty frames per second.
         line.brings(&mut watched.program, 100);
         std::thread::sleep(Duration::from_millis(50));
     }
@@ -94,7 +95,7 @@ fn a_key_is_not_queued_behind_pictures() {
     let (pictures, behind) = (line.answers, line.brought - before);
     println!("{pictures} pictures in {before} bytes, then help within {behind} bytes");
     assert!(pictures >= 3, "{pictures}");
-    // Those of one picture and of the help.
+    // The bytes of one picture and of the help.
     assert!(behind <= 4000, "{behind} bytes");
 }
 
@@ -120,7 +121,7 @@ fn keys_are_drawn_at_once_while_a_picture_is_under_way() {
 }
 
 #[test]
-fn a_terminal_that_does_not_answer_is_asked_a_few_times() {
+fn a_terminal_that_does_not_answer_is_only_asked_a_few_times() {
     let Some(mut watched) = Watched::start() else {
         return;
     };
@@ -130,7 +131,7 @@ fn a_terminal_that_does_not_answer_is_asked_a_few_times() {
         watched.program.shows(&format!("frame {number} "));
     }
     assert_eq!(watched.program.questions(), 3);
-    // It was only slow.
+    // The terminal was only slow.
     watched.program.answers = true;
     watched.program.answer();
     watched.program.types(b"p");
@@ -153,7 +154,7 @@ fn a_dumb_terminal_is_asked_nothing() {
 }
 
 #[test]
-fn an_answer_in_pieces_is_no_key() {
+fn an_answer_in_pieces_is_not_taken_for_a_key() {
     let Some(mut watched) = Watched::start() else {
         return;
     };
@@ -162,7 +163,7 @@ fn an_answer_in_pieces_is_no_key() {
     for (number, (first, rest)) in (1..).zip([("\x1b", "[0n"), ("\x1b[", "0n"), ("\x1b[0", "n")]) {
         watched.asks_after(number);
         watched.program.types(first.as_bytes());
-        // Longer than an ESC is waited for.
+        // Longer than the program waits after an ESC.
         watched.program.read(Duration::from_millis(300));
         watched.program.types(rest.as_bytes());
     }
@@ -174,7 +175,7 @@ fn an_answer_in_pieces_is_no_key() {
 }
 
 #[test]
-fn an_answer_that_comes_after_the_page_was_left_is_no_key() {
+fn an_answer_after_the_page_was_left_is_not_taken_for_a_key() {
     let Some(mut watched) = Watched::start() else {
         return;
     };
@@ -184,15 +185,15 @@ fn an_answer_that_comes_after_the_page_was_left_is_no_key() {
     watched.program.types(b"q");
     watched.program.shows("? Help");
     watched.program.answer();
-    // A key after it: a new shape by "n" would have been there before.
+    // Had the answer been taken for keys, its "n" would have made a new shape before this key.
     watched.program.types(b" ");
     watched.program.shows("NA 1 in all");
     watched.program.types(b"qy");
     watched.program.ends_well(0);
 }
 
-/// Ends the program with a question open, which is answered once the shell seems to have the terminal. Answers whether it
-/// had not ended yet.
+/// Ends the program with an open question, which is answered once the shell seems to have the terminal. Returns true
+/// if the program had not ended by then.
 fn is_answered_at_its_end(
     watched: &mut Watched,
     end: impl FnOnce(&mut Program),
@@ -212,13 +213,13 @@ fn is_answered_at_its_end(
 }
 
 #[test]
-fn the_shell_does_not_get_an_answer_that_is_under_way() {
+fn the_shell_does_not_receive_a_late_answer() {
     for status in [0, 143] {
         let end = |program: &mut Program| match status {
             0 => b"qq".iter().for_each(|key| program.types(&[*key])),
             _ => program.signal(Signal::TERM),
         };
-        // A machine that is very busy may answer later than anything is waited for.
+        // A very busy machine may answer later than the program waits.
         let is_in_time = (0..10).any(|_| {
             let watched = Watched::start();
             watched.is_none_or(|mut watched| is_answered_at_its_end(&mut watched, end, status))
@@ -228,7 +229,7 @@ fn the_shell_does_not_get_an_answer_that_is_under_way() {
 }
 
 #[test]
-fn pictures_go_on_after_a_stop_that_an_answer_was_lost_in() {
+fn pictures_continue_after_a_stop_in_which_an_answer_was_lost() {
     let Some(mut watched) = Watched::start() else {
         return;
     };
@@ -244,7 +245,7 @@ fn pictures_go_on_after_a_stop_that_an_answer_was_lost_in() {
     let begun = Instant::now();
     watched.program.signal(Signal::CONT);
     watched.asks_after(2);
-    // An answer of a line that stands still is waited for longer.
+    // The program waits longer for an answer over a stalled line.
     assert!(begun.elapsed() < Duration::from_secs(9));
     watched.ends();
 }

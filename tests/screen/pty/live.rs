@@ -1,5 +1,5 @@
-//! The live page in a terminal: recording by a key, a disk that hangs meanwhile, a terminal that is not read for a while,
-//! and how often it is drawn.
+//! The live page in a terminal: recording by a key, a disk that hangs meanwhile, a terminal that is not read for a
+//! while, and how often the page is drawn.
 
 use std::fs;
 use std::io::Write;
@@ -15,7 +15,7 @@ use super::tracer::Tracer;
 use crate::array;
 use crate::wait::{connection, fifo, writer_of};
 
-/// Frames of 4 x 4, of which the first value counts.
+/// Returns frames of 4 × 4 whose first value is their number.
 fn frames(numbers: std::ops::Range<u32>) -> String {
     numbers
         .map(|number| format!("{number} 1 2 3\n4 5 6 7\n8 9 10 11\n12 13 14 15\n\n"))
@@ -26,19 +26,19 @@ fn frames(numbers: std::ops::Range<u32>) -> String {
 pub(super) struct Watched {
     /// The program.
     pub(super) program: Program,
-    /// The pipe's other end.
+    /// The other end of the pipe.
     pub(super) pipe: fs::File,
-    /// The folder, which the program works in.
+    /// The folder that the program works in.
     folder: tempfile::TempDir,
 }
 
 impl Watched {
-    /// Starts it; None where there is no mkfifo.
+    /// Starts the program; None if there is no mkfifo.
     pub(super) fn start() -> Option<Self> {
         Self::started("", "")
     }
 
-    /// The same after commands of a shell, and with further arguments.
+    /// Starts the program after shell commands, and with further arguments.
     pub(super) fn started(before: &str, arguments: &str) -> Option<Self> {
         let folder = tempfile::tempdir().expect("a folder");
         let pipe = folder.path().join("frames");
@@ -56,7 +56,7 @@ impl Watched {
             ],
             ..Start::default()
         });
-        // Waits until the program reads it.
+        // Waits until the program reads the pipe.
         let pipe = writer_of(&pipe);
         Some(Self {
             program,
@@ -77,7 +77,8 @@ impl Watched {
         self.program.shows("frame 0");
     }
 
-    /// Records from here on; the file. The first frame is in it, too: that it is one was not certain until the second came.
+    /// Starts a recording and returns its file. The file includes the first frame, because it was only confirmed as a
+    /// frame when the second came.
     fn records(&mut self) -> PathBuf {
         self.program.types(b"r");
         self.program.shows("recording in touch-1.npy");
@@ -93,13 +94,13 @@ impl Watched {
     }
 }
 
-/// The number of records that an array counts.
+/// Returns the number of records that the header of an array gives.
 fn records(path: &Path) -> Option<usize> {
     array::records(&fs::read(path).ok()?)
 }
 
 #[test]
-fn a_key_records_and_a_key_ends_it() {
+fn a_key_starts_and_ends_a_recording() {
     let Some(mut watched) = Watched::start() else {
         return;
     };
@@ -125,7 +126,7 @@ fn a_recording_without_a_frame_leaves_no_file() {
     let Some(mut watched) = Watched::start() else {
         return;
     };
-    // Neither before the first frame of all, nor after it.
+    // Neither before the very first frame, nor after it.
     for _ in 0..2 {
         let file = watched.records();
         watched.program.types(b"r");
@@ -137,11 +138,11 @@ fn a_recording_without_a_frame_leaves_no_file() {
     watched.ends();
 }
 
-/// A limit of the system in place of a full disk.
+/// A limit of the system acts as a full disk.
 const FULL: &str = "trap '' XFSZ; ulimit -f 9;";
 
 #[test]
-fn a_recording_that_fails_takes_the_place_of_the_notice_of_its_beginning() {
+fn a_recording_that_fails_replaces_the_notice_of_its_start() {
     let Some(mut watched) = Watched::started(FULL, "") else {
         return;
     };
@@ -153,7 +154,7 @@ fn a_recording_that_fails_takes_the_place_of_the_notice_of_its_beginning() {
     watched.program.shows(failed);
     let screen = watched.program.rows();
     assert!(!screen.contains("recording in"), "{screen}");
-    // It stays while there is none, and a key does not hide it.
+    // The error remains while there is no recording, and a key does not hide it.
     watched.program.types(b"T");
     watched.program.shows("! there is no tare; touch-1.npy:");
     watched.ends();
@@ -173,13 +174,13 @@ fn a_recording_of_the_command_line_that_fails_is_an_error_at_the_end() {
     watched.program.shows(&format!("error: {failed}"));
 }
 
-/// What the description beside an array says of its end.
+/// Returns true if the description beside an array says that the recording has ended.
 fn is_ended(path: &Path) -> bool {
     let beside = fs::read_to_string(path.with_extension("json")).expect("it is there");
     beside.contains("\"ended\":true") || beside.contains("\"ended\": true")
 }
 
-/// A source that is watched and recorded, and a disk that hangs then.
+/// Starts watching and recording a source on a disk that then hangs.
 fn recorded_on_a_hanging_disk() -> Option<(Watched, PathBuf, Tracer)> {
     let mut watched = Watched::start()?;
     watched.shows_the_first_frame();
@@ -226,7 +227,7 @@ fn ctrl_z_and_fg_leave_a_source_and_its_recording_as_they_are() {
     program.types(b"r");
     program.shows("frames recorded");
     assert!(records(&file) >= Some(before + 5) && is_ended(&file));
-    // Another one begins.
+    // Another recording begins.
     program.types(b"r");
     shows_recorded(&mut program, "touch-1.npy", 1);
     program.types(b"q");
@@ -237,7 +238,7 @@ fn ctrl_z_and_fg_leave_a_source_and_its_recording_as_they_are() {
 }
 
 #[test]
-fn what_is_recorded_of_a_source_that_has_ended_is_on_the_disk() {
+fn the_recording_of_a_source_that_has_ended_is_on_the_disk() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let rows = "time,r0c0,r0c1\n0.0,1,2\n0.1,3,4\n0.2,5,6\n";
@@ -246,7 +247,7 @@ fn what_is_recorded_of_a_source_that_has_ended_is_on_the_disk() {
     let mut program = watching(folder, "touch.csv --write a.npy");
     program.shows("ended");
     program.until("the frames", |_| records(&file) == Some(3));
-    // A mark that is set later, too.
+    // A mark that is set later is written, too.
     program.types(b"m");
     program.shows("frame 2: marked");
     program.until("the mark", |_| {
@@ -275,7 +276,7 @@ fn leaving_the_page_says_what_was_recorded() {
 }
 
 #[test]
-fn a_device_that_is_no_line_is_not_waited_for() {
+fn a_device_that_is_not_a_serial_line_is_refused_at_once() {
     let mut program = Program::start(&Start::default());
     program.types(b":watch /dev/urandom\r");
     program.shows("! cannot open it: it is not a serial line");
@@ -331,7 +332,7 @@ fn keys_go_on_while_a_hanging_disk_takes_a_recording() {
         watched.program.shows("touch-1.npy: 21 frames recorded");
         assert_eq!(records(&file), Some(21), "none of those after the key");
         assert!(is_ended(&file));
-        // What was drawn is given up; the page of the source comes before the end.
+        // The drawing is given up; on the page of a source, a first q leaves the page.
         let keys: [&[u8]; 2] = if leaves { [b"q", b"y"] } else { [b"q", b"q"] };
         for key in keys {
             watched.program.types(key);
@@ -342,7 +343,7 @@ fn keys_go_on_while_a_hanging_disk_takes_a_recording() {
 
 #[test]
 fn the_end_does_not_wait_for_a_recording_on_a_hanging_disk() {
-    // Together: most of their time they wait for that disk.
+    // The cases run together, because they mostly wait for that disk.
     std::thread::scope(|scope| {
         for (keys, signal, status) in [
             (&b"qq"[..], None, 0),
@@ -369,7 +370,7 @@ fn ends_before_its_recording(keys: &[u8], signal: Option<Signal>, status: i32) {
     watched.program.shows(why);
     watched.program.is_left();
     println!("the shell has the terminal after {:?}", begun.elapsed());
-    // The system waits for the one who traces.
+    // The system waits for the tracer.
     hanging.end();
     let (ended, _) = watched.program.ends();
     assert_eq!(ended.code(), Some(status));
@@ -401,7 +402,7 @@ fn frames_are_shown_while_a_hanging_disk_creates_a_recording() {
 }
 
 #[test]
-fn frames_are_recorded_where_the_system_gives_no_more_threads() {
+fn frames_are_recorded_if_no_more_threads_can_be_started() {
     let Some(mut watched) = Watched::start() else {
         return;
     };
@@ -409,7 +410,7 @@ fn frames_are_recorded_where_the_system_gives_no_more_threads() {
     let Some(_tracer) = Tracer::refuse_threads(&mut watched.program, "1+") else {
         return;
     };
-    // Neither one for the disk nor one that syncs.
+    // There is no thread for the disk, and none for syncing.
     let file = watched.records();
     watched.sends(1..6);
     watched.program.shows("frame 5");
@@ -417,7 +418,7 @@ fn frames_are_recorded_where_the_system_gives_no_more_threads() {
     watched.program.shows("touch-1.npy: 6 frames recorded");
     assert_eq!(records(&file), Some(6));
     assert!(is_ended(&file));
-    // Nor one that names imprints.
+    // There is no thread for naming imprints, either.
     watched.program.types(b"n");
     watched.program.shows("cannot start a thread");
     watched.sends(6..8);
@@ -426,7 +427,7 @@ fn frames_are_recorded_where_the_system_gives_no_more_threads() {
 }
 
 #[test]
-fn a_source_without_a_thread_is_said_not_to_be_read() {
+fn a_source_without_a_thread_is_reported_as_not_read() {
     let folder = tempfile::tempdir().expect("a folder");
     let source = folder.path().join("touch.txt");
     fs::write(&source, frames(0..3)).expect("written");
@@ -438,7 +439,7 @@ fn a_source_without_a_thread_is_said_not_to_be_read() {
     program.shows("cannot start a thread");
     program.types(b"\x1b");
     program.shows("? Help");
-    // It is read when there are threads again.
+    // The source is read once there are threads again.
     tracer.end();
     program.types(b"w");
     program.shows("frame 2");
@@ -448,13 +449,13 @@ fn a_source_without_a_thread_is_said_not_to_be_read() {
 }
 
 #[test]
-fn a_terminal_that_is_not_read_holds_up_no_recording() {
+fn a_terminal_that_is_not_read_does_not_delay_a_recording() {
     let Some(mut watched) = Watched::start() else {
         return;
     };
     watched.shows_the_first_frame();
     let file = watched.records();
-    // Nothing is read from the terminal while these come, far more than its buffers hold.
+    // Nothing is read from the terminal while these frames come, which are far more than its buffers hold.
     for piece in 0..200 {
         watched.sends(piece * 20 + 1..piece * 20 + 21);
     }
@@ -475,15 +476,15 @@ fn a_terminal_that_is_not_read_holds_up_no_recording() {
 }
 
 #[test]
-fn it_is_drawn_at_most_thirty_times_a_second() {
+fn the_page_is_drawn_at_most_thirty_times_a_second() {
     let Some(mut watched) = Watched::start() else {
         return;
     };
     watched.shows_the_first_frame();
-    // A picture of so few taxels comes in one piece.
+    // A picture with so few taxels comes in one piece.
     let before = watched.program.reads;
     let start = Instant::now();
-    // 500 frames, one every two milliseconds or slower.
+    // 500 frames, at least two milliseconds apart.
     for number in 1..=500 {
         watched.sends(number..number + 1);
         watched.program.read(Duration::from_millis(2));
@@ -501,7 +502,7 @@ fn it_is_drawn_at_most_thirty_times_a_second() {
     watched.ends();
 }
 
-/// A command that watches, in a folder.
+/// Starts a command that watches, in a folder.
 fn watching(folder: &Path, arguments: &str) -> Program {
     let line = format!(
         "cd '{}' && exec '{TAXEL}' watch {arguments}",
@@ -513,7 +514,7 @@ fn watching(folder: &Path, arguments: &str) -> Program {
     })
 }
 
-/// It ends with an error on the terminal, and no page was opened.
+/// Checks that the command ends with an error on the terminal, without opening a page.
 fn is_refused(folder: &Path, arguments: &str, said: &str) {
     let mut program = watching(folder, arguments);
     program.ends_well(1);
@@ -547,7 +548,7 @@ fn a_connection_that_is_not_there_yet_is_waited_for() {
     let mut connection = connection(&listener);
     let sent = connection.write_all(frames(0..3).as_bytes());
     sent.expect("it reads");
-    // What came first may have been torn.
+    // The first frame may have been incomplete.
     program.shows("frame 1");
     program.types(b"q");
     program.types(b"q");
@@ -555,14 +556,14 @@ fn a_connection_that_is_not_there_yet_is_waited_for() {
 }
 
 #[test]
-fn the_gap_of_a_lost_connection_stays_on_the_page_until_a_key() {
+fn the_notice_of_a_connection_gap_stays_until_a_key_is_pressed() {
     let folder = tempfile::tempdir().expect("a folder");
     let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
     let address = listener.local_addr().expect("an address");
     let mut program = watching(folder.path(), &format!("tcp://{address} --at-least 9"));
     for frame in ["frame 2", "frame 5"] {
         let mut connection = connection(&listener);
-        // What comes first may have been torn.
+        // The first frame may have been incomplete.
         let sent = connection.write_all(frames(0..4).as_bytes());
         sent.expect("it reads");
         program.shows(frame);
@@ -586,7 +587,7 @@ fn the_gap_of_a_lost_connection_stays_on_the_page_until_a_key() {
 }
 
 #[test]
-fn a_recording_that_cannot_be_begun_opens_no_page() {
+fn a_recording_that_cannot_be_started_opens_no_page() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     fs::write(folder.join("touch.txt"), frames(0..3)).expect("written");
@@ -595,7 +596,7 @@ fn a_recording_that_cannot_be_begun_opens_no_page() {
     is_refused(folder, "touch.txt --write old.npy", there);
     let missing = "error: no/new.npy: cannot record: No such file or directory (os error 2)";
     is_refused(folder, "touch.txt --write no/new.npy", missing);
-    // What is to be replaced is there until the first frame comes, and nothing else appears.
+    // The file to be replaced is kept until the first frame comes, and no other file appears.
     fs::write(folder.join("empty.txt"), "").expect("written");
     let mut program = watching(folder, "empty.txt --write old.npy --force");
     program.shows("recording  old.npy, 0 frames");
@@ -608,7 +609,7 @@ fn a_recording_that_cannot_be_begun_opens_no_page() {
 }
 
 #[test]
-fn a_page_that_is_opened_again_leaves_its_recording_alone() {
+fn a_reopened_page_does_not_change_its_recording() {
     for force in ["", "--force"] {
         let folder = tempfile::tempdir().expect("a folder");
         let folder = folder.path();
@@ -620,7 +621,7 @@ fn a_page_that_is_opened_again_leaves_its_recording_alone() {
         program.types(b"\x1b");
         program.shows("a.npy: 3 frames recorded");
         assert_eq!(records(&file), Some(3));
-        // What is there now is told from what a second recording would write.
+        // These contents differ from those that a second recording would write.
         fs::write(&file, "mine").expect("written");
         program.types(b"w");
         program.shows("ended");
@@ -633,9 +634,9 @@ fn a_page_that_is_opened_again_leaves_its_recording_alone() {
     }
 }
 
-/// After a connection that was lost, say: the keys are those of the page, and the question comes when it is left.
+/// For example after a lost connection: keys belong to the page, and the question comes when the page is left.
 #[test]
-fn unsaved_work_that_was_left_keeps_no_source_from_being_recorded() {
+fn unsaved_work_from_last_time_does_not_prevent_recording() {
     for answer in [b"y", b"n"] {
         let folder = tempfile::tempdir().expect("a folder");
         let (folder, place) = (folder.path(), folder.path().join("library"));
@@ -677,7 +678,7 @@ fn unsaved_work_that_was_left_keeps_no_source_from_being_recorded() {
 }
 
 #[test]
-fn why_nothing_is_recorded_stays_on_the_page() {
+fn the_reason_why_nothing_is_recorded_stays_on_the_page() {
     let Some(mut watched) = Watched::start() else {
         return;
     };

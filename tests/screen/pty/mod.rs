@@ -1,6 +1,6 @@
-//! The real program in a pseudo-terminal: ends, hang-ups, stops, odd terminals, bytes and wake-ups.
+//! The real program in a pseudo-terminal: ends, hang-ups, stops, unusual terminals, bytes and wake-ups.
 //!
-//! Nothing waits a fixed time for something to be right: every wait is for a condition, with a long deadline.
+//! No test waits a fixed time for a result: every wait is for a condition, with a long deadline.
 
 mod drawn;
 
@@ -32,7 +32,7 @@ mod live;
 
 mod links;
 
-/// Becomes the program; see `program`.
+/// Becomes the program; see [`program`].
 #[test]
 #[ignore = "only as a child of other tests"]
 fn launcher() {

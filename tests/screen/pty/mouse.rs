@@ -1,4 +1,4 @@
-//! The mouse and the clipboard, as bytes: what a terminal reports, and what it is asked to do.
+//! The mouse and the clipboard as bytes: the reports of a terminal, and the requests to it.
 
 use taxel::tui::app::message::{Message, Mouse, MouseKind};
 use taxel::tui::script::Session;
@@ -7,7 +7,7 @@ use super::live::Watched;
 use super::program::{Program, Start};
 use super::screens::session;
 
-/// The same to both: the report of a terminal (SGR, places from 1), and what it means.
+/// Sends the same to both: to the program a terminal's report (SGR, places from 1), and to the script its meaning.
 fn point(program: &mut Program, script: &mut Session, kind: MouseKind, column: u16, row: u16) {
     let (button, end) = match kind {
         MouseKind::Press => (0, 'M'),
@@ -23,7 +23,7 @@ fn point(program: &mut Program, script: &mut Session, kind: MouseKind, column: u
 }
 
 #[test]
-fn it_clicks_drags_and_scrolls() {
+fn the_mouse_clicks_drags_and_scrolls() {
     use MouseKind::{Drag, Press, Release, ScrollDown, ScrollUp};
     let mut program = Program::started(&Start::default());
     let mut script = session(false, (80, 24));
@@ -34,12 +34,12 @@ fn it_clicks_drags_and_scrolls() {
         }
         assert!(script.screen().contains(shown), "{}", script.screen());
     };
-    // A taxel: the ruler has three columns, menu, title and the other ruler three rows.
+    // A taxel: the ruler has three columns; menu, title and the other ruler have three rows.
     act(
         &[(Press, 3 + 2 * 5, 3 + 4), (Release, 13, 7)],
         "NA 1 in all",
     );
-    // From that one on, a few told places; the line between them is drawn.
+    // From there, a few reported places, with lines between them.
     act(
         &[
             (Press, 13, 8),
@@ -49,14 +49,14 @@ fn it_clicks_drags_and_scrolls() {
         ],
         "NA 8 in all",
     );
-    // The button let go: moving on does nothing.
+    // The button was released: moving does nothing.
     act(&[(Drag, 25, 15)], "NA 8 in all");
-    // Outside of everything, and where no terminal has a place.
+    // Outside of everything, and at a place that no terminal has.
     act(
         &[(Press, 79, 23), (Release, 79, 23), (Press, 999, 999)],
         "NA 8 in all",
     );
-    // The menu's Load; a row; the wheel.
+    // The menu's Load, a row, and the wheel.
     act(&[(Press, 10, 0), (Release, 10, 0)], "filter:");
     act(
         &[(ScrollDown, 5, 8), (ScrollDown, 5, 8), (ScrollUp, 5, 8)],
@@ -64,7 +64,7 @@ fn it_clicks_drags_and_scrolls() {
     );
     act(&[(Press, 5, 4), (Release, 5, 4)], "filter:");
     act(&[(Press, 5, 4)], "loaded");
-    // The old form of reports, of terminals that do not know the new one.
+    // The old format of reports, from terminals that do not know the new one.
     program.types(b"\x1b[M \x24\x25\x1b[M#\x24\x25");
     for kind in [Press, Release] {
         script.send(Message::Mouse(Mouse {
@@ -79,7 +79,7 @@ fn it_clicks_drags_and_scrolls() {
 }
 
 #[test]
-fn m_gives_it_back_to_the_terminal_and_takes_it_again() {
+fn m_gives_the_mouse_to_the_terminal_and_takes_it_back() {
     let mut program = Program::started(&Start::default());
     assert_eq!(
         program.screen().mouse_protocol_mode(),
@@ -111,7 +111,7 @@ fn m_gives_it_back_to_the_terminal_and_takes_it_again() {
     assert_eq!(watched.program.count(b"?1000h"), 0);
 }
 
-/// What stands between the marks of OSC 52, decoded.
+/// Returns the decoded text between the marks of OSC 52.
 fn copied(program: &Program) -> Option<String> {
     let text = String::from_utf8_lossy(&program.bytes).into_owned();
     let (_, rest) = text.rsplit_once("\x1b]52;c;")?;
@@ -138,7 +138,7 @@ fn copied(program: &Program) -> Option<String> {
 }
 
 #[test]
-fn what_is_copied_goes_to_the_clipboard_of_the_terminal() {
+fn copied_text_goes_to_the_clipboard_of_the_terminal() {
     let mut program = Program::started(&Start::default());
     let mut script = session(false, (80, 24));
     program.types(b"f\rY");
@@ -160,7 +160,7 @@ fn what_is_copied_goes_to_the_clipboard_of_the_terminal() {
 
 /// A terminal that would show the text is not sent it, and its user is told.
 #[test]
-fn nothing_is_copied_where_there_is_no_clipboard() {
+fn nothing_is_copied_if_the_terminal_has_no_clipboard() {
     for term in ["dumb", "vt100", "linux"] {
         let mut program = Program::started(&Start {
             variables: &[("TERM", term), ("LANG", "C.UTF-8")],

@@ -1,7 +1,7 @@
 //! The program in a pseudo-terminal, with an emulator at the other end.
 //!
-//! A child has to make the pseudo-terminal its own before it becomes the program, which safe Rust cannot do between
-//! fork and exec. So the test's own binary is started first, as [`launch`], and then replaced.
+//! A child process has to make the pseudo-terminal its controlling terminal before it becomes the program, which safe
+//! Rust cannot do between fork and exec. So the test's own binary is started first, as [`launch`], and then replaced.
 
 use std::env;
 use std::os::fd::{AsFd, OwnedFd};
@@ -20,20 +20,20 @@ use taxel::tui::script::Session;
 
 use super::drawn::{emulator, of_emulator, of_session, side};
 
-/// The real binary.
+/// The path of the real binary.
 pub(crate) const TAXEL: &str = env!("CARGO_BIN_EXE_taxel");
 
-/// Nothing takes so long, on the busiest machine. Only what fails waits for it.
+/// The longest wait, even on the busiest machine. Only failing tests wait that long.
 const DEADLINE: Duration = Duration::from_secs(120);
-/// Asks a terminal for its status (DSR).
+/// The question for the status of the terminal (DSR).
 pub(crate) const QUESTION: &[u8] = b"\x1b[5n";
-/// What it answers.
+/// The answer to the question.
 const ANSWER: &[u8] = b"\x1b[0n";
 
-/// The output is taken to be over after such a silence, where its length is counted.
+/// After this time without output, the output is considered complete and its bytes are counted.
 const SILENCE: Duration = Duration::from_millis(60);
 
-/// How a program is started.
+/// The options for starting a program.
 pub(crate) struct Start<'a> {
     pub(crate) command: &'a [&'a str],
     pub(crate) variables: &'a [(&'a str, &'a str)],
@@ -41,7 +41,7 @@ pub(crate) struct Start<'a> {
     pub(crate) size: (u16, u16),
     /// Whether the pseudo-terminal becomes its controlling terminal.
     pub(crate) controlling: bool,
-    /// Its library; none: an empty one that goes with the program.
+    /// The library; None for an empty one that is deleted with the program.
     pub(crate) library: Option<&'a Path>,
 }
 
@@ -65,21 +65,21 @@ pub(crate) struct Program {
     slave: OwnedFd,
     before: Termios,
     emulator: vt100::Parser,
-    /// Its library, which goes with it.
+    /// The library, which is deleted with the program.
     _library: tempfile::TempDir,
-    /// All that it has written.
+    /// All bytes that the program has written.
     pub(crate) bytes: Vec<u8>,
-    /// How much of it the emulator has been given.
+    /// The number of these bytes that the emulator has processed.
     shown: usize,
-    /// How many reads that took.
+    /// The number of reads that this took.
     pub(crate) reads: usize,
-    /// Whether it is told the status of the terminal when it asks, as terminals do.
+    /// Whether the program is told the status of the terminal when it asks, as terminals do.
     pub(crate) answers: bool,
-    /// How much of what it has written was searched for the question.
+    /// The number of bytes that were searched for the question.
     searched: usize,
 }
 
-/// The part that runs in the child. Without its variables it is a test that does nothing.
+/// The part that runs in the child. As a test without its variables, it does nothing.
 pub(crate) fn launch() {
     let Ok(command) = env::var("PTY_COMMAND") else {
         return;
@@ -148,7 +148,7 @@ impl Program {
         }
     }
 
-    /// Started, and its first screen is there.
+    /// Starts the program and waits for its first screen.
     pub(crate) fn started(start: &Start<'_>) -> Self {
         let mut program = Self::start(start);
         program.shows("? Help");
@@ -178,13 +178,13 @@ impl Program {
         self.emulator.set_size(side(size.1), side(size.0));
     }
 
-    /// The emulator's memory of a screen that some other program had.
+    /// Makes the emulator forget its screen, as if another program had drawn on it.
     pub(crate) fn forget(&mut self) {
         let (rows, columns) = self.screen().size();
         self.emulator = emulator(columns.get(), rows.get());
     }
 
-    /// Reads what there is within a time; answers whether there was anything.
+    /// Reads the output within a time; returns true if there was any.
     pub(crate) fn read(&mut self, time: Duration) -> bool {
         let master = self.master.as_ref().expect("a terminal");
         let mut fds = [PollFd::new(master, PollFlags::IN)];
@@ -205,27 +205,27 @@ impl Program {
         count > 0
     }
 
-    /// Tells the status of the terminal as often as it was asked for since the last time.
+    /// Answers each new question for the status of the terminal.
     fn answer_questions(&mut self) {
         let questions = count(&self.bytes[self.searched..], QUESTION);
-        // The next one may have begun.
+        // The next question may have begun.
         self.searched = (self.bytes.len() + 1).saturating_sub(QUESTION.len());
         for _ in 0..if self.answers { questions } else { 0 } {
             self.answer();
         }
     }
 
-    /// Tells the status of the terminal.
+    /// Answers with the status of the terminal.
     pub(crate) fn answer(&self) {
         self.types(ANSWER);
     }
 
-    /// How often the terminal was asked for its status.
+    /// Returns how often the terminal was asked for its status.
     pub(crate) fn questions(&self) -> usize {
         self.count(QUESTION)
     }
 
-    /// Reads until something holds.
+    /// Reads until a condition holds.
     pub(crate) fn until(&mut self, what: &str, mut holds: impl FnMut(&mut Self) -> bool) {
         let start = Instant::now();
         while !holds(self) {
@@ -243,7 +243,7 @@ impl Program {
         self.until(text, |program| program.screen().contents().contains(text));
     }
 
-    /// The screen's rows as a script has them.
+    /// Returns the rows of the screen like a script prints them.
     pub(crate) fn rows(&self) -> String {
         let (_, columns) = self.screen().size();
         let rows = self.screen().rows(0, columns.get());
@@ -251,7 +251,7 @@ impl Program {
         rows.trim_end().to_owned()
     }
 
-    /// Reads until the characters are those of a script; of a terminal that has no styles.
+    /// Reads until the characters are those of a script, for a terminal without styles.
     pub(crate) fn agrees_plainly(&mut self, session: &Session) {
         let (rows, at) = (session.screen(), session.cursor());
         self.until("the screen of the script", |program| {
@@ -263,7 +263,7 @@ impl Program {
         });
     }
 
-    /// Reads until the screen is that of a script: characters, styles, and the cursor where there is one.
+    /// Reads until the screen is that of a script: characters, styles, and the cursor if it is visible.
     pub(crate) fn agrees(&mut self, session: &Session) {
         let expected = of_session(session);
         let start = Instant::now();
@@ -274,14 +274,14 @@ impl Program {
                 "expected\n{expected}\nfound\n{}",
                 of_emulator(self.screen())
             );
-            // It looks the same until something comes.
+            // Without new output, the screen is still the same.
             if self.read(Duration::from_millis(5)) {
                 agrees = of_emulator(self.screen()) == expected;
             }
         }
     }
 
-    /// How many bytes it writes from here on until it falls silent; `act` waits for what it has to show.
+    /// Returns the number of bytes that the program writes during `act` and until it falls silent.
     pub(crate) fn written(&mut self, act: impl FnOnce(&mut Self)) -> usize {
         let before = self.bytes.len();
         act(self);
@@ -294,12 +294,12 @@ impl Program {
         self.master = None;
     }
 
-    /// Keeps the line but reads nothing from it any more.
+    /// Keeps the line, but reads nothing from it any more.
     pub(crate) fn take_master(&mut self) -> Option<OwnedFd> {
         self.master.take()
     }
 
-    /// Whether it runs, sleeps, is stopped.
+    /// Returns the state of the process, for example running, sleeping or stopped.
     pub(crate) fn state(&self) -> char {
         let file = format!("/proc/{}/stat", self.child.id());
         let text = std::fs::read_to_string(file).expect("it runs");
@@ -307,12 +307,12 @@ impl Program {
         rest.chars().next().expect("a state")
     }
 
-    /// Whether it has ended.
+    /// Returns true if the program has ended.
     pub(crate) fn has_ended(&mut self) -> bool {
         self.child.try_wait().expect("a child").is_some()
     }
 
-    /// Waits for the end; answers how, and after how long.
+    /// Waits for the end; returns the exit status and the time.
     pub(crate) fn ends(&mut self) -> (ExitStatus, Duration) {
         let start = Instant::now();
         loop {
@@ -328,26 +328,26 @@ impl Program {
         }
     }
 
-    /// Waits for the end with an exit status, and finds the terminal as it was.
+    /// Waits for the end with an exit status, and checks that the terminal is as it was before.
     pub(crate) fn ends_well(&mut self, status: i32) {
         let (ended, _) = self.ends();
         assert_eq!((ended.code(), ended.signal()), (Some(status), None));
         self.is_left();
     }
 
-    /// The terminal's attributes are what they were, and no mode is left on.
+    /// Checks that the terminal's attributes are as before, and that no mode is left on.
     pub(crate) fn is_left(&mut self) {
         self.no_mode_is_on();
         let now = tcgetattr(&self.slave).expect("attributes");
         assert_eq!(format!("{now:?}"), format!("{:?}", self.before));
     }
 
-    /// No mode is left on. The last bytes may still be on their way here when the program has ended.
+    /// Checks that no mode is left on. When the program has ended, its last bytes may still be in transit.
     pub(crate) fn no_mode_is_on(&mut self) {
         self.until("no mode to be on", |program| program.modes_on().is_empty());
     }
 
-    /// Which modes are on.
+    /// Returns the modes that are on.
     fn modes_on(&self) -> Vec<&'static str> {
         let screen = self.screen();
         let mouse = screen.mouse_protocol_mode() != vt100::MouseProtocolMode::None
@@ -355,7 +355,7 @@ impl Program {
         let keys = screen.application_cursor() || screen.application_keypad();
         let plain = [screen.bold(), screen.dim(), screen.inverse()] == [false; 3]
             && screen.fgcolor() == vt100::Color::Default;
-        // The emulator does not know this one: what was begun must have been ended.
+        // The emulator does not know this mode, so its begins and ends are counted.
         let held = self.count(b"\x1b[?2026l") < self.count(b"\x1b[?2026h");
         [
             ("second screen", screen.alternate_screen()),
@@ -371,12 +371,12 @@ impl Program {
         .collect()
     }
 
-    /// How often it has written something.
+    /// Returns how often the program has written some bytes.
     pub(crate) fn count(&self, mark: &[u8]) -> usize {
         count(&self.bytes, mark)
     }
 
-    /// A number of /proc/PID/status.
+    /// Returns a number from /proc/PID/status.
     pub(crate) fn status(&self, name: &str) -> u64 {
         let file = format!("/proc/{}/status", self.child.id());
         let text = std::fs::read_to_string(file).expect("it runs");
@@ -387,7 +387,7 @@ impl Program {
             .expect("a number")
     }
 
-    /// How often each of its threads has given the processor up of itself.
+    /// Returns how often each of its threads has given up the processor voluntarily.
     pub(crate) fn wake_ups(&self) -> Vec<u64> {
         let folder = format!("/proc/{}/task", self.child.id());
         let tasks = std::fs::read_dir(folder).expect("it runs").flatten();
@@ -402,7 +402,7 @@ impl Program {
         switches.collect()
     }
 
-    /// Its processor time in hundredths of a second.
+    /// Returns the processor time in hundredths of a second.
     pub(crate) fn cpu(&self) -> u64 {
         let file = format!("/proc/{}/stat", self.child.id());
         let text = std::fs::read_to_string(file).expect("it runs");
@@ -417,13 +417,13 @@ impl Program {
 
 impl Drop for Program {
     fn drop(&mut self) {
-        // It has ended already, or its test has failed.
+        // The program has ended already, or its test has failed.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// How often bytes hold something.
+/// Counts how often the bytes contain `mark`.
 pub(crate) fn count(bytes: &[u8], mark: &[u8]) -> usize {
     let found = bytes.windows(mark.len()).filter(|found| *found == mark);
     found.count()

@@ -1,5 +1,5 @@
-//! Reading from a disk that hangs: keys go on, the status line says what is waited for, the answer comes to the page that
-//! asked, Esc gives up, and the end does not wait.
+//! Reading from a disk that hangs: keys keep working, the status line says what the program waits for, the result goes
+//! to the page that asked for it, Esc gives up waiting, and the end does not wait.
 
 use std::fs;
 use std::path::Path;
@@ -13,10 +13,10 @@ use taxel::storage::{Expected, Library};
 use super::program::{Program, Start};
 use super::tracer::Tracer;
 
-/// Opening a file or a folder.
+/// The call that opens a file or a folder.
 const OPENING: &str = "?openat";
 
-/// A library with one shape of seven taxels, `stripe`.
+/// Makes a library with one shape of seven taxels, `stripe`.
 fn library() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let mut imprint = Imprint::empty(16, 16);
@@ -31,7 +31,7 @@ fn library() -> tempfile::TempDir {
     folder
 }
 
-/// The program over a library.
+/// Starts the program with a library.
 fn started(library: &Path) -> Program {
     Program::started(&Start {
         library: Some(library),
@@ -40,7 +40,7 @@ fn started(library: &Path) -> Program {
 }
 
 #[test]
-fn what_is_typed_while_the_list_is_read_is_not_lost() {
+fn keys_typed_while_the_list_is_read_are_not_lost() {
     let folder = library();
     let mut program = started(folder.path());
     let Some(hanging) = Tracer::hang(&mut program, OPENING, &[folder.path()]) else {
@@ -61,7 +61,7 @@ fn what_is_typed_while_the_list_is_read_is_not_lost() {
 }
 
 #[test]
-fn the_shapes_of_a_list_come_later_than_their_names() {
+fn the_shapes_of_a_list_may_be_read_after_their_names() {
     let folder = library();
     let mut program = started(folder.path());
     let file = folder.path().join("stripe.json");
@@ -73,7 +73,7 @@ fn the_shapes_of_a_list_come_later_than_their_names() {
     program.shows("Reading the shapes: waiting for the disk");
     program.types(b"\x1b[B");
     hanging.end();
-    // Its preview.
+    // The preview of the shape.
     program.types(b"\x1b[A");
     program.shows("NA 7, pieces 1");
     program.types(b"\x1b");
@@ -109,7 +109,7 @@ fn esc_gives_up_waiting() {
 }
 
 #[test]
-fn what_was_asked_for_behind_it_is_not_given_up() {
+fn a_later_request_is_not_given_up_with_the_one_that_hangs() {
     let folder = library();
     let mut program = started(folder.path());
     let file = folder.path().join("a.txt");
@@ -129,7 +129,7 @@ fn what_was_asked_for_behind_it_is_not_given_up() {
 }
 
 #[test]
-fn a_shape_comes_when_the_page_opened_meanwhile_is_closed() {
+fn a_shape_is_loaded_when_the_page_opened_meanwhile_is_closed() {
     let folder = library();
     let mut program = started(folder.path());
     let file = folder.path().join("stripe.json");
@@ -144,7 +144,7 @@ fn a_shape_comes_when_the_page_opened_meanwhile_is_closed() {
     hanging.end();
     program.types(b", typed on");
     program.shows("strange words, typed on");
-    // Esc closes the prompt, and does not give up what another page waits for.
+    // Esc closes the prompt, and does not give up what another page is waiting for.
     program.types(b"\x1b");
     program.shows("stripe loaded");
     program.shows("NA 7 in all");
@@ -153,7 +153,7 @@ fn a_shape_comes_when_the_page_opened_meanwhile_is_closed() {
 }
 
 #[test]
-fn a_file_that_is_not_waited_for_is_not_opened() {
+fn a_file_that_is_no_longer_waited_for_is_not_opened() {
     let folder = library();
     let mut program = started(folder.path());
     let file = folder.path().join("a.txt");
@@ -169,7 +169,7 @@ fn a_file_that_is_not_waited_for_is_not_opened() {
     hanging.end();
     program.types(b" ");
     program.shows("NA 1 in all");
-    // Asked again, it is.
+    // When it is requested again, it is opened.
     program.types(command.as_bytes());
     program.shows("NA 2 in all");
     program.types(b"qy");
@@ -177,7 +177,7 @@ fn a_file_that_is_not_waited_for_is_not_opened() {
 }
 
 #[test]
-fn names_that_come_late_complete_nothing_else() {
+fn names_that_arrive_late_do_not_change_the_line() {
     let folder = library();
     let mut program = started(folder.path());
     let Some(hanging) = Tracer::hang(&mut program, OPENING, &[folder.path()]) else {
@@ -197,7 +197,7 @@ fn names_that_come_late_complete_nothing_else() {
 }
 
 #[test]
-fn the_end_does_not_wait_for_what_is_being_read() {
+fn the_end_does_not_wait_for_reading() {
     for (keys, signal, status) in [
         (&b"\x03\x03"[..], None, 0),
         (b"", Some(Signal::TERM), 143),
@@ -222,7 +222,7 @@ fn the_end_does_not_wait_for_what_is_being_read() {
 
 /// Waits for the end while the disk hangs.
 fn ends_before(program: &mut Program, hanging: Tracer, status: i32) {
-    // The system keeps what is left of it for the one who traces.
+    // The system keeps the rest of the process for the tracer.
     program.until("its end", |program| program.state() == 'Z');
     hanging.end();
     program.ends_well(status);
@@ -250,7 +250,7 @@ fn the_end_does_not_wait_for_a_model() {
 }
 
 #[test]
-fn a_model_is_waited_for_like_all_that_is_read() {
+fn waiting_for_a_model_does_not_block_keys() {
     let folder = tempfile::tempdir().expect("a folder");
     let models = folder.path().join("models");
     fs::create_dir(&models).expect("made");
@@ -263,7 +263,7 @@ fn a_model_is_waited_for_like_all_that_is_read() {
     let waiting = "Reading model own: waiting for the disk; Esc gives up";
     program.types(b":recognise own\r");
     program.shows(waiting);
-    // Keys go on.
+    // Keys keep working.
     program.types(b" ");
     program.shows("NA 1 in all");
     program.types(b"\x1b");
@@ -280,9 +280,9 @@ fn a_model_is_waited_for_like_all_that_is_read() {
     program.ends_well(0);
 }
 
-/// The first thread is one of those that share work, of which the second is refused.
+/// The first thread is one of those that share the work; the second is refused.
 #[test]
-fn one_thread_works_where_the_system_gives_too_few() {
+fn work_runs_on_one_thread_if_too_few_can_be_started() {
     let folder = library();
     let mut program = started(folder.path());
     let Some(_tracer) = Tracer::refuse_threads(&mut program, "2") else {
@@ -294,7 +294,7 @@ fn one_thread_works_where_the_system_gives_too_few() {
     program.shows("? Help");
     program.types(b"f\re\r");
     program.shows("imprint 0 at");
-    // Sorted and filtered on the screen's own thread.
+    // Sorting and filtering run on the screen's own thread.
     program.types(b"s/na > 1\r");
     program.shows("na > 1");
     program.types(b"\x1b");
@@ -304,7 +304,7 @@ fn one_thread_works_where_the_system_gives_too_few() {
 }
 
 #[test]
-fn shapes_are_read_where_the_system_gives_no_threads() {
+fn shapes_are_read_if_no_threads_can_be_started() {
     let folder = library();
     let mut program = started(folder.path());
     let Some(_tracer) = Tracer::refuse_threads(&mut program, "1+") else {

@@ -1,4 +1,4 @@
-//! What `--record` writes is a script that shows the same screens.
+//! `--record` writes a script that shows the same screens.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use taxel::storage::{Expected, Journal, Library};
 use super::program::{Program, Start, TAXEL};
 use super::tracer::Tracer;
 
-/// A shape with this first row, on 12 x 10 taxels.
+/// Returns a shape with this first row, on 12 × 10 taxels.
 pub(super) fn shape(name: &str, row: &str) -> StoredShape {
     let text = format!(
         "{{\"format\":\"taxel-shape/1\",\"name\":\"{name}\",\"sensor\":{{\"columns\":12,\"rows\":10}},\
@@ -20,7 +20,7 @@ pub(super) fn shape(name: &str, row: &str) -> StoredShape {
     StoredShape::read(text.as_bytes()).expect("a shape")
 }
 
-/// What `taxel script` prints.
+/// Returns the output of `taxel script`.
 fn replayed(script: &str, folder: &Path) -> Output {
     let file = folder.join("replayed.taxel");
     fs::write(&file, script).expect("a file");
@@ -70,7 +70,7 @@ fn a_record_shows_the_same_screens() {
         ..Start::default()
     });
     program.shows("There is unsaved work from last time: lost, 3 taxels");
-    // Keys, and what is then on the screen.
+    // Keys, and a text that is then on the screen.
     let acts: [(&[u8], &str); 10] = [
         (b"y", "brought back"),
         (b"fr\t3.57\x1b[D\x7f\r", "rectangle length 3.70"),
@@ -123,7 +123,7 @@ fn a_record_shows_the_same_screens() {
         whole.contains("..##........"),
         "a shape that was loaded\n{whole}"
     );
-    // The library of the record is untouched by all that.
+    // None of this touches the library of the record.
     assert_eq!(
         library
             .list()
@@ -167,9 +167,9 @@ fn a_record_says_how_many_frames_came_between_keys() {
     program.ends_well(0);
 }
 
-/// A disk that hangs holds up neither a key nor the end, and the end says so.
+/// A disk that hangs delays neither keys nor the end, which reports it.
 #[test]
-fn keys_go_on_while_a_hanging_disk_takes_the_record() {
+fn keys_work_while_a_hanging_disk_writes_the_record() {
     for answers in [true, false] {
         let folder = tempfile::tempdir().expect("a folder");
         let record = folder.path().join("record.taxel");
@@ -203,12 +203,12 @@ fn keys_go_on_while_a_hanging_disk_takes_the_record() {
     }
 }
 
-/// A disk that is full ends the record after a whole line, which is said at once, and the exit status tells it.
+/// A full disk ends the record after a complete line. This is reported at once, and by the exit status.
 #[test]
-fn a_full_disk_ends_a_record_after_a_whole_line() {
+fn a_full_disk_ends_a_record_after_a_complete_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let record = folder.path().join("record.taxel");
-    // A limit in blocks of at least 512 bytes stands for the disk.
+    // A limit in blocks of at least 512 bytes acts as a full disk.
     let command = format!(
         "trap '' XFSZ; ulimit -f 4; exec '{TAXEL}' --record '{}'",
         record.display()
@@ -228,7 +228,7 @@ fn a_full_disk_ends_a_record_after_a_whole_line() {
     assert!(output.status.success(), "{output:?}");
 }
 
-/// A file that is there is not replaced; a record of nothing leaves none.
+/// An existing file is not replaced, and an empty record leaves no file.
 #[test]
 fn a_record_does_not_replace_a_file() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -261,7 +261,7 @@ fn a_record_does_not_replace_a_file() {
         told.starts_with(&format!("error: {}: cannot record: ", nowhere.display())),
         "{told}"
     );
-    // There is no terminal: nothing is recorded.
+    // Without a terminal, nothing is recorded.
     let none = folder.path().join("none.taxel");
     let command = format!(
         "'{TAXEL}' --record '{}' </dev/null 2>&1 | cat; echo left",

@@ -1,5 +1,5 @@
-//! Saving while another program holds the library: keys go on, the status line says what is waited for, and the end does
-//! not wait.
+//! Saving while another program holds the library: keys keep working, the status line says what the program waits for,
+//! and the end does not wait.
 
 use std::fs::File;
 use std::path::Path;
@@ -9,7 +9,7 @@ use taxel::storage::{Library, Orphan};
 
 use super::program::{Program, Start};
 
-/// Draws a taxel and saves it in a library that is locked, until it is said what is waited for.
+/// Draws a taxel and saves it in a locked library, until the screen says what the program waits for.
 fn saving(library: &Path) -> (Program, File) {
     let lock = File::create(library.join(".lock")).expect("a lock");
     lock.lock().expect("it is free");
@@ -23,12 +23,12 @@ fn saving(library: &Path) -> (Program, File) {
 }
 
 #[test]
-fn keys_go_on_while_another_program_holds_the_library() {
+fn keys_work_while_another_program_holds_the_library() {
     let folder = tempfile::tempdir().expect("a folder");
     let (mut program, lock) = saving(folder.path());
     program.types(b"\x1b[C \x1b[C ");
     program.shows("NA 3 in all");
-    // Another save would be mistaken for this one.
+    // A second save would be confused with this one.
     program.types(b"s");
     program.shows("name is still being saved");
     lock.unlock().expect("held");
@@ -40,7 +40,7 @@ fn keys_go_on_while_another_program_holds_the_library() {
         1,
         "as it was when it was saved"
     );
-    // What was drawn meanwhile is not saved.
+    // Taxels drawn meanwhile are not saved.
     program.types(b"q");
     program.shows("The imprint is not saved");
     program.types(b"nuuq");
@@ -50,7 +50,7 @@ fn keys_go_on_while_another_program_holds_the_library() {
 
 #[test]
 fn the_end_does_not_wait_for_another_program() {
-    // Together: most of their time they wait for that program.
+    // The cases run together, because they mostly wait for that program.
     std::thread::scope(|scope| {
         for (keys, signal, status) in [
             (&b"q"[..], None, 0),
@@ -73,7 +73,7 @@ fn ends_before_the_lock(keys: &[u8], signal: Option<Signal>, status: i32) {
     assert_eq!(ended.code(), Some(status));
     println!("ended within {took:?}");
     program.is_left();
-    // A save that was waited for would have failed.
+    // If the program had waited for the save, the save would have failed.
     program.shows("Saving name: not done yet, because another program holds the library");
     program.shows("the next start offers it as unsaved work");
     let library = Library::open(folder.path().to_owned());
@@ -84,7 +84,7 @@ fn ends_before_the_lock(keys: &[u8], signal: Option<Signal>, status: i32) {
 }
 
 #[test]
-fn a_deletion_waits_too() {
+fn a_deletion_also_waits_for_the_library() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut program = Program::started(&Start {
         library: Some(folder.path()),

@@ -1,4 +1,4 @@
-//! What is on the screen: the same as in a script, on every kind of terminal.
+//! The screen is the same as in a script, on every kind of terminal.
 
 use taxel::tui::app::message::Message;
 use taxel::tui::app::state::Options;
@@ -10,13 +10,13 @@ pub(crate) fn session(ascii: bool, size: (u16, u16)) -> Session {
     started(Options::plain(ascii), size)
 }
 
-/// The same, started in another way.
+/// Starts a session with other options.
 pub(crate) fn started(options: Options, size: (u16, u16)) -> Session {
     let world = taxel::tui::runtime::World::scratch().expect("a folder");
     Session::new(&options, world, size.0, size.1)
 }
 
-/// Keys in notation, and what a terminal sends for them.
+/// Keys in notation, and the bytes that a terminal sends for them.
 const KEYS: &[(&str, &[u8])] = &[
     ("f", b"f"),
     ("<Tab><Tab><Tab>1.99", b"\t\t\t1.99"),
@@ -66,7 +66,7 @@ fn a_script_and_a_terminal_show_the_same() {
     program.ends_well(0);
 }
 
-/// Half of a key, over a line that sends byte by byte.
+/// Parts of keys, as over a line that sends byte by byte.
 #[test]
 fn keys_may_come_in_pieces() {
     let mut program = Program::started(&Start::default());
@@ -93,7 +93,7 @@ fn keys_may_come_in_pieces() {
 }
 
 #[test]
-fn every_kind_of_terminal_is_served() {
+fn every_kind_of_terminal_is_supported() {
     let no_color = ("NO_COLOR", "1");
     let utf8 = ("LANG", "C.UTF-8");
     for (variables, ascii) in [
@@ -157,9 +157,9 @@ fn every_kind_of_terminal_is_served() {
     }
 }
 
-/// Nothing but moves and characters for a terminal that has nothing else.
+/// A terminal without other features gets only cursor moves and characters.
 #[test]
-fn a_dumb_terminal_gets_moves_and_characters() {
+fn a_dumb_terminal_gets_only_moves_and_characters() {
     let mut program = Program::started(&Start {
         variables: &[("TERM", "dumb")],
         ..Start::default()
@@ -188,7 +188,7 @@ fn a_dumb_terminal_gets_moves_and_characters() {
 }
 
 #[test]
-fn a_terminal_without_a_size_gets_one() {
+fn a_terminal_without_a_size_gets_a_default_size() {
     let mut program = Program::started(&Start {
         size: (0, 0),
         ..Start::default()
@@ -211,9 +211,9 @@ fn a_terminal_without_a_size_gets_one() {
     program.until("60 × 20", |program| program.rows() == rows.trim_end());
 }
 
-/// The terminal is opened by its name where the standard files are others.
+/// If the standard files are redirected, the program opens the terminal by its name.
 #[test]
-fn standard_files_may_be_others() {
+fn standard_files_may_be_redirected() {
     let command = ["sh", "-c", "\"$0\" </dev/null | cat; echo left", TAXEL];
     let mut program = Program::started(&Start {
         command: &command,
@@ -223,7 +223,7 @@ fn standard_files_may_be_others() {
     program.types(b"q");
     program.shows("left");
     program.no_mode_is_on();
-    // And where there is none, that is said.
+    // If there is no terminal, the program says so.
     let command = ["sh", "-c", "\"$0\" </dev/null 2>&1 | cat; echo left", TAXEL];
     let start = Start {
         command: &command,

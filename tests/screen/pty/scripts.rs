@@ -1,4 +1,5 @@
-//! The scripts of `tests/scripts`, on the real program in a pseudo-terminal: the screens must be those of the runner.
+//! The scripts of `tests/scripts` on the real program in a pseudo-terminal; its screens must equal those of the script
+//! runner.
 
 use std::path::Path;
 
@@ -12,7 +13,7 @@ use taxel::tui::script::setting::ScriptSetting;
 use super::program::{Program, Start, TAXEL};
 use super::screens::started;
 
-/// What a terminal sends for a key.
+/// Returns the bytes that a terminal sends for a key.
 fn bytes(key: Key) -> Vec<u8> {
     let arrow = |arrow: Arrow| match arrow {
         Arrow::Up => 'A',
@@ -30,7 +31,7 @@ fn bytes(key: Key) -> Vec<u8> {
         Key::PageUp => b"\x1b[5~".to_vec(),
         Key::PageDown => b"\x1b[6~".to_vec(),
         Key::Enter => b"\r".to_vec(),
-        // By its code: it is known at once, and is never joined with a key before or after it.
+        // Esc is sent by its code: it is recognised at once, and is never combined with a key before or after it.
         Key::Esc => b"\x1b[27u".to_vec(),
         Key::Tab => b"\t".to_vec(),
         Key::BackTab => b"\x1b[Z".to_vec(),
@@ -43,7 +44,7 @@ fn bytes(key: Key) -> Vec<u8> {
     }
 }
 
-/// The same to both.
+/// The program and the script session, which are sent the same input.
 struct Pair {
     program: Program,
     session: Session,
@@ -98,7 +99,7 @@ impl Pair {
                     u16::try_from(row).expect("small"),
                 ));
             }
-            // A terminal tells some places on the way; the program draws the lines between them.
+            // A terminal reports some places on the way; the program draws the lines between them.
             ScriptCommand::Drag(places) => {
                 self.mouse(MouseKind::Press, places[0]);
                 for &place in &places[1..] {
@@ -114,9 +115,9 @@ impl Pair {
                 };
                 (0..turns.unsigned_abs()).for_each(|_| self.mouse(kind, *place));
             }
-            // How long a sweep will take is shown on a terminal only.
+            // The expected time of a sweep is only shown on a terminal.
             ScriptCommand::Screen(name) if name.starts_with("timed") => {}
-            // A script's work is done before the next key; the program has to be waited for.
+            // A script finishes its work before the next key; for the program, the test has to wait.
             ScriptCommand::Screen(_) | ScriptCommand::Wait if !self.session.app().ended() => {
                 self.program.agrees(&self.session);
             }
@@ -141,7 +142,8 @@ fn every_script_shows_its_screens_on_a_terminal() {
     for path in files.filter(|path| path.extension().is_some_and(|end| end == "taxel")) {
         let script = std::fs::read_to_string(&path).expect("a script can be read");
         let commands = read(&script).expect("the scripts are right");
-        // Frames come to a script by its own commands; on a terminal `live` has the same pages from a pipe.
+        // A script gets frames by its own commands; on a terminal, the tests in `live` show the same pages with a
+        // pipe.
         let of_frames = |(_, command): &(_, ScriptCommand)| {
             matches!(command, ScriptCommand::Source(_) | ScriptCommand::Frames(_))
         };

@@ -1,4 +1,4 @@
-//! A disk that hangs while the program runs, or a system that refuses threads from then on, as `strace` makes them.
+//! A disk that hangs while the program runs, or a system that then refuses threads, simulated with `strace`.
 
 use std::fs;
 use std::path::Path;
@@ -7,19 +7,21 @@ use std::process::{Child, Command, Stdio};
 use super::program::Program;
 use crate::skip;
 
-/// Longer than any test waits: only the end of the [`Tracer`] lets the program go on.
+/// Longer than any test waits: only the end of the [`Tracer`] lets the program continue.
 const DELAY: &str = "delay_enter=600000000";
 
 /// Tampers with some calls of a program until it is dropped.
 pub(super) struct Tracer(Child);
 
 impl Tracer {
-    /// Holds up calls; with paths, those about them only. None, which is said, where there is no `strace` that may trace.
+    /// Delays calls; if paths are given, only calls about these. Without a `strace` that is allowed to trace, reports
+    /// the test as skipped and returns None.
     pub(super) fn hang(program: &mut Program, calls: &str, paths: &[&Path]) -> Option<Self> {
         Self::new(program, calls, DELAY, paths)
     }
 
-    /// Refuses threads, those of each thread that `which` names: `1+` for all of them. The same otherwise.
+    /// Refuses new threads, for the calls of each thread that `which` selects: `1+` for all. Otherwise like
+    /// [`Self::hang`].
     pub(super) fn refuse_threads(program: &mut Program, which: &str) -> Option<Self> {
         let how = format!("error=EAGAIN:when={which}");
         Self::new(program, "?clone,?clone3", &how, &[])
@@ -51,7 +53,7 @@ impl Tracer {
         Some(tracer)
     }
 
-    /// The disk answers again, the system gives threads.
+    /// Ends the tampering: the disk answers again, and the system starts threads.
     pub(super) fn end(self) {
         drop(self);
     }
@@ -59,13 +61,14 @@ impl Tracer {
 
 impl Drop for Tracer {
     fn drop(&mut self) {
-        // The system lets go of the program then. Asked to end, it would wait for calls that it holds up itself.
+        // When strace is killed, the system releases the program. Asked to end, strace would wait for the calls that
+        // it delays.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// Whether each thread of a process is traced.
+/// Returns true if all threads of a process are traced.
 fn is_traced(pid: &str) -> bool {
     let tasks = fs::read_dir(format!("/proc/{pid}/task")).expect("it runs");
     tasks.flatten().all(|task| {
