@@ -674,8 +674,8 @@ fn times_continue_when_a_connection_is_made_again() {
     );
 }
 
-/// Kills at a hundred random moments and prints the numbers: `cargo test --test cli a_hundred -- --ignored
-/// --nocapture`.
+/// Kills at a hundred random moments and prints the numbers:
+/// `cargo test --test cli a_hundred -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn a_hundred_kills_at_random_lose_at_most_a_second() {

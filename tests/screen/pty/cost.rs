@@ -1,5 +1,5 @@
-//! The costs of the program: bytes, wake-ups, memory, time. The numbers are printed: `cargo test --test screen pty --
-//! --nocapture`.
+//! The costs of the program: bytes, wake-ups, memory, time. The numbers are printed:
+//! `cargo test --test screen pty -- --nocapture`.
 
 use std::time::{Duration, Instant};
 
