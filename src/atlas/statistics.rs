@@ -185,16 +185,21 @@ impl Total {
         // look like a deviation.
         let within = if 1.0 - within < ROUNDING { 1.0 } else { within };
         let own = if within - own < ROUNDING { within } else { own };
-        // Vectors that cancel up to the rounding of their parts have no direction.
-        if own < 1e-11 {
+        let Some(mean) = mean_direction(x, y) else {
             return;
-        }
+        };
         let deviation = |length: f64| (-2.0 * libm::log(length)).max(0.0).sqrt().to_degrees();
-        statistic.mean = Some(libm::atan2(y, x).to_degrees() + 0.0);
+        statistic.mean = Some(mean);
         statistic.sd = Some(deviation(own));
         statistic.sd_position = Some(deviation(within));
         statistic.sd_angle = Some(deviation(own / within));
     }
+}
+
+/// The circular mean of directions in degrees, given the mean of their unit vectors. Vectors that cancel up to the rounding of
+/// their parts point nowhere: None.
+pub(crate) fn mean_direction(x: f64, y: f64) -> Option<f64> {
+    (libm::hypot(x, y) >= 1e-11).then(|| libm::atan2(y, x).to_degrees() + 0.0)
 }
 
 /// The mean length of vectors is exact to less than this. The parts of the vectors are rounded to multiples of 2⁻⁴⁰,

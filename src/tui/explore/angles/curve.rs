@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use crate::atlas::Feature;
+use crate::atlas::{Feature, mean_direction};
 use crate::index::{index, wide};
 use crate::pose::{Axis, PoseIndex};
 use crate::sweep::SweepResult;
@@ -93,7 +93,7 @@ impl AngleCurve {
         self.zooms == zooms_of(place)
     }
 
-    /// The values of a descriptor at each angle where there are some. `values` are those of the imprints, by number.
+    /// The values of a descriptor at each angle where they have a mean. `values` are those of the imprints, by number.
     pub fn spread(
         &self,
         sweep: &SweepResult,
@@ -107,20 +107,21 @@ impl AngleCurve {
                 .iter()
                 .filter_map(|(&id, &count)| Some(((*values.get(wide(id))?)?, f64::from(count))));
             let known: Vec<(f64, f64)> = known.collect();
-            if known.is_empty() {
+            let mean = if feature.circular {
+                circular_mean(&known)
+            } else {
+                mean(&known, |value| value)
+            };
+            let Some(mean) = mean else {
                 continue;
-            }
+            };
             let plain = !feature.circular;
             let all = || known.iter().map(|(value, _)| *value);
             spread.push(AngleSpread {
                 index: *index,
                 degrees: range.value(*index),
                 min: plain.then(|| all().fold(f64::INFINITY, f64::min)),
-                mean: if plain {
-                    mean(&known)
-                } else {
-                    direction(&known)
-                },
+                mean,
                 max: plain.then(|| all().fold(f64::NEG_INFINITY, f64::max)),
             });
         }
@@ -128,22 +129,18 @@ impl AngleCurve {
     }
 }
 
-/// The mean of values with how often each occurs.
-fn mean(known: &[(f64, f64)]) -> f64 {
+/// The mean of a function of values, given how often each value occurs; None if there are none.
+fn mean(known: &[(f64, f64)], of: fn(f64) -> f64) -> Option<f64> {
     let count: f64 = known.iter().map(|(_, count)| count).sum();
-    let sum: f64 = known.iter().map(|(value, count)| value * count).sum();
-    sum / count
+    let sum: f64 = known.iter().map(|(value, count)| of(*value) * count).sum();
+    (count > 0.0).then(|| sum / count)
 }
 
-/// The circular mean of directions in degrees.
-fn direction(known: &[(f64, f64)]) -> f64 {
-    let part = |of: fn(f64) -> f64| -> f64 {
-        let parts = known.iter();
-        parts
-            .map(|(value, count)| of(value.to_radians()) * count)
-            .sum()
-    };
-    libm::atan2(part(libm::sin), part(libm::cos)).to_degrees()
+/// The circular mean of directions in degrees, given how often each occurs; None if there are none, or if they cancel.
+fn circular_mean(known: &[(f64, f64)]) -> Option<f64> {
+    let x = mean(known, |degrees| libm::cos(degrees.to_radians()))?;
+    let y = mean(known, |degrees| libm::sin(degrees.to_radians()))?;
+    mean_direction(x, y)
 }
 
 #[cfg(test)]
@@ -203,9 +200,18 @@ mod tests {
 
     #[test]
     fn directions_have_a_circular_mean() {
-        let mean = direction(&[(170.0, 1.0), (-170.0, 1.0)]);
-        assert!((mean.abs() - 180.0).abs() < 1e-9, "{mean}");
-        assert!((direction(&[(10.0, 3.0), (50.0, 0.0)]) - 10.0).abs() < 1e-9);
+        let mean = |known: &[(f64, f64)]| circular_mean(known).expect("a mean");
+        let west = mean(&[(170.0, 1.0), (-170.0, 1.0)]);
+        assert!((west.abs() - 180.0).abs() < 1e-9, "{west}");
+        assert!((mean(&[(10.0, 3.0), (50.0, 0.0)]) - 10.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn directions_that_cancel_have_no_mean() {
+        let opposite = [(90.0, 1.0), (-90.0, 1.0)];
+        let thirds = [(-110.0, 700.0), (10.0, 700.0), (130.0, 700.0)];
+        assert_eq!(circular_mean(&opposite), None);
+        assert_eq!(circular_mean(&thirds), None);
     }
 
     #[test]

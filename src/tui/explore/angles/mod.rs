@@ -49,7 +49,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     update: choose_descriptor,
 };
 
-/// What the page shows: the spread at each angle; none before the angles were swept.
+/// What the page shows: the spread at each angle that has a mean; none before the angles were swept.
 fn spread(results: &Results) -> Vec<AngleSpread> {
     let curve = results.angle_curve();
     curve.map_or(Vec::new(), |curve| {
@@ -101,6 +101,9 @@ fn title(results: &Results) -> String {
 /// Returns why there is no curve, in a few words.
 fn without_curve(results: &Results) -> &'static str {
     match results.angle_curve() {
+        Some(_) if results.feature().circular => {
+            "no pose has a direction, or the directions cancel"
+        }
         Some(_) => "no pose has a value",
         None if results.angles_failed() => "the imprints of each angle cannot be computed",
         None => "computing",
@@ -182,7 +185,7 @@ const CURVES: [(SpreadValue, bool); 3] = [
     (|at| Some(at.mean), false),
 ];
 
-/// The spread at the chosen angle, or at the nearest one that has a value.
+/// The spread at the chosen angle, or at the nearest one that has a mean.
 fn nearest(results: &Results, spread: &[AngleSpread]) -> Option<AngleSpread> {
     let now = results.pose_index()[Axis::Angle];
     spread
