@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use crate::formats::StoredShape;
 use crate::imprint::Imprint;
-use crate::storage::{Expected, LibraryEntry, LoadedShape};
 use crate::tui::app::document::Document;
+use crate::tui::app::library::{LibraryEvent, LibraryRequest};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::keys::key::{Arrow, Key};
@@ -71,8 +71,6 @@ pub enum Message {
     PutBack,
     /// Compare the imprint on the matrix with the one that is selected, or with the state before the last step.
     Compare,
-    /// Compare it with the shape of that name.
-    CompareNamed(String),
     /// Show all steps of the history.
     History,
     /// Move the shape by a step.
@@ -125,26 +123,16 @@ pub enum Message {
     Mouse(Mouse),
     /// The screen has this many columns and rows.
     Resized(u16, u16),
-    /// Store the shape, with what is expected to be in its place.
-    Store(Box<StoredShape>, Expected),
     /// Ask whether the shape shall be stored over a file that holds this.
     Replace(Box<StoredShape>, u64),
-    /// Remove the shape of that name.
-    Remove(String),
     /// Recover the unsaved work of a program that crashed.
     Recover,
     /// Move such work to the trash.
     GiveUp,
+    /// A request to the library.
+    Request(LibraryRequest),
     /// An answer of the library.
     Library(LibraryEvent),
-    /// Ask whether the shape of that name shall be removed.
-    AskRemove(String),
-    /// Bring the shape of that name onto the matrix.
-    LoadNamed(String),
-    /// Move the shape of that name about.
-    PictureNamed(String),
-    /// Bring back the shape that was removed last, of that name or of any.
-    Restore(Option<String>),
     /// Put a document in place of the present one.
     Become(Box<Document>),
     /// Open the command line at the foot.
@@ -232,19 +220,6 @@ pub enum Layer {
     Rectangle,
 }
 
-/// What a shape is chosen for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
-    /// To put it onto the matrix.
-    Load,
-    /// To delete it.
-    Delete,
-    /// To place it as a picture.
-    Picture,
-    /// To compare it with the matrix.
-    Compare,
-}
-
 /// What can be copied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Copied {
@@ -252,52 +227,6 @@ pub enum Copied {
     Imprint,
     /// The descriptors of the region that is described, a line each.
     Descriptors,
-}
-
-/// An answer of the library to a request. Errors are sentences.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LibraryEvent {
-    /// Its list.
-    List(Result<Vec<LibraryEntry>, String>),
-    /// The names of the models beside it.
-    Models(Vec<String>),
-    /// The names of its shapes that were deleted.
-    Trash(Result<Vec<String>, String>),
-    /// Some of its shapes, by their names in the list.
-    Read(Vec<(String, Result<LoadedShape, String>)>),
-    /// The shape that was asked for by its name, and what for.
-    Named(Purpose, Result<Box<LoadedShape>, String>),
-    /// A shape was stored under this name, and this is what its file holds.
-    Stored(String, u64),
-    /// It was not stored, and why.
-    NotStored(String),
-    /// It was not stored, because the file holds something else; the question whether to replace it.
-    Differs(Box<StoredShape>, u64, String),
-    /// The shape of that name can be deleted, or not, and why.
-    Deletable(Result<String, String>),
-    /// It was removed.
-    Removed(String),
-    /// It was brought back.
-    Restored(String),
-    /// Unsaved work of a program that crashed was recovered.
-    Recovered(Box<StoredShape>),
-    /// There is unsaved work of a program that crashed.
-    Found(Leftover),
-    /// Such work was moved to the trash under this name; and the next offer, if there is one.
-    GivenUp(String, Option<Leftover>),
-    /// It could not be moved to the trash, and why.
-    NotGivenUp(String),
-    /// The request failed, and why.
-    Failed(String),
-}
-
-/// An offer of unsaved work of programs that crashed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Leftover {
-    /// What is offered, in a few words.
-    pub what: String,
-    /// How many offers there are, this one included.
-    pub waiting: usize,
 }
 
 /// What the mouse did, and where on the screen.

@@ -3,6 +3,7 @@
 //! ```text
 //! document   what is on the matrix, and its reading      history: all its states
 //! message    what a key means                          worker_event: what workers report
+//! library    requests to the library, and its answers
 //! page       what the screen knows of a page            dialog: the table of pages
 //! line_prompt  pages that are one line of text
 //! state      App                                        update: all changes begin there
@@ -14,6 +15,8 @@
 //! ```
 
 pub mod document;
+
+pub mod library;
 
 pub mod message;
 

@@ -16,6 +16,7 @@ use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, ReadDocument, Reading};
 use crate::tui::app::history::{History, StoredName};
 use crate::tui::app::layout::Panes;
+use crate::tui::app::library::LibraryRequest;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::explore::results::Results;
@@ -576,7 +577,7 @@ impl App {
         let shape = Box::new(present.to_shape(name, &Reading::of(present)));
         match stamp {
             Some(stamp) => Message::Replace(shape, stamp),
-            None => Message::Store(shape, Expected::Nothing),
+            None => Message::Request(LibraryRequest::Store(shape, Expected::Nothing)),
         }
     }
 }

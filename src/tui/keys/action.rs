@@ -12,7 +12,7 @@
 //! of help for each place; a settings file gives them other keys, by name; and [`crate::tui::prompt::commands`] makes
 //! the `:` commands from them.
 
-use crate::tui::app::message::Purpose;
+use crate::tui::app::library::Purpose;
 use crate::tui::app::message::{Copied, Endpoint, Erase, Layer, Message};
 use crate::tui::explore::column::ListColumn;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};

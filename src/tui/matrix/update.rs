@@ -17,7 +17,8 @@ use crate::tui::app::change::{
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::history::History;
-use crate::tui::app::message::{Copied, Endpoint, Layer, Message, Purpose};
+use crate::tui::app::library::{LibraryRequest, Purpose};
+use crate::tui::app::message::{Copied, Endpoint, Layer, Message};
 use crate::tui::app::quit::quit;
 use crate::tui::app::state::{App, Display, Followed, Mode, NarrowPage, RunState, UnfinishedSave};
 use crate::tui::form::state::FormDialog;
@@ -28,7 +29,7 @@ use crate::tui::keys::key::Arrow;
 use crate::tui::matrix::files;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
-use crate::tui::runtime::effect::{Effect, FileRequest, LibraryRequest, TerminalEffect};
+use crate::tui::runtime::effect::{Effect, FileRequest, TerminalEffect};
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::number::around;
 use crate::tui::{explore, live, recognise};
@@ -38,7 +39,7 @@ use crate::tui::{explore, live, recognise};
 const NO_REGION: &str = "no region: the matrix is empty";
 
 /// Handles a message.
-/// A message that no arm knows is tried as a request to the library, then as a page, and last as an edit.
+/// A message that no arm knows is tried as a page, and then as an edit.
 /// Right after a shape was deleted, Undo brings that shape back, before any step of the drawing.
 pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
     let sensor = app.history.present().sensor;
@@ -65,7 +66,8 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         },
         Message::Replace(shape, stamp) => {
             let text = format!("Replace {}?", shape.name);
-            ask(app, text, Message::Store(shape, Expected::Stamp(stamp)));
+            let store = LibraryRequest::Store(shape, Expected::Stamp(stamp));
+            ask(app, text, Message::Request(store));
         }
         Message::OpenFile(name) => return Some(Effect::File(FileRequest::Open(name))),
         Message::WriteFile(name) => return files::write(app, name),
@@ -84,15 +86,15 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             let name = app.removed.take();
             return Some(Effect::Library(LibraryRequest::Restore(name)));
         }
-        other => match library_request(other) {
-            Ok(request) => {
-                if let LibraryRequest::Store(shape, _) = &request {
-                    begin_save(app, shape);
-                }
-                return Some(Effect::Library(request));
+        Message::Request(request) => {
+            if let LibraryRequest::Store(shape, _) = &request {
+                begin_save(app, shape);
             }
-            Err(other) => return open_page(app, &other),
-        },
+            return Some(Effect::Library(request));
+        }
+        Message::Recover => return Some(Effect::Recover),
+        Message::GiveUp => return Some(Effect::GiveUp),
+        other => return open_page(app, &other),
     }
     None
 }
@@ -129,22 +131,6 @@ fn open_page(app: &mut App, message: &Message) -> Option<Effect> {
         other => edit(app, other),
     }
     None
-}
-
-/// The request that a message makes to the library; the message itself if it makes none.
-fn library_request(message: Message) -> Result<LibraryRequest, Message> {
-    Ok(match message {
-        Message::Store(shape, expected) => LibraryRequest::Store(shape, expected),
-        Message::LoadNamed(name) => LibraryRequest::Named(Purpose::Load, name),
-        Message::PictureNamed(name) => LibraryRequest::Named(Purpose::Picture, name),
-        Message::CompareNamed(name) => LibraryRequest::Named(Purpose::Compare, name),
-        Message::Restore(name) => LibraryRequest::Restore(name),
-        Message::AskRemove(name) => LibraryRequest::Deletable(name),
-        Message::Remove(name) => LibraryRequest::Remove(name),
-        Message::Recover => LibraryRequest::Recover,
-        Message::GiveUp => LibraryRequest::GiveUp,
-        other => return Err(other),
-    })
 }
 
 /// Takes note of what is being saved. Keys may change the matrix before the library answers.

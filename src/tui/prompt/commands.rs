@@ -317,7 +317,7 @@ fn common_start(words: &[String]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tui::app::message::Purpose;
+    use crate::tui::app::library::Purpose;
 
     fn completed(line: &str) -> (String, Vec<String>) {
         let names = ["washer", "Wasp", "my shape"].map(str::to_owned);

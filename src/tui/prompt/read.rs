@@ -22,7 +22,8 @@ use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
 use crate::storage::ModelChoice;
 use crate::tui::app::document::Document;
-use crate::tui::app::message::{Message, Purpose};
+use crate::tui::app::library::{LibraryRequest, Purpose};
+use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::work::explored;
@@ -62,7 +63,7 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
         return Err(unexpected());
     };
     match (arguments, &words[..]) {
-        (Arguments::Deleted, []) => Ok(Message::Restore(None)),
+        (Arguments::Deleted, []) => Ok(Message::Request(LibraryRequest::Restore(None))),
         (_, []) => Err(unexpected()),
         (arguments, words) => with_arguments(arguments, rest, words, app, unexpected),
     }
@@ -80,16 +81,17 @@ fn with_arguments(
     match (arguments, words) {
         (Arguments::Shape(purpose), _) => {
             let name = name_of(rest)?.to_string();
-            Ok(match purpose {
-                Purpose::Load => Message::LoadNamed(name),
-                Purpose::Picture => Message::PictureNamed(name),
-                Purpose::Delete => Message::AskRemove(name),
-                Purpose::Compare => Message::CompareNamed(name),
-            })
+            Ok(Message::Request(match purpose {
+                Purpose::Delete => LibraryRequest::Deletable(name),
+                purpose => LibraryRequest::Named(purpose, name),
+            }))
         }
         (Arguments::File(FilePurpose::Open), _) => Ok(Message::OpenFile(rest.to_owned())),
         (Arguments::File(FilePurpose::Write), _) => Ok(Message::WriteFile(rest.to_owned())),
-        (Arguments::Deleted, _) => Ok(Message::Restore(Some(name_of(rest)?.to_string()))),
+        (Arguments::Deleted, _) => {
+            let name = name_of(rest)?.to_string();
+            Ok(Message::Request(LibraryRequest::Restore(Some(name))))
+        }
         (Arguments::Name, _) if app.reading().imprint.is_empty() => {
             Err("nothing to save: the matrix is empty".to_owned())
         }

@@ -6,6 +6,7 @@
 
 use crate::tui::app::change::{from_prompt, refuse};
 use crate::tui::app::dialog::Dialog;
+use crate::tui::app::library::LibraryRequest;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::keys::action::Arguments;
@@ -14,7 +15,7 @@ use crate::tui::matrix;
 use crate::tui::prompt::commands::wants_names;
 use crate::tui::prompt::read::read;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
-use crate::tui::runtime::effect::{Effect, FileRequest, LibraryRequest, TerminalEffect};
+use crate::tui::runtime::effect::{Effect, FileRequest, TerminalEffect};
 
 /// Handles a message in the `:` prompt, which stays open until a command was understood.
 pub(in crate::tui) fn in_command(

@@ -3,14 +3,13 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::formats::StoredShape;
 use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::imprint::Imprint;
 use crate::pose::{PoseGrid, PoseIndex};
 use crate::recognition::SeparationPoint;
+use crate::storage::Existing;
 use crate::storage::ModelChoice;
-use crate::storage::{Existing, Expected};
-use crate::tui::app::message::Purpose;
+use crate::tui::app::library::LibraryRequest;
 use crate::tui::explore::message::Findings;
 use crate::tui::live::naming::NamingRequest;
 use crate::tui::live::request::WatchRequest;
@@ -22,6 +21,10 @@ use crate::tui::recognise::separate::request::SeparationRequest;
 pub enum Effect {
     /// A request to the library; its answer is a message, perhaps much later: a disk may hang.
     Library(LibraryRequest),
+    /// Recover the offered unsaved work.
+    Recover,
+    /// Move it to the trash.
+    GiveUp,
     /// A request about files; the same.
     File(FileRequest),
     /// Work for a worker.
@@ -105,31 +108,4 @@ pub enum Work {
     Look(u64, Box<PoseSearch>),
     /// Stop that.
     StopLooking,
-}
-
-/// Requests to the library.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LibraryRequest {
-    /// List its shapes.
-    List,
-    /// List the names of stored models.
-    Models,
-    /// List the names of deleted shapes.
-    Trash,
-    /// Read the shapes of these names.
-    Read(Vec<String>),
-    /// Read one shape by name, and what for.
-    Named(Purpose, String),
-    /// Save a shape, given what its file is expected to hold.
-    Store(Box<StoredShape>, Expected),
-    /// Look whether the shape of that name can be deleted.
-    Deletable(String),
-    /// Delete a shape.
-    Remove(String),
-    /// Restore the shape that was deleted last, of that name or of any.
-    Restore(Option<String>),
-    /// Recover the offered unsaved work.
-    Recover,
-    /// Move it to the trash.
-    GiveUp,
 }

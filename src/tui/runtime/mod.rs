@@ -51,13 +51,14 @@ use crate::tui::runtime::work::workers::Workers;
 
 use crate::formats::StoredShape;
 use crate::storage::{Expected, Journal, Library, LibraryError, ModelCache, Orphan, ScratchFolder};
-use crate::tui::app::message::{Leftover, LibraryEvent, Message};
+use crate::tui::app::library::{Leftover, LibraryEvent};
+use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::app::update::{next_work, update};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::key::Key;
 use crate::tui::live::message::LiveEvent;
-use crate::tui::runtime::effect::{Effect, FileRequest, LibraryRequest, TerminalEffect, Work};
+use crate::tui::runtime::effect::{Effect, FileRequest, TerminalEffect, Work};
 
 /// The outside world: a library, unsaved work that crashed programs left in it, this program's journal, and workers.
 #[derive(Debug)]
@@ -256,7 +257,12 @@ impl World {
                         terminal = Some(effect);
                         None
                     }
-                    Effect::Library(request) => self.perform(app, request),
+                    Effect::Library(request) if request.is_change() => {
+                        self.change(DiskRequest::Library(request))
+                    }
+                    Effect::Library(request) => self.read(app, DiskRequest::Library(request)),
+                    Effect::Recover => Some(self.recover()),
+                    Effect::GiveUp => self.give_up(),
                     Effect::File(request @ FileRequest::Write(..)) => {
                         self.change(DiskRequest::File(request))
                     }
@@ -496,21 +502,11 @@ impl World {
                 }
                 _ => LibraryEvent::NotStored(error.to_string()),
             },
-            DiskAnswer::Removed(removed) => done(removed, LibraryEvent::Removed),
-            DiskAnswer::Restored(restored) => done(restored, LibraryEvent::Restored),
             DiskAnswer::ThrownAway(thrown, next) => self.given_up(thrown, next),
             DiskAnswer::File(event) => return Some(Message::File(event)),
             DiskAnswer::Library(event) => {
                 self.log.event(&event);
                 event
-            }
-            DiskAnswer::Panicked { was_save } => {
-                let text = "the work failed; this is a bug".to_owned();
-                if was_save {
-                    LibraryEvent::NotStored(text)
-                } else {
-                    LibraryEvent::Failed(text)
-                }
             }
             DiskAnswer::Recording(number, begun) => return Some(self.recording(number, begun)),
             DiskAnswer::Live(number, event) => {
@@ -538,41 +534,23 @@ impl World {
         Message::Worker(WorkerEvent::Live(number, event))
     }
 
-    /// Performs a request to the library; the answer is a message. There may be none yet.
-    fn perform(&mut self, app: &App, request: LibraryRequest) -> Option<Message> {
-        let answer = match request {
-            LibraryRequest::List => return self.read(app, DiskRequest::List),
-            LibraryRequest::Models => {
-                return self.read(app, DiskRequest::Models(self.workers.model_store()));
-            }
-            LibraryRequest::Trash => return self.read(app, DiskRequest::Trash),
-            LibraryRequest::Read(names) => return self.read(app, DiskRequest::Read(names)),
-            LibraryRequest::Named(purpose, name) => {
-                return self.read(app, DiskRequest::Named(purpose, name));
-            }
-            LibraryRequest::Deletable(name) => {
-                return self.read(app, DiskRequest::Deletable(name));
-            }
-            LibraryRequest::Store(shape, expected) => {
-                return self.change(DiskRequest::Store(shape, expected));
-            }
-            LibraryRequest::Remove(name) => return self.change(DiskRequest::Remove(name)),
-            LibraryRequest::Restore(name) => return self.change(DiskRequest::Restore(name)),
-            LibraryRequest::Recover => match self.orphan.take() {
-                Some((orphan, _)) => {
-                    let shape = orphan.shape.clone();
-                    // Into this program's journal before it is taken out of the other one.
-                    self.journal.adopt(*orphan);
-                    LibraryEvent::Recovered(Box::new(shape))
-                }
-                None => LibraryEvent::Failed("no unsaved work is left".to_owned()),
-            },
-            LibraryRequest::GiveUp => match self.orphan.take() {
-                Some((orphan, _)) => return self.change(DiskRequest::ThrowAway(orphan)),
-                None => LibraryEvent::Failed("no unsaved work is left".to_owned()),
-            },
+    /// Takes over the unsaved work that is offered.
+    fn recover(&mut self) -> Message {
+        let Some((orphan, _)) = self.orphan.take() else {
+            return no_work_left();
         };
-        Some(Message::Library(answer))
+        let shape = orphan.shape.clone();
+        // Into this program's journal before it is taken out of the other one.
+        self.journal.adopt(*orphan);
+        Message::Library(LibraryEvent::Recovered(Box::new(shape)))
+    }
+
+    /// Moves the unsaved work that is offered to the trash. Returns the answer if there is one within a moment.
+    fn give_up(&mut self) -> Option<Message> {
+        match self.orphan.take() {
+            Some((orphan, _)) => self.change(DiskRequest::ThrowAway(orphan)),
+            None => Some(no_work_left()),
+        }
     }
 
     /// Unwanted work is in the trash, like a deleted shape, or not. Other work is offered then.
@@ -589,7 +567,7 @@ impl World {
     }
 }
 
-/// The event of a request that names a shape.
-fn done(result: Result<String, String>, answer: fn(String) -> LibraryEvent) -> LibraryEvent {
-    result.map_or_else(LibraryEvent::Failed, answer)
+/// The answer where no unsaved work is offered any more.
+fn no_work_left() -> Message {
+    Message::Library(LibraryEvent::Failed("no unsaved work is left".to_owned()))
 }

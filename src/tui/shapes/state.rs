@@ -7,7 +7,8 @@ use std::collections::{HashMap, HashSet};
 
 use crate::formats::name::{LONGEST, folded};
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
-use crate::tui::app::message::{Message, Purpose};
+use crate::tui::app::library::Purpose;
+use crate::tui::app::message::Message;
 use crate::tui::widget::text_field::TextField;
 
 /// The number of shapes that are read at once before and after the selected one: more than any screen shows.

@@ -1,6 +1,6 @@
 //! What messages do in the list of shapes, and what the answers of the library do.
 //!
-//! Requests to the library are effects ([`crate::tui::runtime::effect::LibraryRequest`]); its answers come back as
+//! Requests to the library are effects ([`LibraryRequest`]); its answers come back as
 //! messages, perhaps after the page that asked was closed. An answer for a closed page changes nothing.
 
 use crate::imprint::Imprint;
@@ -11,14 +11,15 @@ use crate::tui::app::change::{begin, begin_unsaved, compare_with, inform, refuse
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::StoredName;
-use crate::tui::app::message::{Endpoint, Leftover, LibraryEvent, Message, Purpose};
+use crate::tui::app::library::{Leftover, LibraryEvent, LibraryRequest, Purpose};
+use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::quit::quit;
 use crate::tui::app::state::{App, Mode};
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::action::{self, Arguments};
 use crate::tui::keys::binding::Context;
 use crate::tui::prompt::commands::wants_names;
-use crate::tui::runtime::effect::{Effect, LibraryRequest};
+use crate::tui::runtime::effect::Effect;
 use crate::tui::shapes::state::ListDialog;
 
 /// Handles a message. The list goes back onto the stack unless a shape is taken.
@@ -122,8 +123,8 @@ fn on_change(app: &mut App, change: LibraryEvent) {
         }
         LibraryEvent::Differs(shape, stamp, text) => {
             app.saving.pop_front();
-            let yes = Message::Store(shape, Expected::Stamp(stamp));
-            let question = Question::new(format!("{text}. Replace it?"), yes);
+            let store = LibraryRequest::Store(shape, Expected::Stamp(stamp));
+            let question = Question::new(format!("{text}. Replace it?"), Message::Request(store));
             app.dialogs.push(Dialog::Question(question));
         }
         LibraryEvent::Removed(name) => {
@@ -284,7 +285,8 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
 
 /// Asks whether a shape shall be deleted.
 fn ask_removal(app: &mut App, name: String) {
-    let question = Question::new(format!("Delete {name}?"), Message::Remove(name));
+    let text = format!("Delete {name}?");
+    let question = Question::new(text, Message::Request(LibraryRequest::Remove(name)));
     app.dialogs.push(Dialog::Question(question));
 }
 

@@ -15,7 +15,8 @@ use ratatui::layout::{Position, Rect};
 
 use crate::description::{RegionKind, regions};
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
-use crate::tui::app::message::{Message, Purpose};
+use crate::tui::app::library::Purpose;
+use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;

@@ -8,7 +8,6 @@
 //! Without a receiver of events, as in a script, a request is carried out at once.
 
 use std::collections::VecDeque;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::Builder;
@@ -19,7 +18,8 @@ use crate::formats::{Name, StoredShape};
 use crate::storage::{
     Expected, Library, LibraryError, LoadedShape, Orphan, RememberedFile, UNNAMED,
 };
-use crate::tui::app::message::{FileEvent, LibraryEvent, Purpose};
+use crate::tui::app::library::{LibraryEvent, LibraryRequest, Purpose};
+use crate::tui::app::message::FileEvent;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::runtime::disk::files;
@@ -29,7 +29,7 @@ use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::slow_work::SlowWork;
 use crate::tui::runtime::work::models::ModelStore;
-use crate::tui::runtime::work::progress::WorkerEventSink;
+use crate::tui::runtime::work::progress::{WorkerEventSink, caught};
 
 /// How long a key waits for an answer. Nearly all come within it, so that the next key finds the work done.
 const QUICK: Duration = Duration::from_millis(100);
@@ -37,28 +37,12 @@ const QUICK: Duration = Duration::from_millis(100);
 /// What the disk is wanted for.
 #[derive(Debug)]
 pub(in crate::tui::runtime) enum DiskRequest {
-    /// Save a shape.
-    Store(Box<StoredShape>, Expected),
-    /// Look whether the shape of that name can be deleted.
-    Deletable(String),
-    /// Delete it.
-    Remove(String),
-    /// Restore the shape that was deleted last, of that name or of any.
-    Restore(Option<String>),
+    /// Read or change the library.
+    Library(LibraryRequest),
     /// Move unsaved work of a program that crashed to the trash, and look for more of it.
     ThrowAway(Box<Orphan>),
     /// Read or write a file, or list some.
     File(FileRequest),
-    /// List the shapes of the library.
-    List,
-    /// List the deleted ones.
-    Trash,
-    /// List the names of stored models.
-    Models(ModelStore),
-    /// Read the shapes of these names.
-    Read(Vec<String>),
-    /// Read one, and what for.
-    Named(Purpose, String),
     /// Remember lines for the next run.
     Remember(RememberedFile, Vec<String>),
     /// Create a file and record the frames of the source of that number in it.
@@ -80,21 +64,12 @@ pub(in crate::tui::runtime) enum DiskAnswer {
         Result<u64, LibraryError>,
         Option<Box<LoadedShape>>,
     ),
-    /// The shape of that name was deleted.
-    Removed(Result<String, String>),
-    /// A shape was restored: its name.
-    Restored(Result<String, String>),
     /// The work is in the trash under that name; and the next one, and how many there are.
     ThrownAway(Result<String, LibraryError>, Option<(Box<Orphan>, usize)>),
     /// What became of a file.
     File(FileEvent),
-    /// What was read in the library.
+    /// Any other answer of the library.
     Library(LibraryEvent),
-    /// It failed by a fault of this program.
-    Panicked {
-        /// Whether a shape was to be saved.
-        was_save: bool,
-    },
     /// Frames of the source of that number can be recorded in the file of that name, or not.
     Recording(u64, Result<(String, Arc<Recording>), String>),
     /// What is to be said on the page of a source.
@@ -107,22 +82,12 @@ impl DiskRequest {
     /// What it does, in a few words for a message.
     fn words(&self) -> String {
         match self {
-            Self::Store(shape, _) => format!("Saving {}", shape.name),
-            Self::Deletable(name) => format!("Looking for {name}"),
-            Self::Remove(name) => format!("Deleting {name}"),
-            Self::Restore(Some(name)) => format!("Restoring {name}"),
-            Self::Restore(None) => "Restoring a shape".to_owned(),
+            Self::Library(request) => request_words(request),
             Self::ThrowAway(_) => "Moving it to the trash".to_owned(),
             Self::File(FileRequest::Write(name, ..)) => format!("Writing {name}"),
             Self::File(FileRequest::Open(name)) => format!("Opening {name}"),
             Self::File(FileRequest::Source(request)) => format!("Opening {}", request.name()),
             Self::File(FileRequest::Paths(_)) => "Listing files".to_owned(),
-            Self::List => "Listing the shapes".to_owned(),
-            Self::Trash => "Listing the deleted shapes".to_owned(),
-            Self::Models(_) => "Listing the models".to_owned(),
-            Self::Read(_) => "Reading the shapes".to_owned(),
-            Self::Named(Purpose::Load, name) => format!("Loading {name}"),
-            Self::Named(_, name) => format!("Reading {name}"),
             Self::Remember(..) => "Remembering it".to_owned(),
             Self::BeginRecording(..) => "Starting a recording".to_owned(),
             Self::DescribeRecording(_, recording, _) => {
@@ -146,58 +111,19 @@ impl DiskRequest {
 
     /// Whether it needs the lock of the library, which another program may hold.
     fn locks(&self) -> bool {
-        matches!(
-            self,
-            Self::Store(..) | Self::Remove(_) | Self::Restore(_) | Self::ThrowAway(_)
-        )
+        match self {
+            Self::Library(request) => request.is_change(),
+            Self::ThrowAway(_) => true,
+            _ => false,
+        }
     }
 
     /// Carries it out.
     fn perform(self, library: &Library, access: &WriteAccess) -> DiskAnswer {
-        let sentence = |error| sentence(library, &error);
         match self {
-            Self::Store(shape, expected) => {
-                let stored = library.save(&shape, expected);
-                let in_the_way = match &stored {
-                    Err(LibraryError::Exists { .. } | LibraryError::Changed { .. }) => {
-                        library.load(shape.name.as_str()).ok()
-                    }
-                    _ => None,
-                };
-                DiskAnswer::Stored(shape, stored, in_the_way.map(Box::new))
-            }
-            Self::Remove(name) => DiskAnswer::Removed(library.delete(&name).map_err(sentence)),
-            Self::Restore(name) => DiskAnswer::Restored(restore(library, name).map_err(sentence)),
+            Self::Library(request) => answer(library, request),
             Self::ThrowAway(orphan) => throw_away(library, *orphan),
             Self::File(request) => DiskAnswer::File(files::perform(request, access)),
-            Self::List => {
-                let listed = library.list();
-                DiskAnswer::Library(LibraryEvent::List(listed.map_err(sentence)))
-            }
-            Self::Trash => {
-                let deleted = library.in_trash();
-                DiskAnswer::Library(LibraryEvent::Trash(deleted.map_err(sentence)))
-            }
-            Self::Models(store) => {
-                let names = store.names().into_iter();
-                let names = names.map(|name| name.to_string()).collect();
-                DiskAnswer::Library(LibraryEvent::Models(names))
-            }
-            Self::Read(names) => {
-                let read = names.into_iter().map(|name| {
-                    let loaded = library.load(&name).map_err(sentence);
-                    (name, loaded)
-                });
-                DiskAnswer::Library(LibraryEvent::Read(read.collect()))
-            }
-            Self::Named(purpose, name) => {
-                let loaded = library.load(&name).map(Box::new);
-                DiskAnswer::Library(LibraryEvent::Named(purpose, loaded.map_err(sentence)))
-            }
-            Self::Deletable(name) => {
-                let found = library.deletable(&name).map_err(sentence);
-                DiskAnswer::Library(LibraryEvent::Deletable(found))
-            }
             Self::Remember(file, lines) => {
                 file.write(&lines);
                 DiskAnswer::Nothing
@@ -213,6 +139,71 @@ impl DiskRequest {
             }
         }
     }
+}
+
+/// What a request to the library does, in a few words for a message.
+fn request_words(request: &LibraryRequest) -> String {
+    match request {
+        LibraryRequest::List => "Listing the shapes".to_owned(),
+        LibraryRequest::Models => "Listing the models".to_owned(),
+        LibraryRequest::Trash => "Listing the deleted shapes".to_owned(),
+        LibraryRequest::Read(_) => "Reading the shapes".to_owned(),
+        LibraryRequest::Named(Purpose::Load, name) => format!("Loading {name}"),
+        LibraryRequest::Named(_, name) => format!("Reading {name}"),
+        LibraryRequest::Store(shape, _) => format!("Saving {}", shape.name),
+        LibraryRequest::Deletable(name) => format!("Looking for {name}"),
+        LibraryRequest::Remove(name) => format!("Deleting {name}"),
+        LibraryRequest::Restore(Some(name)) => format!("Restoring {name}"),
+        LibraryRequest::Restore(None) => "Restoring a shape".to_owned(),
+    }
+}
+
+/// Carries out a request to the library.
+fn answer(library: &Library, request: LibraryRequest) -> DiskAnswer {
+    let sentence = |error| sentence(library, &error);
+    DiskAnswer::Library(match request {
+        LibraryRequest::List => LibraryEvent::List(library.list().map_err(sentence)),
+        LibraryRequest::Models => {
+            let names = ModelStore::beside(library).names().into_iter();
+            LibraryEvent::Models(names.map(|name| name.to_string()).collect())
+        }
+        LibraryRequest::Trash => LibraryEvent::Trash(library.in_trash().map_err(sentence)),
+        LibraryRequest::Read(names) => {
+            let read = names.into_iter().map(|name| {
+                let loaded = library.load(&name).map_err(sentence);
+                (name, loaded)
+            });
+            LibraryEvent::Read(read.collect())
+        }
+        LibraryRequest::Named(purpose, name) => {
+            let loaded = library.load(&name).map(Box::new);
+            LibraryEvent::Named(purpose, loaded.map_err(sentence))
+        }
+        LibraryRequest::Store(shape, expected) => return store(library, shape, expected),
+        LibraryRequest::Deletable(name) => {
+            LibraryEvent::Deletable(library.deletable(&name).map_err(sentence))
+        }
+        LibraryRequest::Remove(name) => {
+            let removed = library.delete(&name).map_err(sentence);
+            removed.map_or_else(LibraryEvent::Failed, LibraryEvent::Removed)
+        }
+        LibraryRequest::Restore(name) => {
+            let restored = restore(library, name).map_err(sentence);
+            restored.map_or_else(LibraryEvent::Failed, LibraryEvent::Restored)
+        }
+    })
+}
+
+/// Saves a shape, or reads what is in its way.
+fn store(library: &Library, shape: Box<StoredShape>, expected: Expected) -> DiskAnswer {
+    let stored = library.save(&shape, expected);
+    let in_the_way = match &stored {
+        Err(LibraryError::Exists { .. } | LibraryError::Changed { .. }) => {
+            library.load(shape.name.as_str()).ok()
+        }
+        _ => None,
+    };
+    DiskAnswer::Stored(shape, stored, in_the_way.map(Box::new))
 }
 
 /// What became of a recording of the source of that number to which something was written: a failure ends it.
@@ -335,9 +326,12 @@ impl SharedQueue {
         post: &WorkerEventSink,
     ) {
         while let Some(request) = self.next(generation) {
-            let was_save = matches!(request, DiskRequest::Store(..));
-            let made = catch_unwind(AssertUnwindSafe(|| request.perform(library, access)));
-            let made = made.unwrap_or(DiskAnswer::Panicked { was_save });
+            let failed = match &request {
+                DiskRequest::Library(LibraryRequest::Store(..)) => LibraryEvent::NotStored,
+                _ => LibraryEvent::Failed,
+            };
+            let made = caught(|| request.perform(library, access));
+            let made = made.unwrap_or_else(|reason| DiskAnswer::Library(failed(reason)));
             let waiting = locked(&self.waiting);
             if waiting.generation != generation || self.answer.send(made).is_err() {
                 return;
@@ -547,8 +541,8 @@ mod tests {
     #[test]
     fn a_request_that_is_given_up_is_not_carried_out() {
         let mut queue = without_thread();
-        for request in [DiskRequest::List, DiskRequest::Trash] {
-            assert!(queue.begin(request).is_none());
+        for request in [LibraryRequest::List, LibraryRequest::Trash] {
+            assert!(queue.begin(DiskRequest::Library(request)).is_none());
         }
         assert!(queue.abandon_first().is_some());
         let shared = &queue.thread.as_ref().expect("a thread").shared;

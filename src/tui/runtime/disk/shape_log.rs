@@ -10,7 +10,7 @@ use crate::formats::{Name, StoredShape};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
-use crate::tui::app::message::LibraryEvent;
+use crate::tui::app::library::LibraryEvent;
 
 /// Takes each shape that is logged. One of the same name replaces the one before.
 pub type ShapeSink = Box<dyn FnMut(StoredShape)>;

@@ -104,11 +104,6 @@ impl Workers {
         self.models.store.keep_in(cache);
     }
 
-    /// Where models are.
-    pub(in crate::tui::runtime) fn model_store(&self) -> ModelStore {
-        self.models.store.clone()
-    }
-
     /// The model that is read from the disk, if that takes long.
     pub(in crate::tui::runtime) fn model_status(&self) -> Option<String> {
         self.models.status()
