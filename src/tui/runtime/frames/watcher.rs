@@ -22,7 +22,7 @@ use crate::tui::runtime::frames::feed::FrameFeed;
 use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::frames::script::{ScriptReader, ScriptSource};
 use crate::tui::runtime::frames::source;
-use crate::tui::runtime::work::progress::WorkerEventSink;
+use crate::tui::runtime::work::execution::Execution;
 use crate::tui::runtime::work::threads;
 
 /// The source that is watched.
@@ -65,7 +65,7 @@ impl FrameWatcher {
         number: u64,
         request: Arc<WatchRequest>,
         write: Option<(PathBuf, Existing)>,
-        post: Option<WorkerEventSink>,
+        execution: &Execution,
     ) -> Option<WorkerEvent> {
         let watched = Watched {
             number,
@@ -81,10 +81,13 @@ impl FrameWatcher {
             feed.begin(Recording::new(path));
             existing
         });
-        let Some(post) = post else {
-            self.watched = Some(watched);
-            let refused = feed.begin_recording(&request, existing).err()?;
-            return Some(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
+        let post = match execution {
+            Execution::AtOnce(_) => {
+                self.watched = Some(watched);
+                let refused = feed.begin_recording(&request, existing).err()?;
+                return Some(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
+            }
+            Execution::OnThreads(post) => Arc::clone(post),
         };
         let stop = Arc::clone(&watched.stop);
         let before = self.thread.take();
@@ -287,7 +290,10 @@ mod tests {
         let request = Arc::new(WatchRequest::new("none"));
         let mut watcher = FrameWatcher::default();
         assert_eq!(watcher.start_recording(), Err("no source is watched"));
-        assert_eq!(watcher.watch(7, request, write, None), None);
+        assert_eq!(
+            watcher.watch(7, request, write, &Execution::default()),
+            None
+        );
         assert_eq!(watcher.start_recording(), Ok(7));
         let already = "a recording is already starting";
         assert_eq!(watcher.start_recording(), Err(already));
@@ -330,7 +336,8 @@ mod tests {
         let access = WriteAccess::below(folder.path().to_owned());
         let request = Arc::new(WatchRequest::new(path.clone()));
         let mut watcher = FrameWatcher::default();
-        assert_eq!(watcher.watch(7, Arc::clone(&request), None, None), None);
+        let at_once = Execution::default();
+        assert_eq!(watcher.watch(7, Arc::clone(&request), None, &at_once), None);
         let mut taken = Vec::new();
         let mut take = |watcher: &mut FrameWatcher, count| {
             let found = numbers(&watcher.next(count, &access));

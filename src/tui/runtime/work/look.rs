@@ -6,70 +6,43 @@
 //! The nearest imprint is found soon. Its poses take a sweep of the whole grid, and are not kept in the model.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 use crate::memory::MemoryGuard;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::recognise::message::{Look, PoseSearch, RecognitionEvent};
-use crate::tui::runtime::work::progress::{PoseLimit, WorkerEventSink, caught};
+use crate::tui::runtime::work::execution::{Execution, StopFlag};
+use crate::tui::runtime::work::progress::caught;
 use crate::tui::runtime::work::threads;
 
 /// Outlines of poses that are drawn at most; more cannot be told apart over a matrix.
 const POSES: usize = 13;
 
-/// The search in progress.
-#[derive(Debug, Default)]
-pub(in crate::tui::runtime) struct LookWorker {
-    /// Set to stop it.
-    stop: Arc<AtomicBool>,
-    /// When a search that is done at once is stopped.
-    pub(in crate::tui::runtime) limit: PoseLimit,
-}
-
-impl LookWorker {
-    /// Begins a search on a thread of its own, in place of the one before. If there is no receiver, searches at once and
-    /// returns the event.
-    pub(in crate::tui::runtime) fn look(
-        &mut self,
-        number: u64,
-        search: Box<PoseSearch>,
-        post: Option<WorkerEventSink>,
-    ) -> Option<WorkerEvent> {
-        self.stop();
-        self.stop = Arc::default();
-        let looked = move |found: Result<Look, String>| {
-            let event = RecognitionEvent::Looked(number, found.map(Box::new));
-            WorkerEvent::Recognition(event)
-        };
-        let Some(post) = post else {
-            let progress = self.limit.count();
-            return Some(looked(Ok(find(
-                &search,
-                &MemoryGuard::of_pose_search(),
-                &progress,
-            ))));
-        };
-        let stop = Arc::clone(&self.stop);
-        let work = move || {
-            let progress = |_: u64| !stop.load(Ordering::Relaxed);
-            post(looked(caught(|| {
-                find(&search, &MemoryGuard::of_pose_search(), &progress)
-            })));
-        };
-        let thread = threads::start(move || threads::run(work));
-        thread.err().map(|reason| looked(Err(reason)))
-    }
-
-    /// Stops the search in progress.
-    pub(in crate::tui::runtime) fn stop(&self) {
-        self.stop.store(true, Ordering::Relaxed);
-    }
-}
-
-impl Drop for LookWorker {
-    fn drop(&mut self) {
-        self.stop();
-    }
+/// Begins a search, on a thread of its own in place of the one before; or searches at once and returns the event.
+pub(in crate::tui::runtime) fn look(
+    number: u64,
+    search: Box<PoseSearch>,
+    stop: &mut StopFlag,
+    execution: &Execution,
+) -> Option<WorkerEvent> {
+    let stop = stop.renew();
+    let looked = move |found: Result<Look, String>| {
+        let event = RecognitionEvent::Looked(number, found.map(Box::new));
+        WorkerEvent::Recognition(event)
+    };
+    let find = move |progress: &(dyn Fn(u64) -> bool + Sync)| {
+        find(&search, &MemoryGuard::of_pose_search(), progress)
+    };
+    let post = match execution {
+        Execution::AtOnce(limit) => return Some(looked(Ok(find(&limit.count())))),
+        Execution::OnThreads(post) => Arc::clone(post),
+    };
+    let work = move || {
+        let progress = |_: u64| !stop.load(Ordering::Relaxed);
+        post(looked(caught(|| find(&progress))));
+    };
+    let thread = threads::start(move || threads::run(work));
+    thread.err().map(|reason| looked(Err(reason)))
 }
 
 /// Searches, and stops the sweep when `progress` says so.
@@ -107,6 +80,7 @@ mod tests {
     use crate::memory::MemorySize;
     use crate::storage::ModelChoice;
     use crate::tui::recognise::trained::TrainedModel;
+    use crate::tui::runtime::work::progress::PoseLimit;
 
     fn search() -> PoseSearch {
         let touch = "........\n.######.\n.######.\n........";
@@ -126,36 +100,32 @@ mod tests {
 
     #[test]
     fn a_search_that_is_stopped_says_so_without_its_poses() {
-        let mut worker = LookWorker::default();
-        let whole = found(worker.look(7, Box::new(search()), None));
+        let searched = |limit| {
+            let execution = Execution::AtOnce(PoseLimit(limit));
+            let search = Box::new(search());
+            found(look(7, search, &mut StopFlag::default(), &execution))
+        };
+        let whole = searched(None);
         assert!(whole.pose.is_some() && whole.refused.is_none());
-        worker.limit = PoseLimit(Some(0));
-        let stopped = found(worker.look(7, Box::new(search()), None));
+        let stopped = searched(Some(0));
         assert_eq!((stopped.pose, stopped.nearest), (None, whole.nearest));
     }
 
     #[test]
-    fn the_next_search_stops_the_one_before() {
+    fn a_search_that_another_one_replaces_answers_too() {
         let (post, events) = channel();
-        let post: WorkerEventSink = Arc::new(move |event| {
+        let execution = Execution::OnThreads(Arc::new(move |event| {
             // The test may be over.
             let _ = post.send(event);
-        });
-        let mut worker = LookWorker::default();
-        assert_eq!(
-            worker.look(7, Box::new(search()), Some(Arc::clone(&post))),
-            None
-        );
-        let first = Arc::clone(&worker.stop);
-        assert_eq!(worker.look(7, Box::new(search()), Some(post)), None);
-        assert!(first.load(Ordering::Relaxed) && !worker.stop.load(Ordering::Relaxed));
+        }));
+        let mut stop = StopFlag::default();
+        for _ in 0..2 {
+            assert_eq!(look(7, Box::new(search()), &mut stop, &execution), None);
+        }
         for _ in 0..2 {
             let event = events.recv_timeout(Duration::from_secs(60));
             assert!(found(event.ok()).nearest.is_some());
         }
-        let last = Arc::clone(&worker.stop);
-        drop(worker);
-        assert!(last.load(Ordering::Relaxed), "nothing is left behind");
     }
 
     #[cfg(target_os = "linux")]

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! workers    sweeps, exports and all that follows
+//! execution  at once or on threads; stopped
 //! progress   how workers report
 //! threads    the threads that share long work
 //! models     models for recognition: trained, read
@@ -11,6 +12,8 @@
 //! ```
 
 pub mod workers;
+
+pub(super) mod execution;
 
 pub mod progress;
 

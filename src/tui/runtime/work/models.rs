@@ -9,7 +9,6 @@
 //! beside the library, any other from its file. Training goes on while a sweep begins, and stops only on request.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Instant;
@@ -27,9 +26,8 @@ use crate::tui::recognise::message::{Prepared, RecognitionEvent};
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::slow_work::SlowWork;
-use crate::tui::runtime::work::progress::{
-    PoseLimit, ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
-};
+use crate::tui::runtime::work::execution::{Execution, StopFlag};
+use crate::tui::runtime::work::progress::{ProgressReporter, guarded, on_a_thread, proceed};
 
 /// Where models are.
 #[derive(Clone, Debug, Default)]
@@ -161,40 +159,39 @@ impl ModelReading {
 pub(in crate::tui::runtime) struct ModelWorker {
     /// Where models are.
     pub(in crate::tui::runtime) store: ModelStore,
-    /// When a training that is done at once is stopped.
-    pub(in crate::tui::runtime) limit: PoseLimit,
     /// The number of the work.
     number: u64,
     /// What it reads.
     reading: ModelReading,
-    /// Set to stop the training in progress.
-    stop: Arc<AtomicBool>,
+    /// Stops the training in progress.
+    stop: StopFlag,
     /// The training in progress.
     thread: Option<JoinHandle<()>>,
 }
 
 impl ModelWorker {
-    /// Prepares a model on a thread of its own, or at once if there is no receiver; then the event is returned.
+    /// Prepares a model on a thread of its own; or at once, and returns the event.
     pub(in crate::tui::runtime) fn prepare(
         &mut self,
         number: u64,
         choice: ModelChoice,
-        post: Option<WorkerEventSink>,
+        execution: &Execution,
     ) -> Option<WorkerEvent> {
-        self.stop();
-        self.stop = Arc::default();
+        let stop = self.stop.renew();
         self.reading = ModelReading::default();
         self.number = number;
-        let (store, stop) = (self.store.clone(), Arc::clone(&self.stop));
-        let reading = self.reading.clone();
-        let Some(post) = post else {
-            let begins = |poses| self.limit.allows(poses);
-            let calls: Calls<'_> = (&begins, &|_| true);
-            let event = prepare(&store, number, choice, &reading, calls);
-            return Some(WorkerEvent::Recognition(event));
+        let (store, reading) = (self.store.clone(), self.reading.clone());
+        let post = match execution {
+            Execution::AtOnce(limit) => {
+                let begins = |poses| limit.allows(poses);
+                let calls: Calls<'_> = (&begins, &|_| true);
+                let event = prepare(&store, number, choice, &reading, calls);
+                return Some(WorkerEvent::Recognition(event));
+            }
+            Execution::OnThreads(post) => post,
         };
         reading.begin(&format!("Reading {choice}"));
-        let thread = on_a_thread(number, &post, move |post| {
+        let thread = on_a_thread(number, post, move |post| {
             let clock = ProgressReporter::new(number, post);
             let begins = |poses| {
                 reading.end();
@@ -221,14 +218,9 @@ impl ModelWorker {
         None
     }
 
-    /// Stops the training in progress.
-    pub(in crate::tui::runtime) fn stop(&self) {
-        self.stop.store(true, Ordering::Relaxed);
-    }
-
-    /// The same on request. What is being read is waited for no longer, and the event that says so is returned.
+    /// Stops the training in progress. What is being read is waited for no longer, and the event that says so is returned.
     pub(in crate::tui::runtime) fn give_up(&mut self) -> Option<WorkerEvent> {
-        self.stop();
+        self.stop.stop();
         let read = std::mem::take(&mut self.reading).end()?;
         self.thread = None;
         let event = RecognitionEvent::GivenUp(self.number, read.words);
@@ -248,7 +240,7 @@ impl ModelWorker {
 
     /// Stops for good. Returns the thread, which ends by itself.
     pub(in crate::tui::runtime) fn end(&mut self) -> Option<JoinHandle<()>> {
-        self.stop();
+        self.stop.stop();
         self.thread.take()
     }
 }

@@ -18,8 +18,9 @@ use crate::recognition::Model;
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::live::message::LiveEvent;
 use crate::tui::live::naming::{NamedImprint, NamingRequest};
+use crate::tui::runtime::work::execution::{Execution, StopFlag};
 use crate::tui::runtime::work::models::ModelStore;
-use crate::tui::runtime::work::progress::{PoseLimit, WorkerEventSink, caught};
+use crate::tui::runtime::work::progress::{PoseLimit, caught};
 use crate::tui::runtime::work::threads;
 
 /// A model that is asked on the thread that waits for its answer.
@@ -29,6 +30,8 @@ struct OwnModel {
     store: ModelStore,
     /// What was asked for.
     naming: NamingRequest,
+    /// When its training is stopped.
+    limit: PoseLimit,
     /// The model, or why there is none.
     model: OnceCell<Result<Model, String>>,
 }
@@ -40,12 +43,10 @@ pub(in crate::tui::runtime) struct ShapeNamer {
     number: u64,
     /// What is named by, where there is no thread; the model is prepared when the first imprint comes.
     here: Option<OwnModel>,
-    /// When a training there is stopped.
-    pub(in crate::tui::runtime) limit: PoseLimit,
     /// The way to the thread; dropped to end it. None without a thread.
     imprints: Option<Sender<Imprint>>,
-    /// Set to break off a training, and to say nothing any more.
-    stop: Arc<AtomicBool>,
+    /// Breaks off a training; nothing is said any more then.
+    stop: StopFlag,
     /// Waited for at the end of the program, so that a model is written as a whole.
     thread: Option<JoinHandle<()>>,
 }
@@ -58,19 +59,22 @@ impl ShapeNamer {
         number: u64,
         store: ModelStore,
         naming: NamingRequest,
-        post: Option<WorkerEventSink>,
+        execution: &Execution,
     ) {
         self.end();
         self.number = number;
-        self.stop = Arc::default();
-        let stop = Arc::clone(&self.stop);
-        let Some(post) = post else {
-            self.here = Some(OwnModel {
-                store,
-                naming,
-                model: OnceCell::new(),
-            });
-            return;
+        let stop = self.stop.renew();
+        let post = match execution {
+            Execution::AtOnce(limit) => {
+                self.here = Some(OwnModel {
+                    store,
+                    naming,
+                    limit: *limit,
+                    model: OnceCell::new(),
+                });
+                return;
+            }
+            Execution::OnThreads(post) => Arc::clone(post),
         };
         let (imprints, waiting) = channel::<Imprint>();
         self.imprints = Some(imprints);
@@ -112,7 +116,7 @@ impl ShapeNamer {
         } = &own.naming;
         let train = || {
             own.store
-                .model(choice, &|poses| self.limit.allows(poses), &|_| true)
+                .model(choice, &|poses| own.limit.allows(poses), &|_| true)
         };
         let event = match own.model.get_or_init(train) {
             Ok(model) => {
@@ -133,7 +137,7 @@ impl ShapeNamer {
 
     /// Names nothing any more. The thread ends by itself: an answer under way is not waited for.
     pub(in crate::tui::runtime) fn end(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
+        self.stop.stop();
         self.imprints = None;
         self.here = None;
         self.thread = None;
@@ -172,7 +176,7 @@ mod tests {
     fn a_training_that_is_given_up_says_nothing() {
         let events = Arc::new(Mutex::new(Vec::new()));
         let posted = Arc::clone(&events);
-        let post: WorkerEventSink = Arc::new(move |event| locked(&posted).push(event));
+        let threads = Execution::OnThreads(Arc::new(move |event| locked(&posted).push(event)));
         let mut namer = ShapeNamer::default();
         let naming = |number, choice| NamingRequest {
             number,
@@ -181,10 +185,10 @@ mod tests {
         };
         let store = ModelStore::default();
         let figures = naming(1, ModelChoice::Figures);
-        namer.begin(7, store.clone(), figures, Some(Arc::clone(&post)));
+        namer.begin(7, store.clone(), figures, &threads);
         let given_up = namer.leave().expect("a thread");
         let missing = ModelChoice::File("no/such.taxel".into());
-        namer.begin(7, store, naming(2, missing), Some(post));
+        namer.begin(7, store, naming(2, missing), &threads);
         let next = namer.thread.take().expect("a thread");
         for thread in [given_up, next] {
             thread.join().expect("no panic");

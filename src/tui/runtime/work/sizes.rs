@@ -2,7 +2,6 @@
 //! reaches an error.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::formats::separation::size_label;
 use crate::memory::MemoryGuard;
@@ -12,61 +11,39 @@ use crate::tui::recognise::confused::ConfusedPair;
 use crate::tui::recognise::message::RecognitionEvent;
 use crate::tui::recognise::separate::found::{SizeFound, SizesFound};
 use crate::tui::recognise::separate::request::SeparationRequest;
-use crate::tui::runtime::work::progress::{
-    PoseLimit, ProgressReporter, WorkerEventSink, guarded, on_a_thread, proceed,
-};
+use crate::tui::runtime::work::execution::{Execution, StopFlag};
+use crate::tui::runtime::work::progress::{ProgressReporter, guarded, on_a_thread, proceed};
 
-/// The work in progress.
-#[derive(Debug, Default)]
-pub(in crate::tui::runtime) struct SizeWorker {
-    /// Set to stop it.
-    stop: Arc<AtomicBool>,
-    /// When work that is done at once is stopped.
-    pub(in crate::tui::runtime) limit: PoseLimit,
-}
-
-impl SizeWorker {
-    /// Looks at the sizes that are not known yet, on a thread of its own, or at once if there is no receiver; then the
-    /// event is returned.
-    pub(in crate::tui::runtime) fn look(
-        &mut self,
-        number: u64,
-        request: Arc<SeparationRequest>,
-        known: Vec<SeparationPoint>,
-        post: Option<WorkerEventSink>,
-    ) -> Option<WorkerEvent> {
-        self.stop();
-        self.stop = Arc::default();
-        let Some(post) = post else {
+/// Looks at the sizes that are not known yet, on a thread of its own in place of the work before; or at once, and returns the
+/// event.
+pub(in crate::tui::runtime) fn look(
+    number: u64,
+    request: Arc<SeparationRequest>,
+    known: Vec<SeparationPoint>,
+    stop: &mut StopFlag,
+    execution: &Execution,
+) -> Option<WorkerEvent> {
+    let stop = stop.renew();
+    let post = match execution {
+        Execution::AtOnce(limit) => {
             let mut sizes = Vec::new();
-            let progress = self.limit.count();
-            let end = scan(&request, known, &mut |size| sizes.push(size), &progress);
+            let mut take = |size| sizes.push(size);
+            let end = scan(&request, known, &mut take, &limit.count());
             return Some(event(number, sizes, Some(end)));
-        };
-        let stop = Arc::clone(&self.stop);
-        let thread = on_a_thread(number, &post, move |post| {
-            let clock = ProgressReporter::new(number, post);
-            let progress = |poses| proceed(poses, &stop, Some(&clock));
-            let last = guarded(number, || {
-                let mut take = |size| post(event(number, vec![size], None));
-                let end = scan(&request, known, &mut take, &progress);
-                event(number, Vec::new(), Some(end))
-            });
-            post(last);
+        }
+        Execution::OnThreads(post) => post,
+    };
+    let thread = on_a_thread(number, post, move |post| {
+        let clock = ProgressReporter::new(number, post);
+        let progress = |poses| proceed(poses, &stop, Some(&clock));
+        let last = guarded(number, || {
+            let mut take = |size| post(event(number, vec![size], None));
+            let end = scan(&request, known, &mut take, &progress);
+            event(number, Vec::new(), Some(end))
         });
-        thread.err()
-    }
-
-    /// Stops the work in progress.
-    pub(in crate::tui::runtime) fn stop(&self) {
-        self.stop.store(true, Ordering::Relaxed);
-    }
-}
-
-impl Drop for SizeWorker {
-    fn drop(&mut self) {
-        self.stop();
-    }
+        post(last);
+    });
+    thread.err()
 }
 
 /// Some sizes, or the end.

@@ -27,14 +27,13 @@ use crate::tui::live::naming::NamingRequest;
 use crate::tui::runtime::disk::write_access::WriteAccess;
 use crate::tui::runtime::effect::Work;
 use crate::tui::runtime::frames::watcher::FrameWatcher;
-use crate::tui::runtime::work::look::LookWorker;
+use crate::tui::runtime::work::execution::{Execution, StopFlag};
 use crate::tui::runtime::work::models::{ModelStore, ModelWorker};
 use crate::tui::runtime::work::naming::ShapeNamer;
 use crate::tui::runtime::work::progress::{
     PoseLimit, ProgressReporter, WorkerEventSink, caught, guarded, on_a_thread, proceed,
 };
-use crate::tui::runtime::work::sizes::SizeWorker;
-use crate::tui::runtime::work::threads;
+use crate::tui::runtime::work::{look, sizes, threads};
 
 /// How long the end of the program waits for files that are being written.
 const WRITING: Duration = Duration::from_millis(400);
@@ -43,38 +42,28 @@ const WRITING: Duration = Duration::from_millis(400);
 const MEASURED: Duration = Duration::from_millis(30);
 
 /// The work in progress, and how to stop it.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(in crate::tui) struct Workers {
-    /// None: work is done at once.
-    post: Option<WorkerEventSink>,
-    /// Set to stop the work in progress.
-    stop: Arc<AtomicBool>,
-    /// Set to stop the estimate in progress.
-    measuring: Arc<AtomicBool>,
+    /// How it is done.
+    execution: Execution,
+    /// Stops the sweep or the export in progress.
+    working: StopFlag,
+    /// Stops the estimate in progress.
+    measuring: StopFlag,
+    /// Stops the search of a model in progress.
+    looking: StopFlag,
+    /// Stops the look at sizes of a set in progress.
+    separating: StopFlag,
     /// The thread that writes a file.
     writing: Option<JoinHandle<()>>,
     /// Prepares models.
     models: ModelWorker,
-    /// Searches them.
-    look: LookWorker,
-    /// Looks at sizes of a set.
-    sizes: SizeWorker,
     /// Watches a source of frames.
     pub(in crate::tui::runtime) frames: FrameWatcher,
     /// Names the imprints of its frames.
     namer: ShapeNamer,
     /// Where files may be written.
     pub(in crate::tui::runtime) access: Arc<WriteAccess>,
-    /// When work that is done at once is stopped.
-    limit: PoseLimit,
-}
-
-impl std::fmt::Debug for Workers {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Workers")
-            .field("beside", &self.post.is_some())
-            .finish_non_exhaustive()
-    }
 }
 
 impl Workers {
@@ -87,16 +76,12 @@ impl Workers {
 
     /// Has work done on threads of their own.
     pub(in crate::tui::runtime) fn post_to(&mut self, post: WorkerEventSink) {
-        self.post = Some(post);
+        self.execution = Execution::OnThreads(post);
     }
 
-    /// Stops work that is done at once after this many poses.
+    /// Has work done at once, and stopped after this many poses.
     pub(in crate::tui::runtime) fn stop_after(&mut self, poses: u64) {
-        self.limit = PoseLimit(Some(poses));
-        self.models.limit = self.limit;
-        self.look.limit = self.limit;
-        self.sizes.limit = self.limit;
-        self.namer.limit = self.limit;
+        self.execution = Execution::AtOnce(PoseLimit(Some(poses)));
     }
 
     /// Keeps trained models in a cache.
@@ -119,7 +104,7 @@ impl Workers {
         threads::prepare();
         match work {
             Work::Stop => {
-                self.stop.store(true, Ordering::Relaxed);
+                self.working.stop();
                 None
             }
             Work::Measure(grid) => self.measure(grid),
@@ -132,20 +117,26 @@ impl Workers {
                 }
             }
             Work::Prepare(number, choice) => {
-                self.look.stop();
-                self.models.prepare(number, choice, self.post.clone())
+                self.looking.stop();
+                self.models.prepare(number, choice, &self.execution)
             }
             Work::StopPreparing => self.models.give_up(),
-            Work::Separate(number, request, known) => {
-                self.sizes.look(number, request, known, self.post.clone())
-            }
+            Work::Separate(number, request, known) => sizes::look(
+                number,
+                request,
+                known,
+                &mut self.separating,
+                &self.execution,
+            ),
             Work::StopSeparating => {
-                self.sizes.stop();
+                self.separating.stop();
                 None
             }
-            Work::Look(number, search) => self.look.look(number, search, self.post.clone()),
+            Work::Look(number, search) => {
+                look::look(number, search, &mut self.looking, &self.execution)
+            }
             Work::StopLooking => {
-                self.look.stop();
+                self.looking.stop();
                 None
             }
             work => self.perform_live(work),
@@ -162,8 +153,7 @@ impl Workers {
                 naming,
             } => {
                 self.name_by(number, naming);
-                let post = self.post.clone();
-                self.frames.watch(number, request, write, post)
+                self.frames.watch(number, request, write, &self.execution)
             }
             Work::NameBy(number, naming) => {
                 self.name_by(number, naming);
@@ -183,7 +173,7 @@ impl Workers {
         match naming {
             Some(naming) => {
                 let store = self.models.store.clone();
-                self.namer.begin(number, store, *naming, self.post.clone());
+                self.namer.begin(number, store, *naming, &self.execution);
             }
             None => self.namer.end(),
         }
@@ -191,10 +181,11 @@ impl Workers {
 
     /// Estimates the time of a sweep, on a thread of its own; without a receiver nobody waits for it.
     fn measure(&mut self, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
-        self.measuring.store(true, Ordering::Relaxed);
-        let post = self.post.clone()?;
-        self.measuring = Arc::default();
-        let stop = Arc::clone(&self.measuring);
+        let stop = self.measuring.renew();
+        let Execution::OnThreads(post) = &self.execution else {
+            return None;
+        };
+        let post = Arc::clone(post);
         let work = move || {
             if let Some(time) = measure(&grid, &stop) {
                 post(WorkerEvent::Estimate(grid, time));
@@ -209,14 +200,17 @@ impl Workers {
     /// Sweeps a grid, on a thread of its own if there is a receiver.
     fn sweep(&mut self, number: u64, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
         let stop = self.begin();
-        let Some(post) = self.post.clone() else {
-            return Some(if self.limit.allows(grid.poses()) {
-                sweep(number, &grid, &|_| true)
-            } else {
-                WorkerEvent::Failed(number, "stopped before anything was complete".to_owned())
-            });
+        let post = match &self.execution {
+            Execution::AtOnce(limit) if limit.allows(grid.poses()) => {
+                return Some(sweep(number, &grid, &|_| true));
+            }
+            Execution::AtOnce(_) => {
+                let text = "stopped before anything was complete".to_owned();
+                return Some(WorkerEvent::Failed(number, text));
+            }
+            Execution::OnThreads(post) => post,
         };
-        let thread = on_a_thread(number, &post, move |post| {
+        let thread = on_a_thread(number, post, move |post| {
             let clock = ProgressReporter::new(number, post);
             let progress = |poses| proceed(poses, &stop, Some(&clock));
             post(guarded(number, || sweep(number, &grid, &progress)));
@@ -230,11 +224,13 @@ impl Workers {
             let curve = caught(|| Arc::new(AngleCurve::of(&findings.sweep, place)));
             WorkerEvent::Angles(findings, place, curve)
         };
-        let beside = self.post.clone().is_some_and(|post| {
-            let run = run.clone();
-            threads::start(move || threads::run(|| post(run()))).is_ok()
-        });
-        (!beside).then(run)
+        if let Execution::OnThreads(post) = &self.execution {
+            let (post, run) = (Arc::clone(post), run.clone());
+            if threads::start(move || threads::run(|| post(run()))).is_ok() {
+                return None;
+            }
+        }
+        Some(run())
     }
 
     /// Writes what was found to a file, on a thread of its own if there is a receiver.
@@ -249,10 +245,10 @@ impl Workers {
         let run = move |clock: Option<&ProgressReporter<'_>>| {
             write(number, &findings, (&name, &path), existing, &stop, clock)
         };
-        let Some(post) = self.post.clone() else {
+        let Execution::OnThreads(post) = &self.execution else {
             return Some(run(None));
         };
-        let thread = on_a_thread(number, &post, move |post| {
+        let thread = on_a_thread(number, post, move |post| {
             let clock = ProgressReporter::new(number, post);
             post(guarded(number, || run(Some(&clock))));
         });
@@ -265,16 +261,14 @@ impl Workers {
 
     /// Stops the work in progress and returns the stop flag of the next.
     fn begin(&mut self) -> Arc<AtomicBool> {
-        self.stop.store(true, Ordering::Relaxed);
-        self.measuring.store(true, Ordering::Relaxed);
-        self.stop = Arc::default();
-        Arc::clone(&self.stop)
+        self.measuring.stop();
+        self.working.renew()
     }
 }
 
 impl Drop for Workers {
     fn drop(&mut self) {
-        self.begin();
+        self.working.stop();
         // Files are removed where they are half-written, models are written to the cache as a whole; but a disk may hang.
         let threads = [self.writing.take(), self.models.end(), self.namer.leave()];
         let end = Instant::now() + WRITING;
