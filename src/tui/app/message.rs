@@ -109,6 +109,8 @@ pub enum Message {
     ScrollScreen(i8),
     /// To the first or the last line of a list.
     ScrollTo(Endpoint),
+    /// Select the row of a list.
+    Select(usize),
     /// Open the prompt that searches in help.
     Search,
     /// Go to the match this many further on; negative goes back. The first follows the last.

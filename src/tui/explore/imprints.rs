@@ -18,7 +18,7 @@ use ratatui::layout::{Position, Rect};
 use crate::atlas::AtlasEntry;
 use crate::formats::value::{counted, fitting, grouped};
 use crate::pose::Axis;
-use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::column::ListColumn;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
@@ -26,6 +26,7 @@ use crate::tui::explore::page::ResultsPage;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::number::narrow;
+use crate::tui::widget::rows::moved;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
@@ -60,7 +61,7 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     Some(if row == results.selected() {
         Message::Accept
     } else {
-        Message::Explore(ExploreMessage::Select(row))
+        Message::Select(row)
     })
 }
 
@@ -68,20 +69,13 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
 fn update(results: &mut Results, message: &Message, page: Rect) {
     let visible = ImprintList::of(page, results).rows.height.into();
     results.keep_first_row(visible);
-    match *message {
-        Message::Scroll(lines) => {
-            let by = isize::from(lines);
-            results.select(results.selected().saturating_add_signed(by));
-        }
-        Message::ScrollTo(Endpoint::First) => results.select(0),
-        Message::ScrollTo(Endpoint::Last) => results.select(usize::MAX),
-        Message::Explore(ExploreMessage::Select(row)) => results.select(row),
-        Message::Explore(ExploreMessage::Columns(by)) => {
-            let shown = ImprintList::of(page, results).columns();
-            let shown: Vec<ListColumn> = shown.into_iter().map(|(column, _)| column).collect();
-            results.move_heading(by, &shown);
-        }
-        _ => {}
+    if let Some(row) = moved(results.selected(), message) {
+        results.select(row);
+    }
+    if let Message::Explore(ExploreMessage::Columns(by)) = *message {
+        let shown = ImprintList::of(page, results).columns();
+        let shown: Vec<ListColumn> = shown.into_iter().map(|(column, _)| column).collect();
+        results.move_heading(by, &shown);
     }
     results.keep_first_row(visible);
 }

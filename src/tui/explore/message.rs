@@ -130,8 +130,6 @@ pub enum ExploreMessage {
     Find,
     /// Go from an imprint of the list to the map, or back.
     Follow,
-    /// Select a row of the page.
-    Select(usize),
     /// Put the cursor of the map at an x0 and a y0, by index.
     Point(u64, u64),
     /// Choose the angle of the map this many further on; negative goes back.

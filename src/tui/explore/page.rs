@@ -8,12 +8,13 @@ use std::path::Path;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::drawing::{PageDrawing, drawn_format};
-use crate::tui::explore::message::{ExploreMessage, ExplorePage};
+use crate::tui::explore::message::ExplorePage;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
+use crate::tui::widget::rows::moved;
 use crate::tui::widget::theme::Theme;
 
 /// A page of the results: what [`crate::tui::explore::pages`] lists. The functions get the area of the page.
@@ -57,14 +58,7 @@ pub(in crate::tui) fn is_csv(name: &str) -> bool {
 
 /// Handles a message on a page whose rows are descriptors.
 pub(in crate::tui) fn choose_descriptor(results: &mut Results, message: &Message, _page: Rect) {
-    match *message {
-        Message::Scroll(lines) => {
-            let by = isize::from(lines);
-            results.choose_feature(results.feature_number().saturating_add_signed(by));
-        }
-        Message::ScrollTo(Endpoint::First) => results.choose_feature(0),
-        Message::ScrollTo(Endpoint::Last) => results.choose_feature(usize::MAX),
-        Message::Explore(ExploreMessage::Select(row)) => results.choose_feature(row),
-        _ => {}
+    if let Some(row) = moved(results.feature_number(), message) {
+        results.choose_feature(row);
     }
 }

@@ -48,7 +48,7 @@ pub static PAGE: ResultsPage = ResultsPage {
 fn update(results: &mut Results, message: &Message, page: Rect) {
     match *message {
         Message::Explore(ExploreMessage::Columns(by)) => results.next_across(by),
-        Message::Explore(ExploreMessage::Select(row)) => results.select(row),
+        Message::Select(row) => results.select(row),
         _ => choose_descriptor(results, message, page),
     }
 }
@@ -95,7 +95,7 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
         if row == results.selected() {
             Message::Accept
         } else {
-            Message::Explore(ExploreMessage::Select(row))
+            Message::Select(row)
         }
     })
 }

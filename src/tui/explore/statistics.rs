@@ -35,7 +35,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     draw,
     click: |results, page, at| {
         let row = StatisticsTable::of(page, results).row(at)?;
-        Some(Message::Explore(ExploreMessage::Select(row)))
+        Some(Message::Select(row))
     },
     update,
 };

@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::counted;
-use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
@@ -44,18 +44,9 @@ impl HistoryDialog {
         self.selected
     }
 
-    /// Selects the row `lines` further down, or further up if negative.
-    pub fn scroll(&mut self, lines: i16) {
-        let to = self.selected.saturating_add_signed(lines.into());
-        self.selected = to.min(self.steps.len());
-    }
-
-    /// Selects the first or the last row.
-    pub fn scroll_to(&mut self, end: Endpoint) {
-        self.selected = match end {
-            Endpoint::First => 0,
-            Endpoint::Last => self.steps.len(),
-        };
+    /// Selects a row, or the last one if it lies beyond.
+    pub fn select(&mut self, row: usize) {
+        self.selected = row.min(self.steps.len());
     }
 
     /// Searches for a text from the selected row, then from the start, and selects the first match. Returns the
@@ -155,11 +146,11 @@ impl Page for HistoryDialog {
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
         let line = usize::from(at.y.checked_sub(area.y + 1)?);
         let row = Some(self.first(area) + line).filter(|&row| row <= self.steps.len())?;
-        if row == self.selected {
-            return Some(Message::Accept);
-        }
-        let (to, from) = (i16::try_from(row).ok()?, i16::try_from(self.selected).ok()?);
-        Some(Message::Scroll(to - from))
+        Some(if row == self.selected {
+            Message::Accept
+        } else {
+            Message::Select(row)
+        })
     }
 
     fn wheel(&self) -> Wheel {

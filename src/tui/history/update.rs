@@ -10,6 +10,7 @@ use crate::tui::keys::binding::Context;
 use crate::tui::runtime::effect::Effect;
 use crate::tui::search::page::{SearchDialog, Searched};
 use crate::tui::search::update::no_search;
+use crate::tui::widget::rows::moved;
 
 /// Moves in the list of steps, searches in it, or goes to the state after the selected one. Comparing leaves the list
 /// open below.
@@ -19,8 +20,6 @@ pub(in crate::tui) fn in_history(
     message: &Message,
 ) -> Option<Effect> {
     match *message {
-        Message::Scroll(lines) => list.scroll(lines),
-        Message::ScrollTo(end) => list.scroll_to(end),
         Message::Compare => {
             let step = list.selected();
             let state = app
@@ -51,7 +50,11 @@ pub(in crate::tui) fn in_history(
             settle(app);
             return None;
         }
-        _ => {}
+        _ => {
+            if let Some(row) = moved(list.selected(), message) {
+                list.select(row);
+            }
+        }
     }
     app.dialogs.push(Dialog::History(list));
     None

@@ -35,8 +35,6 @@ pub enum RecogniseMessage {
     Want(i8),
     /// Starts the random touches from this seed.
     Seed(u64),
-    /// Selects a row of a list, counted from 0.
-    Select(usize),
     /// Writes the sizes into a file with this name.
     WriteSizes(String),
     /// Selects a cell of the confusion matrix: row, column.

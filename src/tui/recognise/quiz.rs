@@ -10,13 +10,13 @@ use crate::imprint::Imprint;
 use crate::recognition::below;
 use crate::sensor::Sensor;
 use crate::touch::Plane;
-use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::trained::TrainedModel;
+use crate::tui::widget::rows::moved;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -100,19 +100,11 @@ impl Quiz {
     /// # Errors
     /// Returns a sentence about a character that fits no shape.
     pub fn take(&mut self, message: &Message) -> Result<bool, String> {
-        let last = self.count() - 1;
-        match *message {
-            Message::Scroll(lines) => {
-                let row = self.selected.saturating_add_signed(isize::from(lines));
-                self.selected = row.min(last);
-            }
-            Message::ScrollTo(Endpoint::First) => self.selected = 0,
-            Message::ScrollTo(Endpoint::Last) => self.selected = last,
-            Message::Recognise(RecogniseMessage::Select(row)) => {
-                self.selected = row.min(last);
-            }
-            Message::Type(character) => return self.type_character(character),
-            _ => {}
+        if let Message::Type(character) = *message {
+            return self.type_character(character);
+        }
+        if let Some(row) = moved(self.selected, message) {
+            self.selected = row.min(self.count() - 1);
         }
         Ok(false)
     }
@@ -255,7 +247,7 @@ impl Page for Quiz {
         Some(if shape == self.selected {
             Message::Accept
         } else {
-            Message::Recognise(RecogniseMessage::Select(shape))
+            Message::Select(shape)
         })
     }
 

@@ -79,9 +79,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
             inform(app, format!("random touches begin with the seed {seed}"));
             None
         }
-        RecogniseMessage::Select(_)
-        | RecogniseMessage::SelectCell(..)
-        | RecogniseMessage::Want(_) => None,
+        RecogniseMessage::SelectCell(..) | RecogniseMessage::Want(_) => None,
     }
 }
 

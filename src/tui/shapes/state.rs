@@ -127,12 +127,7 @@ impl ListDialog {
         self.rows().nth(self.selected)
     }
 
-    /// Selects the row this many further on; negative goes back.
-    pub fn go(&mut self, lines: i16) {
-        self.select(self.selected.saturating_add_signed(isize::from(lines)));
-    }
-
-    /// Selects a row, or the last one.
+    /// Selects a row, or the last one if it lies beyond.
     pub fn select(&mut self, row: usize) {
         self.selected = row.min(self.matching.len().saturating_sub(1));
     }

@@ -12,7 +12,7 @@ use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::StoredName;
 use crate::tui::app::library::{Leftover, LibraryEvent, LibraryRequest, Purpose};
-use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::message::Message;
 use crate::tui::app::quit::quit;
 use crate::tui::app::state::{App, Mode};
 use crate::tui::form::state::FormDialog;
@@ -21,6 +21,7 @@ use crate::tui::keys::binding::Context;
 use crate::tui::prompt::commands::wants_names;
 use crate::tui::runtime::effect::Effect;
 use crate::tui::shapes::state::ListDialog;
+use crate::tui::widget::rows::moved;
 
 /// Handles a message. The list goes back onto the stack unless a shape is taken.
 pub(in crate::tui) fn update(
@@ -31,10 +32,10 @@ pub(in crate::tui) fn update(
     list.accept(false);
     match message {
         Message::Accept => return choose(app, list),
-        Message::Scroll(lines) => list.go(lines),
-        Message::ScrollTo(Endpoint::First) => list.select(0),
-        Message::ScrollTo(Endpoint::Last) => list.select(usize::MAX),
-        other => list.edit(&other),
+        other => match moved(list.selected(), &other) {
+            Some(row) => list.select(row),
+            None => list.edit(&other),
+        },
     }
     app.dialogs.push(Dialog::List(list));
     look(app)

@@ -57,12 +57,12 @@ impl Page for ListDialog {
 
     /// A click selects a row, a click on the selected row takes it.
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
-        let (row, selected) = (list_row(area, self, at)?, self.selected());
-        if row == selected {
-            return Some(Message::Accept);
-        }
-        let (to, from) = (i16::try_from(row).ok()?, i16::try_from(selected).ok()?);
-        Some(Message::Scroll(to - from))
+        let row = list_row(area, self, at)?;
+        Some(if row == self.selected() {
+            Message::Accept
+        } else {
+            Message::Select(row)
+        })
     }
 
     /// An empty list has nothing to choose from. One that is still being read may have.

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use crate::formats::separation::{SeparationCurve, csv, drawing};
 use crate::recognition::{SeparationPoint, SmallestSize};
-use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::message::Message;
 use crate::tui::explore::drawing::drawn_format;
 use crate::tui::explore::page::is_csv;
-use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::found::{SizeFound, SizesFound};
 use crate::tui::recognise::separate::request::SeparationRequest;
+use crate::tui::widget::rows::moved;
 
 /// The wanted errors that keys can choose.
 const WANTED: [f64; 11] = [
@@ -199,15 +199,10 @@ impl Separate {
 
     /// Moves the cursor.
     pub fn take(&mut self, message: &Message) {
-        let row = match *message {
-            Message::Scroll(lines) => self.cursor.saturating_add_signed(isize::from(lines)),
-            Message::ScrollTo(Endpoint::First) => 0,
-            Message::ScrollTo(Endpoint::Last) => usize::MAX,
-            Message::Recognise(RecogniseMessage::Select(row)) => row,
-            _ => return,
-        };
-        self.cursor = row.min(self.found.len().saturating_sub(1));
-        self.moved = true;
+        if let Some(row) = moved(self.cursor, message) {
+            self.cursor = row.min(self.found.len().saturating_sub(1));
+            self.moved = true;
+        }
     }
 
     /// Returns the content of a file with this name, whose extension decides between numbers and curves.

@@ -24,7 +24,6 @@ use crate::tui::explore::running::gauge;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::found::SizeFound;
 use crate::tui::recognise::separate::state::{Separate, SizeWork};
 use crate::tui::widget::curve::Curve;
@@ -128,8 +127,7 @@ impl Page for Separate {
         let panes = SeparatePanes::of(area, self);
         let inside = panes.rows.contains(at) && at.x < panes.picture.x;
         let row = panes.first + usize::from(at.y.checked_sub(panes.rows.y)?);
-        (inside && row < self.found().len())
-            .then_some(Message::Recognise(RecogniseMessage::Select(row)))
+        (inside && row < self.found().len()).then_some(Message::Select(row))
     }
 
     fn wheel(&self) -> Wheel {

@@ -1,0 +1,30 @@
+//! Which row of a list is selected.
+
+use crate::tui::app::message::{Endpoint, Message};
+
+/// The row that a message selects, where `row` is selected now; None if it selects none. It may lie beyond the last row, whose
+/// number the list knows.
+pub fn moved(row: usize, message: &Message) -> Option<usize> {
+    match *message {
+        Message::Scroll(lines) => Some(row.saturating_add_signed(lines.into())),
+        Message::ScrollTo(Endpoint::First) => Some(0),
+        Message::ScrollTo(Endpoint::Last) => Some(usize::MAX),
+        Message::Select(row) => Some(row),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn above_the_first_row_there_is_none() {
+        let moved = |message| moved(3, &message);
+        assert_eq!(moved(Message::Scroll(-10)), Some(0));
+        assert_eq!(moved(Message::Scroll(10)), Some(13));
+        assert_eq!(moved(Message::ScrollTo(Endpoint::First)), Some(0));
+        assert_eq!(moved(Message::Select(7)), Some(7));
+        assert_eq!(moved(Message::Accept), None);
+    }
+}
