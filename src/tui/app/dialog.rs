@@ -109,6 +109,19 @@ impl Dialog {
     }
 }
 
+/// The topmost page of a kind among those of the program, to look at it or to change it:
+/// `topmost!(&app.dialogs, Live)`, `topmost!(&mut app.dialogs, Live)`. None if there is none.
+macro_rules! topmost {
+    ($dialogs:expr, $kind:ident) => {
+        $dialogs.into_iter().rev().find_map(|dialog| match dialog {
+            $crate::tui::app::dialog::Dialog::$kind(page) => Some(page),
+            _ => None,
+        })
+    };
+}
+
+pub(in crate::tui) use topmost;
+
 /// A question, and what each answer does. Leaving it without an answer does nothing.
 #[derive(Clone, Debug)]
 pub struct Question {

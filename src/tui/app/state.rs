@@ -12,7 +12,7 @@ use crate::imprint::{Bounds, Imprint};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::{Expected, ShapeOrigin, UNNAMED};
-use crate::tui::app::dialog::Dialog;
+use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::document::{Document, ReadDocument, Reading};
 use crate::tui::app::history::{History, StoredName};
 use crate::tui::app::layout::Panes;
@@ -449,10 +449,7 @@ impl App {
 
     /// The results that are open, perhaps under other pages.
     pub(in crate::tui) fn results_below(&self) -> Option<&Results> {
-        self.dialogs.iter().rev().find_map(|dialog| match dialog {
-            Dialog::Results(results) => Some(&**results),
-            _ => None,
-        })
+        topmost!(&self.dialogs, Results).map(|results| &**results)
     }
 
     /// The document that the matrix shows: what an open form would make of it, or the present one.
@@ -476,11 +473,10 @@ impl App {
 
     /// The document of the topmost form, or the present one.
     fn on_matrix(&self) -> &Document {
-        let form = self.dialogs.iter().rev().find_map(|dialog| match dialog {
-            Dialog::Form(form) => Some(form.shown()),
-            _ => None,
-        });
-        form.unwrap_or_else(|| self.history.present())
+        match topmost!(&self.dialogs, Form) {
+            Some(form) => form.shown(),
+            None => self.history.present(),
+        }
     }
 
     /// Called before each action of the user: ends what belongs to the last one.

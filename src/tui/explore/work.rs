@@ -18,7 +18,7 @@ use crate::pose::{PoseGrid, PoseIndex};
 use crate::source::Source;
 use crate::storage::{Existing, is_poses};
 use crate::tui::app::change::{inform, refuse};
-use crate::tui::app::dialog::{Dialog, Question};
+use crate::tui::app::dialog::{Dialog, Question, topmost};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Page;
 use crate::tui::app::state::{App, Mode, RunState};
@@ -215,12 +215,7 @@ pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepPro
 
 /// Shows how long the grid in the form of ranges will take.
 pub(in crate::tui) fn on_estimate(app: &mut App, grid: &PoseGrid, time: Duration) {
-    let mut dialogs = app.dialogs.iter_mut().rev();
-    let form = dialogs.find_map(|dialog| match dialog {
-        Dialog::Ranges(form) => Some(form),
-        _ => None,
-    });
-    if let Some(form) = form {
+    if let Some(form) = topmost!(&mut app.dialogs, Ranges) {
         form.take_estimate(grid, time);
     }
 }
@@ -242,11 +237,7 @@ pub(in crate::tui) fn on_angles(
     place: PoseIndex,
     curve: Result<Arc<AngleCurve>, String>,
 ) {
-    let open = app.dialogs.iter_mut().find_map(|dialog| match dialog {
-        Dialog::Results(results) => Some(results),
-        _ => None,
-    });
-    let results = open.or(app.results.as_mut());
+    let results = topmost!(&mut app.dialogs, Results).or(app.results.as_mut());
     let Some(results) = results.filter(|own| Arc::ptr_eq(own.findings(), findings)) else {
         return;
     };
@@ -313,11 +304,7 @@ fn ask(app: &mut App, place: usize, dialog: Dialog) {
 
 /// Returns the work of that number, if it is still awaited.
 fn running(app: &mut App, number: u64) -> Option<&mut Running> {
-    let mut dialogs = app.dialogs.iter_mut();
-    dialogs.find_map(|dialog| match dialog {
-        Dialog::Running(running) if running.number == number => Some(running),
-        _ => None,
-    })
+    topmost!(&mut app.dialogs, Running).filter(|running| running.number == number)
 }
 
 /// Closes the work of a number, and its notice, such as "stopping". Returns its index among the pages; None if it is

@@ -10,7 +10,7 @@ use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::storage::Existing;
 use crate::tui::app::change::{begin_unsaved, inform, refuse};
-use crate::tui::app::dialog::Dialog;
+use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::document::Document;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::Page;
@@ -317,22 +317,14 @@ fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
 
 /// Returns the page of the source that was watched last, open or not.
 pub(in crate::tui) fn last_page(app: &App) -> Option<&Live> {
-    let mut dialogs = app.dialogs.iter().rev();
-    let open = dialogs.find_map(|dialog| match dialog {
-        Dialog::Live(page) => Some(page),
-        _ => None,
-    });
-    open.or(app.live.as_ref()).map(|page| &**page)
+    let page = topmost!(&app.dialogs, Live).or(app.live.as_ref())?;
+    Some(page)
 }
 
 /// Returns the page of the source that was watched last, open or not, to change it.
 fn page(app: &mut App) -> Option<&mut Live> {
-    let mut dialogs = app.dialogs.iter_mut().rev();
-    let open = dialogs.find_map(|dialog| match dialog {
-        Dialog::Live(page) => Some(page),
-        _ => None,
-    });
-    open.or(app.live.as_mut()).map(|page| &mut **page)
+    let page = topmost!(&mut app.dialogs, Live).or(app.live.as_mut())?;
+    Some(page)
 }
 
 /// Handles a report of the source. Reports of a source that is no longer watched are dropped, by their number; except

@@ -5,28 +5,20 @@ use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::storage::ModelChoice;
 use crate::tui::app::change::begin_by;
-use crate::tui::app::dialog::Dialog;
+use crate::tui::app::dialog::topmost;
 use crate::tui::app::document::Document;
 use crate::tui::app::state::App;
 use crate::tui::recognise::state::Recognition;
 
 /// Returns the state of recognition, from its open page or as kept while the page is closed.
 pub(super) fn state(app: &mut App) -> Option<&mut Recognition> {
-    let mut dialogs = app.dialogs.iter_mut().rev();
-    let open = dialogs.find_map(|dialog| match dialog {
-        Dialog::Recognition(page) => Some(page),
-        _ => None,
-    });
-    open.or(app.recognition.as_mut()).map(|page| &mut **page)
+    let page = topmost!(&mut app.dialogs, Recognition).or(app.recognition.as_mut())?;
+    Some(page)
 }
 
 /// Returns the chosen set, once its model is ready.
 pub(in crate::tui) fn trained_set(app: &App) -> Option<&ModelChoice> {
-    let open = app.dialogs.iter().find_map(|dialog| match dialog {
-        Dialog::Recognition(page) => Some(page),
-        _ => None,
-    });
-    let page = open.or(app.recognition.as_ref())?;
+    let page = topmost!(&app.dialogs, Recognition).or(app.recognition.as_ref())?;
     page.trained().map(|trained| &trained.choice)
 }
 

@@ -8,7 +8,7 @@ use rand_pcg::Pcg64;
 
 use crate::storage::ModelChoice;
 use crate::tui::app::change::{inform, let_go, refuse};
-use crate::tui::app::dialog::Dialog;
+use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, NarrowPage};
 use crate::tui::explore::message::SweepProgress;
@@ -381,11 +381,7 @@ pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
 /// that it no longer needs.
 fn look(app: &mut App) -> Option<Effect> {
     let imprint = app.reading().imprint;
-    let mut dialogs = app.dialogs.iter_mut();
-    let page = dialogs.find_map(|dialog| match dialog {
-        Dialog::Recognition(page) => Some(page),
-        _ => None,
-    })?;
+    let page = topmost!(&mut app.dialogs, Recognition)?;
     page.show(imprint);
     let number = app.works + 1;
     Some(Effect::Work(match page.step_look(number)? {

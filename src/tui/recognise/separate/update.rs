@@ -3,7 +3,7 @@
 use crate::formats::separation::size_label;
 use crate::storage::Existing;
 use crate::tui::app::change::{inform, refuse};
-use crate::tui::app::dialog::Dialog;
+use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
@@ -115,11 +115,8 @@ fn put_example(app: &mut App, page: &Separate) -> bool {
 
 /// Returns the page, if it is open.
 fn page(app: &mut App) -> Option<&mut Separate> {
-    let mut dialogs = app.dialogs.iter_mut().rev();
-    dialogs.find_map(|dialog| match dialog {
-        Dialog::Separate(page) => Some(&mut **page),
-        _ => None,
-    })
+    let page = topmost!(&mut app.dialogs, Separate)?;
+    Some(page)
 }
 
 /// Takes over results.
