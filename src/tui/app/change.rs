@@ -10,7 +10,7 @@ use crate::parameter::number::to_decimals;
 use crate::source::Source;
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Document;
-use crate::tui::app::history::{DocumentOrigin, History, StoredName};
+use crate::tui::app::history::{DocumentOrigin, History};
 use crate::tui::app::state::{App, Mode, MoveKind, Notice};
 use crate::tui::compare::page::{Comparison, heading};
 use crate::tui::keys::action;
@@ -41,58 +41,11 @@ pub(in crate::tui) fn change(app: &mut App, document: Document) {
     settle(app);
 }
 
-/// A document that comes from somewhere else, with the name that it is stored under, if it is.
-pub(in crate::tui) fn begin(app: &mut App, document: Document, name: Option<StoredName>) {
-    let brought_by = name
-        .as_ref()
-        .map(|stored| format!("{} loaded", stored.name));
-    begin_from(app, document, name, brought_by);
-}
-
-/// A document that comes from somewhere else without a name; the history calls the step so.
-pub(in crate::tui) fn begin_by(app: &mut App, document: Document, brought_by: &str) {
-    begin_from(app, document, None, Some(brought_by.to_owned()));
-}
-
-/// A document that comes from somewhere else: the name that it is stored under, and what the history calls the step.
-fn begin_from(
-    app: &mut App,
-    document: Document,
-    name: Option<StoredName>,
-    brought_by: Option<String>,
-) {
-    let saved = document.clone();
-    let origin = DocumentOrigin {
-        brought_by,
-        name,
-        saved,
-    };
-    begin_with(app, document, origin);
-}
-
-/// A document that is stored nowhere: all of it would be lost. The history calls the step so.
-pub(in crate::tui) fn begin_unsaved(app: &mut App, document: Document, brought_by: &str) {
-    let origin = DocumentOrigin {
-        brought_by: Some(brought_by.to_owned()),
-        ..stored_nowhere(&document)
-    };
-    begin_with(app, document, origin);
-}
-
-/// Puts a document of that origin onto the matrix.
-fn begin_with(app: &mut App, document: Document, origin: DocumentOrigin) {
+/// Puts a document that comes from somewhere else onto the matrix.
+pub(in crate::tui) fn begin(app: &mut App, origin: DocumentOrigin, document: Document) {
     app.history.begin(document, origin);
     app.mode = Mode::Draw;
     settle(app);
-}
-
-/// The origin of a document of which nothing would be found again.
-fn stored_nowhere(document: &Document) -> DocumentOrigin {
-    DocumentOrigin {
-        brought_by: None,
-        name: None,
-        saved: Document::empty(document.sensor),
-    }
 }
 
 /// Brings back into range what depends on the document.
@@ -189,7 +142,7 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
         .filter(|_| document.source.is_none());
     let lost = lost.map(Source::kind_name);
     if is_other(app, &document) {
-        let origin = stored_nowhere(&document);
+        let origin = DocumentOrigin::unsaved(&document);
         app.history.begin(document, origin);
         settle(app);
     } else {

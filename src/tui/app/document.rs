@@ -33,11 +33,7 @@ pub struct Document {
 impl Document {
     /// An empty matrix.
     pub fn empty(sensor: Sensor) -> Self {
-        Self {
-            sensor,
-            source: None,
-            edits: Imprint::empty(sensor.columns(), sensor.rows()),
-        }
+        Self::drawn(sensor, Imprint::empty(sensor.columns(), sensor.rows()))
     }
 
     /// A matrix touched by a figure or a picture.
@@ -50,6 +46,15 @@ impl Document {
 }
 
 impl Document {
+    /// A matrix that an imprint was drawn on, which has as many columns and rows.
+    pub fn drawn(sensor: Sensor, imprint: Imprint) -> Self {
+        Self {
+            sensor,
+            source: None,
+            edits: imprint,
+        }
+    }
+
     /// Whether nothing is on the matrix: no touch, and no taxel set by hand. Its sensor alone is no work.
     pub fn is_empty(&self) -> bool {
         self.source.is_none() && self.edits.is_empty()
@@ -94,11 +99,7 @@ impl Document {
                 source: Some(source.clone()),
                 edits: self.edits.resized(columns, rows),
             },
-            _ => Self {
-                sensor,
-                source: None,
-                edits: Reading::of(self).imprint.resized(columns, rows),
-            },
+            _ => Self::drawn(sensor, Reading::of(self).imprint.resized(columns, rows)),
         }
     }
 }

@@ -19,6 +19,39 @@ pub struct DocumentOrigin {
 }
 
 impl DocumentOrigin {
+    /// The origin of a document that would be found again where it comes from.
+    pub fn of(document: &Document) -> Self {
+        Self {
+            brought_by: None,
+            name: None,
+            saved: document.clone(),
+        }
+    }
+
+    /// The origin of a document that is stored nowhere: all of it would be lost.
+    pub fn unsaved(document: &Document) -> Self {
+        Self::of(&Document::empty(document.sensor))
+    }
+
+    /// The same; the history calls the step so.
+    #[must_use]
+    pub fn called(self, brought_by: impl Into<String>) -> Self {
+        Self {
+            brought_by: Some(brought_by.into()),
+            ..self
+        }
+    }
+
+    /// The same of a document that was loaded under a name.
+    #[must_use]
+    pub fn loaded(self, name: StoredName) -> Self {
+        Self {
+            brought_by: Some(format!("{} loaded", name.name)),
+            name: Some(name),
+            ..self
+        }
+    }
+
     /// Whether a document that comes from here is unsaved work: nothing would find it again. Of an empty one there is
     /// nothing to lose.
     pub fn would_lose(&self, document: &Document) -> bool {
@@ -64,11 +97,7 @@ pub struct History {
 impl History {
     /// Begins with a document that there is nothing to save of.
     pub fn new(document: Document) -> Self {
-        let origins = vec![DocumentOrigin {
-            brought_by: None,
-            name: None,
-            saved: document.clone(),
-        }];
+        let origins = vec![DocumentOrigin::of(&document)];
         Self {
             past: Vec::new(),
             present: Revision {

@@ -9,9 +9,10 @@ use crate::formats::value::counted;
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::storage::Existing;
-use crate::tui::app::change::{begin_unsaved, inform, refuse};
+use crate::tui::app::change::{begin, inform, refuse};
 use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::document::Document;
+use crate::tui::app::history::DocumentOrigin;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
@@ -55,7 +56,7 @@ fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
             .map(|(path, _)| path.to_string_lossy().into_owned()),
     );
     let write = request.write.clone();
-    let watched = begin(&page, write);
+    let watched = watch_source(&page, write);
     // It has led to this page, and is not opened again by what is refused here.
     app.prompt = None;
     app.live = None;
@@ -66,7 +67,7 @@ fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
 }
 
 /// Watches the source of a page. Its imprints are named as the page says.
-fn begin(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
+fn watch_source(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
     Effect::Work(Work::Watch {
         number: page.number(),
         request: Arc::clone(page.request()),
@@ -90,7 +91,7 @@ fn open(app: &mut App) -> Option<Effect> {
     if page.stopped() {
         app.works += 1;
         page.restart(app.works);
-        effect = Some(begin(&page, None));
+        effect = Some(watch_source(&page, None));
     }
     app.dialogs.push(Dialog::Live(page));
     effect
@@ -138,9 +139,7 @@ fn document(page: &Live) -> Option<Document> {
     let channel = page.status().channel.as_deref();
     let pitch = channel.and_then(ChannelInfo::square_pitch_mm);
     let scaled = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
-    let mut document = Document::empty(scaled.unwrap_or(sensor));
-    document.edits = imprint;
-    Some(document)
+    Some(Document::drawn(scaled.unwrap_or(sensor), imprint))
 }
 
 /// Puts the imprint onto the matrix; the source keeps running. The imprint counts as unsaved, because no source sends
@@ -152,7 +151,9 @@ fn take(app: &mut App, page: Box<Live>, document: Document) {
     let source = page.request().name();
     app.live = Some(page);
     let frame = number.map_or("a frame".to_owned(), |number| format!("frame {number}"));
-    begin_unsaved(app, document, &format!("imprint of {frame}, {source}"));
+    let brought_by = format!("imprint of {frame}, {source}");
+    let origin = DocumentOrigin::unsaved(&document).called(brought_by);
+    begin(app, origin, document);
     let back = app.key_of(&action::WATCH);
     let mut text = format!("the imprint of {frame}; {back} goes back to the source");
     if let Some(reason) = without_mm {

@@ -10,9 +10,10 @@ use crate::imprint::Imprint;
 use crate::parameter::Parameter;
 use crate::quote::shortened;
 use crate::storage::{Existing, UNNAMED};
-use crate::tui::app::change::{begin_by, inform, refuse};
+use crate::tui::app::change::{begin, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
+use crate::tui::app::history::DocumentOrigin;
 use crate::tui::app::message::{FileEvent, Message, OpenedFile};
 use crate::tui::app::state::App;
 use crate::tui::runtime::effect::{Effect, FileRequest};
@@ -93,7 +94,8 @@ pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect
         FileEvent::Opened(name, file) => match opened(app, file) {
             Ok(document) => {
                 let opened = format!("{name} opened");
-                begin_by(app, document, &opened);
+                let origin = DocumentOrigin::of(&document).called(&opened);
+                begin(app, origin, document);
                 app.chosen = None;
                 inform(app, opened);
             }
@@ -133,8 +135,5 @@ fn of_imprint(app: &App, imprint: &Imprint) -> Result<Document, String> {
         .with(Parameter::Columns, imprint.columns().into())
         .and_then(|sensor| sensor.with(Parameter::Rows, imprint.rows().into()))
         .map_err(|error| error.labelled())?;
-    Ok(Document {
-        edits: *imprint,
-        ..Document::empty(sensor)
-    })
+    Ok(Document::drawn(sensor, *imprint))
 }

@@ -16,7 +16,7 @@ use crate::tui::app::change::{
 };
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::{Document, Reading};
-use crate::tui::app::history::History;
+use crate::tui::app::history::{DocumentOrigin, History};
 use crate::tui::app::library::{LibraryRequest, Purpose};
 use crate::tui::app::message::{Copied, Endpoint, Layer, Message};
 use crate::tui::app::quit::quit;
@@ -49,7 +49,8 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             if origin.name.is_none() && app.history.present().is_empty() {
                 inform(app, "the matrix is empty already");
             } else {
-                begin(app, Document::empty(sensor), None);
+                let empty = Document::empty(sensor);
+                begin(app, DocumentOrigin::of(&empty), empty);
             }
         }
         Message::Become(document) => {

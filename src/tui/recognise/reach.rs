@@ -4,9 +4,10 @@
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::storage::ModelChoice;
-use crate::tui::app::change::begin_by;
+use crate::tui::app::change::begin;
 use crate::tui::app::dialog::topmost;
 use crate::tui::app::document::Document;
+use crate::tui::app::history::DocumentOrigin;
 use crate::tui::app::state::App;
 use crate::tui::recognise::state::Recognition;
 
@@ -25,7 +26,7 @@ pub(in crate::tui) fn trained_set(app: &App) -> Option<&ModelChoice> {
 /// Puts an imprint onto the matrix as if it were drawn, without any trace of what made it. `brought_by` is the name
 /// of the step in the history.
 pub(super) fn put(app: &mut App, sensor: Sensor, imprint: &Imprint, brought_by: &str) {
-    let mut document = Document::empty(sensor);
-    document.edits = *imprint;
-    begin_by(app, document, brought_by);
+    let document = Document::drawn(sensor, *imprint);
+    let origin = DocumentOrigin::of(&document).called(brought_by);
+    begin(app, origin, document);
 }

@@ -7,10 +7,10 @@ use crate::imprint::Imprint;
 use crate::picture::Picture;
 use crate::storage::ModelChoice;
 use crate::storage::{Expected, LibraryEntry, LoadedShape, ShapeOrigin};
-use crate::tui::app::change::{begin, begin_unsaved, compare_with, inform, refuse};
+use crate::tui::app::change::{begin, compare_with, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
-use crate::tui::app::history::StoredName;
+use crate::tui::app::history::{DocumentOrigin, StoredName};
 use crate::tui::app::library::{Leftover, LibraryEvent, LibraryRequest, Purpose};
 use crate::tui::app::message::Message;
 use crate::tui::app::quit::quit;
@@ -142,7 +142,9 @@ fn on_change(app: &mut App, change: LibraryEvent) {
         }
         LibraryEvent::Found(left) => offer(app, "", &left),
         LibraryEvent::Recovered(shape) => {
-            begin_unsaved(app, Document::of_shape(&shape), "unsaved work brought back");
+            let document = Document::of_shape(&shape);
+            let origin = DocumentOrigin::unsaved(&document).called("unsaved work brought back");
+            begin(app, origin, document);
             let save = app.key_of(&action::SAVE);
             inform(app, format!("brought back; {save} saves it"));
         }
@@ -316,18 +318,18 @@ fn put_on_matrix(app: &mut App, loaded: &LoadedShape) -> Result<(), String> {
                 shape.name, own.0, own.1, here.0, here.1
             ));
         }
-        Document {
-            edits: imprint,
-            ..Document::empty(sensor)
-        }
+        Document::drawn(sensor, imprint)
     };
     // What was cut out of its sensor is another shape: it is not stored under that name.
-    let name = (own == here).then(|| StoredName {
-        name: shape.name.to_string(),
-        stamp: loaded.stamp,
-        owner: loaded.origin,
-    });
-    begin(app, document, name);
+    let mut origin = DocumentOrigin::of(&document);
+    if own == here {
+        origin = origin.loaded(StoredName {
+            name: shape.name.to_string(),
+            stamp: loaded.stamp,
+            owner: loaded.origin,
+        });
+    }
+    begin(app, origin, document);
     app.chosen = None;
     inform(app, format!("{} loaded", shape.name));
     Ok(())
