@@ -9,7 +9,7 @@ use serde_json::json;
 
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::confusion::{ConfusionArguments, Evaluated};
-use crate::cli::commands::export::{drawn_format, ending, put, written};
+use crate::cli::commands::export::{ending, put, written};
 use crate::cli::commands::model;
 use crate::cli::commands::noise;
 use crate::cli::error::{CliError, MOST_PAIRED};
@@ -18,7 +18,7 @@ use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
 use crate::cli::output::progress::Progress;
 use crate::formats::value::percent;
-use crate::formats::{ConfusionMap, json};
+use crate::formats::{ConfusionMap, DrawingFormat, json};
 use crate::parameter::number::share;
 use crate::recognition::{Classifier, ClassifierEvaluation, Evaluation, Model, greedy};
 use crate::storage::UnfinishedFile;
@@ -202,7 +202,7 @@ fn advice(asked: &ConfusionArguments) -> String {
 /// # Errors
 /// Returns [`CliError::TooManyShapes`] for a drawing whose matrix would not be legible.
 fn file(path: &Path, own: &Evaluation, knows_certain: bool) -> Result<Vec<u8>, CliError> {
-    let Some(format) = drawn_format(path) else {
+    let Some(format) = DrawingFormat::of_path(path) else {
         return Ok(evaluation::csv(own).into_bytes());
     };
     let map = ConfusionMap::new(&own.labels, own.confusion.rows());

@@ -35,7 +35,7 @@ impl Format {
     /// Returns the format of a file's extension.
     fn of_ending(path: &Path) -> Option<Self> {
         let format = ImprintFormat::of_ending(&ending(path)).map(Self::Imprint);
-        format.or_else(|| drawn_format(path).map(Self::Drawing))
+        format.or_else(|| DrawingFormat::of_path(path).map(Self::Drawing))
     }
 }
 
@@ -213,11 +213,6 @@ pub(crate) fn written(path: &Path) -> String {
 pub(crate) fn ending(path: &Path) -> String {
     let ending = path.extension().and_then(|ending| ending.to_str());
     ending.map_or_else(String::new, str::to_ascii_lowercase)
-}
-
-/// Returns the format of drawings with a file's extension; None if there is none.
-pub(crate) fn drawn_format(path: &Path) -> Option<DrawingFormat> {
-    DrawingFormat::of_ending(&ending(path))
 }
 
 /// Writes a file, completely or not at all.

@@ -22,7 +22,7 @@ use serde_json::json;
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::confusion::{ConfusionArguments, NoiseArguments};
 use crate::cli::arguments::model::touches::TouchesArguments;
-use crate::cli::commands::export::{drawn_format, put};
+use crate::cli::commands::export::put;
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
@@ -32,7 +32,7 @@ use crate::cli::output::plot;
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
 use crate::formats::value::{counted, grouped, percent};
-use crate::formats::{LinePlot, json};
+use crate::formats::{DrawingFormat, LinePlot, json};
 use crate::memory::MemoryGuard;
 use crate::parameter::number::share;
 use crate::recognition::{
@@ -130,7 +130,7 @@ fn write_noise(table: &[NoiseRow], asked: &ConfusionArguments) -> Result<(), Cli
     let Some(path) = asked.export.as_deref() else {
         return Ok(());
     };
-    let content = match drawn_format(path) {
+    let content = match DrawingFormat::of_path(path) {
         Some(format) => noise_plot(table).content(format).map_err(CliError::Write)?,
         None => noise_csv(table).into_bytes(),
     };

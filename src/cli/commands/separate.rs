@@ -13,7 +13,7 @@ use std::sync::atomic::Ordering;
 
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::separate::SeparateArguments;
-use crate::cli::commands::export::{drawn_format, ending, put, written};
+use crate::cli::commands::export::{ending, put, written};
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shape_set;
@@ -23,8 +23,8 @@ use crate::cli::output::progress::Progress;
 use crate::cli::output::separation;
 use crate::cli::signals::Signals;
 use crate::cli::threads;
-use crate::formats::Name;
 use crate::formats::separation::{SeparationCurve, csv, drawing};
+use crate::formats::{DrawingFormat, Name};
 use crate::memory::MemoryGuard;
 use crate::pose::{Axis, DecimalRange, Ranges};
 use crate::recognition::{CellPositions, Model, Separation, TrainingError};
@@ -70,7 +70,7 @@ pub(crate) fn separate(
     progress.finish();
     let curves = curves.map_err(|error| signals.training_failure(error, &memory))?;
     if let Some(path) = &asked.export {
-        let content = match drawn_format(path) {
+        let content = match DrawingFormat::of_path(path) {
             Some(format) => drawing(asked.axis, &curves, asked.wanted)
                 .content(format)
                 .map_err(CliError::Write)?,

@@ -1,5 +1,7 @@
 //! The file formats of drawings, and the methods that write every drawing.
 
+use std::path::Path;
+
 use crate::parameter::named;
 
 /// A file format of drawings.
@@ -34,6 +36,11 @@ impl DrawingFormat {
     pub fn of_ending(ending: &str) -> Option<Self> {
         let mut formats = Self::ALL.iter().copied();
         formats.find(|format| format.name().eq_ignore_ascii_case(ending))
+    }
+
+    /// The format that the ending of a file's name asks for; None where no drawing has it.
+    pub(crate) fn of_path(path: impl AsRef<Path>) -> Option<Self> {
+        Self::of_ending(path.as_ref().extension()?.to_str()?)
     }
 }
 

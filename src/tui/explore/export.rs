@@ -2,10 +2,10 @@
 
 use std::borrow::Cow;
 
+use crate::formats::DrawingFormat;
 use crate::quote::shortened;
 use crate::storage::{AtlasFile, is_poses};
 use crate::tui::app::line_prompt::LinePrompt;
-use crate::tui::explore::drawing::drawn_format;
 use crate::tui::explore::page::is_csv;
 use crate::tui::explore::pages;
 use crate::tui::explore::results::Results;
@@ -58,9 +58,11 @@ impl ExportKind {
     fn takes(self, name: &str) -> bool {
         match self {
             Self::Sweep { .. } => {
-                is_poses(name) || drawn_format(name).is_some() || AtlasFile::new(name).is_ok()
+                is_poses(name)
+                    || DrawingFormat::of_path(name).is_some()
+                    || AtlasFile::new(name).is_ok()
             }
-            Self::Curve => is_csv(name) || drawn_format(name).is_some(),
+            Self::Curve => is_csv(name) || DrawingFormat::of_path(name).is_some(),
         }
     }
 }

@@ -8,7 +8,7 @@
 //! export  filter  mark       the prompts for a file name, a condition and a letter
 //! prompts    handles messages in filter and mark
 //! page       what the results know of a page of theirs    pages: the table of pages
-//! imprints  statistics  histogram  map  scatter  angles   the pages           drawing: a page in a file
+//! imprints  statistics  histogram  map  scatter  angles   the pages
 //! work       from the form to the results                 update: what keys do over the results
 //! view       tabs, summary, and the page
 //! ```
@@ -22,8 +22,6 @@ pub mod running;
 pub mod column;
 
 pub mod results;
-
-pub mod drawing;
 
 pub mod export;
 

@@ -3,14 +3,15 @@
 //! A page has no state of its own: [`Results`] holds the chosen descriptor, row and pose, so that all pages agree on
 //! them.
 
+use std::io;
 use std::path::Path;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
+use crate::formats::DrawingFormat;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
-use crate::tui::explore::drawing::{PageDrawing, drawn_format};
 use crate::tui::explore::message::ExplorePage;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
@@ -28,8 +29,8 @@ pub struct ResultsPage {
     pub context: Context,
     /// Whether it shows only the imprints that the filter keeps.
     pub sifted: bool,
-    /// The same for a file: None for a page that is a table, and where there is nothing to draw.
-    pub drawing: Option<fn(&Results) -> Option<PageDrawing>>,
+    /// Its drawing as the content of a file: None for a page that is a table, and where there is nothing to draw.
+    pub drawing: Option<fn(&Results, DrawingFormat) -> Option<io::Result<Vec<u8>>>>,
     /// Its numbers for a CSV file: None for the list of imprints, whose file has all of them, and for drawings.
     pub table: Option<fn(&Results, Rect) -> String>,
     /// The effect of the mouse wheel.
@@ -46,7 +47,7 @@ impl ResultsPage {
     /// Returns true if a file of that name holds what this page shows: a drawing on any page, which may be refused,
     /// or its table.
     pub fn is_own_file(&self, name: &str) -> bool {
-        drawn_format(name).is_some() || (self.table.is_some() && is_csv(name))
+        DrawingFormat::of_path(name).is_some() || (self.table.is_some() && is_csv(name))
     }
 }
 

@@ -10,15 +10,16 @@
 //! Up and down choose the vertical descriptor, which is the one of the other pages too; left and right choose the
 //! horizontal one. A click selects the nearest imprint.
 
+use std::io;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::atlas::{AtlasEntry, features};
 use crate::formats::value::{counted, fitting};
-use crate::formats::{PointPlot, axis_ends};
+use crate::formats::{DrawingFormat, PointPlot, axis_ends};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
-use crate::tui::explore::drawing::PageDrawing;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
@@ -165,7 +166,7 @@ fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
 }
 
 /// The same for a file.
-fn drawing(results: &Results) -> Option<PageDrawing> {
+fn drawing(results: &Results, format: DrawingFormat) -> Option<io::Result<Vec<u8>>> {
     let points: Vec<(f64, f64)> = points(results).into_iter().map(|(_, at)| at).collect();
     if points.is_empty() {
         return None;
@@ -180,5 +181,5 @@ fn drawing(results: &Results) -> Option<PageDrawing> {
     if let Some((x, y)) = selected.and_then(|(_, entry)| point(results, &entry)) {
         plot = plot.with_chosen(x, y);
     }
-    Some(PageDrawing::Points(plot))
+    Some(plot.content(format))
 }

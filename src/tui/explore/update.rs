@@ -4,6 +4,7 @@
 //! Messages that mean the same on all pages are handled here: the page, the descriptor, the order, the map's angle and
 //! zoom. Scrolling and selecting are left to the page's own row in [`crate::tui::explore::pages`].
 
+use crate::formats::DrawingFormat;
 use crate::formats::value::{counted, grouped};
 use crate::pose::Axis;
 use crate::storage::{Existing, is_poses};
@@ -13,7 +14,6 @@ use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
-use crate::tui::explore::drawing::drawn_format;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::filter::FilterDialog;
 use crate::tui::explore::mark::MarkPurpose;
@@ -289,7 +289,7 @@ pub(crate) fn in_export(
 fn missing(app: &App, name: &str) -> Option<String> {
     let results = app.results_below()?;
     let result = results.sweep();
-    if let Some(format) = drawn_format(name) {
+    if let Some(format) = DrawingFormat::of_path(name) {
         let drawn = |row: &&&ResultsPage| row.drawing.is_some();
         let titles: Vec<&str> = pages::PAGES
             .iter()

@@ -12,6 +12,7 @@ use std::time::Duration;
 
 use ratatui::layout::Rect;
 
+use crate::formats::DrawingFormat;
 use crate::formats::value::{counted, grouped};
 use crate::picture::Picture;
 use crate::pose::{PoseGrid, PoseIndex};
@@ -23,7 +24,6 @@ use crate::tui::app::message::Message;
 use crate::tui::app::page::Page;
 use crate::tui::app::state::{App, Mode, RunState};
 use crate::tui::explore::angles::curve::AngleCurve;
-use crate::tui::explore::drawing::drawn_format;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress};
 use crate::tui::explore::pages;
@@ -39,20 +39,18 @@ pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
         ExploreMessage::Open => open(app),
         ExploreMessage::Ranges => open_ranges(app),
         ExploreMessage::Start(grid) => Some(start(app, *grid)),
-        ExploreMessage::Write(name, existing) if drawn_format(&name).is_some() => {
-            let format = drawn_format(&name)?;
+        ExploreMessage::Write(name, existing) if DrawingFormat::of_path(&name).is_some() => {
+            let format = DrawingFormat::of_path(&name)?;
             let results = app.results_below()?;
-            let Some(drawing) = (pages::row(results.page()).drawing?)(results) else {
-                refuse(app, "there is nothing to draw");
-                return None;
-            };
-            match drawing.content(format) {
-                Ok(content) => Some(Effect::File(FileRequest::Write(name, content, existing))),
-                Err(error) => {
-                    refuse(app, error);
-                    None
+            let reason = match (pages::row(results.page()).drawing?)(results, format) {
+                Some(Ok(content)) => {
+                    return Some(Effect::File(FileRequest::Write(name, content, existing)));
                 }
-            }
+                Some(Err(error)) => error.to_string(),
+                None => "there is nothing to draw".to_owned(),
+            };
+            refuse(app, reason);
+            None
         }
         ExploreMessage::Write(name, existing) if is_own_file(app, &name) => {
             let results = app.results_below()?;
@@ -288,7 +286,7 @@ pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) -> bo
 /// a drawing, which shows what its page shows.
 fn filter_remark(app: &App, name: &str) -> String {
     match app.results_below() {
-        Some(results) if !results.filter().is_empty() && drawn_format(name).is_none() => {
+        Some(results) if !results.filter().is_empty() && DrawingFormat::of_path(name).is_none() => {
             let imprints = counted(results.sweep().atlas.len() as u64, "imprint");
             format!(", all {imprints} (the filter does not apply)")
         }

@@ -11,16 +11,17 @@
 
 pub mod curve;
 
+use std::io;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::fitting;
-use crate::formats::{PointPlot, axis_ends};
+use crate::formats::{DrawingFormat, PointPlot, axis_ends};
 use crate::pose::Axis;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::angles::curve::AngleSpread;
-use crate::tui::explore::drawing::PageDrawing;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
@@ -213,7 +214,7 @@ fn detail(at: &AngleSpread) -> String {
 }
 
 /// The same for a file.
-fn drawing(results: &Results) -> Option<PageDrawing> {
+fn drawing(results: &Results, format: DrawingFormat) -> Option<io::Result<Vec<u8>>> {
     let spread = spread(results);
     if spread.is_empty() {
         return None;
@@ -231,5 +232,5 @@ fn drawing(results: &Results) -> Option<PageDrawing> {
             plot = plot.with_curve(name, &points, dashed);
         }
     }
-    Some(PageDrawing::Points(plot))
+    Some(plot.content(format))
 }

@@ -13,19 +13,19 @@
 //! If a map does not fit in letters, it is a picture first: with colours, each half of a character shows one imprint;
 //! without colours, each character has a shade. Six colours and five shades seldom have to repeat side by side.
 
+use std::io;
 use std::sync::Arc;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 
-use crate::formats::PoseMap;
 use crate::formats::value::{counted, grouped};
+use crate::formats::{DrawingFormat, PoseMap};
 use crate::index::index;
 use crate::parameter::Parameter;
 use crate::pose::{Axis, PoseGrid};
 use crate::touch::Plane;
-use crate::tui::explore::drawing::PageDrawing;
 use crate::tui::explore::map::layout::MapPane;
 use crate::tui::explore::map::letters::{LETTERS, letter, signs};
 use crate::tui::explore::map::visible::VisiblePoses;
@@ -82,7 +82,10 @@ pub(in crate::tui) fn draw(
 }
 
 /// The same for a file: the whole range at the present angle and zoom.
-pub(in crate::tui) fn drawing(results: &Results) -> Option<PageDrawing> {
+pub(in crate::tui) fn drawing(
+    results: &Results,
+    format: DrawingFormat,
+) -> Option<io::Result<Vec<u8>>> {
     let grid = &results.sweep().grid;
     let [width, height, ..] = grid.counts().into_array();
     let stride = width.max(height).div_ceil(DRAWN).max(1);
@@ -95,7 +98,7 @@ pub(in crate::tui) fn drawing(results: &Results) -> Option<PageDrawing> {
     let (x0, y0) = (ends(Axis::X0, across), ends(Axis::Y0, down));
     let map = PoseMap::new(x0, y0, usize::try_from(across).ok()?, &ids)?;
     let title = format!("{}; {}", results.summary(false), heading(results));
-    Some(PageDrawing::Map(map.with_title(&title)))
+    Some(map.with_title(&title).content(format))
 }
 
 /// Returns the angle and the zooms, each with its number and how many there are.

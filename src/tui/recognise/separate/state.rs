@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
+use crate::formats::DrawingFormat;
 use crate::formats::separation::{SeparationCurve, csv, drawing};
 use crate::recognition::{SeparationPoint, SmallestSize};
 use crate::tui::app::message::Message;
-use crate::tui::explore::drawing::drawn_format;
 use crate::tui::explore::page::is_csv;
 use crate::tui::recognise::separate::found::{SizeFound, SizesFound};
 use crate::tui::recognise::separate::request::SeparationRequest;
@@ -219,7 +219,8 @@ impl Separate {
         if is_csv(name) {
             return Ok(csv(request.axis, &curves).into_bytes());
         }
-        let format = drawn_format(name).ok_or("expected a name that ends in .csv, .svg or .png")?;
+        let format = DrawingFormat::of_path(name)
+            .ok_or("expected a name that ends in .csv, .svg or .png")?;
         let plot = drawing(request.axis, &curves, Some(request.wanted));
         plot.content(format).map_err(|error| error.to_string())
     }
