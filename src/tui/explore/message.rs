@@ -77,25 +77,6 @@ impl ExplorePage {
     ];
 }
 
-/// A zoom of pictures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Zoom {
-    /// Along x.
-    X,
-    /// Along y.
-    Y,
-}
-
-impl Zoom {
-    /// Returns the axis of the grid.
-    pub fn axis(self) -> Axis {
-        match self {
-            Self::X => Axis::ZoomX,
-            Self::Y => Axis::ZoomY,
-        }
-    }
-}
-
 /// A request by a key or a command on the pages of Explore.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExploreMessage {
@@ -134,8 +115,8 @@ pub enum ExploreMessage {
     Point(u64, u64),
     /// Choose the angle of the map this many further on; negative goes back.
     Angle(i16),
-    /// Choose the zoom of the map this many further on; negative goes back.
-    Zoomed(Zoom, i8),
+    /// The poses this many further on along an axis; negative goes back.
+    Along(Axis, i8),
     /// Ask for the name of a file to export to.
     Export,
     /// Write the results to a file.

@@ -17,7 +17,7 @@ use crate::touch::Plane;
 use crate::tui::explore::angles::curve::{AngleCurve, zooms_of};
 use crate::tui::explore::column::ListColumn;
 use crate::tui::explore::map::visible::VisibleImprints;
-use crate::tui::explore::message::{ExplorePage, Findings, Zoom, name_of};
+use crate::tui::explore::message::{ExplorePage, Findings, name_of};
 use crate::tui::widget::number::around;
 
 /// The first descriptor of the horizontal axis of the scatter plot: the perimeter `p`, by its index.
@@ -414,11 +414,6 @@ impl Results {
         self.pose_index[Axis::Angle] = (now + step) % count;
     }
 
-    /// Shows the zoom `by` further on, at most the last one.
-    pub fn zoom(&mut self, zoom: Zoom, by: i8) {
-        self.move_along(zoom.axis(), by.into());
-    }
-
     /// Moves the map's cursor along an axis by a number of poses; at the ends it stays.
     pub fn move_along(&mut self, axis: Axis, by: i64) {
         let last = self.sweep().grid.counts()[axis] - 1;
@@ -542,12 +537,12 @@ mod tests {
         results.move_along(Axis::X0, 1);
         assert_eq!(results.missing_angles(), None, "asked for already");
         results.move_along(Axis::X0, -1);
-        results.zoom(Zoom::X, 1);
+        results.move_along(Axis::ZoomX, 1);
         assert!(results.missing_angles().is_some());
         results.take_angles(late);
         results.take_angles(early);
         assert!(results.angle_curve().is_some());
-        results.zoom(Zoom::X, -1);
+        results.move_along(Axis::ZoomX, -1);
         assert_eq!(results.missing_angles(), Some(first), "asked for again");
     }
 
@@ -640,7 +635,7 @@ mod tests {
         }
         results.point(u64::MAX, u64::MAX);
         results.turn(-1);
-        results.zoom(Zoom::X, 1);
+        results.move_along(Axis::ZoomX, 1);
         assert_eq!(results.pose_index().into_array(), [9, 5, 4, 0, 0]);
         results.move_along(Axis::Y0, -3);
         results.move_along(Axis::X0, i64::MIN);

@@ -131,9 +131,9 @@ fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
             Some(text) => refuse(app, text),
             None => results.turn(by),
         },
-        ExploreMessage::Zoomed(zoom, by) => match only_one(app, results, zoom.axis()) {
+        ExploreMessage::Along(axis, by) => match only_one(app, results, axis) {
             Some(text) => refuse(app, text),
-            None => results.zoom(zoom, by),
+            None => results.move_along(axis, by.into()),
         },
         _ => {}
     }

@@ -12,10 +12,11 @@
 //! of help for each place; a settings file gives them other keys, by name; and [`crate::tui::prompt::commands`] makes
 //! the `:` commands from them.
 
+use crate::pose::Axis;
 use crate::tui::app::library::Purpose;
 use crate::tui::app::message::{Copied, Endpoint, Erase, Layer, Message};
 use crate::tui::explore::column::ListColumn;
-use crate::tui::explore::message::{ExploreMessage, ExplorePage, Zoom};
+use crate::tui::explore::message::{ExploreMessage, ExplorePage};
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::message::LiveMessage;
 use crate::tui::recognise::message::RecogniseMessage;
@@ -172,7 +173,7 @@ macro_rules! actions {
     };
 }
 
-use ExploreMessage::{Angle, Columns, Feature, NextPage, Sort, Zoomed};
+use ExploreMessage::{Along, Angle, Columns, Feature, NextPage, Sort};
 use Message::{Explore, Recognise};
 
 actions! {
@@ -294,10 +295,10 @@ actions! {
         PREVIOUS_ANGLE "previous-angle" [] Explore(Angle(-1));
         TEN_ANGLES_ON "ten-angles-on" [] Explore(Angle(10));
         TEN_ANGLES_BACK "ten-angles-back" [] Explore(Angle(-10));
-        NEXT_ZOOM_X "next-zoom-x" [] Explore(Zoomed(Zoom::X, 1));
-        PREVIOUS_ZOOM_X "previous-zoom-x" [] Explore(Zoomed(Zoom::X, -1));
-        NEXT_ZOOM_Y "next-zoom-y" [] Explore(Zoomed(Zoom::Y, 1));
-        PREVIOUS_ZOOM_Y "previous-zoom-y" [] Explore(Zoomed(Zoom::Y, -1));
+        NEXT_ZOOM_X "next-zoom-x" [] Explore(Along(Axis::ZoomX, 1));
+        PREVIOUS_ZOOM_X "previous-zoom-x" [] Explore(Along(Axis::ZoomX, -1));
+        NEXT_ZOOM_Y "next-zoom-y" [] Explore(Along(Axis::ZoomY, 1));
+        PREVIOUS_ZOOM_Y "previous-zoom-y" [] Explore(Along(Axis::ZoomY, -1));
         RECOGNISE "recognise" [] Recognise(RecogniseMessage::Open);
         QUIZ "quiz" [] Recognise(RecogniseMessage::Touch);
         KEEP "keep" [] Recognise(RecogniseMessage::Keep), "keep this touch as one of several";
