@@ -16,7 +16,6 @@ use crate::atlas::Histogram;
 use crate::description::Dimension;
 use crate::formats::value::{counted, fitting, grouped};
 use crate::tui::app::page::Wheel;
-use crate::tui::explore::message::ExplorePage;
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
@@ -28,7 +27,6 @@ const NUMBER: usize = 9;
 
 /// The histogram page.
 pub static PAGE: ResultsPage = ResultsPage {
-    page: ExplorePage::Histogram,
     title: "histogram",
     context: Context::Histogram,
     sifted: false,

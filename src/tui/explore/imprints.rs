@@ -21,7 +21,7 @@ use crate::pose::Axis;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::column::ListColumn;
-use crate::tui::explore::message::{ExploreMessage, ExplorePage};
+use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::page::ResultsPage;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
@@ -39,7 +39,6 @@ const SIGN: usize = 2;
 
 /// The imprints page.
 pub static PAGE: ResultsPage = ResultsPage {
-    page: ExplorePage::Imprints,
     title: "imprints",
     context: Context::Imprints,
     sifted: true,

@@ -12,7 +12,6 @@ use ratatui::layout::{Position, Rect};
 use crate::formats::DrawingFormat;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
-use crate::tui::explore::message::ExplorePage;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
 use crate::tui::widget::rows::moved;
@@ -21,8 +20,6 @@ use crate::tui::widget::theme::Theme;
 /// A page of the results: what [`crate::tui::explore::pages`] lists. The functions get the area of the page.
 #[derive(Debug)]
 pub struct ResultsPage {
-    /// The page.
-    pub page: ExplorePage,
     /// The title on its tab.
     pub title: &'static str,
     /// The context in which its keys are looked up.

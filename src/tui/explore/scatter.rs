@@ -20,7 +20,7 @@ use crate::formats::value::{counted, fitting};
 use crate::formats::{DrawingFormat, PointPlot, axis_ends};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
-use crate::tui::explore::message::{ExploreMessage, ExplorePage};
+use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
@@ -33,7 +33,6 @@ const VALUE: usize = 9;
 
 /// The scatter page.
 pub static PAGE: ResultsPage = ResultsPage {
-    page: ExplorePage::Scatter,
     title: "scatter",
     context: Context::Scatter,
     sifted: true,

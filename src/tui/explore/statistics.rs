@@ -16,7 +16,7 @@ use crate::atlas::{STATISTIC_COLUMNS, features};
 use crate::formats::value::{fitting, grouped};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
-use crate::tui::explore::message::{ExploreMessage, ExplorePage};
+use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
@@ -25,7 +25,6 @@ use crate::tui::widget::write::{self, below, first_of};
 
 /// The statistics page.
 pub static PAGE: ResultsPage = ResultsPage {
-    page: ExplorePage::Statistics,
     title: "statistics",
     context: Context::Statistics,
     sifted: false,

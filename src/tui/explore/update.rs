@@ -18,7 +18,6 @@ use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::filter::FilterDialog;
 use crate::tui::explore::mark::MarkPurpose;
 use crate::tui::explore::message::{ExploreMessage, ExplorePage, name_of};
-use crate::tui::explore::page::ResultsPage;
 use crate::tui::explore::pages;
 use crate::tui::explore::prompts::mark_dialog;
 use crate::tui::explore::results::Results;
@@ -290,12 +289,9 @@ fn missing(app: &App, name: &str) -> Option<String> {
     let results = app.results_below()?;
     let result = results.sweep();
     if let Some(format) = DrawingFormat::of_path(name) {
-        let drawn = |row: &&&ResultsPage| row.drawing.is_some();
-        let titles: Vec<&str> = pages::PAGES
-            .iter()
-            .filter(drawn)
-            .map(|row| row.title)
-            .collect();
+        let rows = ExplorePage::ALL.into_iter().map(pages::row);
+        let drawn = rows.filter(|row| row.drawing.is_some());
+        let titles: Vec<&str> = drawn.map(|row| row.title).collect();
         let reason = format!(
             "this page has no drawing for .{format}; {} have one",
             titles.join(", ")

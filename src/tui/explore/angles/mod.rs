@@ -22,7 +22,7 @@ use crate::pose::Axis;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::angles::curve::AngleSpread;
-use crate::tui::explore::message::{ExploreMessage, ExplorePage};
+use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
@@ -38,7 +38,6 @@ const LEGEND: &str = "  line: mean, dashes: min, max";
 
 /// The angles page.
 pub static PAGE: ResultsPage = ResultsPage {
-    page: ExplorePage::Angles,
     title: "angles",
     context: Context::Angles,
     sifted: false,

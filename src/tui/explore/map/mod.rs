@@ -21,14 +21,13 @@ use crate::pose::Axis;
 use crate::tui::app::message::{Endpoint, Message};
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::map::layout::MapPane;
-use crate::tui::explore::message::{ExploreMessage, ExplorePage};
+use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::page::ResultsPage;
 use crate::tui::explore::results::Results;
 use crate::tui::keys::binding::Context;
 
 /// The map page.
 pub static PAGE: ResultsPage = ResultsPage {
-    page: ExplorePage::Map,
     title: "map",
     context: Context::Map,
     sifted: false,
