@@ -193,7 +193,7 @@ fn kind(expected: &str) -> &str {
         "u32" => "a whole number from 0 to 4294967295",
         "u16" | "u64" | "usize" => "a whole number, 0 or more",
         "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
-        "a string" | "a borrowed string" => "a text",
+        "a borrowed string" => "a string",
         "a boolean" => "true or false",
         "a sequence" => "a list",
         "a map" => "an object",

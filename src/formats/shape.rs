@@ -161,7 +161,7 @@ impl<'de> Deserialize<'de> for NameRecord {
         impl Visitor<'_> for NameVisitor {
             type Value = NameRecord;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a text")
+                f.write_str("a string")
             }
             fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
                 Name::new(text).map(NameRecord).map_err(E::custom)

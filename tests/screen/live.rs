@@ -707,7 +707,7 @@ fn a_broken_description_beside_a_recording_is_reported() {
     page.frames(1);
     shows(
         &page,
-        &["frame 0", "a.json: found the number 3, expected a text"],
+        &["frame 0", "a.json: found the number 3, expected a string"],
     );
 }
 

@@ -296,6 +296,6 @@ mod tests {
             wrong("\"tare_frames\":1,\"tare\":[[1],[2,3]]").contains("tare: row 2 has 2 values")
         );
         let unit = wrong("\"unit\":3");
-        assert_eq!(unit, "found the number 3, expected a text");
+        assert_eq!(unit, "found the number 3, expected a string");
     }
 }
