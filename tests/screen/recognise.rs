@@ -196,6 +196,15 @@ fn a_set_that_does_not_exist_changes_nothing() {
 }
 
 #[test]
+fn a_command_that_needs_a_model_says_that_the_model_comes_first() {
+    let mut session = session(":confusion<Enter>");
+    let first = "a model is prepared first; then repeat this";
+    shows(&session, &["Recognise: model figures", first]);
+    press(&mut session, ":confusion<Enter>");
+    shows(&session, &["Confusion: model figures"]);
+}
+
+#[test]
 fn a_damaged_or_outdated_model_in_the_cache_is_trained_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let cache = folder.path().join("cache");

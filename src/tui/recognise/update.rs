@@ -32,7 +32,11 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
             RecogniseMessage::Choose(choice) => Some(choice.clone()),
             _ => None,
         };
+        let is_done = matches!(asked, RecogniseMessage::Open | RecogniseMessage::Choose(_));
         if let Some(effect) = open(app, choice) {
+            if !is_done {
+                inform(app, "a model is prepared first; then repeat this");
+            }
             return Some(effect);
         }
     }
