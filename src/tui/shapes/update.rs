@@ -280,8 +280,9 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
             app.dialogs.push(Dialog::List(list));
             refuse(app, format!("{name}: {reason}"));
         }
-        // No list is for anything else.
-        (Some((_, Some(Ok(_)))), Purpose::Compare) => app.dialogs.push(Dialog::List(list)),
+        (Some((name, Some(Ok(loaded)))), Purpose::Compare) => {
+            compare_with(app, &name, &loaded.shape.imprint);
+        }
     }
     None
 }
