@@ -148,6 +148,11 @@ impl Question {
             meanings: None,
         }
     }
+
+    /// The question whether a file that exists is to be replaced, which yes does.
+    pub fn replaces(file: &str, yes: Message) -> Self {
+        Self::new(format!("{file} already exists. Replace it?"), yes)
+    }
 }
 
 impl Page for Question {

@@ -132,14 +132,7 @@ fn go_to(results: &mut Results, pose: u64) -> Result<(), String> {
         results.go_to_pose(pose);
         return Ok(());
     }
-    let id = results.id_at(pose);
-    let id = id.ok_or("this pose was not swept: the sweep was stopped")?;
-    if !results.find(id) {
-        return Err(format!(
-            "the filter hides imprint {id}: {}",
-            results.filter()
-        ));
-    }
+    results.go_to_imprint_at(pose)?;
     if results.page() != ExplorePage::Scatter {
         results.turn_to(ExplorePage::Imprints);
     }

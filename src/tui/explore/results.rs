@@ -381,6 +381,26 @@ impl Results {
         row.is_some()
     }
 
+    /// Selects an imprint.
+    ///
+    /// # Errors
+    /// A sentence, where the filter hides it.
+    pub fn go_to_imprint(&mut self, id: u32) -> Result<(), String> {
+        if self.find(id) {
+            return Ok(());
+        }
+        Err(format!("the filter hides imprint {id}: {}", self.filter()))
+    }
+
+    /// Selects the imprint of a pose.
+    ///
+    /// # Errors
+    /// A sentence, where the pose was not swept or the filter hides its imprint.
+    pub fn go_to_imprint_at(&mut self, pose: u64) -> Result<(), String> {
+        let id = self.id_at(pose);
+        self.go_to_imprint(id.ok_or("this pose was not swept: the sweep was stopped")?)
+    }
+
     /// Returns the index of the first column of statistics that is shown.
     pub fn column(&self) -> usize {
         self.column

@@ -156,13 +156,15 @@ fn only_one(app: &App, results: &Results, axis: Axis) -> Option<String> {
 fn find(app: &mut App, results: &mut Results) {
     let imprint = app.reading().imprint;
     if let Some(id) = results.id(&imprint) {
-        select(app, results, id);
+        if let Err(reason) = results.go_to_imprint(id) {
+            refuse(app, reason);
+        }
         return;
     }
     match results.sweep().atlas.find_shifted(&imprint) {
         Some((id, right, down)) => {
-            if !select(app, results, id) {
-                return;
+            if let Err(reason) = results.go_to_imprint(id) {
+                return refuse(app, reason);
             }
             let way = |by: i8, noun: &str, [less, more]: [&str; 2]| {
                 let count = counted(by.unsigned_abs(), noun);
@@ -184,18 +186,6 @@ fn find(app: &mut App, results: &mut Results) {
     }
 }
 
-/// Selects an imprint in the list. If the filter hides it, shows a notice and returns false.
-fn select(app: &mut App, results: &mut Results, id: u32) -> bool {
-    let found = results.find(id);
-    if !found {
-        refuse(
-            app,
-            format!("the filter hides imprint {id}: {}", results.filter()),
-        );
-    }
-    found
-}
-
 /// Goes from the list and the points to the first pose on the map, or from the map and the angles to the imprint in
 /// the list. Refused for a pose whose imprint a stopped sweep has not found.
 fn follow(app: &mut App, results: &mut Results) {
@@ -206,13 +196,9 @@ fn follow(app: &mut App, results: &mut Results) {
         results.go_to_pose(pose);
         return results.turn_to(ExplorePage::Map);
     }
-    match results.id_at(pose) {
-        Some(id) => {
-            if select(app, results, id) {
-                results.turn_to(ExplorePage::Imprints);
-            }
-        }
-        None => refuse(app, "this pose was not swept: the sweep was stopped"),
+    match results.go_to_imprint_at(pose) {
+        Ok(()) => results.turn_to(ExplorePage::Imprints),
+        Err(reason) => refuse(app, reason),
     }
 }
 

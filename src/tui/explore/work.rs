@@ -258,9 +258,8 @@ pub(in crate::tui) fn on_written(app: &mut App, number: u64, name: &str) {
 /// Asks whether an existing file is to be replaced.
 pub(in crate::tui) fn on_existing(app: &mut App, number: u64, name: String) {
     if let Some(place) = finish(app, number) {
-        let text = format!("{name} already exists. Replace it?");
-        let yes = Message::Explore(ExploreMessage::Write(name, Existing::Replaced));
-        ask(app, place, Dialog::Question(Question::new(text, yes)));
+        let yes = Message::Explore(ExploreMessage::Write(name.clone(), Existing::Replaced));
+        ask(app, place, Dialog::Question(Question::replaces(&name, yes)));
     }
 }
 

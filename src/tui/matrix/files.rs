@@ -103,9 +103,8 @@ pub(in crate::tui) fn on_file(app: &mut App, answer: FileEvent) -> Option<Effect
         },
         FileEvent::Written(path) => inform(app, format!("written: {path}")),
         FileEvent::Exists(name, content) => {
-            let text = format!("{name} already exists. Replace it?");
-            let yes = Message::Overwrite(name, content);
-            app.dialogs.push(Dialog::Question(Question::new(text, yes)));
+            let question = Question::replaces(&name, Message::Overwrite(name.clone(), content));
+            app.dialogs.push(Dialog::Question(question));
         }
         FileEvent::Failed(reason) => refuse(app, reason),
         // Handled by the live page.

@@ -65,16 +65,19 @@ fn open(name: &str) -> Result<OpenedFile, String> {
 fn write(path: PathBuf, name: String, content: Vec<u8>, existing: Existing) -> FileEvent {
     let written = FinishedFile::new(&path, &content, existing).and_then(FinishedFile::persist);
     match written {
-        Ok(()) => {
-            // Where that is not known, the path as it was given.
-            let whole = std::path::absolute(&path).unwrap_or(path);
-            FileEvent::Written(whole.to_string_lossy().into_owned())
-        }
+        Ok(()) => FileEvent::Written(absolute(&path)),
         Err(error) if error.exists() && existing == Existing::Kept => {
             FileEvent::Exists(name, content)
         }
         Err(error) => FileEvent::Failed(error.to_string()),
     }
+}
+
+/// The whole path of a file that was written; where it is not known, as it was given.
+pub(in crate::tui::runtime) fn absolute(path: &Path) -> String {
+    let whole = std::path::absolute(path);
+    let whole = whole.as_deref().unwrap_or(path);
+    whole.to_string_lossy().into_owned()
 }
 
 /// The paths that begin like this, as they are typed; folders end in a slash. Hidden ones are offered where a dot was

@@ -24,6 +24,7 @@ use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::explore::angles::curve::AngleCurve;
 use crate::tui::explore::message::Findings;
 use crate::tui::live::naming::NamingRequest;
+use crate::tui::runtime::disk::files::absolute;
 use crate::tui::runtime::disk::write_access::WriteAccess;
 use crate::tui::runtime::effect::Work;
 use crate::tui::runtime::frames::watcher::FrameWatcher;
@@ -331,11 +332,7 @@ fn write(
         }
     };
     match written {
-        Ok(true) => {
-            // Where that is not known, the path as it was given.
-            let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-            WorkerEvent::Written(number, whole.to_string_lossy().into_owned())
-        }
+        Ok(true) => WorkerEvent::Written(number, absolute(path)),
         Err(error) if error.exists() && existing == Existing::Kept => {
             WorkerEvent::Exists(number, name.to_owned())
         }
