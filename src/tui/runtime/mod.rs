@@ -63,8 +63,6 @@ use crate::tui::runtime::effect::{Effect, FileRequest, TerminalEffect, Work};
 /// The outside world: a library, unsaved work that crashed programs left in it, this program's journal, and workers.
 #[derive(Debug)]
 pub struct World {
-    /// The folder of stored shapes.
-    library: Library,
     /// The unsaved work that is offered, and how many there are in all.
     orphan: Option<(Box<Orphan>, usize)>,
     /// Where unsaved work is kept.
@@ -90,23 +88,12 @@ pub struct World {
 impl World {
     /// The world around a library; the newest unsaved work in it will be offered.
     pub fn new(library: Library) -> Self {
-        let journal = JournalWriter::new(Journal::new(&library));
-        let workers = Workers::with(ModelStore::beside(&library));
-        let mut world = Self {
+        Self {
+            journal: JournalWriter::new(Journal::new(&library)),
+            orphan: newest_orphan(&library),
             reminders: Some(Reminders::of(&library)),
-            log: ShapeLog::default(),
-            writer: DiskQueue::new(library.clone()),
-            reader: Reader::new(DiskQueue::new(library.clone())),
-            memories: DiskQueue::new(library.clone()),
-            later: VecDeque::new(),
-            library,
-            orphan: None,
-            journal,
-            workers,
-            _scratch: None,
-        };
-        world.orphan = newest_orphan(&world.library);
-        world
+            ..Self::for_script(library)
+        }
     }
 
     /// The same for a script: unsaved work is neither offered nor kept, so that a script does the same every time.
@@ -115,9 +102,8 @@ impl World {
         Self {
             writer: DiskQueue::new(library.clone()),
             reader: Reader::new(DiskQueue::new(library.clone())),
-            memories: DiskQueue::new(library.clone()),
+            memories: DiskQueue::new(library),
             later: VecDeque::new(),
-            library,
             orphan: None,
             reminders: None,
             log: ShapeLog::default(),
