@@ -5,10 +5,10 @@
 
 use ratatui::style::{Color, Style};
 
-use crate::tui::widget::theme::{ColorDepth, Palette, Theme};
+use crate::tui::widget::theme::{ColorDepth, Palette, Theme, Tone};
 
-/// The colours from dark to light: one of the sixteen, one of the 256, and red, green, blue.
-const TONES: [(Color, u8, [u8; 3]); 9] = [
+/// Colours from dark to light.
+const TONES: [Tone; 9] = [
     (Color::Blue, 53, [68, 1, 84]),
     (Color::Blue, 54, [71, 45, 123]),
     (Color::Blue, 24, [59, 82, 139]),
@@ -65,16 +65,10 @@ pub(in crate::tui) fn has_halves(theme: &Theme) -> bool {
 /// Returns the colour for a share of the range; None for shares up to 0, and if there are no colours.
 pub(in crate::tui) fn color(theme: &Theme, share: f64) -> Option<Color> {
     let step = step(share, TONES.len() + 1).checked_sub(1)?;
-    let (named, index, [red, green, blue]) = match theme.palette {
-        Palette::Dark => TONES[step],
-        Palette::Light => TONES[TONES.len() - 1 - step],
-        Palette::Mono => return None,
-    };
-    match theme.depth {
-        ColorDepth::Never => None,
-        ColorDepth::Sixteen => Some(named),
-        ColorDepth::TwoFiftySix => Some(Color::Indexed(index)),
-        ColorDepth::True => Some(Color::Rgb(red, green, blue)),
+    match theme.palette {
+        Palette::Dark => theme.color(TONES[step]),
+        Palette::Light => theme.color(TONES[TONES.len() - 1 - step]),
+        Palette::Mono => None,
     }
 }
 

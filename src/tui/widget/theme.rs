@@ -121,7 +121,7 @@ pub struct Theme {
 pub type Glyphs = [char; 2];
 
 /// A colour in each depth: one of the sixteen, one of the 256, and red, green, blue.
-type Tone = (Color, u8, [u8; 3]);
+pub(in crate::tui) type Tone = (Color, u8, [u8; 3]);
 
 /// Returns the colour of a role in a palette. Bright colours of the sixteen are not used: some terminals show them as
 /// bold, some not at all.
@@ -193,14 +193,19 @@ impl Theme {
         }
     }
 
-    /// Adds a colour to a style, as far as the terminal has colours.
-    fn coloured(self, style: Style, (named, index, [red, green, blue]): Tone) -> Style {
+    /// A colour as the terminal has it; None if it has none.
+    pub(in crate::tui) fn color(self, (named, index, [red, green, blue]): Tone) -> Option<Color> {
         match self.depth {
-            ColorDepth::Never => style,
-            ColorDepth::Sixteen => style.fg(named),
-            ColorDepth::TwoFiftySix => style.fg(Color::Indexed(index)),
-            ColorDepth::True => style.fg(Color::Rgb(red, green, blue)),
+            ColorDepth::Never => None,
+            ColorDepth::Sixteen => Some(named),
+            ColorDepth::TwoFiftySix => Some(Color::Indexed(index)),
+            ColorDepth::True => Some(Color::Rgb(red, green, blue)),
         }
+    }
+
+    /// A style with a colour, as far as the terminal has colours.
+    fn coloured(self, style: Style, tone: Tone) -> Style {
+        self.color(tone).map_or(style, |color| style.fg(color))
     }
 
     /// Returns the style of one of several things side by side, by its number; the colours repeat after six.
@@ -314,12 +319,8 @@ impl Theme {
 
     /// Returns the mark of the heading by which rows are sorted, in descending or ascending order.
     pub fn sorted(&self, descending: bool) -> char {
-        match (self.ascii, descending) {
-            (true, true) => 'v',
-            (true, false) => '^',
-            (false, true) => '↓',
-            (false, false) => '↑',
-        }
+        let [up, down, ..] = self.more();
+        if descending { down } else { up }
     }
 
     /// Returns the text for a value that does not exist.
