@@ -63,9 +63,10 @@ const BEL: u8 = 0x07;
 const PASTE_END: &[u8] = b"\x1b[201~";
 
 /// The state of the reader: its place in a sequence.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum InputState {
     /// Between keys.
+    #[default]
     Ground,
     /// After ESC.
     Escape,
@@ -88,7 +89,7 @@ enum InputState {
 }
 
 /// Reads keys, pastes and mouse events from bytes, as they arrive.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct InputReader {
     /// The place in a sequence.
     state: InputState,
@@ -100,18 +101,6 @@ pub struct InputReader {
     found: Vec<Input>,
     /// Whether the terminal has reported its status.
     has_status: bool,
-}
-
-impl Default for InputReader {
-    fn default() -> Self {
-        Self {
-            state: InputState::Ground,
-            held: Vec::new(),
-            doubled: false,
-            found: Vec::new(),
-            has_status: false,
-        }
-    }
 }
 
 impl InputReader {
