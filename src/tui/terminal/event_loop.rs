@@ -16,6 +16,7 @@
 use std::ffi::OsStr;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use ratatui::Terminal;
@@ -31,7 +32,7 @@ use crate::tui::keys::action;
 use crate::tui::live::update::last_page;
 use crate::tui::runtime::World;
 use crate::tui::runtime::effect::TerminalEffect;
-use crate::tui::runtime::mailbox::Mailbox;
+use crate::tui::runtime::mailbox::{Mailbox, Sender};
 use crate::tui::terminal::device::{Device, WriteOutcome};
 use crate::tui::terminal::input::{Input, InputReader};
 use crate::tui::terminal::outcome::Outcome;
@@ -44,15 +45,22 @@ use crate::tui::terminal::{job, session};
 /// The least time between two pictures of a source of frames (about 30 a second).
 const PICTURE: Duration = Duration::from_millis(34);
 
-/// Runs the program until it ends, and restores the terminal; see [`super::run`].
-pub(in crate::tui) fn run(
+/// Runs the program until it ends. The terminal is left as it was, after an error, a signal and a panic too, and
+/// unsaved work is in the journal wherever the program may not come back. `first` is sent to it at its start, and later what
+/// comes through the mailbox; `watch` is called with what is recorded.
+///
+/// # Errors
+/// Where there is no terminal, or it cannot be read or written.
+pub fn run(
     mut app: App,
     first: Option<Message>,
-    mut world: World,
+    world: World,
     settings: &TerminalSettings,
-    mailbox: Mailbox,
+    (sender, mailbox): (Sender, Mailbox),
     watch: &mut dyn FnMut(SessionEvent<'_>),
 ) -> io::Result<Outcome> {
+    let post = Arc::new(move |event| sender.send(Message::Worker(event)));
+    let mut world = world.with_workers(post);
     // Before signals are handled: if the disk hangs here, they still end the program.
     world.remind(&mut app);
     let device = Device::open()?;

@@ -40,32 +40,6 @@ mod outcome;
 
 mod event_loop;
 
-use std::io;
-use std::sync::Arc;
-
-pub use event_loop::SessionEvent;
+pub use event_loop::{SessionEvent, run};
 pub use outcome::Outcome;
 pub use settings::TerminalSettings;
-
-use crate::tui::app::message::Message;
-use crate::tui::app::state::App;
-use crate::tui::runtime::World;
-use crate::tui::runtime::mailbox::{Mailbox, Sender};
-
-/// Runs the program until it ends. The terminal is restored, also after an error, a signal or a panic, and unsaved
-/// work is in the journal wherever the program may not come back. `first` is handled at the start, then the messages
-/// from the mailbox. `watch` is called with every event that a record of the session contains.
-///
-/// # Errors
-/// Returns an error if there is no terminal, or if it cannot be read or written.
-pub fn run(
-    app: App,
-    first: Option<Message>,
-    world: World,
-    settings: &TerminalSettings,
-    (sender, mailbox): (Sender, Mailbox),
-    watch: &mut dyn FnMut(SessionEvent<'_>),
-) -> io::Result<Outcome> {
-    let world = world.with_workers(Arc::new(move |event| sender.send(Message::Worker(event))));
-    event_loop::run(app, first, world, settings, mailbox, watch)
-}
