@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use crate::formats::Name;
 use crate::imprint::Imprint;
-use crate::recognition::{Nearest, PlacedSource, PoseEstimate};
+use crate::recognition::{Nearest, PlacedSource, PoseEstimate, SeparationPoint, SmallestSize};
 use crate::storage::ModelChoice;
-use crate::tui::recognise::separate::found::SizesFound;
+use crate::tui::recognise::confused::ConfusedPair;
 use crate::tui::recognise::separate::request::SeparationFlags;
 use crate::tui::recognise::trained::TrainedModel;
 
@@ -75,6 +75,26 @@ pub struct Prepared {
     pub stored: Vec<Name>,
     /// The model, or the reason why there is none.
     pub trained: Result<Arc<TrainedModel>, String>,
+}
+
+/// What was found of one size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SizeFound {
+    /// The limit of one touch.
+    pub point: SeparationPoint,
+    /// The shape that is taken most often for another one; None if none is.
+    pub worst: Option<ConfusedPair>,
+}
+
+/// Some sizes, or the end of the work.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SizesFound {
+    /// The number of the work.
+    pub number: u64,
+    /// Sizes, in their order.
+    pub sizes: Vec<SizeFound>,
+    /// At the end of the work: the smallest size that reaches the wanted error, or why the work ended too early.
+    pub end: Option<Result<Option<SmallestSize>, String>>,
 }
 
 /// A report from the worker.

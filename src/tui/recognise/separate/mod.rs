@@ -2,15 +2,12 @@
 //!
 //! ```text
 //! request   the set, the sizes and the steps to touch in, and what may follow `:separate`
-//! found     what the worker finds of a size
 //! state     what was found so far, the size under the cursor, the wanted error
 //! view      the curve, the table, and the pair that is confused most
 //! update    what messages do
 //! ```
 
 pub mod request;
-
-pub mod found;
 
 pub mod state;
 

@@ -7,7 +7,7 @@ use crate::formats::separation::{SeparationCurve, csv, drawing};
 use crate::recognition::{SeparationPoint, SmallestSize};
 use crate::tui::app::message::Message;
 use crate::tui::explore::page::is_csv;
-use crate::tui::recognise::separate::found::{SizeFound, SizesFound};
+use crate::tui::recognise::message::{SizeFound, SizesFound};
 use crate::tui::recognise::separate::request::SeparationRequest;
 use crate::tui::widget::rows::moved;
 

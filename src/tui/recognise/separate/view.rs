@@ -24,7 +24,7 @@ use crate::tui::explore::running::gauge;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::recognise::separate::found::SizeFound;
+use crate::tui::recognise::message::SizeFound;
 use crate::tui::recognise::separate::state::{Separate, SizeWork};
 use crate::tui::widget::curve::Curve;
 use crate::tui::widget::theme::{Role, Theme};
