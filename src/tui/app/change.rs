@@ -1,7 +1,7 @@
 //! Changes of the document: touching, moving, turning, zooming, undo and redo.
 //!
-//! Each change goes through `change`, `begin` or `travel`, which bring everything that depends on the document
-//! back into range: the cursor, the chosen region, the mode.
+//! Each change calls `change`, `begin` or `travel`, which bring everything that depends on the document back into
+//! range: the cursor, the chosen region, the mode.
 
 use crate::formats::value::counted;
 use crate::imprint::Imprint;
@@ -22,33 +22,33 @@ pub(in crate::tui) fn inform(app: &mut App, text: impl Into<String>) {
     app.notice = Some(Notice::Info(text.into()));
 }
 
-/// Compares another imprint, which is named, with the one on the matrix. That one comes second: it is the later one, or what
-/// is being made of the other.
+/// Opens the comparison of a named imprint with the one on the matrix. The matrix comes second: it is the later one,
+/// or is being made from the other.
 pub(in crate::tui) fn compare_with(app: &mut App, name: &str, other: &Imprint) {
     let own = ("the matrix".to_owned(), &app.reading().imprint);
     let comparison = Comparison::new((heading(name), other), own);
     app.dialogs.push(Dialog::Compare(comparison));
 }
 
-/// Shows why something was not done.
+/// Shows a notice that says why something was not done.
 pub(in crate::tui) fn refuse(app: &mut App, text: impl Into<String>) {
     app.notice = Some(Notice::Refusal(text.into()));
 }
 
-/// A change of the document. The chosen region stays chosen while there is one of that number.
+/// Changes the document. The chosen region stays chosen if there still is a region of that number.
 pub(in crate::tui) fn change(app: &mut App, document: Document) {
     app.history.push(document);
     settle(app);
 }
 
-/// Puts a document that comes from somewhere else onto the matrix.
+/// Puts a document from elsewhere onto the matrix.
 pub(in crate::tui) fn begin(app: &mut App, origin: DocumentOrigin, document: Document) {
     app.history.begin(document, origin);
     app.mode = Mode::Draw;
     settle(app);
 }
 
-/// Brings back into range what depends on the document.
+/// Reads the document, and brings everything that depends on it back into range.
 pub(in crate::tui) fn settle(app: &mut App) {
     app.removed = None;
     app.moves = None;
@@ -63,7 +63,8 @@ pub(in crate::tui) fn settle(app: &mut App) {
     app.chosen = app.chosen.filter(|&index| index < regions);
 }
 
-/// Back or forth by one change, which a notice names: `done` is "undone" or "redone".
+/// Goes back or forward by one change, which a notice names: `done` is "undone" or "redone". `otherwise` is the
+/// notice if there is no change.
 pub(in crate::tui) fn travel(
     app: &mut App,
     step: impl FnOnce(&mut History) -> Option<String>,
@@ -103,7 +104,7 @@ pub(in crate::tui) fn put_back(app: &mut App) {
     let Some(before) = before.filter(|before| **before != *app.history.present()) else {
         return;
     };
-    // Moves alone leave no trace; what else was done meanwhile can still be undone.
+    // If the shape was only moved, no trace is left. Other changes made meanwhile can still be undone.
     if app.moves.take() == Some(MoveKind::Held) {
         app.history.amend(*before);
         settle(app);
@@ -113,8 +114,8 @@ pub(in crate::tui) fn put_back(app: &mut App) {
     inform(app, "put back");
 }
 
-/// Whether a document shows another thing than the one that has the present name: a figure of another kind, or a picture
-/// of another shape.
+/// Returns true if a document shows something other than the document with the present name: a figure of another
+/// kind, or a picture of another shape.
 pub(in crate::tui) fn is_other(app: &App, document: &Document) -> bool {
     let present = app.history.present().source.as_ref();
     let name = app.history.origin().name.as_ref();
@@ -128,8 +129,8 @@ pub(in crate::tui) fn is_other(app: &App, document: &Document) -> bool {
     })
 }
 
-/// A document from a form or a command. A figure of another kind, or a picture of another shape, is a new document: the
-/// name of the one before stays with that. A notice says how many taxels set by hand were dropped.
+/// Replaces the document with one from a form or a command. A figure of another kind, or a picture of another shape,
+/// is a new document, and the name stays with the old one. A notice says how many taxels set by hand were dropped.
 pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     let present = app.history.present();
     if *present == document {
@@ -175,7 +176,7 @@ fn say_dropped(app: &mut App, dropped: u32) {
     }
 }
 
-/// Says that there is nothing to move, and how to get something. A drawing has no place that could be changed: once it is
+/// Says that there is nothing to move, and how to get something. A drawing has no position to change, but once it is
 /// stored, it can be placed as a picture.
 fn refuse_to_move(app: &mut App) {
     if !app.reading().imprint.is_empty() {
@@ -190,7 +191,7 @@ fn refuse_to_move(app: &mut App) {
     );
 }
 
-/// The source on the matrix. If there is none, a notice says so.
+/// Returns the source on the matrix. If there is none, a notice says so.
 pub(in crate::tui) fn movable(app: &mut App) -> Option<Source> {
     let source = app.history.present().source.clone();
     if source.is_none() {
@@ -218,12 +219,12 @@ pub(in crate::tui) fn shift(app: &mut App, dx: f64, dy: f64) {
     set(app, source, MoveKind::Along, &moved);
 }
 
-/// Turns the shape, as seen.
+/// Turns the shape clockwise as seen, by degrees.
 pub(in crate::tui) fn turn(app: &mut App, clockwise: f64) {
     let Some(source) = movable(app) else { return };
     if let Some(angle) = source.get(Parameter::Angle) {
         let turned = angle + clockwise % 360.0 * source.sense();
-        // What rounds up to a whole turn is none.
+        // An angle that rounds up to 360° is 0°.
         let angle = rounded(turned.rem_euclid(360.0)) % 360.0;
         set(app, source, MoveKind::Turn, &[(Parameter::Angle, angle)]);
     }
@@ -251,8 +252,8 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
     set(app, source, MoveKind::Zoom, &values);
 }
 
-/// Does what a prompt asks for. The prompt stays open where that is refused and no other page opens; where the answer comes
-/// later, it opens again if that is a refusal.
+/// Carries out the request of a prompt. The prompt stays open if the request is refused and no other page opens. If
+/// the answer comes later, the prompt opens again if that is a refusal.
 pub(in crate::tui) fn from_prompt(
     app: &mut App,
     prompt: Dialog,
@@ -274,8 +275,8 @@ fn rounded(value: f64) -> f64 {
     to_decimals(value, 6)
 }
 
-/// Gives the source new values and touches the matrix again, in the step of the history that the last message began if
-/// that moved in the same way. A value out of range is refused, and nothing changes.
+/// Gives the source new values and touches the matrix again. If the last message moved in the same way, both are one
+/// step of the history. A value out of range is refused, and nothing changes.
 fn set(app: &mut App, source: Source, way: MoveKind, values: &[(Parameter, f64)]) {
     let sensor = app.history.present().sensor;
     let moved = values
@@ -284,7 +285,7 @@ fn set(app: &mut App, source: Source, way: MoveKind, values: &[(Parameter, f64)]
             source.with(parameter, value, &sensor)
         });
     match moved {
-        // What was set by hand stays where nothing moves.
+        // If nothing moves, the taxels set by hand stay.
         Ok(source) if app.history.present().source.as_ref() == Some(&source) => {}
         Ok(source) => {
             let document = Document::touched(sensor, source);

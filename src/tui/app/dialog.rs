@@ -38,7 +38,7 @@ pub enum Dialog {
     Form(Box<FormDialog>),
     /// The shapes of the library.
     List(ListDialog),
-    /// The name to save under.
+    /// The prompt for the name to save under.
     Name(NameDialog),
     /// The `:` prompt.
     Command(CommandDialog),
@@ -46,9 +46,9 @@ pub enum Dialog {
     Question(Question),
     /// The list of keys.
     Help(Help),
-    /// What is searched for in it.
+    /// The prompt that searches in help or in the history.
     Search(SearchDialog),
-    /// Two imprints.
+    /// The comparison of two imprints.
     Compare(Comparison),
     /// The steps of the history.
     History(HistoryDialog),
@@ -58,15 +58,15 @@ pub enum Dialog {
     Running(Running),
     /// The results of a sweep.
     Results(Box<Results>),
-    /// The name of the file to export to.
+    /// The prompt for the name of the file to export to.
     Export(ExportDialog),
-    /// The filter of the list of imprints.
+    /// The prompt for the filter of the list of imprints.
     Filter(FilterDialog),
-    /// The letter of a mark.
+    /// The prompt for the letter of a mark.
     Mark(MarkDialog),
     /// Recognition of the shape on the matrix.
     Recognition(Box<Recognition>),
-    /// A random touch that is to be named.
+    /// The quiz: a random touch that the user names.
     Quiz(Box<Quiz>),
     /// The confusion matrix of a model.
     Confusion(Box<Confusion>),
@@ -77,7 +77,7 @@ pub enum Dialog {
 }
 
 impl Dialog {
-    /// What the screen knows of it.
+    /// Returns what the screen knows of the page.
     pub fn page(&self) -> &dyn Page {
         match self {
             Self::Form(page) => &**page,
@@ -103,7 +103,8 @@ impl Dialog {
         }
     }
 
-    /// Whether it has a pane of its own. The others stand in the line of notices, over the page below.
+    /// Returns true if the page has a pane of its own. Prompts and questions stand in the line of notices, over the
+    /// page below.
     pub fn has_pane(&self) -> bool {
         !matches!(self.page().slot(), Slot::Prompt | Slot::Question)
     }
@@ -127,18 +128,18 @@ pub(in crate::tui) use topmost;
 pub struct Question {
     /// The question.
     pub text: String,
-    /// What yes does.
+    /// The message that yes sends.
     pub yes: Message,
-    /// What no does, None for nothing.
+    /// The message that no sends, None for nothing.
     pub no: Option<Message>,
-    /// Whether what is on the matrix may be saved first.
+    /// Whether the document on the matrix may be saved first.
     pub saves_first: bool,
-    /// What yes and no mean, in a few words; None where the question says it.
+    /// The meanings of yes and no, in a few words; None if the question says them.
     pub meanings: Option<[&'static str; 2]>,
 }
 
 impl Question {
-    /// A question where only yes does something.
+    /// Returns a question where only yes does something.
     pub fn new(text: impl Into<String>, yes: Message) -> Self {
         Self {
             text: text.into(),
@@ -164,7 +165,7 @@ impl Page for Question {
         Slot::Question
     }
 
-    /// Nothing: a question is a remark.
+    /// Draws nothing: a question is a remark.
     fn draw(&self, _: &Theme, _: &Keymap, _: &mut Buffer, _: Rect) -> Option<Position> {
         None
     }

@@ -1,7 +1,7 @@
-//! What is on the matrix, what follows from it, and its history.
+//! The document on the matrix, and everything that follows from it.
 //!
-//! A [`Document`] is a sensor, what touched it, and the taxels set by hand since then. Everything else follows from it
-//! and is a [`Reading`].
+//! A [`Document`] is a sensor, the source that touched it, and the taxels set by hand since then. Everything else
+//! follows from it and is a [`Reading`].
 //!
 //! ```
 //! use taxel::prelude::*;
@@ -19,24 +19,24 @@ use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::touch::{Plane, reaches_beyond};
 
-/// What is on the matrix. Plain and small, so that a list of earlier documents is the undo history.
+/// The content of the matrix. It is plain and small, so that a list of earlier documents is the undo history.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Document {
     /// The sensor.
     pub sensor: Sensor,
-    /// What touched it; nothing on a matrix that is only drawn on.
+    /// The source that touched the sensor; None on a matrix that is only drawn on.
     pub source: Option<Source>,
     /// The taxels switched by hand since then.
     pub edits: Imprint,
 }
 
 impl Document {
-    /// An empty matrix.
+    /// Returns the document of an empty matrix.
     pub fn empty(sensor: Sensor) -> Self {
         Self::drawn(sensor, Imprint::empty(sensor.columns(), sensor.rows()))
     }
 
-    /// A matrix touched by a figure or a picture.
+    /// Returns the document of a matrix touched by a figure or a picture.
     pub fn touched(sensor: Sensor, source: Source) -> Self {
         Self {
             source: Some(source),
@@ -46,7 +46,7 @@ impl Document {
 }
 
 impl Document {
-    /// A matrix that an imprint was drawn on, which has as many columns and rows.
+    /// Returns the document of a matrix that an imprint was drawn on, which has the same columns and rows.
     pub fn drawn(sensor: Sensor, imprint: Imprint) -> Self {
         Self {
             sensor,
@@ -55,12 +55,12 @@ impl Document {
         }
     }
 
-    /// Whether nothing is on the matrix: no touch, and no taxel set by hand. Its sensor alone is no work.
+    /// Returns true if nothing is on the matrix: no touch, and no taxel set by hand. The sensor does not count.
     pub fn is_empty(&self) -> bool {
         self.source.is_none() && self.edits.is_empty()
     }
 
-    /// The document of a stored shape: touched by its source, and by hand what differs from that.
+    /// Returns the document of a stored shape: its source, with the taxels that differ from its touch as set by hand.
     pub fn of_shape(shape: &StoredShape) -> Self {
         let mut document = Self {
             source: shape.source.clone(),
@@ -71,7 +71,7 @@ impl Document {
         document
     }
 
-    /// The shape to store under a name; `reading` is that of this document.
+    /// Returns the shape to store under a name; `reading` is the reading of this document.
     pub fn to_shape(&self, name: Name, reading: &Reading) -> StoredShape {
         let imprint = reading.imprint;
         StoredShape {
@@ -82,7 +82,8 @@ impl Document {
         }
     }
 
-    /// The same on another sensor. A source whose values this sensor does not allow becomes a drawing.
+    /// Returns the same document on another sensor. A source whose values this sensor does not allow becomes a
+    /// drawing.
     #[must_use]
     pub fn on(&self, sensor: Sensor) -> Self {
         let allowed = |source: &Source| {
@@ -104,23 +105,24 @@ impl Document {
     }
 }
 
-/// What can be read off a document. Computed here and nowhere else, once per change: see [`ReadDocument`].
+/// Everything that follows from a document. It is computed here and nowhere else, once per change: see
+/// [`ReadDocument`].
 #[derive(Clone, Debug)]
 pub struct Reading {
     /// The active taxels.
     pub imprint: Imprint,
-    /// How much of each cell is covered, in reading order; none of a matrix that is only drawn on.
+    /// The covered fraction of each cell, in reading order; None for a matrix that is only drawn on.
     pub coverages: Option<Vec<f64>>,
-    /// Pieces and holes.
+    /// The regions: pieces and holes.
     pub regions: Vec<Region<'static>>,
-    /// What is described unless another region was chosen.
+    /// The index of the region that is described unless another one was chosen.
     pub main: Option<usize>,
     /// Whether the source reaches beyond the sensor.
     pub beyond: bool,
 }
 
 impl Reading {
-    /// What can be seen of a document.
+    /// Reads a document.
     pub fn of(document: &Document) -> Self {
         let mut imprint = document.edits;
         let mut coverages = None;
@@ -145,13 +147,13 @@ impl Reading {
         }
     }
 
-    /// How much of a cell is covered; none on a matrix that is only drawn on.
+    /// Returns the covered fraction of a cell; None on a matrix that is only drawn on.
     pub fn coverage(&self, column: u8, row: u8) -> Option<f64> {
         let index = usize::from(row) * usize::from(self.imprint.columns()) + usize::from(column);
         self.coverages.as_ref()?.get(index).copied()
     }
 
-    /// A region with its number, counted from 0: the chosen one where it exists, else the main one.
+    /// Returns a region with its index: the chosen one if it exists, else the main one.
     pub fn region(&self, chosen: Option<usize>) -> Option<(usize, &Region<'_>)> {
         let index = chosen
             .filter(|&index| index < self.regions.len())
@@ -159,17 +161,17 @@ impl Reading {
         Some((index, self.regions.get(index)?))
     }
 
-    /// Counts and sums of that region.
+    /// Returns the description of that region: counts and sums.
     pub fn description(&self, chosen: Option<usize>) -> Option<Description> {
         self.region(chosen)
             .map(|(_, region)| Description::of(region))
     }
 }
 
-/// A document with its reading: the only place where the screen keeps one.
+/// A document with its reading. The screen keeps readings only here.
 #[derive(Clone, Debug)]
 pub struct ReadDocument {
-    /// What was read.
+    /// The document that was read.
     document: Document,
     reading: Reading,
 }
@@ -183,12 +185,12 @@ impl ReadDocument {
         }
     }
 
-    /// The document.
+    /// Returns the document.
     pub fn document(&self) -> &Document {
         &self.document
     }
 
-    /// Its reading.
+    /// Returns the reading of the document.
     pub fn reading(&self) -> &Reading {
         &self.reading
     }

@@ -5,21 +5,21 @@ use crate::storage::ShapeOrigin;
 use crate::tui::app::document::Document;
 use crate::tui::app::steps::difference;
 
-/// Where documents come from: New, a loaded shape, a form. All states between two of these belong together, and know
-/// under which name they are stored.
+/// The origin of a document: New, a loaded shape, a form. All states from one origin to the next belong together, and
+/// share the name that they are stored under.
 #[derive(Clone, Debug)]
 pub struct DocumentOrigin {
-    /// What brought it, in words: "washer loaded", "random touch"; None where the documents themselves tell. Saving under
-    /// another name does not change it.
+    /// The step that brought the document, in words: "washer loaded", "random touch"; None where the documents
+    /// themselves tell. Saving under another name does not change it.
     pub brought_by: Option<String>,
     /// The name that the document was loaded from or stored under.
     pub name: Option<StoredName>,
-    /// What would be found again.
+    /// The document that is not lost: as it was loaded, saved or begun. An empty one if all of it would be lost.
     pub saved: Document,
 }
 
 impl DocumentOrigin {
-    /// The origin of a document that would be found again where it comes from.
+    /// Returns the origin of a document that is not lost: it can be had again where it comes from.
     pub fn of(document: &Document) -> Self {
         Self {
             brought_by: None,
@@ -28,12 +28,12 @@ impl DocumentOrigin {
         }
     }
 
-    /// The origin of a document that is stored nowhere: all of it would be lost.
+    /// Returns the origin of a document that is stored nowhere: all of it would be lost.
     pub fn unsaved(document: &Document) -> Self {
         Self::of(&Document::empty(document.sensor))
     }
 
-    /// The same; the history calls the step so.
+    /// Returns the same origin with a name for the step in the history.
     #[must_use]
     pub fn called(self, brought_by: impl Into<String>) -> Self {
         Self {
@@ -42,7 +42,7 @@ impl DocumentOrigin {
         }
     }
 
-    /// The same of a document that was loaded under a name.
+    /// Returns the same origin for a document that was loaded under a name.
     #[must_use]
     pub fn loaded(self, name: StoredName) -> Self {
         Self {
@@ -52,34 +52,34 @@ impl DocumentOrigin {
         }
     }
 
-    /// Whether a document that comes from here is unsaved work: nothing would find it again. Of an empty one there is
-    /// nothing to lose.
+    /// Returns true if a document of this origin is unsaved work, which would be lost. An empty document has nothing
+    /// to lose.
     pub fn would_lose(&self, document: &Document) -> bool {
         !document.is_empty() && *document != self.saved
     }
 }
 
-/// Where a document is stored.
+/// The name that a document is stored under, and its file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StoredName {
     /// The shape's name.
     pub name: String,
-    /// What its file held when it was read or written last.
+    /// The stamp of the file's content when it was read or written last.
     pub stamp: u64,
-    /// Whether the file is the user's.
+    /// Whether the file is the user's own or shipped.
     pub owner: ShapeOrigin,
 }
 
 /// A document and the number of its origin.
 #[derive(Clone, Debug, PartialEq)]
 struct Revision {
-    /// The state itself.
+    /// The document.
     document: Document,
-    /// The index of its origin in the list of the history.
+    /// The index of its origin in the history's list.
     origin: usize,
 }
 
-/// A document with all its earlier and, after undoing, later states. Going back to one brings back its name too.
+/// A document with all its earlier and, after undo, later states. Going back to a state brings back its name too.
 #[derive(Clone, Debug)]
 pub struct History {
     /// Earlier states, the oldest first.
@@ -90,12 +90,12 @@ pub struct History {
     future: Vec<Revision>,
     /// All origins; revisions refer to them by index.
     origins: Vec<DocumentOrigin>,
-    /// What origins were before their shape was deleted, by their index: it may be brought back.
+    /// The origins of deleted shapes as they were before, each with its index: the shape may be restored.
     gone: Vec<(usize, DocumentOrigin)>,
 }
 
 impl History {
-    /// Begins with a document that there is nothing to save of.
+    /// Returns a history that begins with a document with nothing to save.
     pub fn new(document: Document) -> Self {
         let origins = vec![DocumentOrigin::of(&document)];
         Self {
@@ -110,20 +110,20 @@ impl History {
         }
     }
 
-    /// The document as it is now.
+    /// Returns the document as it is now.
     pub fn present(&self) -> &Document {
         &self.present.document
     }
 
-    /// Where it comes from.
+    /// Returns the origin of the present document.
     pub fn origin(&self) -> &DocumentOrigin {
-        // The number is that of one in the list: only `begin` makes numbers.
+        // The index is in the list: only `begin` makes indices.
         self.origins
             .get(self.present.origin)
             .unwrap_or(&self.origins[0])
     }
 
-    /// A change. One that changes nothing leaves no trace.
+    /// Adds a change of the document. A change that changes nothing leaves no trace.
     pub fn push(&mut self, document: Document) {
         if document != self.present.document {
             let origin = self.present.origin;
@@ -131,7 +131,7 @@ impl History {
         }
     }
 
-    /// A document that comes from somewhere else.
+    /// Adds a document that comes from somewhere else.
     pub fn begin(&mut self, document: Document, origin: DocumentOrigin) {
         self.origins.push(origin);
         self.replace(Revision {
@@ -140,14 +140,15 @@ impl History {
         });
     }
 
-    /// The number of the origin of a document; of the present one where there is no such document.
+    /// Returns the index of the origin of a present or past document; if there is no such document, that of the
+    /// present one.
     pub fn origin_of(&self, document: &Document) -> usize {
         let mut states = std::iter::once(&self.present).chain(self.past.iter().rev());
         let found = states.find(|state| state.document == *document);
         found.map_or(self.present.origin, |state| state.origin)
     }
 
-    /// A document of that origin is stored now; so it is found again.
+    /// Notes that a document of that origin is stored now, so that it can be found again.
     pub fn stored(&mut self, origin: usize, saved: Document, name: StoredName) {
         if let Some(origin) = self.origins.get_mut(origin) {
             origin.name = Some(name);
@@ -155,14 +156,14 @@ impl History {
         }
     }
 
-    /// The stored shape of that name is gone: nothing would be found again of what came from it.
+    /// Notes that the stored shape of that name is gone: everything that came from it would be lost.
     pub fn removed(&mut self, name: &str) {
         let gone = folded(name);
         for (index, origin) in self.origins.iter_mut().enumerate() {
             let own = origin.name.as_ref();
             let own = own.filter(|stored| stored.owner == ShapeOrigin::Own);
             if own.is_some_and(|stored| folded(&stored.name) == gone) {
-                // Deleted twice, it comes back as it was last.
+                // A shape that is deleted twice comes back as it was last.
                 let is_same = |(own, before): &(usize, DocumentOrigin)| {
                     let stored = before.name.as_ref();
                     *own == index && stored.is_some_and(|stored| folded(&stored.name) == gone)
@@ -175,7 +176,8 @@ impl History {
         }
     }
 
-    /// The deleted shape of that name is there again: what came from it has its name again, unless it has another now.
+    /// Notes that the deleted shape of that name is restored: documents that came from it have its name again, unless
+    /// they have another one now.
     pub fn restored(&mut self, name: &str) {
         let back = folded(name);
         let is_back = |(_, origin): &mut (usize, DocumentOrigin)| {
@@ -193,8 +195,8 @@ impl History {
         }
     }
 
-    /// Whether something was drawn and left for a document from elsewhere without being saved: only undoing would bring
-    /// it back.
+    /// Returns true if something was drawn and then left for another document without being saved: only undo would
+    /// bring it back.
     pub fn left_unsaved(&self) -> bool {
         let states = || self.past.iter().chain([&self.present]);
         states().zip(states().skip(1)).any(|(state, next)| {
@@ -204,7 +206,7 @@ impl History {
         })
     }
 
-    /// Amended until it was as before, a change is none, and leaves no trace either.
+    /// Drops the last step if amendments have undone it: such a step is no change, and leaves no trace.
     fn drop_empty_step(&mut self) {
         let present = &self.present;
         self.past.pop_if(|past| *past == *present);
@@ -217,13 +219,13 @@ impl History {
         self.future.clear();
     }
 
-    /// Goes on with the last change, which stays one change.
+    /// Continues the last change, which stays one change.
     pub fn amend(&mut self, document: Document) {
         self.present.document = document;
         self.future.clear();
     }
 
-    /// Back by one change. Returns what the change was, None if there is none.
+    /// Goes back by one change. Returns the change in words, None if there is none.
     pub fn undo(&mut self) -> Option<String> {
         self.drop_empty_step();
         let earlier = self.past.pop()?;
@@ -233,7 +235,7 @@ impl History {
         Some(undone)
     }
 
-    /// Forth again by one change. Returns what the change is, None if there is none.
+    /// Goes forward again by one change. Returns the change in words, None if there is none.
     pub fn redo(&mut self) -> Option<String> {
         let later = self.future.pop()?;
         let redone = self.step(&self.present, &later);
@@ -241,7 +243,7 @@ impl History {
         Some(redone)
     }
 
-    /// What leads from one state to the next, in words.
+    /// Returns the change from one state to the next, in words.
     fn step(&self, from: &Revision, to: &Revision) -> String {
         let origin = self.origins.get(to.origin);
         let brought_by = origin.and_then(|origin| origin.brought_by.clone());
@@ -249,7 +251,8 @@ impl History {
         brought_by.unwrap_or_else(|| difference(&from.document, &to.document))
     }
 
-    /// The steps from the oldest state to the latest one, in words, and how many of them lead to the present one.
+    /// Returns the steps from the oldest state to the latest one, in words, and the number of steps that lead to the
+    /// present one.
     pub fn steps(&mut self) -> (Vec<String>, usize) {
         self.drop_empty_step();
         let later = self.future.iter().rev();
@@ -259,26 +262,26 @@ impl History {
         (steps, self.past.len())
     }
 
-    /// How many steps lead to the present state.
+    /// Returns the number of steps that lead to the present state.
     pub fn step_number(&self) -> usize {
         self.past.len()
     }
 
-    /// The state before the last step that changed something, None if there is none.
+    /// Returns the state before the last step that changed something, None if there is none.
     pub fn before(&self) -> Option<&Document> {
         let past = self.past.iter().rev();
         let mut others = past.filter(|state| state.document != self.present.document);
         others.next().map(|state| &state.document)
     }
 
-    /// The state after that many steps, None if there are fewer.
+    /// Returns the state after that many steps, None if there are fewer.
     pub fn after(&self, step: usize) -> Option<&Document> {
         let later = self.future.iter().rev();
         let mut states = self.past.iter().chain([&self.present]).chain(later);
         states.nth(step).map(|state| &state.document)
     }
 
-    /// Back or forth to the state after that many steps, or as near to it as there are states.
+    /// Goes back or forward to the state after that many steps, or as near to it as there are states.
     pub fn go_to(&mut self, step: usize) {
         while self.past.len() > step && self.undo().is_some() {}
         while self.past.len() < step && self.redo().is_some() {}
@@ -291,7 +294,7 @@ mod tests {
     use crate::sensor::Sensor;
 
     #[test]
-    fn a_change_that_is_amended_away_is_none() {
+    fn a_change_that_is_amended_to_nothing_leaves_no_step() {
         let empty = Document::empty(Sensor::default());
         let mut drawn = empty.clone();
         drawn.edits.toggle(3, 4);
@@ -299,7 +302,7 @@ mod tests {
         history.push(drawn.clone());
         history.amend(empty.clone());
         assert!(history.undo().is_none(), "there is nothing to take back");
-        // Nor does it stand between others, though the change may go on first.
+        // Nor does an empty step stay between others, though the change may first go on.
         history.push(drawn.clone());
         history.amend(empty.clone());
         history.amend(drawn.clone());

@@ -1,8 +1,8 @@
 //! The panes of the screen, for drawing and for finding what the mouse points at.
 //!
-//! The panel stands beside the matrix where both fit, and on a screen that is wide enough for the default sensor also
-//! beside a larger one, of which a part is seen; otherwise each is a page of its own. Taxels are enlarged only where
-//! the panel keeps all its room. See [`crate::tui::app::view`] for a picture.
+//! The panel stands beside the matrix where both fit. On a screen that is wide enough for the default sensor it also
+//! stands beside a larger matrix, which then shows only a part. Otherwise each is a page of its own. Taxels are
+//! enlarged only where the panel keeps all its room. See [`crate::tui::app::view`] for a picture.
 
 use ratatui::layout::Rect;
 
@@ -12,44 +12,44 @@ use crate::tui::app::page::Slot;
 use crate::tui::matrix::layout::{RULER, TaxelSize};
 use crate::tui::widget::write::{below, right_of};
 
-/// The panel is not made narrower than this; below, it is a page of its own.
+/// The smallest width of the panel; with less room it is a page of its own.
 const PANEL: u16 = 30;
 
-/// A column of descriptors with the longest values is as wide as this, where they stand in several columns.
+/// The width of a column of descriptors with the longest values, where there are several columns.
 const LONGEST_VALUES: usize = 23;
 
 /// From this width on the panel stands beside every matrix: the default sensor fits there.
 const BOTH: u16 = RULER + 2 * 16 + 1 + PANEL;
 
-/// The room that the panel gets before taxels are made larger.
+/// The width that the panel gets before taxels are enlarged.
 const WIDE_PANEL: u16 = 44;
 
-/// A form can stand beside the matrix from this width on.
+/// The smallest width of a form beside the matrix.
 const FORM: u16 = 22;
 
-/// A form gets this width beside the descriptors where there is room for it.
+/// The width of a form beside the descriptors, where there is room for it.
 const WIDE_FORM: u16 = 40;
-/// It gets this width at least: then ranges stand under the fields.
+/// The smallest width of a form beside the descriptors: ranges stand under the fields then.
 const NARROW_FORM: u16 = 32;
 
-/// Lines of a form over the foot of the matrix.
+/// The height of a form over the foot of the matrix.
 const LOW_FORM: u16 = 8;
 
-/// Lines of a form above the descriptors.
+/// The height of a form above the descriptors.
 const LONGEST_FORM: u16 = 18;
-/// Lines that the descriptors below it need at least.
+/// The smallest height of the descriptors below a form.
 const LOW_PANEL: u16 = 10;
 
-/// From this many lines on there is one for the title: neither descriptors nor the default sensor lose any.
+/// From this height on there is a line for the title, which neither the descriptors nor the default sensor need.
 const TITLED: u16 = 24;
 
-/// Nothing useful can be shown on less.
+/// The smallest useful size of the screen: columns, rows.
 pub const SMALLEST: (u16, u16) = (20, 6);
 
-/// The panes of a screen. Lines that there is no room for are empty.
+/// The panes of a screen. A line without room is empty.
 #[derive(Clone, Copy, Debug)]
 pub struct Panes {
-    /// The options.
+    /// The menu.
     pub menu: Rect,
     /// Everything between the menu and the lines at the foot.
     pub body: Rect,
@@ -61,25 +61,25 @@ pub struct Panes {
     pub matrix: Rect,
     /// The descriptors, where there is room beside the matrix.
     pub panel: Option<Rect>,
-    /// Whether they have room for all their values there.
+    /// Whether the descriptors have room for all their values beside the matrix.
     pub is_panel_roomy: bool,
     /// A form: in place of the panel, or over the foot of the matrix.
     pub form: Rect,
     /// The descriptors while a form is open, where there is room for both.
     pub form_panel: Option<Rect>,
-    /// What made the imprint.
+    /// The line about the source of the imprint.
     pub source: Rect,
-    /// The taxel under the cursor.
+    /// The line about the taxel under the cursor.
     pub taxel: Rect,
     /// Notices and questions; the same line as the taxel where there is no room for both.
     pub notice: Rect,
-    /// Keys.
+    /// The line of key hints.
     pub hints: Rect,
 }
 
 impl Panes {
-    /// The panes of a screen for a matrix, of which two taxels may share a character where `halves` says so; none on a
-    /// screen that is too small for any.
+    /// Returns the panes of a screen for a matrix; None if the screen is too small. With `halves`, two taxels may
+    /// share a character.
     pub fn of(area: Rect, imprint: &Imprint, halves: bool) -> Option<Self> {
         if area.width < SMALLEST.0 || area.height < SMALLEST.1 {
             return None;
@@ -127,7 +127,7 @@ impl Panes {
         })
     }
 
-    /// The area of a slot.
+    /// Returns the area of a slot.
     pub fn area(&self, slot: Slot) -> Rect {
         match slot {
             Slot::Screen => Rect {
@@ -142,7 +142,7 @@ impl Panes {
     }
 }
 
-/// The width of the matrix in the content of a screen: what is left of it is for the panel, or too little for that.
+/// Returns the width of the matrix in the content of a screen; the rest is for the panel, or is too narrow for it.
 /// Square taxels come first, as large as there is room for, then smaller ones that show more of the matrix.
 fn matrix_width(content: Rect, imprint: &Imprint, halves: bool) -> u16 {
     let beside = |panel: u16| Rect {
@@ -163,7 +163,8 @@ fn matrix_width(content: Rect, imprint: &Imprint, halves: bool) -> u16 {
     size.matrix_width(imprint).min(room.width)
 }
 
-/// Whether the descriptors have room for the longest values below their heading. On a low screen they need several columns.
+/// Returns true if the descriptors have room for the longest values below their heading. On a low screen they need
+/// several columns.
 fn is_roomy(panel: Rect) -> bool {
     let lines = usize::from(panel.height.saturating_sub(1)).max(1);
     match DESCRIPTORS.len().div_ceil(lines) {
@@ -172,11 +173,11 @@ fn is_roomy(panel: Rect) -> bool {
     }
 }
 
-/// The area of a form: beside the matrix, over its foot where there is too little room, or over all of it; and that of the
-/// descriptors, where they fit beside the form or below it.
+/// Returns the area of a form: beside the matrix, over its foot where there is too little room, or over all of it;
+/// and the area of the descriptors, if they fit beside the form or below it.
 fn form(body: Rect, beside: Rect) -> (Rect, Option<Rect>) {
     if beside.width < FORM {
-        // Where less than the ruler and two lines of the matrix would be left, it is hidden.
+        // If less than the ruler and two lines of the matrix would be left, the form hides it.
         let height = if body.height < LOW_FORM + 3 {
             body.height
         } else {

@@ -1,9 +1,9 @@
-//! What the screen asks of the library, and what it answers.
+//! The requests of the screen to the library, and its answers.
 
 use crate::formats::StoredShape;
 use crate::storage::{Expected, LibraryEntry, LoadedShape};
 
-/// What a shape is chosen for.
+/// The purpose for which a shape is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// To put it onto the matrix.
@@ -16,10 +16,10 @@ pub enum Purpose {
     Compare,
 }
 
-/// Requests to the library.
+/// A request to the library.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LibraryRequest {
-    /// List its shapes.
+    /// List the shapes.
     List,
     /// List the names of stored models.
     Models,
@@ -27,20 +27,20 @@ pub enum LibraryRequest {
     Trash,
     /// Read the shapes of these names.
     Read(Vec<String>),
-    /// Read one shape by name, and what for.
+    /// Read one shape by name, for this purpose.
     Named(Purpose, String),
-    /// Save a shape, given what its file is expected to hold.
+    /// Save a shape, if its file holds what is expected.
     Store(Box<StoredShape>, Expected),
-    /// Look whether the shape of that name can be deleted.
+    /// Check whether the shape of that name can be deleted.
     Deletable(String),
     /// Delete a shape.
     Remove(String),
-    /// Restore the shape that was deleted last, of that name or of any.
+    /// Restore the last deleted shape, of that name or of any.
     Restore(Option<String>),
 }
 
 impl LibraryRequest {
-    /// Whether it changes the library.
+    /// Returns true if the request changes the library.
     pub fn is_change(&self) -> bool {
         matches!(self, Self::Store(..) | Self::Remove(_) | Self::Restore(_))
     }
@@ -49,45 +49,46 @@ impl LibraryRequest {
 /// An answer of the library to a request. Errors are sentences.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LibraryEvent {
-    /// Its list.
+    /// The list of the shapes.
     List(Result<Vec<LibraryEntry>, String>),
-    /// The names of the models beside it.
+    /// The names of the models beside the library.
     Models(Vec<String>),
-    /// The names of its shapes that were deleted.
+    /// The names of the deleted shapes.
     Trash(Result<Vec<String>, String>),
-    /// Some of its shapes, by their names in the list.
+    /// The shapes that were read, by their names in the list.
     Read(Vec<(String, Result<LoadedShape, String>)>),
-    /// The shape that was asked for by its name, and what for.
+    /// The shape that was read by name, and the purpose.
     Named(Purpose, Result<Box<LoadedShape>, String>),
-    /// A shape was stored under this name, and this is what its file holds.
+    /// The name of the stored shape, and the stamp of its file's content.
     Stored(String, u64),
-    /// It was not stored, and why.
+    /// The reason why a shape was not stored.
     NotStored(String),
-    /// It was not stored, because the file holds something else; the question whether to replace it.
+    /// The shape that was not stored because its file holds something else, the stamp of that content, and the reason
+    /// in words.
     Differs(Box<StoredShape>, u64, String),
-    /// The shape of that name can be deleted, or not, and why.
+    /// The name of a shape that can be deleted, or the reason why it cannot.
     Deletable(Result<String, String>),
-    /// It was removed.
+    /// The name of the deleted shape.
     Removed(String),
-    /// It was brought back.
+    /// The name of the restored shape.
     Restored(String),
-    /// Unsaved work of a program that crashed was recovered.
+    /// The recovered unsaved work of a program that crashed.
     Recovered(Box<StoredShape>),
-    /// There is unsaved work of a program that crashed.
+    /// An offer of unsaved work of a program that crashed.
     Found(Leftover),
-    /// Such work was moved to the trash under this name; and the next offer, if there is one.
+    /// The name of such work in the trash, and the next offer, if there is one.
     GivenUp(String, Option<Leftover>),
-    /// It could not be moved to the trash, and why.
+    /// The reason why such work could not be moved to the trash.
     NotGivenUp(String),
-    /// The request failed, and why.
+    /// The reason why a request failed.
     Failed(String),
 }
 
 /// An offer of unsaved work of programs that crashed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Leftover {
-    /// What is offered, in a few words.
+    /// The description of the work, in a few words.
     pub what: String,
-    /// How many offers there are, this one included.
+    /// The number of offers, this one included.
     pub waiting: usize,
 }

@@ -18,29 +18,29 @@ use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// A prompt; it is a page by what it says here.
+/// A prompt. Every type with this trait is a [`Page`].
 pub trait LinePrompt {
-    /// The place where its keys are looked up.
+    /// The context in which its keys are looked up.
     const CONTEXT: Context;
 
     /// Whether Cancel and Quit go to its own update, because the page below has to be restored.
     const RESTORES: bool = false;
 
-    /// What stands before the field.
+    /// Returns the text before the field.
     fn label(&self) -> &str;
 
-    /// What was typed.
+    /// Returns the field with the typed text.
     fn field(&self) -> &TextField;
 
-    /// What stands behind the field, in an area of this many columns; empty for nothing.
+    /// Returns the text behind the field, in an area of this many columns; empty for none.
     fn behind(&self, columns: u16) -> Cow<'_, str>;
 
-    /// What is wrong with what was typed, None if nothing is.
+    /// Returns what is wrong with the typed text, None if nothing is.
     fn wrong(&self) -> Option<String> {
         None
     }
 
-    /// Draws what stands over the page below it; nothing unless the prompt says otherwise.
+    /// Draws over the page below. Does nothing by default.
     fn draw_offers(&self, _theme: &Theme, _buffer: &mut Buffer, _body: Rect) {}
 }
 

@@ -7,9 +7,9 @@
 //! Enter accept   Esc cancel   ? help                                               in a form or a list
 //! Tab page   d D descriptor   x export   e ranges   ? help   Esc close             on all pages of Explore
 //! ```
-//! On the matrix the menu has the paper's seven options, and Help; on other pages what leads on from them or out of them.
-//! The hints have the other keys that mean something now, and what the menu had no room for. Both are made from the table
-//! of keys as it is now, and a click does what the key does.
+//! On the matrix the menu has the paper's seven options and Help; on other pages it has the keys that lead on from
+//! the page or out of it. The hints have the other keys that mean something now, and those that the menu had no room
+//! for. Both are made from the present table of keys, and a click does what the key does.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -30,24 +30,24 @@ use crate::tui::widget::write;
 /// From this width on the menu shows keys beside the names of the paper's options.
 const WIDE: u16 = 70;
 
-/// Some keys of a place and what they do, as a line shows them.
+/// A row of the table of keys, as a line shows it: keys, and what they do.
 #[derive(Clone, Debug)]
 pub struct Item<'a> {
-    /// Its place.
+    /// The area on the screen.
     pub area: Rect,
     /// The row of the table of keys.
     pub binding: &'a Binding,
-    /// Its name: a word or two.
+    /// The name of the action: a word or two.
     pub name: &'a str,
     /// The keys before the name; empty if there are none, or if the key is the first letter of the name.
     pub keys: String,
-    /// How the name looks.
+    /// The role of the name, which decides how it looks.
     role: Role,
 }
 
 impl Item<'_> {
-    /// What a click at a position does: what its first key does, at the second key what that does. None beside it, and for
-    /// the four arrows together.
+    /// Returns the message of a click at a position: on a key, the message of that key; on the name, that of the
+    /// first key. None beside the item, and for the four arrows together.
     pub fn click(&self, at: Position) -> Option<Message> {
         if !self.area.contains(at) {
             return None;
@@ -67,7 +67,7 @@ impl Item<'_> {
         }
     }
 
-    /// Draws it.
+    /// Draws the item.
     fn draw(&self, theme: &Theme, buffer: &mut Buffer) {
         let keys = (self.keys.as_str(), Role::Key);
         let pieces = if !self.keys.is_empty() {
@@ -93,7 +93,7 @@ pub fn draw(theme: &Theme, buffer: &mut Buffer, items: &[Item<'_>]) {
     }
 }
 
-/// The menu of the page that one is on, as much as fits.
+/// Returns the menu of the page that is open, as much as fits.
 pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
     let (context, keymap) = (app.context(), app.keymap());
     let gap = if area.width < WIDE { 2 } else { 3 };
@@ -115,7 +115,7 @@ pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
     if options {
         return placed(area, gap, Role::Text, false, &keys_alone(&rows));
     }
-    // The first row and the way out stay, as long as they fit together; what gives way is among the hints.
+    // The first row and the way out stay while they fit together. The rows left out appear among the hints.
     let mut rows = rows;
     let gives_way = |(row, _): &(&Binding, &str)| !row.does(&Message::Cancel);
     while let Some(at) = rows.iter().rposition(gives_way).filter(|&at| at > 0) {
@@ -128,8 +128,8 @@ pub fn menu(app: &App, area: Rect) -> Vec<Item<'_>> {
     all
 }
 
-/// The paper's options by their keys alone. The way out and the list of all keys keep their names, and so does an option that
-/// no key leads to.
+/// Shortens the paper's options to their keys. Quit and Help keep their names, and so does an option that no key
+/// leads to.
 fn keys_alone<'a>(rows: &[(&'a Binding, &'a str)]) -> Vec<(&'a Binding, &'a str)> {
     let kept = [Message::Quit, Message::Help];
     let rows = rows.iter().map(|&(row, name)| {
@@ -139,7 +139,7 @@ fn keys_alone<'a>(rows: &[(&'a Binding, &'a str)]) -> Vec<(&'a Binding, &'a str)
     rows.collect()
 }
 
-/// The hints: the keys that mean something now and are not in the menu, as many as fit.
+/// Returns the hints: the keys that mean something now and are not in the menu, as many as fit.
 pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
     let (context, keymap) = (app.context(), app.keymap());
     let line = context.outer().filter(|&outer| outer == Context::Line);
@@ -175,7 +175,7 @@ pub fn hints<'a>(app: &'a App, panes: &Panes) -> Vec<Item<'a>> {
     placed(panes.hints, 2, Role::Quiet, false, &rows)
 }
 
-/// Whether the top page can do something with one of the keys of a row now.
+/// Returns true if the top page can do something with one of the keys of a row now.
 fn useful(app: &App, row: &Binding) -> bool {
     let page = app.dialogs.last().map(Dialog::page);
     let Some((page, panes)) = page.zip(app.panes()) else {
@@ -186,8 +186,8 @@ fn useful(app: &App, row: &Binding) -> bool {
     messages.any(|message| page.has_use_for(message, area))
 }
 
-/// The rows of the menu of a page other than the matrix: those of the screen that it is a page of, or its own; of a form,
-/// a list, a prompt or a question those that accept, leave or explain it.
+/// Returns the rows of the menu of a page other than the matrix: the rows of the screen that it belongs to, or its
+/// own ones over the matrix. For a form, a list, a prompt or a question: the rows that accept, leave or explain it.
 fn of_menu(context: Context, keymap: &Keymap) -> Vec<&Binding> {
     let hinted = |row: &&Binding| {
         !row.hint.is_empty() && !row.keys.is_empty() && !row.does(&Message::SwitchPage)
@@ -205,7 +205,7 @@ fn of_menu(context: Context, keymap: &Keymap) -> Vec<&Binding> {
     }
 }
 
-/// What leads on from a page, out of it, or to its keys.
+/// The messages that lead on from a page, out of it, or to its keys.
 const LEADING: [Message; 7] = [
     Message::Accept,
     Message::Decline,
@@ -216,23 +216,24 @@ const LEADING: [Message; 7] = [
     Message::Explore(ExploreMessage::Stop),
 ];
 
-/// The row of Help on the matrix.
+/// Returns the row of Help on the matrix.
 fn help(keymap: &Keymap) -> impl Iterator<Item = &Binding> {
     let all = keymap
         .rows()
         .iter()
         .filter(|row| row.context == Context::Matrix);
-    // By its place in the table: its keys may have been taken away.
+    // Found by its place in the table, because its keys may have been taken away.
     all.filter(|row| by_default(row) == Some(Message::Help))
 }
 
-/// The name of one of the paper's options: what stands before the colon in its help.
+/// Returns the name of one of the paper's options: the part of its help before a colon or a comma.
 fn option(row: &Binding) -> &str {
     let end = row.help.find([':', ',']);
     end.map_or(row.help, |end| &row.help[..end])
 }
 
-/// The rows that fit, one after the other; `brief`: without the keys that are the first letters of the names.
+/// Returns the rows that fit, one after the other. With `brief`, a key that is the first letter of its name is left
+/// out.
 fn placed<'a>(
     area: Rect,
     gap: u16,
@@ -265,7 +266,7 @@ fn placed<'a>(
     items
 }
 
-/// What the first key of a row does by default, though its keys may have been taken away.
+/// Returns the message that the first key of a row has by default, though its keys may have been taken away.
 fn by_default(row: &Binding) -> Option<Message> {
     let same = |own: &&Binding| own.context == row.context && own.help == row.help;
     let (_, action) = DEFAULT_KEYS.iter().find(same)?.keys.first()?;

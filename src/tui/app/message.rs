@@ -25,7 +25,7 @@ pub enum Message {
     Load,
     /// Open the form of a figure.
     Figure,
-    /// Move a stored shape about.
+    /// Place a stored shape as a picture.
     Picture,
     /// Store what is on the matrix.
     Save,
@@ -35,7 +35,7 @@ pub enum Message {
     Quit,
     /// Leave at once, giving up what is not saved.
     QuitNow,
-    /// The end comes from outside, by a signal: leave at once, what is not saved stays in the journal.
+    /// Leave at once, after a signal from outside; unsaved work stays in the journal.
     Terminate,
     /// Show all keys.
     Help,
@@ -97,17 +97,17 @@ pub enum Message {
     ToEdge(Endpoint),
     /// Text that was pasted.
     Paste(String),
-    /// Accept what the page says, or answer yes.
+    /// Accept the input on the page, or answer yes.
     Accept,
     /// Close the page and change nothing.
     Cancel,
-    /// No to a question.
+    /// Answer no to a question.
     Decline,
-    /// Scroll or go on in a list by lines.
+    /// Scroll or move in a list by this many lines.
     Scroll(i16),
-    /// Scroll by as many lines as are seen, this many times; negative goes up.
+    /// Scroll by this many screens; negative goes up.
     ScrollScreen(i8),
-    /// To the first or the last line of a list.
+    /// Go to the first or the last line of a list.
     ScrollTo(Endpoint),
     /// Select the row of a list.
     Select(usize),
@@ -115,21 +115,21 @@ pub enum Message {
     Search,
     /// Go to the match this many further on; negative goes back. The first follows the last.
     Match(i8),
-    /// The form of the sensor.
+    /// Open the form of the sensor.
     Sensor,
     /// Scale the shape up or down.
     Zoom(i8),
     /// Zoom pictures about their centre, or about the origin again.
     ZoomCentre,
-    /// What the mouse did.
+    /// An event of the mouse.
     Mouse(Mouse),
-    /// The screen has this many columns and rows.
+    /// The size of the screen has changed: columns, rows.
     Resized(u16, u16),
-    /// Ask whether the shape shall be stored over a file that holds this.
+    /// Ask whether to store the shape over a file whose content has this stamp.
     Replace(Box<StoredShape>, u64),
     /// Recover the unsaved work of a program that crashed.
     Recover,
-    /// Move such work to the trash.
+    /// Move the unsaved work of a program that crashed to the trash.
     GiveUp,
     /// A request to the library.
     Request(LibraryRequest),
@@ -143,19 +143,19 @@ pub enum Message {
     Copy(Copied),
     /// Switch the mouse: it sets taxels, or the terminal selects text with it.
     MouseOnOff,
-    /// Something about the imprints of all poses.
+    /// A message about the imprints of all poses.
     Explore(ExploreMessage),
-    /// Something about recognition.
+    /// A message about recognition.
     Recognise(RecogniseMessage),
     /// Open a file.
     OpenFile(String),
     /// Write what is on the matrix to a file.
     WriteFile(String),
-    /// Write it over a file that exists.
+    /// Write this content over a file that exists, given its name.
     Overwrite(String, Vec<u8>),
     /// The answer to a request about files.
     File(FileEvent),
-    /// Something about the frames of a sensor.
+    /// A message about the frames of a sensor.
     Live(LiveMessage),
     /// An event of a worker.
     Worker(WorkerEvent),
@@ -168,7 +168,7 @@ pub enum Message {
 }
 
 impl Message {
-    /// Whether a count before it does it that many times.
+    /// Returns true if a count before the message repeats it.
     pub(in crate::tui) fn repeats(&self) -> bool {
         use Message::{Cursor, Nudge, Redo, Region, Turn, Undo, Zoom};
         matches!(
@@ -177,7 +177,7 @@ impl Message {
         )
     }
 
-    /// Whether it moves the shape, or sets how far it moves.
+    /// Returns true if the message moves the shape, or sets how far it moves.
     pub(in crate::tui) fn moves_shape(&self) -> bool {
         use Message::{Move, Nudge, NudgeStep, PutBack, Turn, Zoom};
         matches!(
@@ -194,9 +194,9 @@ pub enum FileEvent {
     Opened(String, OpenedFile),
     /// The file of that name was written.
     Written(String),
-    /// It was not: there is one of that name; and what it should hold.
+    /// The file was not written, because one of that name exists; with the content to write.
     Exists(String, Vec<u8>),
-    /// Nothing came of it.
+    /// The request failed, and why.
     Failed(String),
     /// The source of frames can be watched.
     Source(Arc<WatchRequest>),
@@ -204,7 +204,7 @@ pub enum FileEvent {
     Paths(Vec<String>),
 }
 
-/// What a file held.
+/// The content of an opened file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OpenedFile {
     /// A shape.
@@ -216,13 +216,13 @@ pub enum OpenedFile {
 /// A layer over the taxels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
-    /// The true outline of what touches.
+    /// The true outline of the source.
     Outline,
     /// The circumscribed rectangle, CG and CD.
     Rectangle,
 }
 
-/// What can be copied.
+/// Something to copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Copied {
     /// The imprint as rows of text.
@@ -231,18 +231,18 @@ pub enum Copied {
     Descriptors,
 }
 
-/// What the mouse did, and where on the screen.
+/// An event of the mouse, and its position on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mouse {
-    /// What.
+    /// The kind of event.
     pub kind: MouseKind,
-    /// Column of the screen.
+    /// The column of the screen.
     pub column: u16,
-    /// Row of the screen.
+    /// The row of the screen.
     pub row: u16,
 }
 
-/// What a mouse can do. The left button is meant.
+/// A kind of mouse event. The button is the left one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MouseKind {
     /// The button went down.
@@ -266,7 +266,7 @@ pub enum Endpoint {
     Last,
 }
 
-/// What to delete in a field.
+/// The part of a field's text to delete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Erase {
     /// The character before the cursor.

@@ -1,16 +1,16 @@
 //! The state of the program, what changes it, and the screen as a whole.
 //!
 //! ```text
-//! document   what is on the matrix, and its reading      history: all its states
+//! document   the document on the matrix, and its reading   history: all its states
 //! message    what a key means                          worker_event: what workers report
 //! library    requests to the library, and its answers
-//! page       what the screen knows of a page            dialog: the table of pages
+//! page       the trait of pages                        dialog: the table of pages
 //! line_prompt  pages that are one line of text
-//! state      App                                        update: all changes begin there
-//! change     what changes the document                mouse: what clicks and drags do
+//! state      App                                       update: all changes begin there
+//! change     changes of the document                   mouse: what clicks and drags do
 //! quit       the end, and the question before it
-//! steps      what a step of the history did, in words
-//! layout     the panes of the screen                    view: draws them
+//! steps      the steps of the history, in words
+//! layout     the panes of the screen                   view: draws them
 //! menu  title  status      the lines above and below
 //! ```
 

@@ -1,7 +1,8 @@
-//! What the mouse does: it paints taxels, and otherwise does what a key would, also on the lines that name keys.
+//! The effects of the mouse: it paints taxels, and otherwise does what a key would, also on the lines that name keys.
 //!
-//! A press on a taxel switches it, and a drag from there gives all taxels on its way the same state, as one change. Of two
-//! taxels in a character the one with the cursor is meant, otherwise the upper one. On a page, the page itself says what a click means ([`crate::tui::app::page::Page::click`]).
+//! A press on a taxel switches it, and a drag from there gives all taxels on its way the same state, as one change.
+//! Where two taxels share a character, a press switches the one with the cursor, otherwise the upper one. On a page,
+//! the page itself decides what a click means ([`crate::tui::app::page::Page::click`]).
 
 use ratatui::layout::{Position, Rect};
 
@@ -13,12 +14,13 @@ use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::app::state::{App, NarrowPage};
 use crate::tui::widget::number::taxels;
 
-/// What the mouse points at.
+/// The thing that the mouse points at.
 #[derive(Clone, Debug, PartialEq)]
 enum Target {
     /// A key in the menu or in the hints.
     Key(Message),
-    /// A taxel; and whether the whole matrix is visible, so that the cursor may go there without scrolling it.
+    /// A taxel: column, row, and whether the whole matrix is visible, so that the cursor may go there without
+    /// scrolling it.
     Taxel(u8, u8, bool),
     /// The heading of the descriptors, or a descriptor.
     Panel,
@@ -26,7 +28,7 @@ enum Target {
     Page(Message),
 }
 
-/// Does what the mouse says, or gives the message that a key would have given. A click beside everything does nothing,
+/// Handles an event of the mouse, or returns the message that a key would have sent. A click on nothing does nothing,
 /// and a notice stays.
 pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
     let target = at(app, mouse.column, mouse.row);
@@ -63,8 +65,8 @@ pub(in crate::tui) fn act(app: &mut App, mouse: Mouse) -> Option<Message> {
     None
 }
 
-/// Sets the taxels of a straight line: over a slow connection a quick drag is reported at a few places only. The taxels of a
-/// drag are one change: one undo takes all of them back.
+/// Sets the taxels of a straight line: over a slow connection a quick drag is reported at a few places only. The
+/// taxels of a drag are one change: one undo takes all of them back.
 fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
     let imprint = app.reading().imprint;
     let mut document = app.history.present().clone();
@@ -88,14 +90,14 @@ fn paint(app: &mut App, active: bool, from: (u8, u8), to: (u8, u8)) {
     settle(app);
 }
 
-/// The message of a notch of the wheel, up if negative; None where there is nothing to scroll.
+/// Returns the message of a notch of the wheel, up if negative; None if there is nothing to scroll.
 fn scroll(app: &App, notch: i16) -> Option<Message> {
     let top = app.dialogs.last().map(Dialog::page);
     let lines = top.map_or(Wheel::Idle, Page::wheel).lines()?;
     Some(Message::Scroll(notch * lines))
 }
 
-/// What is at a position of the screen, None if that is nothing or the screen is too small.
+/// Returns the target at a position of the screen; None if there is none, or if the screen is too small.
 fn at(app: &App, column: u16, row: u16) -> Option<Target> {
     let panes = app.panes()?;
     let place = Position::new(column, row);

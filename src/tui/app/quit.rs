@@ -7,7 +7,7 @@ use crate::tui::live::update::last_page;
 
 /// Quits, after a question if work would be lost.
 /// The imprint on the matrix can be saved from the question; an earlier drawing must be brought back first, so there
-/// is no key for it. What is being saved needs no question: the end waits for it, and says if it was in vain.
+/// is no key for it. A shape that is being saved needs no question: the end waits for it, and reports a failure.
 pub(in crate::tui) fn quit(app: &mut App) {
     let (what, lost) = match (
         app.unsaved() && !app.is_being_saved(),
@@ -21,7 +21,7 @@ pub(in crate::tui) fn quit(app: &mut App) {
             return;
         }
     };
-    // Its page may not be open.
+    // The page of the recording may not be open.
     let page = last_page(app).filter(|page| !page.stopped());
     let recording = page.and_then(|page| page.recording().name());
     let ends = recording.map_or(String::new(), |name| {
@@ -36,7 +36,7 @@ pub(in crate::tui) fn quit(app: &mut App) {
     app.dialogs.push(Dialog::Question(question));
 }
 
-/// Whether there is something on the matrix that can be saved before the end.
+/// Returns true if something on the matrix can be saved before the end.
 fn can_save_first(app: &App) -> bool {
     app.unsaved() && !app.is_being_saved() && !app.reading().imprint.is_empty()
 }

@@ -1,7 +1,7 @@
 //! The state of the program.
 //!
-//! Everything may read it. Once the program runs, only what [`crate::tui::app::update`] calls changes it, so all changes
-//! happen in the order of the messages.
+//! All code may read it. While the program runs, only [`crate::tui::app::update`] and the functions that it calls
+//! change it, so all changes happen in the order of the messages.
 
 use std::collections::VecDeque;
 
@@ -32,21 +32,21 @@ use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::recognise::state::Recognition;
 use crate::tui::widget::theme::Theme;
 
-/// How the program starts.
+/// The settings that the program starts with.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// The sensor of the empty matrix.
     pub sensor: Sensor,
-    /// How it looks.
+    /// The colours and characters.
     pub theme: Theme,
     /// Whether the mouse sets taxels at the start.
     pub mouse: bool,
-    /// What random touches are made from.
+    /// The seed of the random touches.
     pub seed: u64,
 }
 
 impl Options {
-    /// As scripts and tests have it: the sensor of the paper, no colours, a mouse.
+    /// Returns the options of scripts and tests: the paper's sensor, no colours, a mouse.
     pub fn plain(ascii: bool) -> Self {
         Self {
             sensor: Sensor::default(),
@@ -57,30 +57,30 @@ impl Options {
     }
 }
 
-/// What the arrows do on the matrix.
+/// The mode of the matrix, which decides what the arrow keys do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// They move the cursor.
+    /// The arrow keys move the cursor.
     Draw,
-    /// They move the shape.
+    /// The arrow keys move the shape.
     Grab,
 }
 
-/// A way of moving the shape. Moves of the same kind, one after the other, are one step of the history; so are all moves
-/// while the shape is held.
+/// A way of moving the shape. Moves of the same kind, one after the other, are one step of the history; so are all
+/// moves while the shape is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MoveKind {
-    /// Any, while the shape is held.
+    /// Any move while the shape is held.
     Held,
-    /// Along x and y.
+    /// A shift along x and y.
     Along,
-    /// About its centre.
+    /// A turn about the centre.
     Turn,
-    /// Larger or smaller.
+    /// A change of the size.
     Zoom,
 }
 
-/// What stays in sight on a matrix that is seen through a window.
+/// The part of the matrix that stays visible where the screen shows only a window of the matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::tui) enum Followed {
     /// The taxel under the cursor.
@@ -89,23 +89,23 @@ pub(in crate::tui) enum Followed {
     Region,
 }
 
-/// What decides what the window follows, before or after a message.
+/// The state that decides what the window follows. It is compared before and after a message.
 #[derive(Clone, Debug)]
 pub(in crate::tui) struct Attention {
     /// The taxel under the cursor.
     cursor: (u8, u8),
     /// Whether a page stands beside the matrix.
     accompanied: bool,
-    /// What touches: a small move of it may leave the same taxels active.
+    /// The source of the imprint. A small move changes it, but may leave the same taxels active.
     source: Option<Source>,
     /// The active taxels.
     imprint: Imprint,
 }
 
-/// How taxels are shown.
+/// A way of showing the taxels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Display {
-    /// Active or not.
+    /// Active or inactive.
     Imprint,
     /// Coverage in shades.
     Shades,
@@ -113,7 +113,7 @@ pub enum Display {
     Percent,
 }
 
-/// What a screen shows that is too small for matrix and descriptors side by side.
+/// The page on a screen that is too small for matrix and descriptors side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NarrowPage {
     /// The matrix.
@@ -122,7 +122,7 @@ pub enum NarrowPage {
     Panel,
 }
 
-/// A step of nudging.
+/// The step of moving and zooming the shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NudgeStep {
     /// 0.01 cells.
@@ -134,7 +134,7 @@ pub enum NudgeStep {
 }
 
 impl NudgeStep {
-    /// Its length in cell sides.
+    /// Returns the length in cell sides.
     pub fn length(self) -> f64 {
         match self {
             Self::Hundredth => 0.01,
@@ -143,7 +143,7 @@ impl NudgeStep {
         }
     }
 
-    /// The next larger or smaller one, or the same at the end.
+    /// Returns the next larger step if `direction` is positive, else the next smaller one; at the end, the same step.
     #[must_use]
     pub fn other(self, direction: i8) -> Self {
         match (self, direction > 0) {
@@ -157,20 +157,20 @@ impl NudgeStep {
 /// Whether the program runs, and how it ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunState {
-    /// It runs.
+    /// The program runs.
     Running,
-    /// Its end was asked for: what is not saved was given up.
+    /// The user has quit: unsaved work was given up.
     Quit,
-    /// It ends without having asked: what is not saved stays in the journal.
+    /// The program was ended from outside, without a question: unsaved work stays in the journal.
     Terminated,
 }
 
 /// A notice, shown until the next key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Notice {
-    /// For information.
+    /// A message for information.
     Info(String),
-    /// Why something was not done.
+    /// The reason why something was not done.
     Refusal(String),
 }
 
@@ -181,7 +181,7 @@ pub(in crate::tui) struct UnfinishedSave {
     pub(in crate::tui) shape: Box<StoredShape>,
     /// The document that it was made from.
     pub(in crate::tui) document: Document,
-    /// The number of that document's origin.
+    /// The index of that document's origin in the history.
     pub(in crate::tui) origin: usize,
 }
 
@@ -190,79 +190,81 @@ pub(in crate::tui) struct UnfinishedSave {
 pub struct App {
     /// The document and its earlier states.
     pub(in crate::tui) history: History,
-    /// The document that the matrix shows, as it was read last.
+    /// The document that the matrix shows, with its last reading.
     shown: ReadDocument,
     /// The taxel under the cursor: column, row.
     pub(in crate::tui) cursor: (u8, u8),
-    /// What the window of a large matrix follows.
+    /// The part of a large matrix that its window follows.
     pub(in crate::tui) followed: Followed,
-    /// The region chosen with Tab; none: the main one.
+    /// The index of the region chosen with Tab; None for the main one.
     pub(in crate::tui) chosen: Option<usize>,
-    /// What the arrows do.
+    /// The mode, which decides what the arrow keys do.
     pub(in crate::tui) mode: Mode,
-    /// How taxels are shown.
+    /// The way of showing the taxels.
     pub(in crate::tui) display: Display,
-    /// What is shown over the taxels.
+    /// The layers over the taxels.
     pub(in crate::tui) layers: Layers,
-    /// What a narrow screen shows.
+    /// The page that a narrow screen shows.
     pub(in crate::tui) page: NarrowPage,
-    /// How far a key moves or zooms the shape.
+    /// The step by which a key moves or zooms the shape.
     pub(in crate::tui) step: NudgeStep,
     /// Whether a picture is zoomed about its centre, not about the origin.
     pub(in crate::tui) zoom_centre: bool,
-    /// How many times the next message is meant, None if no count was typed.
+    /// The number of times that the next message is repeated; None if no count was typed.
     pub(in crate::tui) count: Option<u16>,
     /// The pages over the matrix; the last one is on top.
     pub(in crate::tui) dialogs: Vec<Dialog>,
-    /// The prompt that the last message came from, until something else is done: it opens again if what it asked for is
-    /// refused.
+    /// The prompt that the last message came from, until the next action: it opens again if its request is refused.
     pub(in crate::tui) prompt: Option<Dialog>,
-    /// What the line of notices says.
+    /// The notice in the line of notices.
     pub(in crate::tui) notice: Option<Notice>,
-    /// What a change of files waits for, if it takes long: the status line says it while there is no notice.
+    /// The request to the disk that the user waits for, if it takes long. The status line shows it while there is no
+    /// notice.
     pub(in crate::tui) waiting: Option<String>,
-    /// What is being saved, in the order in which the library answers.
+    /// The shapes that are being saved, in the order in which the library answers.
     pub(in crate::tui) saving: VecDeque<UnfinishedSave>,
-    /// The shape that was removed last, until something else is done: undo brings it back.
+    /// The name of the shape that was removed last, until something else is done: undo restores it.
     pub(in crate::tui) removed: Option<String>,
-    /// The results of the last sweep, while they are closed.
+    /// The results of the last sweep, while their page is closed.
     pub(in crate::tui) results: Option<Box<Results>>,
-    /// Recognition, while it is not looked at.
+    /// The page of recognition, while it is closed.
     pub(in crate::tui) recognition: Option<Box<Recognition>>,
-    /// What a source that is named at the prompt is watched with.
+    /// The settings for a source that is named at the prompt.
     pub(in crate::tui) watch_settings: WatchRequest,
-    /// The page of a source of frames, while it is not looked at.
+    /// The page of a source of frames, while it is closed.
     pub(in crate::tui) live: Option<Box<Live>>,
-    /// How many sweeps and exports were begun; the number of the last one.
+    /// The number of sweeps and exports begun so far, which is also the number of the last one.
     pub(in crate::tui) works: u64,
-    /// The commands that were given, the last one last.
+    /// The commands given so far, the last one last.
     pub(in crate::tui) commands: Vec<String>,
     /// The values that forms were accepted with.
     pub(in crate::tui) forms: FormMemory,
-    /// Whether the mouse is wanted.
+    /// Whether the mouse sets taxels; otherwise the terminal selects text with it.
     pub(in crate::tui) mouse: bool,
-    /// What was on the matrix when the shape was taken hold of.
+    /// The document at the moment when the shape was grabbed.
     pub(in crate::tui) held: Option<Box<Document>>,
-    /// How the last message moved the shape, if it did: the next move of that kind is the same step of the history.
+    /// The kind of move that the last message made, if any: the next move of that kind is part of the same step of
+    /// the history.
     pub(in crate::tui) moves: Option<MoveKind>,
-    /// During a drag of the mouse: the state that it gives taxels, and the last taxel on its way.
+    /// During a drag of the mouse: the state that it gives taxels (true: active), and the last taxel on its way.
     pub(in crate::tui) paint: Option<(bool, (u8, u8))>,
-    /// Columns and rows of the screen.
+    /// The columns and rows of the screen.
     pub(in crate::tui) screen: (u16, u16),
-    /// Colours and characters.
+    /// The colours and characters.
     pub(in crate::tui) theme: Theme,
-    /// What each key does.
+    /// The keymap: what each key does.
     pub(in crate::tui) keymap: Keymap,
     /// Whether the program runs.
     pub(in crate::tui) run_state: RunState,
-    /// Whether it ends once what is on the matrix is saved: so the question at Quit was answered.
+    /// Whether the program ends once the document is saved, because the user chose this at the question before
+    /// quitting.
     pub(in crate::tui) quits_when_saved: bool,
-    /// The keys without a meaning that a notice has named: each is named once.
+    /// The keys without a meaning that a notice has named. Each is named once.
     pub(in crate::tui) unknown_keys: Vec<Key>,
 }
 
 impl App {
-    /// An empty matrix, the cursor in its middle.
+    /// Returns the state with an empty matrix and the cursor in its middle.
     pub fn new(options: &Options) -> Self {
         let document = Document::empty(options.sensor);
         Self {
@@ -304,13 +306,13 @@ impl App {
         }
     }
 
-    /// The same with other keys.
+    /// Returns the same state with another keymap.
     #[must_use]
     pub fn with_keymap(self, keymap: Keymap) -> Self {
         Self { keymap, ..self }
     }
 
-    /// The same with other settings for sources that are named at the prompt.
+    /// Returns the same state with other settings for sources that are named at the prompt.
     #[must_use]
     pub fn with_watch_settings(self, watch_settings: WatchRequest) -> Self {
         Self {
@@ -319,17 +321,17 @@ impl App {
         }
     }
 
-    /// What each key means.
+    /// Returns the keymap.
     pub fn keymap(&self) -> &Keymap {
         &self.keymap
     }
 
-    /// The key of something that can be done on the matrix, as notices name it.
+    /// Returns the label of the key for an action on the matrix, for notices.
     pub(in crate::tui) fn key_of(&self, action: &Action) -> String {
         self.keymap.label(Context::Matrix, action)
     }
 
-    /// Why nothing can be explored: what is missing, and how it is made.
+    /// Returns the message that there is nothing to explore, with the keys that make something.
     pub(in crate::tui) fn nothing_to_explore(&self) -> String {
         let [figure, picture, draw] = [&action::FIGURE, &action::PICTURE, &action::TOGGLE];
         format!(
@@ -340,12 +342,12 @@ impl App {
         )
     }
 
-    /// Where keys are looked up.
+    /// Returns the context in which keys are looked up.
     pub fn context(&self) -> Context {
         self.context_on(self.dialogs.last().map(Dialog::page))
     }
 
-    /// The same with this page on top; None for the matrix.
+    /// Returns the context with this page on top; None for the matrix without pages.
     pub(in crate::tui) fn context_on(&self, page: Option<&dyn Page>) -> Context {
         match (page, self.mode) {
             (Some(page), Mode::Grab) if page.leaves_matrix() => Context::Grab,
@@ -355,44 +357,45 @@ impl App {
         }
     }
 
-    /// What a key means now.
+    /// Returns the message that a key sends now.
     pub fn meaning(&self, key: Key) -> Message {
         let message = self.keymap.lookup(self.context(), key);
         message.unwrap_or(Message::Unknown(key))
     }
 
-    /// The top page that has a pane of its own, None if that is the matrix.
+    /// Returns the top page that has a pane of its own; None if no page has one.
     pub fn pane(&self) -> Option<&dyn Page> {
         let dialog = self.dialogs.iter().rev().find(|dialog| dialog.has_pane());
         dialog.map(Dialog::page)
     }
 
-    /// The panes of the screen, None if it is too small.
+    /// Returns the panes of the screen; None if it is too small.
     pub fn panes(&self) -> Option<Panes> {
         let (columns, rows) = self.screen;
         let area = Rect::new(0, 0, columns, rows);
         Panes::of(area, &self.reading().imprint, self.halves())
     }
 
-    /// Whether a key shows the matrix or what else is on the screen in turn: where only one of them has room, and where
-    /// descriptors may be cut beside the matrix.
+    /// Returns true if a key switches between the matrix and its descriptors or the page beside it: where only one of
+    /// them has room, and where the descriptors may be cut beside the matrix.
     pub(in crate::tui) fn has_pages(&self, panes: &Panes) -> bool {
         panes.panel.is_none() || self.pane().is_none() && !panes.is_panel_roomy
     }
 
-    /// Where the descriptors stand beside the matrix; None where one of them has the whole page.
+    /// Returns the area of the descriptors beside the matrix; None if one of the two has the whole screen.
     pub(in crate::tui) fn beside(&self, panes: &Panes) -> Option<Rect> {
         let alone = self.page == NarrowPage::Panel && self.has_pages(panes);
         panes.panel.filter(|_| !alone)
     }
 
-    /// Whether two taxels may share a character of the screen. Coverage and marks of a comparison need one for each.
+    /// Returns true if two taxels may share a character of the screen. Coverage and the marks of a comparison need a
+    /// character for each taxel.
     pub(in crate::tui) fn halves(&self) -> bool {
         let compared = self.pane().and_then(Page::compared_with);
         self.display == Display::Imprint && compared.is_none()
     }
 
-    /// Where the taxels are on the screen; None if it is too small.
+    /// Returns the positions of the taxels on the screen; None if it is too small.
     pub(in crate::tui) fn grid(&self) -> Option<TaxelGrid> {
         let area = self.panes()?.matrix;
         let imprint = &self.reading().imprint;
@@ -400,7 +403,7 @@ impl App {
         Some(TaxelGrid::of(area, imprint, cursor, seen, self.halves()))
     }
 
-    /// What the window of a large matrix shows.
+    /// Returns the part of the matrix that the window keeps visible.
     pub(in crate::tui) fn seen(&self) -> Bounds {
         let region = self.reading().region(self.chosen);
         match region.filter(|_| self.followed == Followed::Region) {
@@ -409,7 +412,7 @@ impl App {
         }
     }
 
-    /// What decides what the window follows.
+    /// Returns the state that decides what the window follows.
     pub(in crate::tui) fn attention(&self) -> Attention {
         let page = self.pane().map(Page::slot);
         Attention {
@@ -420,8 +423,8 @@ impl App {
         }
     }
 
-    /// Has the window follow the cursor after it was moved or its taxel was switched; the described region where the shape or
-    /// the imprint changed otherwise, and where a page opened that is about it. Else it stays.
+    /// Makes the window follow the cursor if the cursor moved or its taxel was switched, and the described region if
+    /// the shape or the imprint changed otherwise, or if a page opened beside the matrix. Otherwise nothing changes.
     pub(in crate::tui) fn follow(&mut self, before: &Attention) {
         let now = self.attention();
         let sides = |imprint: &Imprint| (imprint.columns(), imprint.rows());
@@ -441,29 +444,29 @@ impl App {
         }
     }
 
-    /// Columns and rows of a page that fills the body; 0 on a screen that is too small for any.
+    /// Returns the columns and rows of a page that fills the body; both are 0 on a screen that is too small.
     pub(in crate::tui) fn body_size(&self) -> (u16, u16) {
         self.panes()
             .map_or((0, 0), |panes| panes.body.as_size().into())
     }
 
-    /// The results that are open, perhaps under other pages.
+    /// Returns the results that are open, perhaps under other pages.
     pub(in crate::tui) fn results_below(&self) -> Option<&Results> {
         topmost!(&self.dialogs, Results).map(|results| &**results)
     }
 
-    /// The document that the matrix shows: what an open form would make of it, or the present one.
+    /// Returns the document that the matrix shows: the one that an open form would make, or the present one.
     pub fn shown(&self) -> &Document {
         self.shown.document()
     }
 
-    /// What can be read off that document.
+    /// Returns the reading of the document that the matrix shows.
     pub fn reading(&self) -> &Reading {
         self.shown.reading()
     }
 
-    /// Reads the document that the matrix shows now, if it is another one. Called after every change, so that drawing,
-    /// keys and the journal share one reading.
+    /// Reads the document that the matrix shows, if it has changed. Called after every change, so that drawing, keys
+    /// and the journal share one reading.
     pub(in crate::tui) fn read(&mut self) {
         let document = self.on_matrix();
         if document != self.shown.document() {
@@ -471,7 +474,7 @@ impl App {
         }
     }
 
-    /// The document of the topmost form, or the present one.
+    /// Returns the document of the topmost form, or the present one.
     fn on_matrix(&self) -> &Document {
         match topmost!(&self.dialogs, Form) {
             Some(form) => form.shown(),
@@ -479,35 +482,37 @@ impl App {
         }
     }
 
-    /// Called before each action of the user: ends what belongs to the last one.
+    /// Clears the state that belongs to the user's last action. Called before each action.
     pub(in crate::tui) fn begin_action(&mut self) {
         self.notice = None;
         self.prompt = None;
         if self.dialogs.is_empty() {
             self.quits_when_saved = false;
         }
-        // A key between press and release: what is dragged on would change another document than the press did.
+        // A key came between press and release: the rest of the drag would change another document than the press
+        // did.
         self.paint = None;
     }
 
-    /// Whether there is work that would be lost.
+    /// Returns true if there is work on the matrix that would be lost.
     pub fn unsaved(&self) -> bool {
         self.history.origin().would_lose(self.history.present())
     }
 
-    /// Whether the document differs from what is stored under its name. What is empty may, although nothing is lost.
+    /// Returns true if the document differs from what is stored under its name. An empty one may differ, although
+    /// nothing is lost.
     pub(in crate::tui) fn is_changed(&self) -> bool {
         *self.history.present() != self.history.origin().saved
     }
 
-    /// Whether what is on the matrix is being saved.
+    /// Returns true if the document on the matrix is being saved.
     pub(in crate::tui) fn is_being_saved(&self) -> bool {
         let present = self.history.present();
         self.saving.iter().any(|save| save.document == *present)
     }
 
-    /// What would be lost, to be kept in the journal: what is on the matrix, else what is being saved. At an end that was
-    /// asked for, the former was given up.
+    /// Returns the shape to keep in the journal: the unsaved work on the matrix, else the shape that is being saved;
+    /// None if nothing would be lost. After Quit, the work on the matrix has been given up.
     pub fn unsaved_work(&self) -> Option<StoredShape> {
         let shown = self.shown();
         if self.run_state == RunState::Quit || !self.history.origin().would_lose(shown) {
@@ -518,52 +523,54 @@ impl App {
         Some(shown.to_shape(name, self.reading()))
     }
 
-    /// The taxel that the cursor is on: column, row. While a form shows a smaller sensor, it stands at the rim of that.
+    /// Returns the taxel under the cursor: column, row. While a form shows a smaller sensor, the cursor stands at its
+    /// rim.
     pub fn cursor(&self) -> (u8, u8) {
         let (sensor, (column, row)) = (&self.shown().sensor, self.cursor);
         (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1))
     }
 
-    /// The region that was chosen, by its number from 0; none: the main one.
+    /// Returns the index of the chosen region; None for the main one.
     pub fn chosen(&self) -> Option<usize> {
         self.chosen
     }
 
-    /// Where the document is stored.
+    /// Returns the name that the document is stored under, with the stamp and the owner of its file; None if it is
+    /// not stored.
     pub(in crate::tui) fn stored(&self) -> Option<&StoredName> {
         self.history.origin().name.as_ref()
     }
 
-    /// The name that the document was loaded from or stored under.
+    /// Returns the name that the document was loaded from or stored under.
     pub fn stored_name(&self) -> Option<&str> {
         self.stored().map(|stored| stored.name.as_str())
     }
 
-    /// The imprint of a stored shape that nothing made, and its name; None where a source made what is on the matrix, or it
-    /// has no name.
+    /// Returns the name and the imprint of a stored shape that has no source. None if a source made the imprint on
+    /// the matrix, or if it has no name.
     pub(in crate::tui) fn loaded_imprint(&self) -> Option<(&str, &Imprint)> {
         let document = self.history.present();
         let name = self.stored_name().filter(|_| document.source.is_none())?;
         (!document.edits.is_empty()).then_some((name, &document.edits))
     }
 
-    /// Whether the program has come to its end.
+    /// Returns true if the program has ended.
     pub fn ended(&self) -> bool {
         self.run_state != RunState::Running
     }
 
-    /// What a change of files waits for, if it takes long.
+    /// Returns the request to the disk that the user waits for, if it takes long.
     pub fn waiting(&self) -> Option<&str> {
         self.waiting.as_deref()
     }
 
-    /// How it looks.
+    /// Returns the colours and characters.
     pub fn theme(&self) -> &Theme {
         &self.theme
     }
 
-    /// The message that stores the document under a name. It asks before it replaces the file that the document came
-    /// from, as for any other.
+    /// Returns the message that stores the document under a name. The user is asked before any existing file is
+    /// replaced, even the one that the document came from.
     pub(in crate::tui) fn storing(&self, name: Name) -> Message {
         let own = self
             .stored()

@@ -6,9 +6,8 @@
 //! saved as washer                                                    a notice, a question, or a prompt
 //! Space toggle  u undo  ? help                                       keys that mean something now
 //! ```
-//! On a low screen, without a title, the name stands before the source; on a lower one the taxel shares its line with
-//! notices, then the first line goes. A notice that needs
-//! several lines grows upwards.
+//! On a low screen, without a title, the name stands before the source. On a lower one the taxel shares its line with
+//! notices, and on the lowest the first line is missing. A notice that needs several lines grows upwards.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -27,10 +26,10 @@ use crate::tui::keys::binding::Context;
 use crate::tui::widget::theme::Role;
 use crate::tui::widget::write;
 
-/// Appended if the shape is not wholly on the sensor. It is never shortened; what stands before it is.
+/// The text after the source if the shape is not wholly on the sensor. It is never shortened; the text before it is.
 const BEYOND: &str = "; reaches beyond the sensor";
 
-/// Draws all of them. Returns where the cursor of a prompt is, None if there is no prompt.
+/// Draws all these lines. Returns the position of the cursor in a prompt, None if there is no prompt.
 pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     let (theme, seen) = (app.theme(), app.reading());
     if app.pane().map(Page::slot) != Some(Slot::Screen) {
@@ -76,7 +75,7 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     cursor
 }
 
-/// What made the imprint.
+/// Returns the line about the source of the imprint.
 fn source(app: &App, panes: &Panes) -> String {
     let document = app.shown();
     let by_hand = document.edits.count();
@@ -84,7 +83,7 @@ fn source(app: &App, panes: &Panes) -> String {
     let own = name(app).filter(|_| panes.title.height == 0);
     let name = own.map_or(String::new(), |name| format!("{name}: "));
     let Some(source) = &document.source else {
-        // The same before and after the first taxel: that saves a dozen bytes then.
+        // The text is the same before and after the first taxel, which saves a dozen bytes then.
         let (draw, figure) = (app.key_of(&action::TOGGLE), app.key_of(&action::FIGURE));
         let place = app.key_of(&action::PICTURE);
         let origin = app.history.origin();
@@ -93,7 +92,7 @@ fn source(app: &App, panes: &Panes) -> String {
                 "stored shape",
                 format!("{place} moves and turns it, {draw} draws"),
             ),
-            // What came from elsewhere is there to be read, not to be drawn on.
+            // An imprint from elsewhere is there to be read, not to be drawn on.
             Some(brought_by) if !app.reading().imprint.is_empty() => {
                 return name + brought_by;
             }
@@ -116,7 +115,8 @@ fn source(app: &App, panes: &Panes) -> String {
     text
 }
 
-/// The main descriptors, while a form has the place of the others: so they are seen to change with each key.
+/// Returns the main descriptors. A form that covers all descriptors leaves these visible, so that the user sees them
+/// change with each key.
 fn described(app: &App, seen: &Reading) -> String {
     let all = format!("NA {} in all", seen.imprint.count());
     let Some(description) = seen.description(app.chosen()) else {
@@ -128,14 +128,14 @@ fn described(app: &App, seen: &Reading) -> String {
         Some(format!("{} {text}", descriptor.symbol))
     };
     let main = ["na", "nae", "p", "f"].iter().filter_map(text);
-    // Where the region is all there is, its own count says so.
+    // If the region is the whole imprint, its own count says so.
     let rest = description.na != seen.imprint.count();
     let all = rest.then_some(all);
     main.chain(all).collect::<Vec<_>>().join("  ")
 }
 
-/// The taxel under the cursor, and how the shape is held. Everything has a place of its own, whatever is before it, and
-/// what changes together stands together: so little is sent over the line when the cursor moves.
+/// Returns the line about the taxel under the cursor and the step of moving. Every part has a fixed place, and parts
+/// that change together stand together: so little is sent over the line when the cursor moves.
 fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
     let (column, row) = app.cursor();
     let wide = |side: u8| (side - 1).to_string().len();
@@ -148,7 +148,7 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
     };
     let coverage = seen.coverage(column, row);
     let all = format!("NA {} in all", seen.imprint.count());
-    // The step of what moves and zooms the shape, where there is one.
+    // The step of moving and zooming, if there is a shape to move.
     let step = match (&app.shown().source, app.mode) {
         (None, _) => String::new(),
         (Some(_), Mode::Draw) => format!("step {}", app.step.length()),
@@ -161,7 +161,7 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
         let gap = if step.is_empty() { "" } else { "  " };
         return format!("{place}{covered}  {state:>8}  {all}{gap}{step}");
     }
-    // What can be found elsewhere gives way first; no word is cut.
+    // Parts that are shown elsewhere too are left out first; no word is cut.
     let coverage = coverage.map_or(String::new(), |coverage| format!("{coverage:.6}"));
     let line = |pieces: &[&str]| {
         let pieces = pieces.iter().filter(|piece| !piece.is_empty());
@@ -176,7 +176,8 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
     write::first_fitting(&lines.each_ref().map(String::as_str), width).to_owned()
 }
 
-/// The notice, else what a change of files waits for, else the text of the top page; a question stands after the notice.
+/// Returns the notice, else the request to the disk that the user waits for, else the text of the top page. A
+/// question stands after the notice.
 fn notice(app: &App, panes: &Panes) -> Option<(String, Role)> {
     let top = app.dialogs.last().map(Dialog::page);
     let remark = top.and_then(|page| page.remark(app.keymap(), panes.body));

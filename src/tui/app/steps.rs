@@ -7,12 +7,13 @@ use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
 use crate::tui::app::document::Document;
 
-/// What leads from one document to another, for example "x0 4.00 → 4.31, angle 0 → 15"; empty where they are alike.
+/// Returns the changes from one document to another, for example "x0 4.00 → 4.31, angle 0 → 15"; empty if they are
+/// alike.
 pub fn difference(from: &Document, to: &Document) -> String {
     let sensor = of_sensor(&from.sensor, &to.sensor);
     let mut parts = vec![sensor, of_source(from.source.as_ref(), to.source.as_ref())];
     let fits = from.edits.columns() == to.edits.columns() && from.edits.rows() == to.edits.rows();
-    // With a new source the matrix starts without edits: that goes without saying.
+    // A new source starts without edits, so this is not mentioned.
     if fits && parts.iter().all(String::is_empty) {
         parts.push(of_edits(from, to));
     }
@@ -23,14 +24,14 @@ pub fn difference(from: &Document, to: &Document) -> String {
     parts.join(", ")
 }
 
-/// What changed of the sensor.
+/// Returns the changes of the sensor.
 fn of_sensor(from: &Sensor, to: &Sensor) -> String {
     let value = |sensor: &Sensor, parameter| sensor.get(parameter);
     values(&SENSOR_PARAMETERS, |p| value(from, p), |p| value(to, p))
 }
 
-/// What changed of the source: its values where it is the same kind of figure or the same picture, otherwise all of
-/// the new one. Nothing where there is none any more.
+/// Returns the changes of the source: its values if it is the same kind of figure or the same picture, otherwise the
+/// whole new source. Empty if there is no source any more.
 fn of_source(from: Option<&Source>, to: Option<&Source>) -> String {
     match (from, to) {
         (_, None) => String::new(),
@@ -41,7 +42,7 @@ fn of_source(from: Option<&Source>, to: Option<&Source>) -> String {
     }
 }
 
-/// Whether two sources differ by their values only.
+/// Returns true if two sources differ only by their values.
 fn alike(from: &Source, to: &Source) -> bool {
     match (from, to) {
         (Source::Figure(from), Source::Figure(to)) => from.kind() == to.kind(),
@@ -50,7 +51,7 @@ fn alike(from: &Source, to: &Source) -> bool {
     }
 }
 
-/// The parameters that differ, each as "label before → after".
+/// Returns the parameters that differ, each as "label before → after".
 fn values(
     parameters: &[Parameter],
     from: impl Fn(Parameter) -> Option<f64>,
@@ -72,7 +73,7 @@ fn values(
     changed.collect::<Vec<_>>().join(", ")
 }
 
-/// What was set by hand: a single taxel by its column and row, more of them by their number.
+/// Returns the taxels that were set by hand: a single one by its column and row, several by their number.
 fn of_edits(from: &Document, to: &Document) -> String {
     let switched = from.edits.differing(&to.edits);
     match (switched.count(), switched.active().next()) {

@@ -10,7 +10,7 @@ use crate::sensor::Sensor;
 use crate::tui::app::change::is_other;
 use crate::tui::app::state::App;
 
-/// The text of the title.
+/// Returns the text of the title.
 pub fn title(app: &App) -> String {
     let sensor = &app.shown().sensor;
     let pitch = sensor.pitch_mm();
@@ -30,8 +30,8 @@ pub fn title(app: &App) -> String {
         .join(between)
 }
 
-/// The name of what is on the matrix, with `*` if it was changed since it was saved. None for what has no name, and for
-/// what a form shows in place of it.
+/// Returns the name of the document on the matrix, with `*` if it was changed since it was saved. None if it has no
+/// name, and if a form shows something else in place of it.
 pub(in crate::tui) fn name(app: &App) -> Option<String> {
     let stored = app.stored_name()?;
     if !app.dialogs.is_empty() && is_other(app, app.shown()) {
@@ -41,7 +41,7 @@ pub(in crate::tui) fn name(app: &App) -> Option<String> {
     Some(format!("{stored}{changed}"))
 }
 
-/// The threshold with two decimals, or as many more as it has.
+/// Returns the threshold with two decimals, or with more if it has more.
 fn threshold(sensor: &Sensor) -> String {
     let (exact, short) = (
         sensor.threshold().to_string(),

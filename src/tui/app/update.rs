@@ -21,10 +21,10 @@ use crate::tui::{
     compare, explore, form, help, history, live, matrix, prompt, recognise, search, shapes,
 };
 
-/// No message is done more often by a count.
+/// The largest count.
 const MOST_TIMES: u16 = 999;
 
-/// Does what a message says. A notice stays until the next message that is not an answer to the last one.
+/// Handles a message. A notice stays until the next message that is not an answer to the last one.
 pub fn update(app: &mut App, message: Message) -> Option<Effect> {
     let before = app.attention();
     let effect = handle(app, message);
@@ -33,8 +33,8 @@ pub fn update(app: &mut App, message: Message) -> Option<Effect> {
     effect
 }
 
-/// The next piece of work that an open page needs for its present state, such as a name for the imprint it shows; None if
-/// it needs no more. The runtime asks after each message and its effects, until there is none.
+/// Returns the next piece of work that an open page needs for its present state, such as a name for the imprint it
+/// shows; None if it needs no more. The runtime calls this after each message and its effects, until it returns None.
 pub fn next_work(app: &mut App) -> Option<Effect> {
     let work = recognise::update::next_work(app);
     let work = work.or_else(|| explore::work::next_work(app));
@@ -60,7 +60,7 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
             if counted {
                 app.notice = None;
             }
-            // Esc has had a meaning then.
+            // After a count, Esc has a meaning: it cancels the count.
             if !counted || key != Key::Esc {
                 unknown(app, key);
             }
@@ -98,7 +98,7 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
     repeat(app, &message, times.unwrap_or(1))
 }
 
-/// Takes a digit of a count, and shows the count. One that is too large says that it was cut.
+/// Takes a digit of a count and shows the count, or that it was cut to the largest one.
 fn take_digit(app: &mut App, digit: u16) {
     let count = app.count.unwrap_or_default() * 10 + digit;
     app.count = Some(count.min(MOST_TIMES)).filter(|&count| count > 0);
@@ -118,7 +118,7 @@ fn repeat(app: &mut App, message: &Message, times: u16) -> Option<Effect> {
             return Some(effect);
         }
         let stays = app.history.step_number() == step;
-        // What was undone last stays named where the count is larger than the number of steps.
+        // If the count is larger than the number of steps, the notice about the last step stays.
         if time > 1 && stays && matches!(message, Message::Undo | Message::Redo) {
             app.notice = said;
             break;
@@ -127,8 +127,9 @@ fn repeat(app: &mut App, message: &Message, times: u16) -> Option<Effect> {
     None
 }
 
-/// Handles the answer to a request. The prompt that it came from opens again where it is refused: so it can be put right,
-/// and what one types next does not reach the matrix. An answer that says nothing leaves the notice as it is.
+/// Handles the answer to a request. If the request was refused, the prompt that it came from opens again: so the user
+/// can correct it, and the next keys do not reach the matrix. An answer without a notice leaves the old notice as it
+/// is.
 fn answered(app: &mut App, handle: impl FnOnce(&mut App) -> Option<Effect>) -> Option<Effect> {
     let before = app.notice.take();
     let effect = handle(app);
@@ -140,13 +141,13 @@ fn answered(app: &mut App, handle: impl FnOnce(&mut App) -> Option<Effect>) -> O
     effect
 }
 
-/// Does what a message of the user says, once.
+/// Handles a message of the user once.
 fn perform(app: &mut App, message: Message) -> Option<Effect> {
     app.begin_action();
     if matches!(message, Message::Cancel | Message::Quit) {
         app.quits_when_saved = false;
     }
-    // What is held stays one step while only help or another page is looked at.
+    // While the shape is held, its moves stay one step, even if help or another page is opened meanwhile.
     if !message.moves_shape() && app.mode != Mode::Grab {
         app.moves = None;
     }
@@ -156,7 +157,8 @@ fn perform(app: &mut App, message: Message) -> Option<Effect> {
     }
 }
 
-/// Explains a key that does nothing here, once per key: where the keys are listed or, in that list, how to scroll and search.
+/// Explains that a key does nothing here, once per key. Names the key that lists all keys or, in that list, the keys
+/// that scroll and search.
 fn unknown(app: &mut App, key: Key) {
     if app.unknown_keys.contains(&key) {
         return;
@@ -179,8 +181,8 @@ fn unknown(app: &mut App, key: Key) {
     refuse(app, format!("{} does nothing here; {instead}", key.label()));
 }
 
-/// Handles a message over a page, which was taken off the stack and goes back unless it is done with.
-/// Help opens over any page, with the keys of that page.
+/// Handles a message on a page, which was taken off the stack and is put back unless it closes. Help opens over any
+/// page, with the keys of that page.
 fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> {
     let page = dialog.page();
     match message {
@@ -216,7 +218,7 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
     }
 }
 
-/// Handles the answer to a question. Without an answer the question stays.
+/// Handles the answer to a question. Any other message leaves the question open.
 fn at_question(app: &mut App, question: Question, message: &Message) -> Option<Effect> {
     if *message == Message::Save && question.saves_first {
         let effect = matrix::update::act(app, Message::Save);
@@ -238,7 +240,7 @@ fn at_question(app: &mut App, question: Question, message: &Message) -> Option<E
     }
 }
 
-/// Has a page take an event.
+/// Passes an event of a worker to its page.
 fn on_worker(app: &mut App, event: WorkerEvent) {
     match event {
         WorkerEvent::Progress(number, progress) => {

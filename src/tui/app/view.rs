@@ -14,9 +14,9 @@
 //! | hints: other keys that mean something now        |
 //! +--------------------------------------------------+
 //! ```
-//! On a narrow screen matrix and panel are two pages, and where the panel beside the matrix may cut values it can have
-//! the whole page; on a low one the lines below the matrix give way first. A screen
-//! that is too small for anything says so. Every pane accepts any rectangle, also an empty one.
+//! On a narrow screen matrix and panel are two pages. Where the panel beside the matrix may cut values, it can also
+//! have the whole page. On a low screen the lines below the matrix are left out first. A screen that is too small for
+//! anything says so. Every pane accepts any rectangle, also an empty one.
 //!
 //! Views borrow what they draw, `&Theme` and `&Keymap`. Only this file and the lines at the foot see the whole state.
 
@@ -41,7 +41,7 @@ pub fn view(app: &App, frame: &mut Frame<'_>) {
     }
 }
 
-/// Draws the whole screen into an empty buffer. Returns where the terminal's cursor is; None where it is hidden.
+/// Draws the whole screen into an empty buffer. Returns the position of the terminal's cursor; None if it is hidden.
 pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
     let area = buffer.area;
     let theme = app.theme();
@@ -91,7 +91,7 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
     cursor.filter(|&position| area.contains(position))
 }
 
-/// Says on a screen that is too small for anything what it would need.
+/// Draws the size that is needed, on a screen that is too small for anything.
 fn too_small(theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let (width, height) = SMALLEST;
     let needed = format!("{width} × {height}");
