@@ -41,19 +41,20 @@ pub struct PromptCommand {
     pub help: &'static str,
 }
 
-/// No more lines that were given before are offered.
+/// The largest number of earlier lines that are offered.
 const MOST_RECENT: usize = 5;
 
 /// Short forms of commands.
 const SHORT: [(&str, &str); 3] = [("q", "quit"), ("q!", "quit!"), ("w", "write")];
 
-/// Actions that work on the matrix, where the prompt opens: those that have a key there or have no key at all.
+/// Returns the actions that work on the matrix, where the prompt opens: those that have a key there or have no key at
+/// all.
 pub fn actions() -> impl Iterator<Item = &'static Action> {
     static LISTED: LazyLock<Vec<&Action>> = LazyLock::new(|| of_the_matrix().collect());
     LISTED.iter().copied()
 }
 
-/// Finds them.
+/// Finds the actions that work on the matrix.
 fn of_the_matrix() -> impl Iterator<Item = &'static Action> {
     let places = [Context::Matrix, Context::Grab, Context::Everywhere];
     let bound = |action: &Action, places: &[Context]| {
@@ -70,7 +71,8 @@ fn of_the_matrix() -> impl Iterator<Item = &'static Action> {
     })
 }
 
-/// Whether it belongs to recognition, whose page leaves the prompt to the matrix; that of sizes does not.
+/// Returns true if an action belongs to recognition, whose page uses the prompt of the matrix. The page of sizes does
+/// not, so its actions are left out.
 fn recognises(action: &Action) -> bool {
     match action.message() {
         Some(Message::Recognise(asked)) => !matches!(asked, RecogniseMessage::Want(_)),
@@ -78,14 +80,14 @@ fn recognises(action: &Action) -> bool {
     }
 }
 
-/// All commands by name.
+/// Returns all commands, sorted by name.
 pub fn commands() -> &'static [PromptCommand] {
-    // Each key in the prompt asks for them.
+    // The list is kept, because each key in the prompt needs it.
     static LISTED: LazyLock<Vec<PromptCommand>> = LazyLock::new(listed);
     &LISTED
 }
 
-/// Makes them from the actions.
+/// Makes the commands from the actions.
 fn listed() -> Vec<PromptCommand> {
     let mut names: Vec<&str> = actions()
         .flat_map(spellings)
@@ -96,19 +98,19 @@ fn listed() -> Vec<PromptCommand> {
     names.into_iter().map(command).collect()
 }
 
-/// The spellings of an action that are completed; its name where it has no others.
+/// Returns the spellings of an action that completion offers; its name if it has no others.
 fn spellings(action: &'static Action) -> impl Iterator<Item = &'static str> {
     let name = action.spellings.is_empty().then_some(action.name);
     name.into_iter().chain(action.spellings.iter().copied())
 }
 
-/// The first word of a line, and the rest.
+/// Splits a line into its first word and the rest.
 fn split(line: &str) -> (&str, &str) {
     line.split_once(' ')
         .map_or((line, ""), |(name, rest)| (name, rest.trim_start()))
 }
 
-/// The command of that name.
+/// Returns the command of that name.
 fn command(name: &'static str) -> PromptCommand {
     let own = |action: &'static Action| {
         spellings(action)
@@ -137,7 +139,7 @@ fn command(name: &'static str) -> PromptCommand {
     }
 }
 
-/// What an action does: in its own words, otherwise in those of its key's row.
+/// Returns the help of an action, otherwise the help of its key's row.
 fn help(action: &Action) -> &'static str {
     if !action.help.is_empty() {
         return action.help;
@@ -147,7 +149,7 @@ fn help(action: &Action) -> &'static str {
     row.map_or("", |row| row.help)
 }
 
-/// The command of that name or short form.
+/// Returns the command of that name or short form.
 pub fn find(name: &str) -> Option<PromptCommand> {
     let short = SHORT.iter().find(|(short, _)| *short == name);
     let name = short.map_or(name, |(_, name)| *name);
@@ -159,13 +161,14 @@ pub fn find(name: &str) -> Option<PromptCommand> {
     })
 }
 
-/// The command that a line begins with, and what follows; None until a space follows its name.
+/// Returns the command that a line begins with, and the rest; None until a space follows its name.
 fn begun(line: &str) -> Option<(PromptCommand, &str)> {
     let (name, rest) = line.trim_start().split_once(' ')?;
     Some((find(name)?, rest.trim_start()))
 }
 
-/// The arguments of a line if they are the name of a shape, which completion has to know the names of.
+/// Returns the arguments of a line if they are a name, of a shape or a file for example: completion then needs the
+/// names that there are.
 pub fn wants_names(line: &str) -> Option<Arguments> {
     let (command, rest) = begun(line)?;
     let arguments = command.arguments.filter(|arguments| arguments.is_name())?;
@@ -174,8 +177,8 @@ pub fn wants_names(line: &str) -> Option<Arguments> {
     (!has_flags).then_some(arguments)
 }
 
-/// The line with its last word, or the name at its end, completed as far as all candidates agree, and the candidates.
-/// `names` are those of the shapes that [`wants_names`] asks for.
+/// Completes the last word of a line, or the name at its end, as far as all candidates agree. Returns the line and
+/// the candidates. `names` are the names that [`wants_names`] asks for.
 pub fn complete(line: &str, names: &[String]) -> (String, Vec<String>) {
     let is_name = wants_names(line).is_some();
     let (typed, candidates) = match begun(line) {
@@ -214,7 +217,7 @@ pub fn complete(line: &str, names: &[String]) -> (String, Vec<String>) {
     (format!("{before}{completed}"), fitting)
 }
 
-/// The words that may follow the words `before`.
+/// Returns the words that may follow the words `before`.
 fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
     let said: Vec<&str> = before.split_whitespace().collect();
     let words = |flags: Vec<String>, said: &[&str]| {
@@ -269,12 +272,12 @@ fn next_words(command: &PromptCommand, before: &str) -> Vec<String> {
 pub struct Offer {
     /// The line, or its first word where arguments follow.
     pub line: String,
-    /// What follows the word, and what that does; None for a line that was given before.
+    /// The form of the arguments and what the command does; None for an earlier line.
     pub help: Option<String>,
 }
 
-/// What the prompt offers while a line is typed: lines given before that begin with it, the last one first, then commands
-/// whose names begin with it, then those whose names contain it.
+/// Returns the lines that the prompt offers while a line is typed: earlier lines that begin with it, the last one
+/// first, then commands whose names begin with it, then those whose names contain it.
 pub fn offers(typed: &str, given: &[String]) -> Vec<Offer> {
     let typed = typed.trim_start();
     let mut recent: Vec<&String> = Vec::new();
@@ -304,7 +307,7 @@ pub fn offers(typed: &str, given: &[String]) -> Vec<Offer> {
     recent.chain(named).collect()
 }
 
-/// The longest common start of several words; None if there are none.
+/// Returns the longest common start of several words; None if there are no words.
 fn common_start(words: &[String]) -> Option<String> {
     let (first, others) = words.split_first()?;
     let common = others.iter().fold(first.chars().count(), |common, other| {
@@ -325,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn each_command_says_what_it_alone_does() {
+    fn each_command_has_a_help_of_its_own() {
         let mut helps: Vec<&str> = commands().iter().map(|command| command.help).collect();
         assert!(helps.iter().all(|help| !help.is_empty()));
         helps.sort_unstable();
@@ -342,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_completed_as_far_as_it_is_certain() {
+    fn lines_are_completed_as_far_as_all_candidates_agree() {
         for (line, expected, candidates) in [
             ("fi", "figure ", 1),
             ("re", "re", 6),

@@ -1,4 +1,4 @@
-//! What is typed in one line at the foot of the screen: a name to save under, and `:` commands.
+//! The prompts, which take one line at the foot of the screen: a name to save under, and `:` commands.
 //!
 //! ```text
 //! commands   the table of commands, and completion     view     impl Page for both prompts

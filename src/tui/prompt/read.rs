@@ -36,10 +36,10 @@ use crate::tui::prompt::flags::{self, Flag};
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::recognise::separate::request::SeparationFlags;
 
-/// The message of a line.
+/// Reads a line and returns its message.
 ///
 /// # Errors
-/// What is wrong with the line, in a sentence.
+/// Returns what is wrong with the line, in a sentence.
 pub fn read(line: &str, app: &App) -> Result<Message, String> {
     let line = line.trim();
     let (name, rest) = line
@@ -69,8 +69,8 @@ pub fn read(line: &str, app: &App) -> Result<Message, String> {
     }
 }
 
-/// The message of a command with its arguments: as the rest of the line, and as its words, of which there is one at least.
-/// `unexpected` says what they should be.
+/// Returns the message of a command with arguments, which are given as the rest of the line and as its words, at
+/// least one. `unexpected` returns the error that says what they should be.
 fn with_arguments(
     arguments: Arguments,
     rest: &str,
@@ -119,7 +119,7 @@ fn with_arguments(
     }
 }
 
-/// A seed of random touches.
+/// Reads a seed of random touches.
 fn seed(text: &str) -> Result<Message, String> {
     let seed = text.parse().map_err(|_| {
         format!(
@@ -131,13 +131,13 @@ fn seed(text: &str) -> Result<Message, String> {
     Ok(Message::Recognise(RecogniseMessage::Seed(seed)))
 }
 
-/// Degrees: any number of them, either way.
+/// Reads an angle in degrees: any number, also a negative one.
 fn degrees(text: &str) -> Result<Message, String> {
     let degrees = number::read(text).map(Message::Turn);
     degrees.ok_or_else(|| format!("turn takes degrees like 30.5, found {:?}", shortened(text)))
 }
 
-/// A taxel of the sensor.
+/// Reads a taxel of the sensor.
 fn taxel(column: &str, row: &str, sensor: &Sensor) -> Result<Message, String> {
     for text in [column, row] {
         if text.parse::<u64>().is_err() {
@@ -158,13 +158,13 @@ fn taxel(column: &str, row: &str, sensor: &Sensor) -> Result<Message, String> {
     }
 }
 
-/// Cells along x and y, None unless both are finite numbers.
+/// Reads a distance in cells along x and y; None unless both are finite numbers.
 fn distance(dx: &str, dy: &str) -> Option<Message> {
     let cells = |text: &str| text.parse().ok().filter(|cells: &f64| cells.is_finite());
     Some(Message::Move(cells(dx)?, cells(dy)?))
 }
 
-/// Says what a command takes and what was found.
+/// Returns the error that says what a command takes and what was found.
 fn unexpected(command: &PromptCommand, rest: &str) -> String {
     let words = command.words.iter().map(|(word, _)| *word);
     let mut taken: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
@@ -182,20 +182,20 @@ fn unexpected(command: &PromptCommand, rest: &str) -> String {
     format!("{} takes {taken}{found}", command.name)
 }
 
-/// A valid name of a shape.
+/// Reads a valid name of a shape.
 fn name_of(text: &str) -> Result<Name, String> {
     Name::new(text).map_err(|error| error.to_string())
 }
 
-/// The flag of explore's anchor.
+/// The flag of the anchor in `explore`.
 const ANCHOR: &str = "--anchor";
 
-/// A parameter's flag.
+/// Returns a parameter's flag.
 fn flag_of(parameter: Parameter) -> String {
     format!("--{}", parameter.flag())
 }
 
-/// The numbers of flags; an error about an unknown one lists those of `parameters`.
+/// Reads flags with numbers; an error about an unknown flag lists those of `parameters`.
 fn numbers(
     words: &[&str],
     parameters: &[Parameter],
@@ -211,8 +211,8 @@ fn numbers(
     flags.map(number).collect()
 }
 
-/// `figure KIND --side 3 …`. Parameters that are not given have their defaults; one that the figure does not have is an
-/// error.
+/// Reads `figure KIND --side 3 …`. Parameters that are not given have their defaults; one that the figure does not
+/// have is an error.
 fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
     let sensor = app.shown().sensor;
     let kind = FigureKind::from_name(kind).ok_or_else(|| {
@@ -241,7 +241,7 @@ fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
     ))))
 }
 
-/// `sensor --columns 32 …`. Parameters that are not given keep their values.
+/// Reads `sensor --columns 32 …`. Parameters that are not given keep their values.
 fn sensor(words: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
     let values = numbers(words, &SENSOR_PARAMETERS, &Sensor::LARGEST)?;
@@ -255,10 +255,10 @@ fn sensor(words: &[&str], app: &App) -> Result<Message, String> {
     )))
 }
 
-/// What the flags ask for; ranges that are not given are the defaults.
+/// Reads the flags of `explore`. Ranges that are not given have their defaults.
 ///
 /// # Errors
-/// What is wrong with them, in a sentence.
+/// Returns what is wrong with the flags, in a sentence.
 fn explore(words: &[&str], app: &App) -> Result<Message, String> {
     let document = app.shown();
     let source = explored(app).ok_or_else(|| app.nothing_to_explore())?;

@@ -1,7 +1,7 @@
-//! The state of the prompts: the name to save under, and a `:` command with those before it.
+//! The state of the prompts: the name to save under, and a `:` command with the earlier commands.
 //!
-//! The history is that of the running program. The arrows walk through it, and what was being typed comes back after
-//! the last line.
+//! The earlier commands are those of the running program. The arrows step through them; after the last one, the line
+//! that was being typed comes back.
 
 use crate::formats::name::LONGEST;
 use crate::formats::{Name, NameError};
@@ -9,38 +9,39 @@ use crate::tui::app::message::Message;
 use crate::tui::prompt::commands::{Offer, complete, offers};
 use crate::tui::widget::text_field::TextField;
 
-/// A command has at most this many characters.
+/// The largest number of characters of a command.
 const LONGEST_COMMAND: usize = 200;
 
-/// The field takes a few characters more than a name may have, so that one sees the message about it.
+/// The largest number of characters in the field for a name. It is more than a name may have, so that one sees the
+/// message about a long name.
 const LONGEST_NAME: usize = LONGEST + 8;
 
-/// The name to save under.
+/// The prompt for the name to save under.
 #[derive(Clone, Debug)]
 pub struct NameDialog {
-    /// What was typed.
+    /// The field with the typed name.
     pub field: TextField,
 }
 
 impl NameDialog {
-    /// A field that starts with a name.
+    /// Returns a prompt whose field starts with a name.
     pub fn new(name: &str) -> Self {
         Self {
             field: TextField::new(name, LONGEST_NAME),
         }
     }
 
-    /// A field that proposes a name: what is typed replaces it.
+    /// Returns a prompt that proposes a name: typing replaces it.
     pub fn proposing(name: &str) -> Self {
         let mut dialog = Self::new(name);
         dialog.field.enter();
         dialog
     }
 
-    /// The name.
+    /// Returns the name.
     ///
     /// # Errors
-    /// The first rule for names that it breaks.
+    /// Returns the first rule for names that it breaks.
     pub fn name(&self) -> Result<Name, NameError> {
         Name::new(self.field.text())
     }
@@ -49,24 +50,24 @@ impl NameDialog {
 /// The `:` prompt.
 #[derive(Clone, Debug)]
 pub struct CommandDialog {
-    /// What was typed.
+    /// The field with the typed line.
     pub field: TextField,
-    /// What the last word could become, after Tab.
+    /// The candidates for the last word, after Tab.
     pub candidates: Vec<String>,
-    /// What was typed when names for the last word were asked for.
+    /// The typed line when names for the last word were asked for.
     asked: Option<String>,
-    /// Which of the earlier lines it shows, counted from the last one on; none: what is being typed.
+    /// The index of the earlier line that is shown, counted from the last one; None if no earlier line is shown.
     recalled: Option<usize>,
-    /// What was typed before an earlier line was asked for.
+    /// The line that was being typed before an earlier one was recalled.
     draft: String,
-    /// The lines that were given before.
+    /// The earlier lines.
     given: Vec<String>,
-    /// Which of the offered lines it shows, and what was typed before it.
+    /// The index of the offered line that is shown, and the line that was typed before it.
     picked: Option<(usize, String)>,
 }
 
 impl CommandDialog {
-    /// An empty prompt after these lines, the last one last.
+    /// Returns an empty prompt; `given` are the earlier lines, the last one last.
     pub fn new(given: &[String]) -> Self {
         Self {
             given: given.to_vec(),
@@ -79,7 +80,7 @@ impl CommandDialog {
         }
     }
 
-    /// What is offered, and the index of the line that is picked.
+    /// Returns the offered lines, and the index of the picked one.
     pub fn offers(&self) -> (Vec<Offer>, Option<usize>) {
         let (picked, typed) = match &self.picked {
             Some((picked, typed)) => (Some(*picked), typed.as_str()),
@@ -88,8 +89,8 @@ impl CommandDialog {
         (offers(typed, &self.given), picked)
     }
 
-    /// Shows the next of the offered lines, or the one before it; before the first one, what was typed. Returns false
-    /// where there is none before.
+    /// Shows the next offered line, or with `down` false the one before; before the first one, the typed line.
+    /// Returns false if there is none before.
     pub fn pick(&mut self, down: bool) -> bool {
         let (offers, picked) = self.offers();
         let next = match (picked, down) {
@@ -116,12 +117,12 @@ impl CommandDialog {
         true
     }
 
-    /// Whether it shows an earlier line.
+    /// Returns true if an earlier line is shown.
     pub fn recalls(&self) -> bool {
         self.recalled.is_some()
     }
 
-    /// Types, moves or deletes.
+    /// Types, moves or deletes in the field.
     pub fn edit(&mut self, message: &Message) {
         self.candidates.clear();
         if self.field.take(message) {
@@ -130,7 +131,7 @@ impl CommandDialog {
         }
     }
 
-    /// Completes the last word, or the name of a shape, of which `names` are all that there are.
+    /// Completes the last word, or the name at the end of the line, of which `names` are all that there are.
     pub fn complete(&mut self, names: &[String]) {
         self.picked = None;
         let (line, candidates) = complete(self.field.text(), names);
@@ -146,14 +147,14 @@ impl CommandDialog {
         self.asked = Some(self.field.text().to_owned());
     }
 
-    /// Completes the last word by the names that were asked for, unless something else was typed meanwhile.
+    /// Completes the last word with the names that were asked for, unless something else was typed meanwhile.
     pub fn complete_asked(&mut self, names: &[String]) {
         if self.asked.take().as_deref() == Some(self.field.text()) {
             self.complete(names);
         }
     }
 
-    /// Shows the line before the one that is shown, of those that were given; the first one has none before it.
+    /// Shows the earlier line before the one that is shown. Does nothing at the first one.
     pub fn earlier(&mut self, lines: &[String]) {
         let next = self.recalled.map_or(0, |recalled| recalled + 1);
         if next < lines.len() {
@@ -164,14 +165,14 @@ impl CommandDialog {
         }
     }
 
-    /// Shows the line after the one that is shown; after the last one, what was being typed.
+    /// Shows the line after the one that is shown; after the last one, the line that was being typed.
     pub fn later(&mut self, lines: &[String]) {
         if let Some(recalled) = self.recalled {
             self.show(recalled.checked_sub(1), lines);
         }
     }
 
-    /// Shows an earlier line, or what was being typed.
+    /// Shows an earlier line, or the line that was being typed.
     fn show(&mut self, recalled: Option<usize>, lines: &[String]) {
         self.recalled = recalled;
         self.candidates.clear();
@@ -185,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn earlier_lines_are_gone_through_one_by_one() {
+    fn earlier_lines_are_recalled_one_by_one() {
         let lines = ["new", "grab", "new"].map(str::to_owned);
         let mut dialog = CommandDialog::new(&[]);
         dialog.edit(&Message::Type('z'));

@@ -1,8 +1,8 @@
-//! What messages do in the prompts.
+//! The effects of messages in the prompts.
 //!
-//! A prompt stays open until what was typed is valid, and opens again where it is refused: at once by the matrix, or later by
-//! the library. Completion asks the library for names where a command takes one;
-//! the answer completes the word when it arrives.
+//! A prompt stays open until the typed line is valid, and opens again if its request is refused: at once by the
+//! matrix, or later by the library. Completion asks the library for names where a command takes one; the answer
+//! completes the word when it arrives.
 
 use crate::tui::app::change::{from_prompt, refuse};
 use crate::tui::app::dialog::Dialog;
@@ -38,7 +38,7 @@ pub(in crate::tui) fn in_command(
                     return match message {
                         Message::Redraw => Some(Effect::Terminal(TerminalEffect::Redraw)),
                         Message::Suspend => Some(Effect::Terminal(TerminalEffect::Suspend)),
-                        // Without arguments there is nothing to put right.
+                        // Without arguments there is nothing to correct.
                         other if !has_arguments => matrix::update::act(app, other),
                         other => ask(app, other, Dialog::Command(dialog)),
                     };
@@ -62,7 +62,7 @@ pub(in crate::tui) fn in_command(
     None
 }
 
-/// Completes what is typed, at once or when the names are known that it may be.
+/// Completes the typed line: at once, or when the names that it needs have arrived.
 fn complete(app: &mut App, mut dialog: CommandDialog) -> Option<Effect> {
     let wanted = wants_names(dialog.field.text());
     match wanted {
@@ -76,7 +76,7 @@ fn complete(app: &mut App, mut dialog: CommandDialog) -> Option<Effect> {
     wanted.map(|names| names_for(names, last_word))
 }
 
-/// The request for the names that complete the last word of a command. A model may also be a path.
+/// Returns the request for the names that complete the last word of a command. A model may also be a path.
 fn names_for(wanted: Arguments, last_word: String) -> Effect {
     match wanted {
         Arguments::File(_) | Arguments::FrameSource => Effect::File(FileRequest::Paths(last_word)),
@@ -87,7 +87,7 @@ fn names_for(wanted: Arguments, last_word: String) -> Effect {
     }
 }
 
-/// Does what a prompt asks for.
+/// Carries out the request of a prompt.
 fn ask(app: &mut App, message: Message, prompt: Dialog) -> Option<Effect> {
     from_prompt(app, prompt, |app| matrix::update::act(app, message))
 }

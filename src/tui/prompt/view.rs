@@ -20,10 +20,10 @@ use crate::tui::widget::text_field::TextField;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
-/// Most lines that are offered at once.
+/// The largest number of offered lines on the screen.
 const MOST_OFFERS: u16 = 9;
 
-/// Most columns of a line before what it does.
+/// The largest number of columns of an offered line before its help.
 const MOST_INDENT: usize = 40;
 
 impl LinePrompt for NameDialog {
@@ -41,7 +41,7 @@ impl LinePrompt for NameDialog {
         "".into()
     }
 
-    /// The rule that the name breaks.
+    /// Returns the rule that the name breaks.
     fn wrong(&self) -> Option<String> {
         let error = self.name().err();
         let error = error.filter(|error| *error != NameError::Empty)?;
@@ -60,14 +60,14 @@ impl LinePrompt for CommandDialog {
         &self.field
     }
 
-    /// What the last word could become.
+    /// Returns the candidates for the last word.
     fn behind(&self, columns: u16) -> Cow<'_, str> {
         let used = 1 + write::width(self.field.text());
         let room = usize::from(columns).saturating_sub(used);
         as_many_as_fit(&self.candidates, room).into()
     }
 
-    /// What is offered, as a list over the foot of the body.
+    /// Draws the offered lines as a list over the foot of the body.
     fn draw_offers(&self, theme: &Theme, buffer: &mut Buffer, body: Rect) {
         let (offers, picked) = self.offers();
         let room = body.height.min(MOST_OFFERS);
@@ -100,13 +100,14 @@ impl LinePrompt for CommandDialog {
     }
 }
 
-/// Words after a gap, and the number of those that do not fit. Two spaces between them: a name may contain one.
+/// Returns as many words as fit, after a gap, and the number of the others. Two spaces separate words, because a name
+/// may contain one.
 fn as_many_as_fit(words: &[String], room: usize) -> String {
     let mut text = String::new();
     for (index, word) in words.iter().enumerate() {
         let gap = if index == 0 { "   " } else { "  " };
         let left = words.len() - index;
-        // The last one needs no room behind it for what is left then.
+        // The last word needs no room behind it for the number of the others.
         let behind = match left {
             1 => String::new(),
             _ => format!(" … {} more", left - 1),
