@@ -7,10 +7,10 @@ use ratatui::layout::{Position, Rect};
 use crate::tui::shapes::state::ListDialog;
 use crate::tui::widget::write::first_of;
 
-/// How many lines of a list there are above its first row.
+/// The number of lines of a list above its first row.
 pub const LIST_HEAD: u16 = 2;
 
-/// The list's pane and, where there is room, that of the preview.
+/// Returns the pane of the list and, if there is room, that of the preview.
 pub fn list(body: Rect) -> (Rect, Option<Rect>) {
     let width = body.width.saturating_sub(36);
     if body.width < 66 {
@@ -28,12 +28,12 @@ pub fn list(body: Rect) -> (Rect, Option<Rect>) {
     (left, Some(right))
 }
 
-/// The first row of a list that is visible.
+/// Returns the index of the first visible row of a list.
 pub fn list_first(area: Rect, rows: usize, selected: usize) -> usize {
     first_of(area.height.saturating_sub(LIST_HEAD), rows, selected)
 }
 
-/// The row of the list at a position of the screen.
+/// Returns the index of the list's row at a position of the screen.
 pub fn list_row(body: Rect, dialog: &ListDialog, at: Position) -> Option<usize> {
     let (area, _) = list(body);
     let line = at.y.checked_sub(area.y + LIST_HEAD)?;

@@ -1,4 +1,4 @@
-//! The state of the list of shapes: what it is for, the filter, the selected row, and the shapes that were read.
+//! The state of the list of shapes: its purpose, the filter, the selected row, and the shapes that were read.
 //!
 //! Matches come in this order: the name itself, names that begin with the filter, names that contain it; each in the
 //! order of the library. Shapes are read as they come into sight, so a large library opens at once.
@@ -14,24 +14,24 @@ use crate::tui::widget::text_field::TextField;
 /// The number of shapes that are read at once before and after the selected one: more than any screen shows.
 const AHEAD: usize = 64;
 
-/// The list.
+/// The page with the list of shapes.
 #[derive(Clone, Debug)]
 pub struct ListDialog {
-    /// What a shape is chosen for.
+    /// The purpose for which a shape is chosen.
     purpose: Purpose,
     /// All shapes of the list.
     entries: Vec<LibraryEntry>,
-    /// The names of those that are left out because they cannot be deleted.
+    /// The names of the shapes that are left out because they cannot be deleted.
     undeletable: Vec<String>,
-    /// What was typed.
+    /// The typed filter.
     filter: TextField,
-    /// The entries that the filter leaves, by their place in `entries`.
+    /// The entries that match the filter, as indices into `entries`.
     matching: Vec<usize>,
-    /// The index of the selected row among them.
+    /// The index of the selected row in `matching`.
     selected: usize,
     /// The content of shapes that were read, by name.
     read: HashMap<String, Result<LoadedShape, String>>,
-    /// The names of those that were asked for.
+    /// The names of the shapes whose content was asked for.
     asked: HashSet<String>,
     /// Whether the shapes of the list are known.
     listed: bool,
@@ -40,7 +40,7 @@ pub struct ListDialog {
 }
 
 impl ListDialog {
-    /// A list that waits for the library.
+    /// Returns a list that waits for the library.
     pub fn new(purpose: Purpose) -> Self {
         Self {
             purpose,
@@ -56,7 +56,8 @@ impl ListDialog {
         }
     }
 
-    /// Takes the shapes of the library, once; what was typed meanwhile filters them. Only the user's own can be removed.
+    /// Takes the shapes of the library, once, and applies the filter that was typed meanwhile. Only the user's own
+    /// shapes can be deleted.
     pub fn fill(&mut self, mut entries: Vec<LibraryEntry>) {
         if self.listed {
             return;
@@ -70,7 +71,7 @@ impl ListDialog {
         self.sift();
     }
 
-    /// Whether the shapes of the list are known.
+    /// Returns true if the shapes of the list are known.
     pub fn is_listed(&self) -> bool {
         self.listed
     }
@@ -80,34 +81,34 @@ impl ListDialog {
         self.accepted = accepted;
     }
 
-    /// Whether that was asked for and can be done now.
+    /// Returns true if the selected shape is to be taken and has been read.
     pub fn is_accepted(&self) -> bool {
         self.accepted && self.choice().is_some_and(|(_, read)| read.is_some())
     }
 
-    /// What a shape is chosen for.
+    /// Returns the purpose for which a shape is chosen.
     pub fn purpose(&self) -> Purpose {
         self.purpose
     }
 
-    /// What was typed.
+    /// Returns the typed filter.
     pub fn filter(&self) -> &str {
         self.filter.text()
     }
 
-    /// A shipped shape that the filter would leave if it could be deleted.
+    /// Returns a shipped shape that would match the filter if it could be deleted.
     pub fn undeletable(&self) -> Option<&str> {
         let wanted = folded(self.filter());
         let mut fitting = self.undeletable.iter().map(String::as_str);
         fitting.find(|name| !wanted.is_empty() && folded(name).contains(&wanted))
     }
 
-    /// How many shapes there are without the filter.
+    /// Returns the number of shapes without the filter.
     pub fn total(&self) -> usize {
         self.entries.len()
     }
 
-    /// The shapes that the filter leaves, with their content where it was read.
+    /// Returns the shapes that match the filter, with their content if it was read.
     pub fn rows(
         &self,
     ) -> impl ExactSizeIterator<Item = (&LibraryEntry, Option<&Result<LoadedShape, String>>)> {
@@ -117,12 +118,12 @@ impl ListDialog {
             .map(|entry| (entry, self.read.get(&entry.name)))
     }
 
-    /// Which of these rows is selected.
+    /// Returns the index of the selected row.
     pub fn selected(&self) -> usize {
         self.selected
     }
 
-    /// The selected shape.
+    /// Returns the selected shape, with its content if it was read.
     pub fn choice(&self) -> Option<(&LibraryEntry, Option<&Result<LoadedShape, String>>)> {
         self.rows().nth(self.selected)
     }
@@ -132,7 +133,7 @@ impl ListDialog {
         self.selected = row.min(self.matching.len().saturating_sub(1));
     }
 
-    /// Types or deletes in the filter, where that is what a message means.
+    /// Types or deletes in the filter, if the message does that.
     pub fn edit(&mut self, message: &Message) {
         if self.filter.take(message) {
             self.sift();
@@ -142,7 +143,7 @@ impl ListDialog {
     /// Applies the filter; the best match is selected.
     fn sift(&mut self) {
         let wanted = folded(self.filter());
-        // The name itself, names that begin with what was typed, names that have it somewhere.
+        // The order: the name itself, names that begin with the typed filter, names that contain it.
         let rank = |entry: &LibraryEntry| {
             let name = folded(&entry.name);
             let at = name.find(&wanted)?;
@@ -162,7 +163,8 @@ impl ListDialog {
         self.selected = 0;
     }
 
-    /// The shapes in sight that were not asked for yet, by name; they are taken to be asked for now.
+    /// Returns the names of the shapes near the selected one that were not asked for yet, and notes them as asked
+    /// for.
     pub fn ask(&mut self) -> Vec<String> {
         let first = self.selected.saturating_sub(AHEAD);
         let near = self.matching.iter().skip(first).take(2 * AHEAD);

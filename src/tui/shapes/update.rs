@@ -1,7 +1,7 @@
-//! What messages do in the list of shapes, and what the answers of the library do.
+//! The effects of messages in the list of shapes, and of the library's answers.
 //!
-//! Requests to the library are effects ([`LibraryRequest`]); its answers come back as
-//! messages, perhaps after the page that asked was closed. An answer for a closed page changes nothing.
+//! Requests to the library are effects ([`LibraryRequest`]); its answers come back as messages, perhaps after the
+//! page that asked was closed. An answer for a closed page changes nothing.
 
 use crate::imprint::Imprint;
 use crate::picture::Picture;
@@ -113,8 +113,8 @@ fn on_list(app: &mut App, mut entries: Vec<LibraryEntry>) -> Option<Effect> {
     }
 }
 
-/// Handles what has changed in the library, and unsaved work.
-/// A removal or a restoring also reaches the history, where earlier states bear the name of that shape.
+/// Handles changes of the library, and unsaved work.
+/// A removed or restored shape also concerns the history, where earlier states bear its name.
 fn on_change(app: &mut App, change: LibraryEvent) {
     match change {
         LibraryEvent::Stored(name, stamp) => on_stored(app, name, stamp),
@@ -172,7 +172,7 @@ fn on_change(app: &mut App, change: LibraryEvent) {
     }
 }
 
-/// A shape is saved, as it was when that was asked for.
+/// Handles a save: the history notes the document as it was when the save was asked for.
 fn on_stored(app: &mut App, name: String, stamp: u64) {
     inform(app, format!("saved as {name}"));
     if let Some(save) = app.saving.pop_front() {
@@ -190,8 +190,8 @@ fn on_stored(app: &mut App, name: String, stamp: u64) {
 }
 
 /// Asks whether to restore the unsaved work of a program that crashed.
-/// Work of several crashes is offered one after the other; no answer keeps it for the next start. While a sensor is watched
-/// the question waits below that page.
+/// Work of several crashes is offered one after the other; no answer keeps it for the next start. While a sensor is
+/// watched the question waits below that page.
 fn offer(app: &mut App, before: &str, left: &Leftover) {
     let key = |answer| app.keymap().label(Context::Question, answer);
     let (yes, no) = (key(&action::ACCEPT), key(&action::DECLINE));
@@ -211,7 +211,7 @@ fn offer(app: &mut App, before: &str, left: &Leftover) {
     };
     let live = |dialog: &Dialog| matches!(dialog, Dialog::Live(_));
     match app.dialogs.iter().position(live) {
-        // Who watches a sensor wants the keys of that page now, not those of a question.
+        // A user who watches a sensor wants the keys of that page now, not those of a question.
         Some(below) => {
             app.dialogs.insert(below, Dialog::Question(question));
             inform(
@@ -233,7 +233,7 @@ fn look(app: &mut App) -> Option<Effect> {
     (!unread.is_empty()).then_some(Effect::Library(LibraryRequest::Read(unread)))
 }
 
-/// The selected shape is taken, if that was asked for before the list or the shape had been read.
+/// Takes the selected shape, if this was asked for before the list or the shape had been read.
 fn choose_accepted(app: &mut App) -> Option<Effect> {
     let accepted = |dialog: &mut Dialog| matches!(dialog, Dialog::List(list) if list.is_accepted());
     match app.dialogs.pop_if(accepted) {
@@ -245,9 +245,9 @@ fn choose_accepted(app: &mut App) -> Option<Effect> {
     }
 }
 
-/// The selected shape of a list is taken, for what the list is for.
-/// A shape that cannot be read, or that does not fit, leaves the list open for another choice. Only to delete needs no
-/// reading: a broken file can be removed, too.
+/// Takes the selected shape of a list, for the purpose of the list.
+/// A shape that cannot be read, or that does not fit, leaves the list open for another choice. Only deleting needs no
+/// reading: a broken file can be deleted, too.
 fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
     let purpose = list.purpose();
     let chosen = list
@@ -287,7 +287,7 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
     None
 }
 
-/// Asks whether a shape shall be deleted.
+/// Asks whether to delete a shape.
 fn ask_removal(app: &mut App, name: String) {
     let text = format!("Delete {name}?");
     let question = Question::new(text, Message::Request(LibraryRequest::Remove(name)));
@@ -302,8 +302,8 @@ fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
     app.dialogs.push(Dialog::Form(Box::new(form)));
 }
 
-/// Brings a shape onto the matrix: with its sensor where that has as many columns and rows, as it is where its taxels
-/// fit, else not at all.
+/// Brings a shape onto the matrix: with its sensor and source if that sensor has the same number of columns and rows;
+/// otherwise its imprint alone if all active taxels fit, else an error.
 fn put_on_matrix(app: &mut App, loaded: &LoadedShape) -> Result<(), String> {
     let (shape, sensor) = (&loaded.shape, app.history.present().sensor);
     let own = (shape.sensor.columns(), shape.sensor.rows());
@@ -321,7 +321,7 @@ fn put_on_matrix(app: &mut App, loaded: &LoadedShape) -> Result<(), String> {
         }
         Document::drawn(sensor, imprint)
     };
-    // What was cut out of its sensor is another shape: it is not stored under that name.
+    // A shape for a sensor of another size becomes another shape: it is not stored under that name.
     let mut origin = DocumentOrigin::of(&document);
     if own == here {
         origin = origin.loaded(StoredName {

@@ -27,13 +27,14 @@ use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::{thumbnail, write};
 
-/// Columns of a row beside the name: its sign, its size, where it comes from.
+/// The columns of a row beside the name: its sign, its size, its origin.
 const BESIDE: usize = 18;
 
-/// The fewest columns of a name that tell shapes apart; on a screen that is narrower still the others give way.
+/// The smallest number of columns for a name, which still tells shapes apart; on a narrower screen the rest of the
+/// row is cut.
 const SHORTEST: usize = 8;
 
-/// Columns of a name are not more than this without need, so that what follows stays near.
+/// The largest number of columns for a name, so that the rest of the row stays near.
 const USUAL: usize = 24;
 
 impl Page for ListDialog {
@@ -65,7 +66,7 @@ impl Page for ListDialog {
         })
     }
 
-    /// An empty list has nothing to choose from. One that is still being read may have.
+    /// Returns false for messages about rows if the list is empty. A list that is still being read may get rows.
     fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
         let of_rows = matches!(
             message,
@@ -128,7 +129,7 @@ fn draw(
     Position::new(end.min(area.right().saturating_sub(1)), area.y)
 }
 
-/// Why no shape is shown; None if there are some.
+/// Returns the reason why no shape is shown; None if there are some.
 fn why_empty(keymap: &Keymap, dialog: &ListDialog) -> Option<String> {
     if dialog.rows().len() > 0 {
         return None;
@@ -147,7 +148,7 @@ fn why_empty(keymap: &Keymap, dialog: &ListDialog) -> Option<String> {
     )
 }
 
-/// Draws how many shapes the filter leaves; without a filter, a note that typing makes one.
+/// Draws the number of shapes that match the filter; without a filter, a hint that typing makes one.
 fn draw_count(theme: &Theme, dialog: &ListDialog, buffer: &mut Buffer, area: Rect) {
     let count = format!("  {} of {}", dialog.rows().len(), dialog.total());
     let hinted = format!("{count}; type to search");
@@ -160,7 +161,7 @@ fn draw_count(theme: &Theme, dialog: &ListDialog, buffer: &mut Buffer, area: Rec
     write::line(buffer, area, theme, [(text, Role::Quiet)]);
 }
 
-/// Draws a row: a sign, the name, the size, where the shape comes from.
+/// Draws a row: a sign, the name, the size, the origin of the shape.
 fn draw_row(
     theme: &Theme,
     entry: &LibraryEntry,
@@ -201,7 +202,7 @@ fn draw_row(
     write::line(buffer, row, theme, pieces);
 }
 
-/// Draws the preview: the name, a few facts, what made the shape, and its imprint.
+/// Draws the preview: the name, a few facts, the source of the shape, and its imprint.
 fn draw_preview(
     theme: &Theme,
     entry: &LibraryEntry,
@@ -209,7 +210,7 @@ fn draw_preview(
     buffer: &mut Buffer,
     area: Rect,
 ) {
-    // The name may need two lines, what made the shape more.
+    // The name may need two lines, the source more.
     let mut used = write::wrapped(buffer, area, theme, &entry.name, Role::Title);
     let mut say = |text: &str, role: Role| {
         used += write::wrapped(buffer, write::below(area, narrow(used)), theme, text, role);
@@ -236,7 +237,7 @@ fn draw_preview(
                 .as_ref()
                 .map_or("an imprint, no figure".to_owned(), ToString::to_string);
             say(&facts, Role::Text);
-            // At the same height for most of them.
+            // The imprint has the same height for most shapes.
             let end = say(&source, Role::Quiet).max(4);
             thumbnail::draw(theme, imprint, buffer, write::below(area, end));
         }
