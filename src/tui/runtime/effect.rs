@@ -1,4 +1,4 @@
-//! Effects that `update` returns: what the runtime or the terminal has to do.
+//! The effects that `update` returns: requests to the runtime or the terminal.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -16,16 +16,16 @@ use crate::tui::live::request::WatchRequest;
 use crate::tui::recognise::message::PoseSearch;
 use crate::tui::recognise::separate::request::SeparationRequest;
 
-/// An effect.
+/// A request of `update` to the runtime or the terminal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
     /// A request to the library; its answer is a message, perhaps much later: a disk may hang.
     Library(LibraryRequest),
     /// Recover the offered unsaved work.
     Recover,
-    /// Move it to the trash.
+    /// Move the offered unsaved work to the trash.
     GiveUp,
-    /// A request about files; the same.
+    /// A request about files; its answer is a message, perhaps much later, too.
     File(FileRequest),
     /// Work for a worker.
     Work(Work),
@@ -33,33 +33,33 @@ pub enum Effect {
     Terminal(TerminalEffect),
 }
 
-/// Requests about files.
+/// A request about files.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FileRequest {
     /// Open a file that holds an imprint or a shape.
     Open(String),
-    /// Write a file, given its name, what it shall hold, and what happens to one that exists.
+    /// Write a file, given its name, its content, and the rule for a file that exists.
     Write(String, Vec<u8>, Existing),
-    /// Look whether a source of frames can be read.
+    /// Check whether a source of frames can be read.
     Source(Arc<WatchRequest>),
     /// List the paths that begin like this.
     Paths(String),
 }
 
-/// Effects on the terminal.
+/// An effect on the terminal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TerminalEffect {
     /// Redraw the whole screen.
     Redraw,
     /// Stop, as Ctrl-Z does, until the shell continues the program.
     Suspend,
-    /// Whether the mouse is reported. If not, the terminal can select text with it.
+    /// Switch the reports of the mouse on or off. When they are off, the terminal can select text with the mouse.
     Mouse(bool),
     /// Copy a text to the clipboard of the user's terminal.
     Copy(String),
 }
 
-/// Work for a worker. A number tells its events from those of earlier work.
+/// Work for a worker. Its number distinguishes its events from those of earlier work.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Work {
     /// Estimate the time that a sweep takes.
@@ -74,38 +74,39 @@ pub enum Work {
     Stop,
     /// Train a model, or read it.
     Prepare(u64, ModelChoice),
-    /// Stop that.
+    /// Stop preparing a model.
     StopPreparing,
-    /// Look at a set in several sizes, of which the first are known.
+    /// Compute the limit of a set in several sizes, of which the first are known.
     Separate(u64, Arc<SeparationRequest>, Vec<SeparationPoint>),
-    /// Stop that.
+    /// Stop computing the limits.
     StopSeparating,
     /// Watch a source of frames, recorded from the start or not, and name their imprints or not.
     Watch {
         /// The number of this work.
         number: u64,
-        /// What is watched.
+        /// The source, and how it is read.
         request: Arc<WatchRequest>,
-        /// The file that all frames are recorded in. Where a source is watched again that is none: a finished recording is
-        /// left alone.
+        /// The file that all frames are recorded in; None to record nothing, as when a source is watched again: a
+        /// finished recording is left alone.
         write: Option<(PathBuf, Existing)>,
-        /// How imprints are named.
+        /// The request to name imprints; None to name none.
         naming: Option<Box<NamingRequest>>,
     },
-    /// Stop that.
+    /// Stop watching.
     StopWatching,
     /// Record all frames of the source that is watched.
     Record(Box<RecordingMetadata>),
-    /// Stop that.
+    /// Stop recording.
     StopRecording,
     /// Write threshold, tare and marks into the description of the recording.
     Describe(Box<RecordedView>),
-    /// Name the imprints of the source of that number; None names them no more.
+    /// Name the imprints of the source of that number; None to stop naming them.
     NameBy(u64, Option<Box<NamingRequest>>),
     /// Name an imprint.
     Name(Box<Imprint>),
-    /// Search a model for the nearest imprint, and for the poses of the named shape, or of that of the nearest imprint.
+    /// Search a model for the nearest imprint, and for the poses of the named shape, or of the nearest imprint's
+    /// shape.
     Look(u64, Box<PoseSearch>),
-    /// Stop that.
+    /// Stop the search.
     StopLooking,
 }

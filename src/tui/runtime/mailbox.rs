@@ -1,9 +1,9 @@
 //! Messages from other threads, which wake the event loop.
 //!
-//! A queue, and a socket pair that the loop waits for together with the terminal and the signals. The queue is not
-//! bounded, since workers must never wait for a slow terminal. Little is in it: workers report their progress ten times a
-//! second, and answer what the screen has asked. Frames wait in `runtime::frames::feed`, and one message here says that some
-//! have come.
+//! The mailbox is a queue, and a socket pair that the loop waits for together with the terminal and the signals. The
+//! queue is not bounded, since workers must never wait for a slow terminal. It holds little: workers report their
+//! progress ten times a second, and answer requests of the screen. Frames wait in `runtime::frames::feed`, and one
+//! message here says that some have come.
 
 use std::io::{self, Read, Write};
 use std::os::fd::{AsFd, BorrowedFd};
@@ -18,7 +18,7 @@ use crate::tui::app::message::Message;
 pub struct Sender {
     /// The queue.
     messages: mpsc::Sender<Message>,
-    /// One byte in it wakes the loop.
+    /// The socket; one byte in it wakes the loop.
     wakeup: Arc<UnixStream>,
 }
 
@@ -27,14 +27,14 @@ pub struct Sender {
 pub struct Mailbox {
     /// The queue.
     messages: mpsc::Receiver<Message>,
-    /// Readable after a message was sent.
+    /// The socket, which is readable after a message was sent.
     wakeup: UnixStream,
 }
 
-/// A new pair.
+/// Returns a sender and its mailbox.
 ///
 /// # Errors
-/// If the process may not open more files.
+/// Returns an error if the process may not open more files.
 pub fn new() -> io::Result<(Sender, Mailbox)> {
     let (read, write) = UnixStream::pair()?;
     read.set_nonblocking(true)?;
@@ -63,7 +63,7 @@ impl Sender {
 }
 
 impl Mailbox {
-    /// Readable while there are messages.
+    /// Returns the file descriptor to wait for, which is readable while there are messages.
     pub(in crate::tui) fn fd(&self) -> BorrowedFd<'_> {
         self.wakeup.as_fd()
     }

@@ -1,14 +1,14 @@
 //! The runtime: performs the effects that `update` returns, and feeds the answers back as messages.
 //!
-//! Apart from the terminal, only this room touches files and threads. The file is long because each effect has an arm here,
-//! and the end of the program waits for all of them.
+//! Apart from the terminal, only this module touches files and threads. The file is long because each effect has an
+//! arm here, and the end of the program waits for all of them.
 //! ```text
 //! effect      what update may ask for: the library, a worker, the terminal
 //! disk        reads and writes, in order, on a disk that may answer late
 //! work        sweeps, models and exports, each on a thread of its own
 //! frames      a source of frames: watched, recorded
 //! slow_work   work that the user waits for, and when the screen says so
-//! lock        a mutex, locked whatever another thread has done
+//! lock        a mutex that can be locked even after a panic of another thread
 //! mailbox     messages from other threads, which wake the event loop
 //! ```
 
@@ -63,19 +63,19 @@ use crate::tui::runtime::effect::{Effect, FileRequest, TerminalEffect, Work};
 /// The outside world: a library, unsaved work that crashed programs left in it, this program's journal, and workers.
 #[derive(Debug)]
 pub struct World {
-    /// The unsaved work that is offered, and how many there are in all.
+    /// The unsaved work that is offered, and the number of offers in all.
     orphan: Option<(Box<Orphan>, usize)>,
-    /// Where unsaved work is kept.
+    /// The writer of the journal, which keeps unsaved work.
     journal: JournalWriter,
-    /// What is remembered between runs, None for nothing.
+    /// The reminders from run to run; None if nothing is remembered.
     reminders: Option<Reminders>,
-    /// The stored shapes that were used.
+    /// The log of the stored shapes that were used.
     log: ShapeLog,
-    /// Changes of the library and of files in progress.
+    /// The queue of changes to the library and to files.
     writer: DiskQueue,
-    /// What is being read.
+    /// The reader of the library and of files.
     reader: Reader,
-    /// What is worth remembering, but not worth waiting for.
+    /// The queue of reminders to write, which nobody waits for.
     memories: DiskQueue,
     /// Messages that come after the present one.
     later: VecDeque<Message>,
@@ -86,7 +86,7 @@ pub struct World {
 }
 
 impl World {
-    /// The world around a library; the newest unsaved work in it will be offered.
+    /// Returns the world around a library. The newest unsaved work in it will be offered.
     pub fn new(library: Library) -> Self {
         Self {
             journal: JournalWriter::new(Journal::new(&library)),
@@ -96,7 +96,8 @@ impl World {
         }
     }
 
-    /// The same for a script: unsaved work is neither offered nor kept, so that a script does the same every time.
+    /// Returns the world for a script: unsaved work is neither offered nor kept, so that a script does the same every
+    /// time.
     pub fn for_script(library: Library) -> Self {
         let workers = Workers::with(ModelStore::beside(&library));
         Self {
@@ -113,10 +114,10 @@ impl World {
         }
     }
 
-    /// A world with an empty library in a temporary folder, which is removed with it.
+    /// Returns a world with an empty library in a temporary folder, which is removed with it.
     ///
     /// # Errors
-    /// If the system gives no temporary folder.
+    /// Returns an error if the system gives no temporary folder.
     pub fn scratch() -> io::Result<Self> {
         let folder = ScratchFolder::new()?;
         let world = Self::new(Library::open(folder.path().join("library")));
@@ -126,10 +127,11 @@ impl World {
         })
     }
 
-    /// The same with shapes in the library, and with unsaved work of crashed programs, the newest last.
+    /// Returns a world with shapes in a temporary library, and with unsaved work of crashed programs, the newest
+    /// last.
     ///
     /// # Errors
-    /// What the system or the library refuses, in a sentence.
+    /// Returns the refusal of the system or the library, in a sentence.
     pub fn with_contents(
         shapes: &[&StoredShape],
         leftovers: &[&StoredShape],
@@ -162,15 +164,15 @@ impl World {
         self
     }
 
-    /// Gives each stored shape of the user's that is used to `sink`, before its answer is shown.
+    /// Gives `sink` each of the user's stored shapes that is used, before its answer is shown.
     #[must_use]
     pub fn with_shape_log(mut self, sink: ShapeSink) -> Self {
         self.log = ShapeLog::of(sink);
         self
     }
 
-    /// Lets files be written below this folder only, as is right for a script: no hidden ones, and none is replaced that
-    /// was there before.
+    /// Allows files to be written only below this folder, as is right for a script: no hidden files, and no file is
+    /// replaced that was there before.
     #[must_use]
     pub fn confined_to(mut self, folder: PathBuf) -> Self {
         self.workers.access = Arc::new(WriteAccess::below(folder));
@@ -179,7 +181,7 @@ impl World {
         self
     }
 
-    /// Stops each sweep and each training at once that has more poses, as a user would who does not wait for it.
+    /// Stops each sweep and each training with more poses at once, like a user who does not wait for it.
     #[must_use]
     pub fn with_pose_limit(mut self, poses: u64) -> Self {
         self.workers.stop_after(poses);
@@ -195,7 +197,7 @@ impl World {
         self
     }
 
-    /// Remembers nothing of earlier runs, and nothing for later ones: what is recorded as a script does the same again.
+    /// Remembers nothing from earlier runs or for later ones, so that a run recorded as a script does the same again.
     #[must_use]
     pub fn without_reminders(mut self) -> Self {
         self.reminders = None;
@@ -209,12 +211,12 @@ impl World {
         }
     }
 
-    /// The first message: that a crashed program left unsaved work; None if there is none.
+    /// Returns the first message, which offers the unsaved work of a crashed program; None if there is none.
     pub fn greeting(&self) -> Option<Message> {
         Some(Message::Library(LibraryEvent::Found(self.left()?)))
     }
 
-    /// The offer of unsaved work, None if there is none.
+    /// Returns the offer of unsaved work, None if there is none.
     fn left(&self) -> Option<Leftover> {
         let (orphan, waiting) = self.orphan.as_ref()?;
         Some(Leftover {
@@ -264,7 +266,7 @@ impl World {
         terminal
     }
 
-    /// Takes what became of changes. It may have been taken already.
+    /// Takes the answers to changes, if they have not been taken already.
     fn collect_changes(&mut self) {
         // Memories have no answer.
         while self.memories.wait(Duration::ZERO).is_some() {}
@@ -274,7 +276,7 @@ impl World {
         }
     }
 
-    /// The next message; where there is none, what was read for the page that is on top.
+    /// Returns the next message; if there is none, the answer to a request of the top page to read something.
     fn next_message(&mut self, app: &App) -> Option<Message> {
         let mut next = self.later.pop_front();
         while next.is_none() {
@@ -284,13 +286,13 @@ impl World {
         next
     }
 
-    /// Takes a message. Esc on the page that reads from the disk waits for it no longer.
+    /// Queues a message. Esc on the page that reads from the disk also stops waiting for the disk.
     fn receive(&mut self, app: &App, message: Message) {
         let esc = Message::Unknown(Key::Esc);
         let leaves = matches!(message, Message::Cancel | Message::Quit) || message == esc;
         let pages = app.dialogs.len();
         let given_up = leaves.then(|| self.reader.give_up(pages)).flatten();
-        // On the matrix it means nothing else.
+        // On the matrix, Esc means nothing else.
         let is_done = given_up.is_some() && message == esc;
         self.later.extend((!is_done).then_some(message));
         let given_up = given_up.map(WorkerEvent::GivenUp);
@@ -325,7 +327,7 @@ impl World {
         self.workers.perform(work).map(Message::Worker)
     }
 
-    /// Whether frames have come, or something else is to be said of their source.
+    /// Returns true if frames have come, or other news about their source.
     pub(in crate::tui) fn has_frames(&self) -> bool {
         self.workers.frames.has_new()
     }
@@ -335,14 +337,14 @@ impl World {
         self.workers.frames.take().map(Message::Worker)
     }
 
-    /// The next frames of a source that is not watched on a thread of its own: a message for each.
+    /// Reads the next frames of a source that is not watched on a thread of its own, and returns a message for each.
     pub(in crate::tui) fn next_frames(&mut self, count: usize) -> Vec<Message> {
         let access = Arc::clone(&self.workers.access);
         let events = self.workers.frames.next(count, &access).into_iter();
         events.map(Message::Worker).collect()
     }
 
-    /// When to look again at what is waited for; None if nothing is.
+    /// Returns when to check again on the requests that are waited for; None if there are none.
     pub(in crate::tui) fn changes_due(&self) -> Option<Instant> {
         let changes = self.writer.next_check().into_iter();
         let read = self.reader.next_check().into_iter();
@@ -350,16 +352,16 @@ impl World {
         changes.chain(read).min()
     }
 
-    /// What is waited for, if it takes long: a change, else something to read.
+    /// Returns the request that is waited for, if it takes long: a change, else something to read.
     pub(in crate::tui) fn waiting(&self) -> Option<String> {
         let read = || self.reader.status();
         let model = || self.workers.model_status();
         self.writer.status().or_else(read).or_else(model)
     }
 
-    /// Finishes changes and recordings and writes unsaved work at once, because the program is about to end; but waits for
-    /// 1.5 s at most. Returns lines about what is not on the disk, because of an error or because the disk does not
-    /// answer.
+    /// Finishes changes and recordings and writes unsaved work at once, because the program is about to end. Waits
+    /// for at most 1.5 s. Returns lines about everything that is not on the disk, because of an error or because the
+    /// disk does not answer.
     pub fn end(&mut self, app: &mut App) -> Vec<String> {
         let recording = self.workers.frames.stop();
         let ended = recording.and_then(|(number, recording)| {
@@ -367,7 +369,7 @@ impl World {
             self.writer.begin(request)
         });
         let (mut lines, is_kept) = self.write_all(app, ended, |_, app, answer| {
-            // Nothing is begun any more.
+            // No more effects are performed.
             let _ = update(app, answer);
         });
         if is_kept && !lines.is_empty() && app.unsaved_work().is_some() {
@@ -376,9 +378,9 @@ impl World {
         lines
     }
 
-    /// Finishes changes and writes out unsaved work and what is recorded, because the program is about to be stopped,
-    /// perhaps for ever; but waits for 1.5 s at most. All goes on where it is continued. Returns lines about what is
-    /// not on the disk.
+    /// Finishes changes and writes out unsaved work and the recording, because the program is about to be stopped,
+    /// perhaps for ever. Waits for at most 1.5 s. Everything goes on when the program is continued. Returns lines
+    /// about everything that is not on the disk.
     pub fn flush(&mut self, app: &mut App) -> Vec<String> {
         let recording = self.workers.frames.recording();
         let flushed = recording.and_then(|(number, recording)| {
@@ -386,14 +388,15 @@ impl World {
             self.writer.begin(request)
         });
         let (lines, _) = self.write_all(app, flushed, |world, app, answer| {
-            // The terminal is about to be given back: nothing is done to it.
+            // The terminal is about to be given back, so its effects are dropped.
             let _ = world.handle(app, answer);
         });
         lines
     }
 
-    /// Waits for changes, memories and the journal, [`PATIENCE`] at most, and has answers taken, that of a request that is
-    /// `done` first. Returns lines about what is not on the disk, and whether unsaved work is.
+    /// Waits for changes, reminders and the journal, at most [`PATIENCE`], and passes the answers to `take`,
+    /// beginning with the one that is `done`. Returns lines about everything that is not on the disk, and whether
+    /// unsaved work is on it.
     fn write_all(
         &mut self,
         app: &mut App,
@@ -401,7 +404,7 @@ impl World {
         take: fn(&mut Self, &mut App, Message),
     ) -> (Vec<String>, bool) {
         let end = Instant::now() + PATIENCE;
-        // Half of the time: the journal keeps what could not be saved.
+        // Changes get half of the time: the journal keeps what could not be saved.
         let saved_by = Instant::now() + PATIENCE / 2;
         let mut lines = Vec::new();
         if let Some(answer) = done {
@@ -417,7 +420,7 @@ impl World {
         }
         self.journal.note(app);
         let is_kept = (self.journal).written(end.saturating_duration_since(Instant::now()));
-        // What the journal has left of the time.
+        // Changes get the time that the journal has left.
         lines.extend(self.finish_changes(app, end, take));
         self.journal.note(app);
         lines.extend(self.writer.left());
@@ -429,8 +432,8 @@ impl World {
         (lines, is_kept)
     }
 
-    /// Waits for changes and recordings until `end`, and has answers taken. Returns lines about recordings that could not
-    /// be finished or written on.
+    /// Waits for changes and recordings until `end`, and passes the answers to `take`. Returns lines about recordings
+    /// that could not be finished or continued.
     fn finish_changes(
         &mut self,
         app: &mut App,
@@ -449,26 +452,26 @@ impl World {
         lines
     }
 
-    /// Has the answer to a change taken.
+    /// Passes the message for an answer to `take`, if there is one.
     fn take(&mut self, app: &mut App, answer: DiskAnswer, take: fn(&mut Self, &mut App, Message)) {
         if let Some(answer) = self.answer(answer) {
             take(self, app, answer);
         }
     }
 
-    /// Makes a change, or has it made. Returns the answer if there is one within a moment.
+    /// Makes a change, at once or on the thread of the disk. Returns the answer if it comes within a moment.
     fn change(&mut self, change: DiskRequest) -> Option<Message> {
         let answer = self.writer.ask(change)?;
         self.answer(answer)
     }
 
-    /// Has something read. Returns the answer if there is one within a moment.
+    /// Reads something, at once or on a thread. Returns the answer if it comes within a moment.
     fn read(&mut self, app: &App, request: DiskRequest) -> Option<Message> {
         let answer = self.reader.ask(request, app.dialogs.len())?;
         self.answer(answer)
     }
 
-    /// The message that tells the program what became of a request.
+    /// Returns the message that tells the program the outcome of a request; None if there is nothing to tell.
     fn answer(&mut self, changed: DiskAnswer) -> Option<Message> {
         let answer = match changed {
             DiskAnswer::Stored(shape, Ok(stamp), _) => {
@@ -503,7 +506,7 @@ impl World {
         Some(Message::Library(answer))
     }
 
-    /// A file for a recording has been created, or not.
+    /// Begins a recording whose file has been created, or reports that there is none.
     fn recording(
         &mut self,
         number: u64,
@@ -513,7 +516,7 @@ impl World {
             Ok((name, recording)) => (LiveEvent::Recording(name), Some(recording)),
             Err(refused) => (LiveEvent::NotRecorded(refused), None),
         };
-        // The source was left meanwhile, or something else was recorded still.
+        // The recording to end: the new one if its source was left meanwhile, or another one that was still open.
         let over = self.workers.frames.recording_started(number, recording);
         let ended = over.and_then(|over| self.change(DiskRequest::EndRecording(number, over)));
         self.later.extend(ended);
@@ -526,7 +529,7 @@ impl World {
             return no_work_left();
         };
         let shape = orphan.shape.clone();
-        // Into this program's journal before it is taken out of the other one.
+        // The work is put into this program's journal before it is taken out of the other one.
         self.journal.adopt(*orphan);
         Message::Library(LibraryEvent::Recovered(Box::new(shape)))
     }
@@ -539,7 +542,8 @@ impl World {
         }
     }
 
-    /// Unwanted work is in the trash, like a deleted shape, or not. Other work is offered then.
+    /// Returns the event for unwanted work that was moved to the trash, like a deleted shape, or could not be. The
+    /// next work is offered then.
     fn given_up(
         &mut self,
         thrown: Result<String, LibraryError>,
@@ -553,7 +557,7 @@ impl World {
     }
 }
 
-/// The answer where no unsaved work is offered any more.
+/// Returns the answer if no unsaved work is offered any more.
 fn no_work_left() -> Message {
     Message::Library(LibraryEvent::Failed("no unsaved work is left".to_owned()))
 }

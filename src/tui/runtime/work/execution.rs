@@ -6,17 +6,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::tui::runtime::work::progress::{PoseLimit, WorkerEventSink};
 
-/// How work is done.
+/// A way of doing work.
 #[derive(Clone)]
 pub(in crate::tui::runtime) enum Execution {
-    /// At once, before the next message, as a script wants it. Work with more poses is stopped.
+    /// At once, before the next message, as a script wants it. Work with more poses than the limit is stopped.
     AtOnce(PoseLimit),
-    /// On threads of its own, which give their events to this.
+    /// On threads of its own, which give their events to this sink.
     OnThreads(WorkerEventSink),
 }
 
 impl Default for Execution {
-    /// At once, whatever the number of poses.
+    /// Returns the execution at once, for any number of poses.
     fn default() -> Self {
         Self::AtOnce(PoseLimit::default())
     }
@@ -31,12 +31,12 @@ impl fmt::Debug for Execution {
     }
 }
 
-/// Stops the work in progress: on request, when the next work begins, and when it is dropped.
+/// A flag that stops the work in progress: on request, when the next work begins, and when it is dropped.
 #[derive(Debug, Default)]
 pub(in crate::tui::runtime) struct StopFlag(Arc<AtomicBool>);
 
 impl StopFlag {
-    /// Stops the work in progress. Returns what stops the next one, once it is set.
+    /// Stops the work in progress. Returns the flag that stops the next work when it is set.
     pub(in crate::tui::runtime) fn renew(&mut self) -> Arc<AtomicBool> {
         self.stop();
         self.0 = Arc::default();

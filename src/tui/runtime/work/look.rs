@@ -1,4 +1,4 @@
-//! Searches models for what an imprint may be: the nearest imprint of the set, and the poses that leave it.
+//! Searches a model for an imprint: the nearest imprint of the set, and the poses that leave it.
 //!
 //! ```text
 //! Look(number, search)  -> Looked, also after StopLooking: the screen waits for it before it begins the next
@@ -15,10 +15,10 @@ use crate::tui::runtime::work::execution::{Execution, StopFlag};
 use crate::tui::runtime::work::progress::caught;
 use crate::tui::runtime::work::threads;
 
-/// Outlines of poses that are drawn at most; more cannot be told apart over a matrix.
+/// The largest number of poses whose outlines are drawn; more cannot be told apart over a matrix.
 const POSES: usize = 13;
 
-/// Begins a search, on a thread of its own in place of the one before; or searches at once and returns the event.
+/// Begins a search on a thread of its own, in place of the one before; or searches at once and returns the event.
 pub(in crate::tui::runtime) fn look(
     number: u64,
     search: Box<PoseSearch>,
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_search_that_is_stopped_says_so_without_its_poses() {
+    fn a_stopped_search_answers_without_poses() {
         let searched = |limit| {
             let execution = Execution::AtOnce(PoseLimit(limit));
             let search = Box::new(search());
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn a_search_that_another_one_replaces_answers_too() {
+    fn a_replaced_search_answers_too() {
         let (post, events) = channel();
         let execution = Execution::OnThreads(Arc::new(move |event| {
             // The test may be over.

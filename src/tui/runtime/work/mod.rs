@@ -1,12 +1,12 @@
 //! Long work, on threads of its own.
 //!
 //! ```text
-//! workers    sweeps, exports and all that follows
-//! execution  at once or on threads; stopped
+//! workers    sweeps and exports; begins all other work, too
+//! execution  work at once or on threads, and how it is stopped
 //! progress   how workers report
 //! threads    the threads that share long work
 //! models     models for recognition: trained, read
-//! look       searches them for what an imprint may be
+//! look       searches a model for an imprint
 //! sizes      the limit of a set in several sizes
 //! naming     the shapes that left the imprints of frames
 //! ```

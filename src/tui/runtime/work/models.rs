@@ -29,17 +29,17 @@ use crate::tui::runtime::slow_work::SlowWork;
 use crate::tui::runtime::work::execution::{Execution, StopFlag};
 use crate::tui::runtime::work::progress::{ProgressReporter, guarded, on_a_thread, proceed};
 
-/// Where models are.
+/// The places where models are stored.
 #[derive(Clone, Debug, Default)]
 pub(in crate::tui::runtime) struct ModelStore {
-    /// The user's own.
+    /// The folder of the user's own models.
     folder: Option<ModelFolder>,
-    /// Those that can be trained again.
+    /// The cache of models that can be trained again.
     cache: Option<ModelCache>,
 }
 
 impl ModelStore {
-    /// The models beside a library, without a cache.
+    /// Returns the store of the models beside a library, without a cache.
     pub(in crate::tui::runtime) fn beside(library: &Library) -> Self {
         Self {
             folder: Some(ModelFolder::beside(library.folder())),
@@ -52,14 +52,14 @@ impl ModelStore {
         self.cache = Some(cache);
     }
 
-    /// The names of the user's models; none of a folder that cannot be read.
+    /// Returns the names of the user's models; none if the folder cannot be read.
     pub(in crate::tui::runtime) fn names(&self) -> Vec<Name> {
         let names = |folder: &ModelFolder| folder.names().into_iter().flatten();
         self.folder.iter().flat_map(names).collect()
     }
 
-    /// Reads or trains the model of a set. `begins` is called with the number of poses before a training, which it may
-    /// refuse; `progress` during it, as by a sweep.
+    /// Reads or trains the model of a set. `begins` is called with the number of poses before a training, which it
+    /// may refuse; `progress` is called during the training, as by a sweep.
     pub(in crate::tui::runtime) fn model(
         &self,
         choice: &ModelChoice,
@@ -104,7 +104,7 @@ impl ModelStore {
         let text = path.to_string_lossy();
         let below_home = path.to_str().and_then(location::below_home);
         let path = below_home.unwrap_or_else(|| path.to_owned());
-        // To open a pipe waits, and to open a serial line may reset its device.
+        // Opening a pipe waits, and opening a serial line may reset its device.
         if path.metadata().is_ok_and(|kind| !kind.is_file()) {
             return Err(format!("{}: not a regular file", shortened(&text)));
         }
@@ -122,7 +122,7 @@ impl ModelStore {
         })
     }
 
-    /// The file that a choice means: as on the command line, a name that no model has may be that of a file in the working
+    /// Resolves a choice: as on the command line, a name that no model has may be the name of a file in the working
     /// folder.
     fn located(&self, choice: ModelChoice) -> ModelChoice {
         let ModelChoice::Stored(name) = &choice else {
@@ -138,7 +138,7 @@ impl ModelStore {
     }
 }
 
-/// What a thread reads from the disk at the moment. The screen's thread looks at it.
+/// The work of a thread that reads from the disk at the moment. The screen's thread looks at it.
 #[derive(Clone, Debug, Default)]
 struct ModelReading(Arc<Mutex<Option<SlowWork>>>);
 
@@ -148,7 +148,7 @@ impl ModelReading {
         *locked(&self.0) = Some(SlowWork::new(words.to_owned()));
     }
 
-    /// Notes that nothing is read any more. Returns what was.
+    /// Notes that nothing is read any more. Returns the work that has ended.
     fn end(&self) -> Option<SlowWork> {
         locked(&self.0).take()
     }
@@ -157,11 +157,11 @@ impl ModelReading {
 /// The thread that prepares a model.
 #[derive(Debug, Default)]
 pub(in crate::tui::runtime) struct ModelWorker {
-    /// Where models are.
+    /// The store of models.
     pub(in crate::tui::runtime) store: ModelStore,
     /// The number of the work.
     number: u64,
-    /// What it reads.
+    /// The reading from the disk in progress.
     reading: ModelReading,
     /// Stops the training in progress.
     stop: StopFlag,
@@ -218,7 +218,8 @@ impl ModelWorker {
         None
     }
 
-    /// Stops the training in progress. What is being read is waited for no longer, and the event that says so is returned.
+    /// Stops the training in progress. Stops waiting for a model that is being read, and returns the event that says
+    /// so.
     pub(in crate::tui::runtime) fn give_up(&mut self) -> Option<WorkerEvent> {
         self.stop.stop();
         let read = std::mem::take(&mut self.reading).end()?;
@@ -227,13 +228,13 @@ impl ModelWorker {
         Some(WorkerEvent::Recognition(event))
     }
 
-    /// What is read, if that takes long.
+    /// Returns a text about the model that is being read, if that takes long.
     pub(in crate::tui::runtime) fn status(&self) -> Option<String> {
         let status = locked(&self.reading.0).as_ref()?.status("the disk")?;
         Some(status + "; Esc gives up")
     }
 
-    /// When to look at that again; None if nothing is read.
+    /// Returns when to check again on the reading; None if nothing is read.
     pub(in crate::tui::runtime) fn next_check(&self) -> Option<Instant> {
         locked(&self.reading.0).as_ref().map(SlowWork::next_check)
     }
@@ -245,8 +246,8 @@ impl ModelWorker {
     }
 }
 
-/// What is called with the number of poses before a training, and returns whether to begin it; and with those that are
-/// done during it, as by a sweep.
+/// Two functions. The first is called with the number of poses before a training, and returns whether to begin it.
+/// The second is called during it with the number of poses done, as by a sweep.
 type Calls<'a> = (&'a dyn Fn(u64) -> bool, &'a (dyn Fn(u64) -> bool + Sync));
 
 /// Reads a model from the cache or trains it, and evaluates it. The event also has the names of stored models, which

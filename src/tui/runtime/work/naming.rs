@@ -23,37 +23,37 @@ use crate::tui::runtime::work::models::ModelStore;
 use crate::tui::runtime::work::progress::{PoseLimit, caught};
 use crate::tui::runtime::work::threads;
 
-/// A model that is asked on the thread that waits for its answer.
+/// A model that is used on the thread that waits for its answer.
 #[derive(Debug)]
 struct OwnModel {
-    /// Where the model is read from.
+    /// The store that the model is read from.
     store: ModelStore,
-    /// What was asked for.
+    /// The request to name imprints.
     naming: NamingRequest,
-    /// When its training is stopped.
+    /// The limit to the poses of its training.
     limit: PoseLimit,
-    /// The model, or why there is none.
+    /// The model, or the reason why there is none.
     model: OnceCell<Result<Model, String>>,
 }
 
-/// Names imprints by the model that was chosen last.
+/// A namer of imprints, by the model that was chosen last.
 #[derive(Debug, Default)]
 pub(in crate::tui::runtime) struct ShapeNamer {
     /// The number of the source whose frames are named.
     number: u64,
-    /// What is named by, where there is no thread; the model is prepared when the first imprint comes.
+    /// The model to name by, if there is no thread; it is prepared when the first imprint comes.
     here: Option<OwnModel>,
-    /// The way to the thread; dropped to end it. None without a thread.
+    /// The channel to the thread, dropped to end it; None without a thread.
     imprints: Option<Sender<Imprint>>,
-    /// Breaks off a training; nothing is said any more then.
+    /// The flag that stops a training; no events are sent any more then.
     stop: StopFlag,
-    /// Waited for at the end of the program, so that a model is written as a whole.
+    /// The thread, which is waited for at the end of the program, so that a model is written as a whole.
     thread: Option<JoinHandle<()>>,
 }
 
 impl ShapeNamer {
-    /// Prepares a model in place of the one before. Events carry the number of the source whose frames are named, and that
-    /// of the request.
+    /// Prepares a model in place of the one before. Events carry the number of the source whose frames are named, and
+    /// the number of the request.
     pub(in crate::tui::runtime) fn begin(
         &mut self,
         number: u64,
@@ -82,7 +82,7 @@ impl ShapeNamer {
         let refused = Arc::clone(&post);
         let work = move || {
             let say = |event| {
-                // Nobody waits for what a model says that was given up.
+                // Nobody waits for the answers of a model that was given up.
                 if !stop.load(Ordering::Relaxed) {
                     post(WorkerEvent::Live(number, event));
                 }
@@ -101,7 +101,7 @@ impl ShapeNamer {
         }
     }
 
-    /// Answers an imprint: at once, or later by an event.
+    /// Names an imprint: at once, or later by an event.
     pub(in crate::tui::runtime) fn name(&self, imprint: &Imprint) -> Option<WorkerEvent> {
         if let Some(imprints) = &self.imprints {
             // A thread that has ended has said why.
@@ -128,14 +128,14 @@ impl ShapeNamer {
         Some(WorkerEvent::Live(self.number, event))
     }
 
-    /// Names nothing any more. Returns the thread, which ends by itself.
+    /// Stops naming. Returns the thread, which ends by itself.
     pub(in crate::tui::runtime) fn leave(&mut self) -> Option<JoinHandle<()>> {
         let thread = self.thread.take();
         self.end();
         thread
     }
 
-    /// Names nothing any more. The thread ends by itself: an answer under way is not waited for.
+    /// Stops naming. The thread ends by itself: an answer under way is not waited for.
     pub(in crate::tui::runtime) fn end(&mut self) {
         self.stop.stop();
         self.imprints = None;
@@ -147,7 +147,7 @@ impl ShapeNamer {
 /// Prepares a model, and names imprints by it until there are no more.
 ///
 /// # Errors
-/// Why there is no model.
+/// Returns the reason why there is no model.
 fn answer(
     store: &ModelStore,
     naming: &NamingRequest,
@@ -173,7 +173,7 @@ mod tests {
     use crate::tui::runtime::lock::locked;
 
     #[test]
-    fn a_training_that_is_given_up_says_nothing() {
+    fn a_training_that_is_given_up_sends_no_event() {
         let events = Arc::new(Mutex::new(Vec::new()));
         let posted = Arc::clone(&events);
         let threads = Execution::OnThreads(Arc::new(move |event| locked(&posted).push(event)));

@@ -10,28 +10,28 @@ use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::runtime::work::threads;
 
-/// Takes events of workers, from any thread.
+/// A receiver of workers' events, from any thread.
 pub type WorkerEventSink = Arc<dyn Fn(WorkerEvent) + Send + Sync>;
 
 /// Minimum interval between progress events.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Counts poses of several threads and sends progress events.
+/// A counter of the poses of several threads, which sends progress events.
 pub(in crate::tui::runtime) struct ProgressReporter<'a> {
     /// The number of the work, which its events carry.
     number: u64,
-    /// Where events are sent.
+    /// The receiver of the events.
     post: &'a WorkerEventSink,
-    /// When the work began.
+    /// The time when the work began.
     start: Instant,
-    /// Poses done.
+    /// The number of poses done.
     poses: AtomicU64,
-    /// When progress was sent last.
+    /// The time when progress was sent last.
     last: Mutex<Instant>,
 }
 
 impl<'a> ProgressReporter<'a> {
-    /// Progress of work that begins now.
+    /// Returns the reporter for work that begins now.
     pub(in crate::tui::runtime) fn new(number: u64, post: &'a WorkerEventSink) -> Self {
         let start = Instant::now();
         Self {
@@ -63,7 +63,7 @@ impl<'a> ProgressReporter<'a> {
 /// Does a piece of work on a thread of its own, which gets the number and the sink of its events.
 ///
 /// # Errors
-/// The event that says so, where the system gives no thread.
+/// Returns the event that says so if the system gives no thread.
 pub(in crate::tui::runtime) fn on_a_thread(
     number: u64,
     post: &WorkerEventSink,
@@ -85,24 +85,24 @@ pub(in crate::tui::runtime) fn guarded(
 /// Turns a panic into an error.
 ///
 /// # Errors
-/// A sentence, where it panics.
+/// Returns a sentence if the work panics.
 pub(in crate::tui::runtime) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     let done = catch_unwind(AssertUnwindSafe(work));
     done.map_err(|_| "the work failed; this is a bug".to_owned())
 }
 
-/// How many poses a piece of work may have that is done at once; None for any number.
+/// The largest number of poses of work that is done at once; None for any number.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::tui::runtime) struct PoseLimit(pub(in crate::tui::runtime) Option<u64>);
 
 impl PoseLimit {
-    /// Whether work with this number of poses is begun.
+    /// Returns true if work with this number of poses is begun.
     pub(in crate::tui::runtime) fn allows(self, poses: u64) -> bool {
         self.0.is_none_or(|most| poses <= most)
     }
 
-    /// For work whose poses are not counted beforehand: is called with the number of poses done since the last call, and
-    /// returns whether to go on.
+    /// Returns a function for work whose poses are not counted beforehand. It is called with the number of poses done
+    /// since the last call, and returns whether to go on.
     pub(in crate::tui::runtime) fn count(self) -> impl Fn(u64) -> bool + Sync {
         let done = AtomicU64::new(0);
         move |poses| self.allows(done.fetch_add(poses, Ordering::Relaxed) + poses)

@@ -13,8 +13,8 @@ use crate::tui::recognise::separate::request::SeparationRequest;
 use crate::tui::runtime::work::execution::{Execution, StopFlag};
 use crate::tui::runtime::work::progress::{ProgressReporter, guarded, on_a_thread, proceed};
 
-/// Looks at the sizes that are not known yet, on a thread of its own in place of the work before; or at once, and returns the
-/// event.
+/// Computes the limits of the sizes that are not known yet, on a thread of its own in place of the work before; or at
+/// once, and returns the event.
 pub(in crate::tui::runtime) fn look(
     number: u64,
     request: Arc<SeparationRequest>,
@@ -45,7 +45,7 @@ pub(in crate::tui::runtime) fn look(
     thread.err()
 }
 
-/// Some sizes, or the end.
+/// Returns the event with some sizes, or with the end.
 fn event(
     number: u64,
     sizes: Vec<SizeFound>,
@@ -55,7 +55,7 @@ fn event(
     WorkerEvent::Recognition(RecognitionEvent::Sizes(Box::new(found)))
 }
 
-/// Looks at the sizes after those that are known, then searches for the wanted error.
+/// Computes the limits of the sizes after those that are known, then searches for the wanted error.
 fn scan(
     request: &SeparationRequest,
     known: Vec<SeparationPoint>,

@@ -16,10 +16,10 @@ use std::time::{Duration, Instant};
 
 use rayon::{ThreadBuilder, ThreadPoolBuilder};
 
-/// How long the end of the program waits for the disk.
+/// The longest time that the end of the program waits for the disk.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(1500);
 
-/// The pause between two looks at a thread that is about to end.
+/// The pause between two checks of a thread that is about to end.
 const PAUSE: Duration = Duration::from_millis(5);
 
 /// Whether there is a pool whose threads share work.
@@ -46,7 +46,7 @@ pub(in crate::tui::runtime) fn prepare() {
     });
 }
 
-/// Starts a thread a core, each of which waits for what it is to do in a pool.
+/// Starts a thread for each core. Each waits for its task in a pool.
 fn spare_threads() -> io::Result<Vec<Sender<ThreadBuilder>>> {
     let cores = available_parallelism().map_or(1, usize::from);
     let spare = (0..cores).map(|_| {
@@ -60,7 +60,7 @@ fn spare_threads() -> io::Result<Vec<Sender<ThreadBuilder>>> {
 /// Starts a thread.
 ///
 /// # Errors
-/// A sentence, where the system gives none.
+/// Returns a sentence if the system gives no thread.
 pub(in crate::tui::runtime) fn start(
     body: impl FnOnce() + Send + 'static,
 ) -> Result<JoinHandle<()>, String> {
@@ -85,7 +85,7 @@ pub(in crate::tui::runtime) fn run(work: impl FnOnce() + Send) {
     let alone = ThreadPoolBuilder::new().num_threads(1).use_current_thread();
     match alone.build() {
         Ok(pool) => pool.install(work),
-        // It has one already.
+        // The thread has a pool already.
         Err(_) => work(),
     }
 }

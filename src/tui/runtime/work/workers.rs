@@ -1,5 +1,5 @@
-//! Long work: sweeps and exports. On threads of their own if there is a receiver for their events, otherwise at once,
-//! before the next message, as scripts want it.
+//! Long work: sweeps and exports. It runs on threads of its own if there is a receiver for its events, otherwise at
+//! once, before the next message, as scripts want it.
 //!
 //! ```text
 //! Measure(grid)        -> Estimate         best of several short runs, stopped by the next piece of work
@@ -36,7 +36,7 @@ use crate::tui::runtime::work::progress::{
 };
 use crate::tui::runtime::work::{look, sizes, threads};
 
-/// How long the end of the program waits for files that are being written.
+/// The longest time that the end of the program waits for files that are being written.
 const WRITING: Duration = Duration::from_millis(400);
 
 /// An estimate is the best of all runs within this time.
@@ -45,42 +45,42 @@ const MEASURED: Duration = Duration::from_millis(30);
 /// The work in progress, and how to stop it.
 #[derive(Debug, Default)]
 pub(in crate::tui) struct Workers {
-    /// How it is done.
+    /// The way in which work is done.
     execution: Execution,
-    /// Stops the sweep or the export in progress.
+    /// The stop flag of the sweep or the export in progress.
     working: StopFlag,
-    /// Stops the estimate in progress.
+    /// The stop flag of the estimate in progress.
     measuring: StopFlag,
-    /// Stops the search of a model in progress.
+    /// The stop flag of the search of a model in progress.
     looking: StopFlag,
-    /// Stops the look at sizes of a set in progress.
+    /// The stop flag of the work on the sizes of a set.
     separating: StopFlag,
     /// The thread that writes a file.
     writing: Option<JoinHandle<()>>,
-    /// Prepares models.
+    /// The worker that prepares models.
     models: ModelWorker,
-    /// Watches a source of frames.
+    /// The watcher of a source of frames.
     pub(in crate::tui::runtime) frames: FrameWatcher,
-    /// Names the imprints of its frames.
+    /// The namer of the imprints of its frames.
     namer: ShapeNamer,
-    /// Where files may be written.
+    /// The rule for where files may be written.
     pub(in crate::tui::runtime) access: Arc<WriteAccess>,
 }
 
 impl Workers {
-    /// Workers that do their work at once, with these models.
+    /// Returns workers that do their work at once, with these models.
     pub(in crate::tui::runtime) fn with(models: ModelStore) -> Self {
         let mut workers = Self::default();
         workers.models.store = models;
         workers
     }
 
-    /// Has work done on threads of their own.
+    /// Does work on threads of its own from now on, which send their events to `post`.
     pub(in crate::tui::runtime) fn post_to(&mut self, post: WorkerEventSink) {
         self.execution = Execution::OnThreads(post);
     }
 
-    /// Has work done at once, and stopped after this many poses.
+    /// Does work at once from now on, and stops it after this many poses.
     pub(in crate::tui::runtime) fn stop_after(&mut self, poses: u64) {
         self.execution = Execution::AtOnce(PoseLimit(Some(poses)));
     }
@@ -90,12 +90,12 @@ impl Workers {
         self.models.store.keep_in(cache);
     }
 
-    /// The model that is read from the disk, if that takes long.
+    /// Returns a text about the model that is being read, if that takes long.
     pub(in crate::tui::runtime) fn model_status(&self) -> Option<String> {
         self.models.status()
     }
 
-    /// When to look at that again; None if none is read.
+    /// Returns when to check again on the reading; None if nothing is read.
     pub(in crate::tui::runtime) fn model_next_check(&self) -> Option<Instant> {
         self.models.next_check()
     }
@@ -144,7 +144,7 @@ impl Workers {
         }
     }
 
-    /// Work about a source of frames.
+    /// Begins work about a source of frames.
     fn perform_live(&mut self, work: Work) -> Option<WorkerEvent> {
         match work {
             Work::Watch {
@@ -169,7 +169,7 @@ impl Workers {
         }
     }
 
-    /// Prepares the model that names the imprints of frames.
+    /// Prepares the model that names the imprints of frames; without a request, stops naming.
     fn name_by(&mut self, number: u64, naming: Option<Box<NamingRequest>>) {
         match naming {
             Some(naming) => {
@@ -180,7 +180,7 @@ impl Workers {
         }
     }
 
-    /// Estimates the time of a sweep, on a thread of its own; without a receiver nobody waits for it.
+    /// Estimates the time of a sweep on a thread of its own. Does nothing without a receiver, as nobody waits for it.
     fn measure(&mut self, grid: Box<PoseGrid>) -> Option<WorkerEvent> {
         let stop = self.measuring.renew();
         let Execution::OnThreads(post) = &self.execution else {
@@ -234,7 +234,7 @@ impl Workers {
         Some(run())
     }
 
-    /// Writes what was found to a file, on a thread of its own if there is a receiver.
+    /// Writes the results of a sweep to a file, on a thread of its own if there is a receiver.
     fn write(
         &mut self,
         number: u64,
@@ -270,7 +270,7 @@ impl Workers {
 impl Drop for Workers {
     fn drop(&mut self) {
         self.working.stop();
-        // Files are removed where they are half-written, models are written to the cache as a whole; but a disk may hang.
+        // Half-written files are removed, and models are written to the cache as a whole; but a disk may hang.
         let threads = [self.writing.take(), self.models.end(), self.namer.leave()];
         let end = Instant::now() + WRITING;
         for thread in threads.into_iter().flatten() {
@@ -295,7 +295,7 @@ fn measure(grid: &PoseGrid, stop: &AtomicBool) -> Option<Duration> {
     Duration::try_from_secs_f64(best * sample.times).ok()
 }
 
-/// Sweeps a grid and sends what was found, also after a stop.
+/// Sweeps a grid and returns the event with the results, also after a stop.
 fn sweep(number: u64, grid: &PoseGrid, progress: &(dyn Fn(u64) -> bool + Sync)) -> WorkerEvent {
     let memory = MemoryGuard::new(
         None,
@@ -307,13 +307,13 @@ fn sweep(number: u64, grid: &PoseGrid, progress: &(dyn Fn(u64) -> bool + Sync)) 
     let progress = |poses: u64| progress(poses) && memory.allows();
     let result = Sweep::new(grid).progress(&progress).run();
     if memory.exceeded() {
-        // What was found is given up: there is no memory to show it.
+        // The results are given up: there is no memory to show them.
         return WorkerEvent::Failed(number, memory.message());
     }
     WorkerEvent::Swept(number, Arc::new(Findings::new(result)))
 }
 
-/// Writes the results to a file and sends whether that worked.
+/// Writes the results to a file and returns the event that tells whether that worked.
 fn write(
     number: u64,
     findings: &Findings,
@@ -343,7 +343,8 @@ fn write(
     }
 }
 
-/// Sweeps the grid again, because the numbers of its poses are not kept. Returns whether it was completed.
+/// Writes the poses of a sweep to a file. Sweeps the grid again, because the numbers of its poses are not kept.
+/// Returns true if the sweep was completed.
 fn write_poses(
     result: &SweepResult,
     path: &Path,
