@@ -1,5 +1,5 @@
-//! Files that the screen opens and writes: imprints in any format, shapes, drawings; sources of frames before they are watched;
-//! and paths for completion.
+//! Opens and writes files for the screen: imprints in any format, shapes, drawings. Checks sources of frames before
+//! they are watched, and lists paths for completion.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -13,10 +13,10 @@ use crate::tui::runtime::disk::write_access::WriteAccess;
 use crate::tui::runtime::effect::FileRequest;
 use crate::tui::runtime::frames::source;
 
-/// No file is read further than one byte after this: it is refused then.
+/// The largest size of a file that is opened, in bytes. One byte more is read at most, and the file is refused then.
 const MOST: u64 = imprint_file::MAX_BYTES as u64;
 
-/// No more paths are offered.
+/// The largest number of paths that are offered.
 const MOST_PATHS: usize = 500;
 
 /// Performs a request.
@@ -38,7 +38,7 @@ pub(in crate::tui) fn perform(request: FileRequest, access: &WriteAccess) -> Fil
     }
 }
 
-/// A shape, or an imprint in any format.
+/// Opens a file with a shape, or with an imprint in any format.
 fn open(name: &str) -> Result<OpenedFile, String> {
     let path = location::below_home(name).ok_or("no home folder, so ~ cannot be used")?;
     let sentence = |error: std::io::Error| error.to_string();
@@ -80,8 +80,8 @@ pub(in crate::tui::runtime) fn absolute(path: &Path) -> String {
     whole.to_string_lossy().into_owned()
 }
 
-/// The paths that begin like this, as they are typed; folders end in a slash. Hidden ones are offered where a dot was
-/// typed.
+/// Returns the paths that begin like this, as they are typed; folders end in a slash. Hidden ones are offered only if
+/// a dot was typed.
 fn paths(start: &str) -> Vec<String> {
     let (folder, typed) = start
         .rfind('/')

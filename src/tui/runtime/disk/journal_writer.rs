@@ -7,7 +7,7 @@
 //!    |  Clear                |  Persist                    |
 //!    +---- any               +-----------------------------+  tried again with the next change
 //! ```
-//! Changes within the interval are written together, the last one only. The thread sleeps while there is nothing to
+//! Of the changes within the interval only the last one is written. The thread sleeps while there is nothing to
 //! write.
 
 use std::cell::Cell;
@@ -28,15 +28,15 @@ const GATHER: Duration = Duration::from_millis(400);
 /// The program's end of the channel to the thread.
 #[derive(Debug)]
 pub(in crate::tui) struct JournalWriter {
-    /// The requests. None for a writer that writes nothing, and while it is dropped.
+    /// The channel of requests. None for a writer that writes nothing, and while it is dropped.
     notes: Option<Sender<JournalRequest>>,
     /// The thread, until it is joined.
     thread: Option<JoinHandle<()>>,
     /// The work that was noted last.
     last: Option<StoredShape>,
-    /// Why there is no thread, where the system gives none.
+    /// The reason why there is no thread, if the system gives none.
     refused: Option<String>,
-    /// Whether the disk has not answered in time: then the program ends without it.
+    /// Whether the disk has not answered in time: then the program ends without waiting for it.
     hangs: Cell<bool>,
 }
 
@@ -44,13 +44,13 @@ pub(in crate::tui) struct JournalWriter {
 enum JournalRequest {
     /// Keep this unsaved work.
     Persist(Box<StoredShape>),
-    /// Keep this work of a program that crashed, and then take it out of that one's journal.
+    /// Keep this work of a program that crashed, and then remove it from that program's journal.
     Adopt(Box<Orphan>),
     /// There is no unsaved work any more.
     Clear,
     /// Write now; the answer is whether everything is written.
     Flush(Sender<bool>),
-    /// Where errors are reported.
+    /// Report errors to this sink.
     ReportTo(WorkerEventSink),
 }
 
@@ -81,7 +81,7 @@ impl JournalWriter {
         }
     }
 
-    /// One that writes nothing, for scripts.
+    /// Returns a writer that writes nothing, for scripts.
     pub(in crate::tui) fn idle() -> Self {
         Self {
             notes: None,
@@ -121,7 +121,7 @@ impl JournalWriter {
         self.send(JournalRequest::Persist(Box::new(shape)));
     }
 
-    /// Keeps the work of a program that crashed, in place of that one's journal.
+    /// Keeps the work of a program that crashed, in place of that program's journal.
     pub(in crate::tui) fn adopt(&mut self, orphan: Orphan) {
         self.last = Some(orphan.shape.clone());
         self.send(JournalRequest::Adopt(Box::new(orphan)));
@@ -130,17 +130,17 @@ impl JournalWriter {
     /// Sends a request to the thread, if there is one.
     fn send(&self, note: JournalRequest) {
         if let Some(notes) = &self.notes {
-            // The thread ends only after this end of the channel.
+            // The thread ends only after this end of the channel is dropped.
             let _ = notes.send(note);
         }
     }
 
-    /// Waits until everything is written, but not for ever: a disk may hang. False if it is not written.
+    /// Waits until everything is written, but not for ever: a disk may hang. Returns false if it is not written.
     fn flush(&self) -> bool {
         self.written(PATIENCE)
     }
 
-    /// Writes everything, waiting for at most `patience`. False if it is not written by then.
+    /// Writes everything, waiting for at most `patience`. Returns false if it is not written by then.
     pub(in crate::tui) fn written(&self, patience: Duration) -> bool {
         let (done, written) = channel();
         self.send(JournalRequest::Flush(done));
@@ -156,7 +156,7 @@ impl Drop for JournalWriter {
             self.flush();
         }
         self.notes = None;
-        // One that hangs ends with the program.
+        // A thread that hangs ends with the program.
         if let Some(thread) = self.thread.take().filter(|_| !self.hangs.get()) {
             // A panic of the thread has been reported.
             let _ = thread.join();
@@ -168,22 +168,22 @@ impl Drop for JournalWriter {
 enum Pending {
     /// Everything is written.
     Nothing,
-    /// Waiting for further changes since then.
+    /// A shape that waits for further changes since that time.
     Since(Box<StoredShape>, Instant),
-    /// Could not be written. It is tried again with the next change or the next flush, not by the clock: a full disk may
-    /// have room by then.
+    /// A shape that could not be written. It is tried again with the next change or the next flush, not by the clock:
+    /// a full disk may have room by then.
     Failed(Box<StoredShape>),
 }
 
 /// The thread's end: gathers changes for a moment, then writes the latest.
 struct JournalThread {
-    /// Where it writes to.
+    /// The journal that it writes to.
     journal: Journal,
-    /// What is still to be written.
+    /// The work that is still to be written.
     pending: Pending,
     /// Work of programs that crashed, which stays in their journals until it is written here.
     adopted: Vec<Orphan>,
-    /// Where errors are reported.
+    /// The receiver of errors.
     post: Option<WorkerEventSink>,
     /// Whether the present error has been reported: once is enough.
     reported: bool,
@@ -232,7 +232,8 @@ impl JournalThread {
         }
     }
 
-    /// Writes what is pending, and returns whether everything is written. A shape that cannot be written stays pending.
+    /// Writes the pending work, and returns true if everything is written. A shape that cannot be written stays
+    /// pending.
     fn write(&mut self) -> bool {
         let pending = std::mem::replace(&mut self.pending, Pending::Nothing);
         let (Pending::Since(shape, _) | Pending::Failed(shape)) = pending else {

@@ -1,4 +1,4 @@
-//! Unsaved work in a few words, by which its owner knows it again.
+//! Describes unsaved work in a few words, by which its owner recognises it.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use crate::source::Source;
 use crate::storage::{Orphan, UNNAMED};
 use crate::tui::explore::ranges::view::about;
 
-/// What it is, how large, and when it was left: `hexagon side 4.00, 40 taxels, about 12 minutes ago`.
+/// Returns the name, the size and the age of the work: `hexagon side 4.00, 40 taxels, about 12 minutes ago`.
 pub(in crate::tui::runtime) fn described(orphan: &Orphan) -> String {
     let shape = &orphan.shape;
     let called = match (shape.name.as_str(), &shape.source) {
@@ -21,7 +21,7 @@ pub(in crate::tui::runtime) fn described(orphan: &Orphan) -> String {
     pieces.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// How long ago something happened, in words. Seconds would say nothing about what has just happened.
+/// Returns how long ago something happened, in words. Within the first minute, seconds would say nothing useful.
 fn ago(time: Duration) -> String {
     if time < Duration::from_secs(60) {
         "less than a minute ago".to_owned()
@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_that_have_passed_are_said_in_the_unit_that_fits() {
+    fn an_age_is_given_in_the_unit_that_fits() {
         let said = [0, 59, 60, 720, 400_000].map(|seconds| ago(Duration::from_secs(seconds)));
         assert_eq!(
             said,

@@ -1,5 +1,5 @@
-//! Disk requests, handled one after the other on a separate thread, so that no key waits for a disk or for the lock of
-//! another program.
+//! Disk requests, handled one after the other on a separate thread, so that no key waits for a disk or for the lock
+//! of another program.
 //!
 //! ```text
 //! request -> thread -> answer within QUICK: handled at once, before the next key
@@ -31,10 +31,11 @@ use crate::tui::runtime::slow_work::SlowWork;
 use crate::tui::runtime::work::models::ModelStore;
 use crate::tui::runtime::work::progress::{WorkerEventSink, caught};
 
-/// How long a key waits for an answer. Nearly all come within it, so that the next key finds the work done.
+/// The time that a key waits for an answer. Nearly all answers come within it, so that the next key finds the work
+/// done.
 const QUICK: Duration = Duration::from_millis(100);
 
-/// What the disk is wanted for.
+/// A request to the disk.
 #[derive(Debug)]
 pub(in crate::tui::runtime) enum DiskRequest {
     /// Read or change the library.
@@ -49,37 +50,39 @@ pub(in crate::tui::runtime) enum DiskRequest {
     BeginRecording(u64, Box<RecordingMetadata>),
     /// Write threshold, tare and marks into the description of a recording of the source of that number.
     DescribeRecording(u64, Arc<Recording>, Box<RecordedView>),
-    /// Write out all that waits of a recording of the source of that number.
+    /// Write out all waiting frames of a recording of the source of that number.
     FlushRecording(u64, Arc<Recording>),
     /// Finish a recording of the source of that number.
     EndRecording(u64, Arc<Recording>),
 }
 
-/// What became of a request.
+/// The outcome of a request.
 #[derive(Debug)]
 pub(in crate::tui::runtime) enum DiskAnswer {
-    /// The shape was saved, and this is the stamp of its file; or it was not, and this is what is in its way.
+    /// The shape that was to be saved; the stamp of its file, or the error; and the stored shape that is in its way,
+    /// if any.
     Stored(
         Box<StoredShape>,
         Result<u64, LibraryError>,
         Option<Box<LoadedShape>>,
     ),
-    /// The work is in the trash under that name; and the next one, and how many there are.
+    /// The name of the unsaved work in the trash, or the error; and the next work to offer, with the number of
+    /// offers.
     ThrownAway(Result<String, LibraryError>, Option<(Box<Orphan>, usize)>),
-    /// What became of a file.
+    /// The answer to a request about a file.
     File(FileEvent),
     /// Any other answer of the library.
     Library(LibraryEvent),
-    /// Frames of the source of that number can be recorded in the file of that name, or not.
+    /// The file name and the recording for the source of that number, or the reason why there is none.
     Recording(u64, Result<(String, Arc<Recording>), String>),
-    /// What is to be said on the page of a source.
+    /// An event for the page of the source of that number.
     Live(u64, LiveEvent),
     /// No answer is wanted.
     Nothing,
 }
 
 impl DiskRequest {
-    /// What it does, in a few words for a message.
+    /// Returns a description of the request for a message, in a few words.
     fn words(&self) -> String {
         match self {
             Self::Library(request) => request_words(request),
@@ -99,7 +102,8 @@ impl DiskRequest {
         }
     }
 
-    /// Whether it makes an earlier request needless: of two descriptions of a recording only the later one stays.
+    /// Returns true if the request makes an earlier one needless: of two descriptions of a recording only the later
+    /// one stays.
     fn replaces(&self, earlier: &Self) -> bool {
         match (self, earlier) {
             (Self::DescribeRecording(_, own, _), Self::DescribeRecording(_, other, _)) => {
@@ -109,7 +113,7 @@ impl DiskRequest {
         }
     }
 
-    /// Whether it needs the lock of the library, which another program may hold.
+    /// Returns true if the request needs the lock of the library, which another program may hold.
     fn locks(&self) -> bool {
         match self {
             Self::Library(request) => request.is_change(),
@@ -118,7 +122,7 @@ impl DiskRequest {
         }
     }
 
-    /// Carries it out.
+    /// Carries out the request.
     fn perform(self, library: &Library, access: &WriteAccess) -> DiskAnswer {
         match self {
             Self::Library(request) => answer(library, request),
@@ -141,7 +145,7 @@ impl DiskRequest {
     }
 }
 
-/// What a request to the library does, in a few words for a message.
+/// Returns a description of a request to the library for a message, in a few words.
 fn request_words(request: &LibraryRequest) -> String {
     match request {
         LibraryRequest::List => "Listing the shapes".to_owned(),
@@ -194,7 +198,7 @@ fn answer(library: &Library, request: LibraryRequest) -> DiskAnswer {
     })
 }
 
-/// Saves a shape, or reads what is in its way.
+/// Saves a shape, or reads the one that is in its way.
 fn store(library: &Library, shape: Box<StoredShape>, expected: Expected) -> DiskAnswer {
     let stored = library.save(&shape, expected);
     let in_the_way = match &stored {
@@ -206,13 +210,14 @@ fn store(library: &Library, shape: Box<StoredShape>, expected: Expected) -> Disk
     DiskAnswer::Stored(shape, stored, in_the_way.map(Box::new))
 }
 
-/// What became of a recording of the source of that number to which something was written: a failure ends it.
+/// Returns the answer after something was written to a recording of the source of that number: a failure ends the
+/// recording.
 fn written(number: u64, written: Result<(), String>) -> DiskAnswer {
     let failed = |reason| DiskAnswer::Live(number, LiveEvent::NotRecorded(reason));
     written.map_or_else(failed, |()| DiskAnswer::Nothing)
 }
 
-/// A line about a recording that could not be finished or written on, if the answer says so.
+/// Returns a line about a recording that could not be finished or continued, if the answer says so.
 pub(in crate::tui::runtime) fn not_recorded(answer: &DiskAnswer) -> Option<String> {
     match answer {
         DiskAnswer::Live(_, LiveEvent::NotFinished(reason) | LiveEvent::NotRecorded(reason)) => {
@@ -222,7 +227,7 @@ pub(in crate::tui::runtime) fn not_recorded(answer: &DiskAnswer) -> Option<Strin
     }
 }
 
-/// An error of the library in a sentence, with the name that was probably meant.
+/// Returns an error of the library in a sentence, with the name that was probably meant.
 fn sentence(library: &Library, error: &LibraryError) -> String {
     format!("{error}{}", library.suggestion(error))
 }
@@ -248,38 +253,39 @@ fn throw_away(library: &Library, orphan: Orphan) -> DiskAnswer {
     DiskAnswer::ThrownAway(thrown, next)
 }
 
-/// The newest unsaved work, and how much there is. The others are offered after it, or by other programs.
+/// Returns the newest unsaved work, and the number of all such works. The others are offered after it, or by other
+/// programs.
 pub(in crate::tui::runtime) fn newest_orphan(library: &Library) -> Option<(Box<Orphan>, usize)> {
     let mut all = Orphan::all(library);
     let count = all.len();
     all.pop().map(|newest| (Box::new(newest), count))
 }
 
-/// The requests under way.
+/// The queue of requests to the disk.
 #[derive(Debug)]
 pub(in crate::tui::runtime) struct DiskQueue {
     /// The library that is read or changed.
     library: Library,
-    /// Where files may be written.
+    /// The rule for where files may be written.
     pub(in crate::tui::runtime) access: Arc<WriteAccess>,
-    /// What is shared with the thread, once there is one.
+    /// The screen's end of the thread, once there is one.
     thread: Option<DiskThread>,
     /// The requests without an answer; the first is being carried out.
     pending: VecDeque<PendingRequest>,
-    /// Where the thread says that it has an answer; None without a thread.
+    /// The receiver of the event that there is an answer; None to work without a thread.
     post: Option<Post>,
 }
 
 /// A request without an answer.
 #[derive(Debug)]
 struct PendingRequest {
-    /// What it does, and since when.
+    /// The work, and the time when it was asked for.
     work: SlowWork,
     /// Whether it needs the lock of the library.
     locks: bool,
 }
 
-/// A sink of events, which has no text of its own.
+/// A sink of events that implements `Debug`.
 struct Post(WorkerEventSink);
 
 impl std::fmt::Debug for Post {
@@ -292,17 +298,18 @@ impl std::fmt::Debug for Post {
 #[derive(Debug)]
 struct DiskThread {
     shared: Arc<SharedQueue>,
-    /// What became of them, in their order.
+    /// The answers, in the order of the requests.
     answers: Receiver<DiskAnswer>,
 }
 
-/// What both ends share: the requests that wait for the thread.
+/// The state that both ends share: the requests that wait for the thread.
 #[derive(Debug)]
 struct SharedQueue {
     waiting: Mutex<WaitingRequests>,
-    /// Notified when that changes.
+    /// Notified when `waiting` changes.
     changed: Condvar,
-    /// Used under the lock of `waiting`, and only by the thread of the present generation.
+    /// The channel of the answers. It is used under the lock of `waiting`, and only by the thread of the present
+    /// generation.
     answer: Sender<DiskAnswer>,
 }
 
@@ -310,7 +317,8 @@ struct SharedQueue {
 #[derive(Debug, Default)]
 struct WaitingRequests {
     requests: VecDeque<DiskRequest>,
-    /// The number of the present thread. It alone takes requests and gives answers: those before it hang.
+    /// The number of the present thread. Only this thread takes requests and gives answers: the threads before it
+    /// hang.
     generation: u64,
     /// Whether no more requests come.
     is_closed: bool,
@@ -359,7 +367,7 @@ impl SharedQueue {
 }
 
 impl DiskQueue {
-    /// Requests to a library, carried out at once.
+    /// Returns a queue for a library, whose requests are carried out at once.
     pub(in crate::tui::runtime) fn new(library: Library) -> Self {
         Self {
             library,
@@ -370,17 +378,17 @@ impl DiskQueue {
         }
     }
 
-    /// Has requests carried out on a thread.
+    /// Carries out requests on a thread from now on.
     pub(in crate::tui::runtime) fn post_to(&mut self, post: WorkerEventSink) {
         self.post = Some(Post(post));
     }
 
-    /// Carries out a request, or has it carried out. Returns the answer if it comes within a moment.
+    /// Carries out a request, at once or on the thread. Returns the answer if it comes within a moment.
     pub(in crate::tui::runtime) fn ask(&mut self, request: DiskRequest) -> Option<DiskAnswer> {
         if let Some(answer) = self.begin(request) {
             return Some(answer);
         }
-        // Behind another one it takes long.
+        // Behind another request it takes long.
         let is_first = self.pending.len() == 1;
         is_first.then(|| self.wait(QUICK)).flatten()
     }
@@ -434,25 +442,25 @@ impl DiskQueue {
         Builder::new().spawn(body).is_ok()
     }
 
-    /// The next answer, if there is one within `time`.
+    /// Returns the next answer, if there is one within `time`.
     pub(in crate::tui::runtime) fn wait(&mut self, time: Duration) -> Option<DiskAnswer> {
         let answer = self.thread.as_ref()?.answers.recv_timeout(time).ok()?;
         self.pending.pop_front();
         Some(answer)
     }
 
-    /// Whether every request has its answer.
+    /// Returns true if every request has its answer.
     pub(in crate::tui::runtime) fn is_idle(&self) -> bool {
         self.pending.is_empty()
     }
 
-    /// How many requests have no answer.
+    /// Returns the number of requests without an answer.
     pub(in crate::tui::runtime) fn len(&self) -> usize {
         self.pending.len()
     }
 
-    /// Waits for the first of them no longer. Its thread ends when the disk lets it, and another one carries out the
-    /// others. Returns what the first one does.
+    /// Stops waiting for the first request. Its thread ends when the disk lets it, and another one carries out the
+    /// other requests. Returns the description of the first request.
     pub(in crate::tui::runtime) fn abandon_first(&mut self) -> Option<String> {
         let first = self.pending.pop_front()?;
         if let Some(thread) = &self.thread {
@@ -461,12 +469,12 @@ impl DiskQueue {
                 // The thread has not begun it.
                 waiting.requests.pop_front();
             } else if thread.answers.try_recv().is_err() {
-                // It has not been answered just now.
+                // It has not been answered just now, so its thread hangs.
                 waiting.generation += 1;
                 let generation = waiting.generation;
                 drop(waiting);
                 if !self.spawn(&thread.shared, generation) {
-                    // Requests are carried out at once from now on; these are lost.
+                    // Requests are carried out at once from now on; the waiting ones are lost.
                     (self.thread, self.pending) = (None, VecDeque::new());
                 }
             }
@@ -474,12 +482,12 @@ impl DiskQueue {
         Some(first.work.words)
     }
 
-    /// When to look again at what is waited for; None if nothing is.
+    /// Returns when to check again on the first request; None if there is none.
     pub(in crate::tui::runtime) fn next_check(&self) -> Option<Instant> {
         Some(self.pending.front()?.work.next_check())
     }
 
-    /// What the first request waits for, if it takes long.
+    /// Returns the description of the first request and of what it waits for, if it takes long.
     pub(in crate::tui::runtime) fn status(&self) -> Option<String> {
         let first = self.pending.front()?;
         let what = if self.waits_for_lock() {
@@ -490,13 +498,13 @@ impl DiskQueue {
         first.work.status(what)
     }
 
-    /// Whether the first request waits for another program rather than for the disk.
+    /// Returns true if the first request waits for another program rather than for the disk.
     fn waits_for_lock(&self) -> bool {
         let locks = self.pending.front().is_some_and(|first| first.locks);
         locks && self.library.waits_for_lock()
     }
 
-    /// What may not be done when the program ends now, a line each.
+    /// Returns a line for each request that may not be done if the program ends now.
     pub(in crate::tui::runtime) fn left(&self) -> Vec<String> {
         let why = if self.waits_for_lock() {
             "another program holds the library"
@@ -511,7 +519,7 @@ impl DiskQueue {
 }
 
 impl Drop for DiskQueue {
-    /// The thread ends when it has carried out what was asked for.
+    /// Closes the queue: the thread ends when it has carried out the requests.
     fn drop(&mut self) {
         if let Some(thread) = &self.thread {
             locked(&thread.shared.waiting).is_closed = true;
@@ -524,7 +532,7 @@ impl Drop for DiskQueue {
 mod tests {
     use super::*;
 
-    /// Requests whose thread is not there yet, as when the system has not run it.
+    /// Returns a queue whose thread does not run yet, as if the system had not started it.
     fn without_thread() -> DiskQueue {
         let (answer, answers) = channel();
         let shared = Arc::new(SharedQueue {

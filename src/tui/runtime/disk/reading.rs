@@ -1,4 +1,4 @@
-//! What the screen reads from the disk. A late answer goes to the page that asked for it.
+//! The requests of the screen to read from the disk. A late answer goes to the page that asked for it.
 //!
 //! ```text
 //! ask -> answer within a moment: the next message
@@ -14,16 +14,16 @@ use crate::tui::runtime::disk::queue::{DiskAnswer, DiskQueue, DiskRequest};
 /// Requests to read, and their answers.
 #[derive(Debug)]
 pub(in crate::tui::runtime) struct Reader {
-    /// The requests.
+    /// The queue of the requests.
     pub(in crate::tui::runtime) queue: DiskQueue,
-    /// How many pages were open when each of them was made; None if its answer is not wanted any more.
+    /// The number of pages that were open when each request was made; None if its answer is not wanted any more.
     asked: VecDeque<Option<usize>>,
-    /// Answers that wait for their page, with the same number.
+    /// The answers that wait for their page, each with that number.
     answers: VecDeque<(usize, DiskAnswer)>,
 }
 
 impl Reader {
-    /// A reader with a queue of its own, so that a save that hangs holds up no reading.
+    /// Returns a reader with a queue of its own, so that a save that hangs does not hold up reading.
     pub(in crate::tui::runtime) fn new(queue: DiskQueue) -> Self {
         Self {
             queue,
@@ -32,7 +32,7 @@ impl Reader {
         }
     }
 
-    /// Asks while that many pages are open. Returns the answer if there is one within a moment.
+    /// Makes a request while this many pages are open. Returns the answer if it comes within a moment.
     pub(in crate::tui::runtime) fn ask(
         &mut self,
         request: DiskRequest,
@@ -46,7 +46,7 @@ impl Reader {
         answer
     }
 
-    /// Takes the next answer whose page is on top when that many are open.
+    /// Takes the next answer whose page is on top when this many pages are open.
     pub(in crate::tui::runtime) fn take(&mut self, pages: usize) -> Option<DiskAnswer> {
         while let Some(answer) = self.queue.wait(Duration::ZERO) {
             let asked = self.asked.pop_front().flatten();
@@ -57,8 +57,9 @@ impl Reader {
         self.answers.remove(next).map(|(_, answer)| answer)
     }
 
-    /// Waits no longer for what was asked for first, if the page that did so is on top when that many are open. Returns what
-    /// was waited for. Other answers go on being waited for, but for those to a page, which closes now.
+    /// Stops waiting for the first request, if its page is on top when this many pages are open. Returns its
+    /// description. A page closes then, so its other answers are dropped too; on the matrix they are still waited
+    /// for.
     pub(in crate::tui::runtime) fn give_up(&mut self, pages: usize) -> Option<String> {
         let is_of_page = |asked: &Option<usize>| asked.is_none_or(|asked| asked >= pages);
         self.asked.front().filter(|asked| is_of_page(asked))?;
@@ -70,18 +71,18 @@ impl Reader {
                 .for_each(|asked| *asked = None);
         }
         let given_up = self.queue.abandon_first();
-        // Without another thread the others are lost.
+        // If no other thread could be started, the other requests are lost.
         self.asked.truncate(self.queue.len());
         given_up
     }
 
-    /// What is waited for, if it takes long.
+    /// Returns the description of the request that is waited for, if it takes long.
     pub(in crate::tui::runtime) fn status(&self) -> Option<String> {
         let status = self.queue.status()?;
         Some(status + "; Esc gives up")
     }
 
-    /// When to look at that again; None if nothing is waited for.
+    /// Returns when to check again on that request; None if nothing is waited for.
     pub(in crate::tui::runtime) fn next_check(&self) -> Option<Instant> {
         self.queue.next_check()
     }

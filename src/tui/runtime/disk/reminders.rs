@@ -1,6 +1,6 @@
 //! What a run remembers for the next one: commands, the set of shapes that was recognised last, the values of forms.
 //!
-//! Scripts and recorded runs have none of it: they do the same every time.
+//! Scripts and recorded runs remember nothing, so that they do the same every time.
 
 use crate::formats::Name;
 use crate::storage::ModelChoice;
@@ -10,25 +10,25 @@ use crate::tui::form::memory::FormMemory;
 use crate::tui::recognise::reach::trained_set;
 use crate::tui::runtime::disk::queue::{DiskQueue, DiskRequest};
 
-/// The files, and what is in them as far as that is known.
+/// The remembered files, and their content as far as it is known.
 #[derive(Debug)]
 pub(in crate::tui::runtime) struct Reminders {
-    /// The commands of the prompt.
+    /// The file of the prompt's commands.
     commands: RememberedFile,
-    /// How many of them are remembered.
+    /// The number of commands in that file.
     remembered: usize,
-    /// The set.
+    /// The file of the set.
     set: RememberedFile,
-    /// Which one is remembered.
+    /// The set in that file.
     chosen: Option<ModelChoice>,
-    /// The values of forms.
+    /// The file of the forms' values.
     forms: RememberedFile,
-    /// Those that are remembered.
+    /// The values in that file.
     values: FormMemory,
 }
 
 impl Reminders {
-    /// The files in the folder of a library.
+    /// Returns the reminders in the folder of a library.
     pub(in crate::tui::runtime) fn of(library: &Library) -> Self {
         Self {
             commands: RememberedFile::commands(library),
@@ -40,7 +40,7 @@ impl Reminders {
         }
     }
 
-    /// Gives the program what earlier runs remembered.
+    /// Gives the program the values that earlier runs remembered.
     pub(in crate::tui::runtime) fn remind(&mut self, app: &mut App) {
         app.commands = self.commands.read();
         self.remembered = app.commands.len();
@@ -55,8 +55,8 @@ impl Reminders {
         app.forms = self.values.clone();
     }
 
-    /// Remembers what is new. A set counts once its model is there, so that none is remembered that does not exist; a file
-    /// does not, since the next run may begin in another folder.
+    /// Remembers everything new. A set is remembered once its model is ready, so that it surely exists. A model from
+    /// a file is not, since the next run may begin in another folder.
     pub(in crate::tui::runtime) fn note(&mut self, app: &App, queue: &mut DiskQueue) {
         let mut write = |file: &RememberedFile, lines| {
             // The answer says nothing.

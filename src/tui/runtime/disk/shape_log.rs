@@ -1,4 +1,4 @@
-//! Which stored shapes the program has used, for a record that does the same again elsewhere.
+//! The log of the stored shapes that the program has used, for a recorded script that does the same again elsewhere.
 //!
 //! A shape is used when its imprint is shown, loaded, compared, or in the way of another one. A list shows only the
 //! names of the others: these are logged as shapes without an active taxel, so that a list has the same rows again.
@@ -12,10 +12,10 @@ use crate::sensor::Sensor;
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 use crate::tui::app::library::LibraryEvent;
 
-/// Takes each shape that is logged. One of the same name replaces the one before.
+/// A receiver of the logged shapes. A shape replaces an earlier one of the same name.
 pub type ShapeSink = Box<dyn FnMut(StoredShape)>;
 
-/// The shapes logged so far, and who takes them.
+/// The shapes logged so far, and their receiver.
 #[derive(Default)]
 pub(in crate::tui::runtime) struct ShapeLog {
     sink: Option<ShapeSink>,
@@ -32,7 +32,7 @@ impl fmt::Debug for ShapeLog {
 }
 
 impl ShapeLog {
-    /// A log that somebody takes.
+    /// Returns a log that gives its shapes to `sink`.
     pub(in crate::tui::runtime) fn of(sink: ShapeSink) -> Self {
         Self {
             sink: Some(sink),
@@ -53,7 +53,7 @@ impl ShapeLog {
         }
     }
 
-    /// Logs the names of a list. Those that come with the program are there anyway.
+    /// Logs the names of a list. Shapes that come with the program are left out: they are there anyway.
     fn list(&mut self, entries: &[LibraryEntry]) {
         let Some(sink) = &mut self.sink else { return };
         let own = entries.iter();
@@ -72,7 +72,7 @@ impl ShapeLog {
         }
     }
 
-    /// Notes a shape that the program has stored itself: a replay stores it again.
+    /// Notes a shape that the program has stored itself, without logging it: a replay stores it again.
     pub(in crate::tui::runtime) fn stored(&mut self, name: &str, stamp: u64) {
         if self.sink.is_some() {
             self.logged.insert(name.to_owned(), Some(stamp));

@@ -1,4 +1,4 @@
-//! Where the program may write files.
+//! The rule for where the program may write files.
 //!
 //! On a terminal a person names the file and answers when it exists. A script does both itself, and may come from a
 //! stranger: it may write below its own folder only, no hidden files, and replaces only files that it has written itself.
@@ -10,17 +10,17 @@ use std::sync::Mutex;
 use crate::storage::{Existing, location};
 use crate::tui::runtime::lock::locked;
 
-/// Where files may be written.
+/// The rule for where files may be written.
 #[derive(Debug, Default)]
 pub(in crate::tui) struct WriteAccess {
     /// The folder that a script is confined to; None for anywhere.
     folder: Option<PathBuf>,
-    /// The files that it has been allowed to write.
+    /// The files that the script was allowed to create, which it may replace.
     written: Mutex<Vec<PathBuf>>,
 }
 
 impl WriteAccess {
-    /// Below this folder only.
+    /// Returns the rule of a script, which writes only below this folder.
     pub(in crate::tui::runtime) fn below(folder: PathBuf) -> Self {
         Self {
             folder: Some(folder),
@@ -28,15 +28,16 @@ impl WriteAccess {
         }
     }
 
-    /// Whether it is a script's, which may be a stranger's.
+    /// Returns true for a script that may come from a stranger.
     pub(in crate::tui::runtime) fn is_confined(&self) -> bool {
         self.folder.is_some()
     }
 
-    /// The path for a file of that name, which may begin with `~/`. For a script, a relative one is below its folder.
+    /// Returns the path for a file of that name, which may begin with `~/`. For a script, a relative path is below
+    /// its folder.
     ///
     /// # Errors
-    /// A sentence with the name, if the file may not be written.
+    /// Returns a sentence with the name if the file may not be written.
     pub(in crate::tui::runtime) fn path(
         &self,
         name: &str,
@@ -51,7 +52,7 @@ impl WriteAccess {
                 "{name}: without --allow-outside, a script writes only below its folder, and no hidden files"
             )
         })?;
-        // A thread that panicked here has added a path or not.
+        // If a thread panicked here, it has added a path or not: the list is whole.
         let mut written = locked(&self.written);
         if existing == Existing::Replaced && path.exists() && !written.contains(&path) {
             return Err(format!(
@@ -65,7 +66,7 @@ impl WriteAccess {
     }
 }
 
-/// The path of a file below a folder, links resolved; None if it is elsewhere or hidden.
+/// Returns the path of a file below a folder, links resolved; None if it is elsewhere or hidden.
 fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     let folder = folder.canonicalize().ok()?;
     let path = folder.join(name);
