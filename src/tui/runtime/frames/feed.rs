@@ -26,46 +26,47 @@ use crate::tui::runtime::frames::source;
 use crate::tui::runtime::lock::locked;
 use crate::tui::runtime::work::progress::caught;
 
-/// What has come and was not taken yet.
+/// The frames that have come and were not taken yet, and their recording.
 #[derive(Debug, Default)]
 pub(in crate::tui::runtime) struct FrameFeed {
-    /// Held for as long as it takes to add or to take frames, never while a file is written.
+    /// Locked while frames are added or taken, never while a file is written.
     pending: Mutex<Pending>,
     /// The recording. Its lock is held only briefly, so a slow disk holds up the source and nothing else.
     recording: Mutex<Option<Arc<Recording>>>,
 }
 
-/// What the screen takes at its next turn. It is swapped out under a short lock, so that the source hardly waits.
+/// The frames and the state that the screen takes next. They are swapped out under a short lock, so that the source
+/// hardly waits.
 #[derive(Debug, Default)]
 struct Pending {
-    /// The frames, and how the source is.
+    /// The frames, and the state of the source.
     batch: FrameBatch,
     /// The memory that those frames take.
     bytes: usize,
     /// Whether there is something that was not taken yet.
     is_new: bool,
-    /// The channels so far, and which of them is watched.
+    /// The channels so far, and the one that is watched.
     channels: ChannelChoice,
-    /// When the last frame came, by its time.
+    /// The time of the last frame.
     last_time: Option<f64>,
-    /// For how long the source was lost since then; None where it was not.
+    /// The time for which the source has been lost since that frame; None if it was not lost.
     gap: Option<Duration>,
 }
 
 impl FrameFeed {
-    /// What comes of the channel that is asked for.
+    /// Returns the feed for the channel that is asked for.
     pub(in crate::tui::runtime) fn of(request: &WatchRequest) -> Self {
         let feed = Self::default();
         locked(&feed.pending).channels = ChannelChoice::new(request.options.channel.as_deref());
         feed
     }
 
-    /// What is recorded in.
+    /// Returns the present recording.
     pub(in crate::tui::runtime) fn recording(&self) -> Option<Arc<Recording>> {
         locked(&self.recording).clone()
     }
 
-    /// Records in this from now on. Returns what was recorded in before.
+    /// Records in this recording from now on. Returns the one before.
     pub(in crate::tui::runtime) fn begin(
         &self,
         recording: Arc<Recording>,
@@ -80,14 +81,14 @@ impl FrameFeed {
         status.record_error = None;
     }
 
-    /// Goes on with what was recorded in before, if anything was, and notes how it is.
+    /// Continues the earlier recording, if there is one, and notes its state.
     pub(in crate::tui::runtime) fn go_on_with(&self, recording: Option<Arc<Recording>>) {
         *locked(&self.recording) = recording;
         let recorded = self.recorded(Recording::tick);
         locked(&self.pending).note(recorded);
     }
 
-    /// Records no more. Returns what was recorded in.
+    /// Stops recording. Returns the recording.
     pub(in crate::tui::runtime) fn end(&self) -> Option<Arc<Recording>> {
         let recording = locked(&self.recording).take()?;
         locked(&self.pending).batch.status.recorded = None;
@@ -99,12 +100,12 @@ impl FrameFeed {
         self.change(|pending| pending.batch.status.state = SourceState::Failed(reason));
     }
 
-    /// Whether there is something to take.
+    /// Returns true if there is something to take.
     pub(in crate::tui::runtime) fn has_new(&self) -> bool {
         locked(&self.pending).is_new
     }
 
-    /// Writes to it, if there is one. Returns how many frames are recorded then.
+    /// Writes to the recording, if there is one. Returns the number of recorded frames.
     fn recorded(
         &self,
         write: impl FnOnce(&Recording) -> Result<Option<RecordedFrames>, String>,
@@ -135,7 +136,8 @@ impl FrameFeed {
         Ok(())
     }
 
-    /// Reads a source to its end; a panic counts as an error of the source. `fresh` is called when there is something to take where there was nothing.
+    /// Reads a source to its end; a panic counts as an error of the source. `fresh` is called when there is something
+    /// to take and there was nothing before.
     pub(in crate::tui::runtime) fn run(
         &self,
         source: &FrameSource,
@@ -168,22 +170,22 @@ impl FrameFeed {
         if self.change(|pending| pending.batch.status.state = state) {
             let _ = fresh(self);
         }
-        // Nothing comes any more that would have the rest written, and the page may stay open for long. Said after the end
-        // of the source: a disk may hang.
+        // Nothing comes any more that would make the recording write its rest, and the page may stay open for long.
+        // This is done after the end of the source is shown, because a disk may hang.
         let written = self.recorded(Recording::flush);
         if written.is_err() && self.change(|pending| pending.note(written)) {
             let _ = fresh(self);
         }
     }
 
-    /// Changes what is to be taken; true if there was nothing to take before.
+    /// Changes the state that is to be taken. Returns true if there was nothing to take before.
     fn change(&self, change: impl FnOnce(&mut Pending)) -> bool {
         let mut pending = locked(&self.pending);
         change(&mut pending);
         !std::mem::replace(&mut pending.is_new, true)
     }
 
-    /// Takes what there is; None if nothing is new.
+    /// Takes the pending frames and state; None if nothing is new.
     pub(in crate::tui::runtime) fn take(&self) -> Option<FrameBatch> {
         let mut pending = locked(&self.pending);
         if !take(&mut pending.is_new) {
@@ -202,7 +204,7 @@ impl FrameFeed {
         if !locked(&self.pending).channels.takes(frame.channel) {
             return false;
         }
-        // An error ends the recording; the frames go on being shown.
+        // An error ends the recording; the frames are still shown.
         let recorded = self.recorded(|own| own.add(frame, time));
         let mut own = frame.clone();
         own.time = time;
@@ -213,7 +215,7 @@ impl FrameFeed {
         })
     }
 
-    /// Notes what a source reports. True if it is to be shown and there was nothing before it.
+    /// Notes an event of the source. Returns true if it is to be shown and there was nothing to take before.
     fn take_in(&self, event: AcquireEvent<'_>, request: &WatchRequest) -> bool {
         let state = |state: SourceState| self.change(|pending| pending.batch.status.state = state);
         match event {
@@ -271,7 +273,8 @@ impl FrameFeed {
     }
 }
 
-/// Why a source cannot be read, and for a page on which no flag can be typed, how to give what is missing.
+/// Returns the reason why a source cannot be read. No flag can be typed on the page, so it also says how to give what
+/// is missing.
 fn reason(error: &AcquireError) -> String {
     let hint = match error {
         AcquireError::Recording(error) if error.is_of_size() => SIZE_HINT,
@@ -280,7 +283,8 @@ fn reason(error: &AcquireError) -> String {
     format!("{error}{hint}")
 }
 
-/// Why no frame comes. Words that stay true while the silence lasts: a page on which nothing changes sends nothing.
+/// Returns the reason why no frame comes. It stays true while the silence lasts: a page on which nothing changes
+/// sends nothing.
 fn silence(counts: &StreamCounts, bytes_per_second: f64) -> String {
     let hint = match counts.refusal() {
         Some(refusal) if refusal.is_of_size() => SIZE_HINT,
@@ -290,7 +294,7 @@ fn silence(counts: &StreamCounts, bytes_per_second: f64) -> String {
     format!("no frame for more than 2 s: {what}{hint}")
 }
 
-/// Where rows and columns are given.
+/// The hint where to give rows and columns.
 const SIZE_HINT: &str = "; after Esc, add them to :watch, as in --rows R --columns C";
 
 impl Pending {
@@ -302,7 +306,7 @@ impl Pending {
         self.batch.status.channels = self.channels.names().len();
     }
 
-    /// Notes that the source is there after a time, and returns how it is now.
+    /// Notes that the source is back after a time, and returns its state.
     fn back_after(&mut self, time: Duration) -> SourceState {
         let Some(gap) = &mut self.gap else {
             return SourceState::Waiting;
@@ -323,7 +327,7 @@ impl Pending {
         }
     }
 
-    /// Adds a frame; the oldest go where nobody takes them and there is no memory for more.
+    /// Adds a frame. If nobody takes the frames and they exceed `most` bytes, the older half is dropped.
     /// Half of them go at once, so that a full buffer does not move all frames for each new one. At least one stays.
     fn push(&mut self, frame: Arc<Frame>, most: usize) {
         self.batch.status.state = SourceState::Live;
@@ -338,7 +342,7 @@ impl Pending {
         }
     }
 
-    /// Notes how a recording is.
+    /// Notes the state of the recording, or its error.
     fn note(&mut self, recorded: Result<Option<RecordedFrames>, String>) {
         match recorded {
             Ok(recorded) => self.batch.status.recorded = recorded,
@@ -356,7 +360,7 @@ mod tests {
     use crate::formats::stream::StreamCounts;
     use crate::tui::live::state::Live;
 
-    /// What a page shows after an event of its source: the number of the frame.
+    /// Returns the number of the frame that a page shows after an event of its source.
     fn after(page: &mut Live, feed: &FrameFeed, event: AcquireEvent<'_>) -> Option<u64> {
         feed.take_in(event, &WatchRequest::new("none"));
         if let Some(batch) = feed.take() {
@@ -394,7 +398,7 @@ mod tests {
         let mut counts = StreamCounts::default();
         let shown = after(&mut page, &feed, AcquireEvent::Provisional(&frame));
         assert_eq!(shown, Some(0));
-        // Of what was lost before it.
+        // The tick counts frames that were lost before it.
         counts.dropped = 3;
         let shown = after(&mut page, &feed, AcquireEvent::Tick(&counts));
         assert_eq!((shown, page.status().lost), (Some(0), 3));
@@ -413,7 +417,7 @@ mod tests {
         let shown = after(&mut page, &feed, AcquireEvent::Withdrawn);
         assert_eq!(shown, Some(0));
         assert!(page.marks().is_empty(), "the frame is gone, so its mark is");
-        // The mark of one that is confirmed remains.
+        // The mark of a confirmed frame remains.
         after(&mut page, &feed, AcquireEvent::Provisional(&frame));
         assert_eq!(page.mark(), Ok((1, true)));
         let whole = AcquireEvent::Frame {
@@ -441,7 +445,7 @@ mod tests {
             assert_eq!(page.mark(), Ok((0, true)));
             let view = page.take_changed_view().expect("it was marked");
             assert_eq!(view.marks.len(), 1);
-            // Both before the page takes anything.
+            // Both events come before the page takes anything.
             feed.take_in(AcquireEvent::Withdrawn, &request);
             assert_eq!(after(&mut page, &feed, event), Some(0));
             assert!(!page.is_marked() && page.marks().is_empty());
@@ -481,7 +485,7 @@ mod tests {
             time: Some(time),
         };
         let error = std::io::Error::other("cut");
-        // Waited for before it was there at all: nothing is missing.
+        // The source was waited for before it was there at all: nothing is missing.
         for event in [
             AcquireEvent::Absent(&error),
             AcquireEvent::Back { gap },
@@ -490,7 +494,7 @@ mod tests {
             after(&mut page, &feed, event);
         }
         assert_eq!(page.trouble(), None);
-        // Lost again before a frame came: one gap.
+        // The source is lost again before a frame came: one gap.
         for _ in 0..2 {
             after(&mut page, &feed, AcquireEvent::Lost(&error));
             let lost = page.trouble().expect("it is lost");
@@ -504,7 +508,7 @@ mod tests {
         after(&mut page, &feed, at(5.5));
         let once = "the connection was lost for 4 s; 5.5 s of frames are missing";
         assert_eq!(page.trouble().as_deref(), Some(once));
-        // It stays until the user has seen it.
+        // The text stays until the user has seen it.
         after(&mut page, &feed, at(5.6));
         assert_eq!(page.trouble().as_deref(), Some(once));
         for event in [

@@ -1,8 +1,8 @@
 //! The frames of a source.
 //!
 //! ```text
-//! source      what the name of a source stands for, and whether it can be watched
-//! watcher     a source that is watched, and recorded
+//! source      the source that a name refers to, and whether it can be watched
+//! watcher     a source that is watched and recorded
 //! feed        frames that have come and are not on the screen yet
 //! script      a source that is read frame by frame, for a script
 //! recording   the file that frames are recorded in

@@ -8,7 +8,7 @@
 //! describe threshold, tare, marks      the one of the disk
 //! finish   the rest, synced            the one of the disk
 //! ```
-//! A disk may hang in each of them, so none is called on the screen's thread.
+//! A disk may hang in each of these functions, so none is called on the screen's thread.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -21,30 +21,30 @@ use crate::tui::live::message::{LiveEvent, RecordedFrames};
 use crate::tui::runtime::disk::write_access::WriteAccess;
 use crate::tui::runtime::lock::locked;
 
-/// A file that is recorded in, shared by the source's thread and the one that finishes it.
+/// A file that frames are recorded in, shared by the source's thread and the one that finishes it.
 #[derive(Debug)]
 pub(in crate::tui::runtime) struct Recording {
-    /// The file.
+    /// The path of the file.
     path: PathBuf,
-    /// Held for as long as the disk takes to write a description, and then before `recorder`: of two the later stays.
+    /// Locked while the disk writes a description, and before `recorder`: of two descriptions the later one stays.
     description: Mutex<()>,
-    /// Held for as long as the disk takes to write frames.
+    /// Locked while the disk writes frames.
     recorder: Mutex<RecorderState>,
 }
 
-/// How far a recording is.
+/// The state of a recording.
 #[derive(Debug)]
 enum RecorderState {
     /// The file has not been created yet.
     New,
     /// Frames are written.
     Open(Box<FrameRecorder>),
-    /// It is finished or has failed.
+    /// The recording is finished or has failed.
     Closed,
 }
 
 impl Recording {
-    /// A recording whose file has not been created yet.
+    /// Returns a recording whose file has not been created yet.
     pub(in crate::tui::runtime) fn new(path: PathBuf) -> Arc<Self> {
         Arc::new(Self {
             path,
@@ -53,10 +53,11 @@ impl Recording {
         })
     }
 
-    /// Begins one in the first file `touch-1.npy`, `touch-2.npy` … that is not there. Returns its name, too.
+    /// Begins a recording in the first file `touch-1.npy`, `touch-2.npy` … that does not exist yet. Returns its name,
+    /// too.
     ///
     /// # Errors
-    /// Why there is none, in a sentence.
+    /// Returns the reason why there is none, in a sentence.
     pub(in crate::tui::runtime) fn in_free_file(
         access: &WriteAccess,
         metadata: &RecordingMetadata,
@@ -73,7 +74,7 @@ impl Recording {
         Err("10,000 recordings are here already; move some elsewhere".to_owned())
     }
 
-    /// The file.
+    /// Returns the path of the file.
     pub(in crate::tui::runtime) fn path(&self) -> &Path {
         &self.path
     }
@@ -81,7 +82,7 @@ impl Recording {
     /// Creates the file, unless the recording was finished before it could begin.
     ///
     /// # Errors
-    /// What the system refuses, in a sentence.
+    /// Returns the refusal of the system, in a sentence.
     pub(in crate::tui::runtime) fn begin(
         &self,
         existing: Existing,
@@ -98,10 +99,10 @@ impl Recording {
         Ok(())
     }
 
-    /// Adds a frame. Returns how many are recorded, None where none are any more.
+    /// Adds a frame. Returns the number of recorded frames, None if nothing is recorded any more.
     ///
     /// # Errors
-    /// A sentence. The recording ends then; what is in it so far stays.
+    /// Returns a sentence. The recording ends then; the frames in it so far stay.
     pub(in crate::tui::runtime) fn add(
         &self,
         frame: &Frame,
@@ -110,18 +111,18 @@ impl Recording {
         self.write(|recorder| recorder.add(frame, time))
     }
 
-    /// Writes out what has waited for long enough. Returns how many frames are recorded.
+    /// Writes out the frames that have waited for long enough. Returns the number of recorded frames.
     ///
     /// # Errors
-    /// A sentence. The recording ends then.
+    /// Returns a sentence. The recording ends then.
     pub(in crate::tui::runtime) fn tick(&self) -> Result<Option<RecordedFrames>, String> {
         self.write(FrameRecorder::tick)
     }
 
-    /// Writes out all that waits, and syncs it. Returns how many frames are recorded.
+    /// Writes out all waiting frames, and syncs them. Returns the number of recorded frames.
     ///
     /// # Errors
-    /// A sentence. The recording ends then.
+    /// Returns a sentence. The recording ends then.
     pub(in crate::tui::runtime) fn flush(&self) -> Result<Option<RecordedFrames>, String> {
         self.write(FrameRecorder::flush)
     }
@@ -129,7 +130,7 @@ impl Recording {
     /// Writes threshold, tare and marks into the description, in place of those before. Frames are added meanwhile.
     ///
     /// # Errors
-    /// A sentence. The recording ends then.
+    /// Returns a sentence. The recording ends then.
     pub(in crate::tui::runtime) fn describe(&self, view: RecordedView) -> Result<(), String> {
         let one_at_a_time = locked(&self.description);
         let Some(draft) = self.open(|recorder| recorder.set_view(view)) else {
@@ -147,7 +148,7 @@ impl Recording {
         })
     }
 
-    /// Does something with the recorder that needs no disk, if frames are recorded still.
+    /// Does something with the recorder that needs no disk, if frames are still recorded.
     fn open<T>(&self, act: impl FnOnce(&mut FrameRecorder) -> T) -> Option<T> {
         match &mut *locked(&self.recorder) {
             RecorderState::Open(recorder) => Some(act(recorder)),
@@ -155,7 +156,7 @@ impl Recording {
         }
     }
 
-    /// Writes something, if frames are recorded still. Returns how many are recorded then.
+    /// Writes something, if frames are still recorded. Returns the number of recorded frames.
     fn write(
         &self,
         write: impl FnOnce(&mut FrameRecorder) -> Result<(), RecorderError>,
@@ -176,7 +177,7 @@ impl Recording {
         })
     }
 
-    /// Finishes it. None where nothing is recorded any more: that has been said.
+    /// Finishes the recording. Returns None if nothing was recorded any more, which has been reported before.
     pub(in crate::tui::runtime) fn finish(&self) -> Option<LiveEvent> {
         Some(match self.close()? {
             Ok(frames) => LiveEvent::Recorded(self.path.to_string_lossy().into_owned(), frames),
@@ -184,8 +185,8 @@ impl Recording {
         })
     }
 
-    /// Ends it; what is in the file so far stays. Returns how many frames that are, None where it was ended before. Of a
-    /// recording that has failed the first error is the one that is reported, not what this returns.
+    /// Ends the recording; the frames in the file stay. Returns their number, None if the recording was ended before.
+    /// If a recording has failed, its first error is reported, and not the result of this.
     fn close(&self) -> Option<Result<u64, RecorderError>> {
         let before = std::mem::replace(&mut *locked(&self.recorder), RecorderState::Closed);
         let RecorderState::Open(recorder) = before else {

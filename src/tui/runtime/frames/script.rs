@@ -26,25 +26,25 @@ use crate::tui::runtime::work::threads;
 pub(in crate::tui::runtime) struct ScriptSource {
     /// The source.
     pub(in crate::tui::runtime) source: FrameSource,
-    /// How it is read.
+    /// The request, which says how the source is read.
     pub(in crate::tui::runtime) request: Arc<WatchRequest>,
-    /// Takes in what it brings.
+    /// The feed that takes the frames.
     pub(in crate::tui::runtime) feed: Arc<FrameFeed>,
-    /// How many of its frames were taken before: these are skipped.
+    /// The number of frames that were taken before, which are skipped.
     pub(in crate::tui::runtime) skipped: usize,
-    /// What the frames after these are recorded in.
+    /// The recording of the frames after the skipped ones.
     pub(in crate::tui::runtime) recording: Option<Arc<Recording>>,
 }
 
 impl ScriptSource {
-    /// Reads it to its end, or until `take` breaks off.
+    /// Reads the source to its end, or until `take` breaks off.
     pub(in crate::tui::runtime) fn read(
         &self,
         take: &mut dyn FnMut(FrameBatch) -> ControlFlow<()>,
     ) {
         let mut options = self.request.options.clone();
         (options.once, options.repeat) = (true, false);
-        // What is skipped was recorded before.
+        // The skipped frames were recorded before.
         let record_from = |seen: usize| {
             if seen == self.skipped {
                 self.feed.go_on_with(self.recording.clone());
@@ -70,7 +70,7 @@ impl ScriptSource {
                 ControlFlow::Continue(())
             });
         if seen < self.skipped {
-            // It has become shorter.
+            // The source has become shorter.
             self.feed.go_on_with(self.recording.clone());
         }
     }
@@ -79,9 +79,9 @@ impl ScriptSource {
 /// A source that stays open.
 #[derive(Debug)]
 pub(in crate::tui::runtime) struct ScriptReader {
-    /// Lets the thread read on; dropped to end it.
+    /// The channel that lets the thread read on; dropped to end it.
     more: Option<Sender<()>>,
-    /// What the thread has read.
+    /// The batches that the thread has read.
     batches: Receiver<FrameBatch>,
     /// The thread, until it is joined.
     thread: Option<JoinHandle<()>>,
@@ -91,7 +91,7 @@ impl ScriptReader {
     /// Opens a source on a thread of its own.
     ///
     /// # Errors
-    /// A sentence, where the system gives no thread.
+    /// Returns a sentence if the system gives no thread.
     pub(in crate::tui::runtime) fn open(source: ScriptSource) -> Result<Self, String> {
         let (more, wanted) = channel();
         let (sender, batches) = channel();
@@ -115,7 +115,7 @@ impl ScriptReader {
         })
     }
 
-    /// What comes next; None at the end of the source.
+    /// Returns the next batch; None at the end of the source.
     pub(in crate::tui::runtime) fn next(&mut self) -> Option<FrameBatch> {
         let more = self.more.as_ref()?;
         // A thread that has ended sends nothing either.
@@ -125,7 +125,7 @@ impl ScriptReader {
         }
         self.more = None;
         if let Some(Err(panic)) = self.thread.take().map(JoinHandle::join) {
-            // As if it were read on this thread.
+            // The panic goes on, as if the source were read on this thread.
             resume_unwind(panic);
         }
         None
@@ -135,7 +135,7 @@ impl ScriptReader {
 impl Drop for ScriptReader {
     fn drop(&mut self) {
         self.more = None;
-        // It waits for a request, so it ends at once, and has closed the file then.
+        // The thread waits for a request, so it ends at once, and has closed the file then.
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }

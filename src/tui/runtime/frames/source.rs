@@ -6,7 +6,7 @@ use crate::acquire::FrameSource;
 use crate::storage::location;
 use crate::tui::runtime::disk::write_access::WriteAccess;
 
-/// The source of a name, which may begin with `~`.
+/// Returns the source of a name, which may begin with `~`.
 pub(in crate::tui::runtime) fn named(name: &OsStr) -> FrameSource {
     let below = name.to_str().and_then(location::below_home);
     match below {
@@ -21,7 +21,7 @@ pub(in crate::tui::runtime) fn named(name: &OsStr) -> FrameSource {
 /// reset, a connection made, a pipe waited for.
 ///
 /// # Errors
-/// A sentence with the name.
+/// Returns a sentence with the name if the source may not or cannot be read.
 pub(in crate::tui::runtime) fn readable(
     name: &OsStr,
     access: &WriteAccess,
@@ -37,8 +37,8 @@ pub(in crate::tui::runtime) fn readable(
     Ok(source)
 }
 
-/// Whether it is a file that has something in it. Those of `/proc`, which can be waited for as pipes are, are empty.
-/// A missing file counts as one: opening it reports the error.
+/// Returns true if the source is a file with content. Files of `/proc`, which may have to be waited for like pipes,
+/// are empty. A missing file counts as a file with content: opening it reports the error.
 fn is_file(source: &FrameSource) -> bool {
     match source {
         FrameSource::File(path) => path

@@ -25,10 +25,10 @@ use crate::tui::runtime::frames::source;
 use crate::tui::runtime::work::execution::Execution;
 use crate::tui::runtime::work::threads;
 
-/// The source that is watched.
+/// The watcher of a source of frames.
 #[derive(Debug, Default)]
 pub(in crate::tui::runtime) struct FrameWatcher {
-    /// None before the first source and after the page was closed.
+    /// The source; None before the first one and after the page was closed.
     watched: Option<Watched>,
     /// The thread of the last source, which may still read it after it was stopped.
     thread: Option<JoinHandle<()>>,
@@ -39,26 +39,26 @@ pub(in crate::tui::runtime) struct FrameWatcher {
 struct Watched {
     /// The number of the piece of work, which its events carry.
     number: u64,
-    /// What was asked for: the source, the channel, how frames are read.
+    /// The request: the source, the channel, and how frames are read.
     request: Arc<WatchRequest>,
-    /// Shared with the thread that reads the source.
+    /// The feed, shared with the thread that reads the source.
     feed: Arc<FrameFeed>,
-    /// Set to end that thread.
+    /// The flag that ends that thread.
     stop: Arc<AtomicBool>,
-    /// Frames that a script has taken.
+    /// The number of frames that a script has taken.
     taken: usize,
-    /// Where the next one comes from, while the source is open for a script.
+    /// The reader of the next frames, while the source is open for a script.
     reader: Option<ScriptReader>,
     /// Whether a file is being created for a recording.
     is_starting: bool,
 }
 
-/// How long a source waits until the thread of the one before has closed that: it may be the same serial line, which only
-/// one can open, or the same pipe, whose bytes it would take.
+/// The longest time that a source waits for the thread of the one before to close it: both may be the same serial
+/// line, which only one can open, or the same pipe, whose bytes that thread would take.
 const CLOSE_TIMEOUT: Duration = Duration::from_millis(500);
 
 impl FrameWatcher {
-    /// Watches a source, recorded in a file if one is given. Returns an event where that cannot be begun. The source
+    /// Watches a source, recorded in a file if one is given. Returns an event if that cannot be begun. The source
     /// before has to be stopped first.
     pub(in crate::tui::runtime) fn watch(
         &mut self,
@@ -95,7 +95,8 @@ impl FrameWatcher {
             if let Some(before) = before {
                 threads::wait_until_finished(&before, CLOSE_TIMEOUT);
             }
-            // Before the first frame: each one is wanted. Not on the screen's thread: the disk may hang.
+            // The recording begins before the first frame, because each frame is wanted, and not on the screen's
+            // thread, because the disk may hang.
             if let Err(refused) = feed.begin_recording(&request, existing) {
                 post(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
             }
@@ -120,7 +121,7 @@ impl FrameWatcher {
         None
     }
 
-    /// Takes no more frames. Returns the recording, which is to be finished, and the number of the source.
+    /// Stops watching. Returns the recording, which is to be finished, and the number of the source.
     pub(in crate::tui::runtime) fn stop(&mut self) -> Option<(u64, Arc<Recording>)> {
         let recording = self.end_recording();
         if let Some(watched) = self.watched.take() {
@@ -132,7 +133,7 @@ impl FrameWatcher {
     /// Notes that a file is being created for a recording of the source. Returns the number of the source.
     ///
     /// # Errors
-    /// A sentence if there is no source, or if another recording of it is starting.
+    /// Returns a sentence if there is no source, or if another recording of it is starting.
     pub(in crate::tui::runtime) fn start_recording(&mut self) -> Result<u64, &'static str> {
         let watched = self.watched.as_mut().ok_or("no source is watched")?;
         if std::mem::replace(&mut watched.is_starting, true) {
@@ -141,8 +142,8 @@ impl FrameWatcher {
         Ok(watched.number)
     }
 
-    /// Notes that the file is there, or cannot be created. From now on each frame of that source goes into it. Returns the
-    /// recording to finish: the new one if its source is gone, otherwise the one that it replaces.
+    /// Notes that the file was created, or could not be. From now on each frame of that source is recorded in it.
+    /// Returns the recording to finish: the new one if its source is gone, otherwise the one that it replaces.
     pub(in crate::tui::runtime) fn recording_started(
         &mut self,
         number: u64,
@@ -158,25 +159,25 @@ impl FrameWatcher {
         before
     }
 
-    /// Records no more frames. Returns the recording, which is to be finished, and the number of the source.
+    /// Stops recording. Returns the recording, which is to be finished, and the number of the source.
     pub(in crate::tui::runtime) fn end_recording(&self) -> Option<(u64, Arc<Recording>)> {
         let watched = self.watched.as_ref()?;
         Some((watched.number, watched.feed.end()?))
     }
 
-    /// The number of the source, and what is recorded of it; None where nothing is.
+    /// Returns the number of the source and its recording; None if nothing is recorded.
     pub(in crate::tui::runtime) fn recording(&self) -> Option<(u64, Arc<Recording>)> {
         let watched = self.watched.as_ref()?;
         Some((watched.number, watched.feed.recording()?))
     }
 
-    /// Whether there is something to take.
+    /// Returns true if there is something to take.
     pub(in crate::tui::runtime) fn has_new(&self) -> bool {
         let watched = self.watched.as_ref();
         watched.is_some_and(|watched| watched.feed.has_new())
     }
 
-    /// Takes all that has come; None if nothing has.
+    /// Takes all frames and news that have come; None if there are none.
     pub(in crate::tui::runtime) fn take(&self) -> Option<WorkerEvent> {
         let watched = self.watched.as_ref()?;
         let batch = watched.feed.take()?;
@@ -205,8 +206,8 @@ impl FrameWatcher {
 }
 
 impl Watched {
-    /// Reads the next frames, up to `count`. A source that has ended is read anew from its start, as it may have grown; what
-    /// was taken is skipped then.
+    /// Reads the next frames, up to `count`. A source that has ended is read again from its start, as it may have
+    /// grown; the frames taken before are skipped then.
     fn next(&mut self, count: usize, access: &WriteAccess) -> Vec<FrameBatch> {
         let mut batches = Vec::new();
         let mut reader = match self.reader.take() {
@@ -235,7 +236,7 @@ impl Watched {
         batches
     }
 
-    /// The same of a source that is read from its start on this thread.
+    /// Reads the next frames, up to `count`, from the start of a source and on this thread.
     fn next_of(&mut self, source: &ScriptSource, count: usize) -> Vec<FrameBatch> {
         let (mut batches, end) = (Vec::new(), self.taken + count);
         source.read(&mut |batch| {
@@ -250,10 +251,10 @@ impl Watched {
         batches
     }
 
-    /// The source from its start on, with a feed that takes over the recording.
+    /// Opens the source from its start, with a new feed that takes over the recording.
     ///
     /// # Errors
-    /// Why it cannot be read, in a sentence.
+    /// Returns the reason why it cannot be read, in a sentence.
     fn open(&mut self, access: &WriteAccess) -> Result<ScriptSource, String> {
         let source = source::readable(&self.request.source, access)?;
         let recording = self.feed.recording();
@@ -270,7 +271,7 @@ impl Watched {
 
 impl Drop for FrameWatcher {
     fn drop(&mut self) {
-        // At the end of a script. On a terminal it has been finished before.
+        // For the end of a script. On a terminal the recording has been finished before.
         if let Some((_, recording)) = self.stop() {
             let _ = recording.finish();
         }
@@ -284,7 +285,7 @@ mod tests {
     use crate::tui::runtime::disk::write_access::WriteAccess;
 
     #[test]
-    fn a_recording_that_another_one_comes_after_is_finished() {
+    fn a_recording_that_is_replaced_is_finished() {
         let folder = tempfile::tempdir().expect("a folder");
         let write = Some((folder.path().join("a.npy"), Existing::Kept));
         let request = Arc::new(WatchRequest::new("none"));
@@ -310,14 +311,14 @@ mod tests {
         );
     }
 
-    /// A recording of frames of 2 × 2, each full of its own number.
+    /// Returns a recording of frames of 2 × 2, each full of its own number.
     fn frames(numbers: std::ops::Range<u32>) -> String {
         let line = |number| format!("{number},{number},{number},{number}\n");
         let lines = numbers.map(line).collect::<String>();
         "S0_0,S0_1,S1_0,S1_1\n".to_owned() + &lines
     }
 
-    /// The numbers in the frames of events, `None` for an event without one.
+    /// Returns the numbers in the frames of events, `None` for an event without a frame.
     fn numbers(events: &[WorkerEvent]) -> Vec<Option<f64>> {
         let number = |event: &WorkerEvent| {
             let WorkerEvent::Live(7, LiveEvent::Arrived(batch)) = event else {
@@ -329,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn a_script_reads_a_source_once_and_again_from_its_end_where_it_has_grown() {
+    fn a_script_reads_a_source_once_and_continues_if_it_has_grown() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.csv");
         std::fs::write(&path, frames(0..6)).expect("written");
@@ -346,7 +347,7 @@ mod tests {
             frames
         };
         assert_eq!(take(&mut watcher, 2), 2);
-        // It is open: what its name stands for meanwhile does not matter.
+        // The file is open, so it does not matter that its name changes meanwhile.
         let aside = folder.path().join("b.csv");
         std::fs::rename(&path, &aside).expect("renamed");
         assert_eq!([take(&mut watcher, 1), take(&mut watcher, 9)], [1, 3]);
