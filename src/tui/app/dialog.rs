@@ -110,7 +110,7 @@ impl Dialog {
     }
 }
 
-/// The topmost page of a kind among those of the program, to look at it or to change it:
+/// Finds the topmost page of a kind among the pages of the program, to look at it or to change it:
 /// `topmost!(&app.dialogs, Live)`, `topmost!(&mut app.dialogs, Live)`. None if there is none.
 macro_rules! topmost {
     ($dialogs:expr, $kind:ident) => {

@@ -37,7 +37,7 @@ pub struct PromptCommand {
     pub words: Vec<(&'static str, &'static Action)>,
     /// The arguments that may follow instead.
     pub arguments: Option<Arguments>,
-    /// What it does.
+    /// The effect of the command, in words.
     pub help: &'static str,
 }
 

@@ -152,8 +152,8 @@ impl World {
         })
     }
 
-    /// Runs long work on threads of its own and sends their events to `post`. Without this, work is done before the next
-    /// message, without progress or estimates, so that a script shows the same every time.
+    /// Runs long work on threads of its own and sends their events to `post`. Without this, work is done before the
+    /// next message, without progress or estimates, so that a script shows the same every time.
     #[must_use]
     pub fn with_workers(mut self, post: WorkerEventSink) -> Self {
         self.journal.report_to(Arc::clone(&post));
@@ -225,8 +225,8 @@ impl World {
         })
     }
 
-    /// Updates the state by a message and performs its effects: answers are further messages, and the work that the open
-    /// pages then need is begun. Returns the effect for the terminal, if there is one.
+    /// Updates the state by a message and performs its effects: answers are further messages, and the work that the
+    /// open pages then need is begun. Returns the effect for the terminal, if there is one.
     pub fn handle(&mut self, app: &mut App, message: Message) -> Option<TerminalEffect> {
         let mut terminal = None;
         if message == Message::Worker(WorkerEvent::Answered) {

@@ -302,8 +302,8 @@ fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
     app.dialogs.push(Dialog::Form(Box::new(form)));
 }
 
-/// Brings a shape onto the matrix: with its sensor and source if that sensor has the same number of columns and rows;
-/// otherwise its imprint alone if all active taxels fit, else an error.
+/// Brings a shape onto the matrix: with its sensor and source if that sensor has the same number of columns and rows,
+/// otherwise its imprint alone, if all active taxels fit. Returns an error if they do not.
 fn put_on_matrix(app: &mut App, loaded: &LoadedShape) -> Result<(), String> {
     let (shape, sensor) = (&loaded.shape, app.history.present().sensor);
     let own = (shape.sensor.columns(), shape.sensor.rows());

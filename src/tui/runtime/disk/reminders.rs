@@ -1,4 +1,5 @@
-//! What a run remembers for the next one: commands, the set of shapes that was recognised last, the values of forms.
+//! The values that a run remembers for the next one: commands, the set of shapes that was recognised last, the values
+//! of forms.
 //!
 //! Scripts and recorded runs remember nothing, so that they do the same every time.
 

@@ -1,8 +1,8 @@
 //! The rule for where the program may write files.
 //!
-//! On a terminal a person names the file and answers when it exists. A script does both itself, and may come from a
-//! stranger: it may write below its own folder only, no hidden files, and replaces only files that it has written itself.
-//! `taxel script --allow-outside` lifts that.
+//! On a terminal a person names the file, and is asked before an existing one is replaced. A script does both itself,
+//! and may come from a stranger: it may write only below its own folder, no hidden files, and may replace only files
+//! that it has written itself. `taxel script --allow-outside` lifts these limits.
 
 use std::path::{Component, Path, PathBuf};
 use std::sync::Mutex;

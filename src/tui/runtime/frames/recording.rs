@@ -1,12 +1,12 @@
 //! The file to which frames are recorded while they are watched.
 //!
 //! ```text
-//! begin    creates the file            the source's thread, or the one of the disk
+//! begin    creates the file            the source's thread, or the disk's
 //! add      each frame                  the source's thread
 //! tick     what has waited             the source's thread
-//! flush    all that waits, synced      the source's thread at its end; the one of the disk before the program is stopped
-//! describe threshold, tare, marks      the one of the disk
-//! finish   the rest, synced            the one of the disk
+//! flush    all that waits, synced      the source's thread at its end; the disk's before the program is stopped
+//! describe threshold, tare, marks      the disk's thread
+//! finish   the rest, synced            the disk's thread
 //! ```
 //! A disk may hang in each of these functions, so none is called on the screen's thread.
 

@@ -17,8 +17,8 @@ pub(in crate::tui::runtime) fn named(name: &OsStr) -> FrameSource {
     }
 }
 
-/// Returns the source of a name. A script from a stranger reads files only: a serial line would be set up and its device
-/// reset, a connection made, a pipe waited for.
+/// Returns the source of a name. A script from a stranger reads files only: a serial line would be set up and its
+/// device reset, a connection made, a pipe waited for.
 ///
 /// # Errors
 /// Returns a sentence with the name if the source may not or cannot be read.

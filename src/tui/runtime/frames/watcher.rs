@@ -95,8 +95,7 @@ impl FrameWatcher {
             if let Some(before) = before {
                 threads::wait_until_finished(&before, CLOSE_TIMEOUT);
             }
-            // The recording begins before the first frame, because each frame is wanted, and not on the screen's
-            // thread, because the disk may hang.
+            // Before the first frame, so that none is missing; not on the screen's thread, as the disk may hang.
             if let Err(refused) = feed.begin_recording(&request, existing) {
                 post(WorkerEvent::Live(number, LiveEvent::NotRecorded(refused)));
             }

@@ -1,4 +1,4 @@
-//! How work is done: at once or on threads of its own, and how it is stopped there.
+//! The execution of work: at once or on threads of its own, and how it is stopped there.
 
 use std::fmt;
 use std::sync::Arc;

@@ -5,8 +5,9 @@
 //! ```
 //! Reading from a disk that hangs cannot be stopped. The thread is left to itself, and `GivenUp` says so.
 //!
-//! A built-in set is trained once; the cache keeps its model, if the world has one. A stored model is read from the folder
-//! beside the library, any other from its file. Training goes on while a sweep begins, and stops only on request.
+//! A built-in set is trained once; the cache keeps its model, if the world has one. A stored model is read from the
+//! folder beside the library, any other from its file. Training goes on while a sweep begins, and stops only on
+//! request.
 
 use std::path::Path;
 use std::sync::{Arc, Mutex};

@@ -1,11 +1,11 @@
-//! Names the imprints of frames, on a thread of its own: it reads or trains the model, then answers one imprint after the
-//! other.
+//! Names the imprints of frames, on a thread of its own: it reads or trains the model, then names one imprint after
+//! the other.
 //!
 //! ```text
 //! begin(set, noise)  -> the thread prepares the model
 //! name(imprint)      -> Named, or NotNamed: why there is no model
 //! ```
-//! Without a receiver of events, as in a script, an imprint is answered at once.
+//! Without a receiver of events, as in a script, an imprint is named at once.
 
 use std::cell::OnceCell;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! How workers report: events from any thread, progress now and then, a panic as an event.
+//! The reports of workers: events from any thread, progress now and then, a panic as an event.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

@@ -68,8 +68,8 @@ pub(in crate::tui::runtime) fn start(
     thread.map_err(|error| format!("cannot start a thread: {error}"))
 }
 
-/// Waits for a thread to end, but not for longer than `patience`. It is not joined: a disk or a host that does not answer may
-/// hold it up.
+/// Waits for a thread to end, but not for longer than `patience`. It is not joined: a disk or a host that does not
+/// answer may hold it up.
 pub(in crate::tui::runtime) fn wait_until_finished(thread: &JoinHandle<()>, patience: Duration) {
     let begun = Instant::now();
     while !thread.is_finished() && begun.elapsed() < patience {
