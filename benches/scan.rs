@@ -32,7 +32,7 @@ fn model(keys: usize) -> Model {
     let mut state = 1;
     let mut seen = std::collections::HashSet::new();
     while parts.keys.len() < keys {
-        let mut imprint = Imprint::empty(6, 6);
+        let mut imprint = Imprint::empty(MatrixSize::new(6, 6).expect("1 to 64"));
         for row in 0..6 {
             // Three in four taxels are active.
             imprint.set_word(row, next(&mut state) | next(&mut state));
@@ -52,7 +52,7 @@ fn model(keys: usize) -> Model {
 
 /// Returns a touch like one of the templates, with some taxels flipped.
 fn touch() -> Imprint {
-    let mut touch = Imprint::empty(16, 16);
+    let mut touch = Imprint::empty(Sensor::default().size());
     for (row, word) in [
         0b11_1110, 0b11_1111, 0b10_1111, 0b11_1111, 0b11_1101, 0b01_1111,
     ]
@@ -77,20 +77,24 @@ fn scan(criterion: &mut Criterion) {
     // Nothing can be skipped: at e = 0.45 every distance matters.
     let model_of_10_000 = model(10_000);
     let every = Noise::new(0.45).expect("in range");
-    group.throughput(Throughput::Elements(model_of_10_000.pairs((16, 16))));
+    group.throughput(Throughput::Elements(
+        model_of_10_000.pairs(Sensor::default().size()),
+    ));
     group.bench_function("every pair, 10,000 keys, 1 thread", |bencher| {
         bencher.iter(|| single.install(|| black_box(model_of_10_000.distances(&touch, &every))));
     });
 
     let start = Instant::now();
     let million = model(1_000_000);
-    black_box(million.pairs((16, 16)));
+    black_box(million.pairs(Sensor::default().size()));
     println!(
         "a million keys prepared in {:.1} s",
         start.elapsed().as_secs_f64()
     );
     let usual = Noise::new(0.01).expect("in range");
-    group.throughput(Throughput::Elements(million.pairs((16, 16))));
+    group.throughput(Throughput::Elements(
+        million.pairs(Sensor::default().size()),
+    ));
     group.bench_function("a query on 1,000,000 keys, 1 thread", |bencher| {
         bencher.iter(|| single.install(|| black_box(million.distances(&touch, &usual))));
     });

@@ -8,7 +8,7 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::parameter::number::counted;
-use crate::sensor::MAX_SIDE;
+use crate::sensor::{MAX_SIDE, MatrixSize};
 
 /// A binary matrix of 1 × 1 to 64 × 64 taxels.
 ///
@@ -20,45 +20,48 @@ use crate::sensor::MAX_SIDE;
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Imprint {
-    columns: u8,
-    rows: u8,
+    size: MatrixSize,
     words: [u64; MAX_SIDE as usize],
 }
 
 impl Imprint {
-    /// Creates an imprint without active taxels. Sides are clamped to 1 to 64.
-    pub fn empty(columns: u8, rows: u8) -> Self {
+    /// An imprint without active taxels.
+    pub fn empty(size: MatrixSize) -> Self {
         Self {
-            columns: columns.clamp(1, MAX_SIDE),
-            rows: rows.clamp(1, MAX_SIDE),
+            size,
             words: [0; MAX_SIDE as usize],
         }
     }
 
+    /// Its columns and rows.
+    pub fn size(&self) -> MatrixSize {
+        self.size
+    }
+
     /// Returns the number of columns.
     pub fn columns(&self) -> u8 {
-        self.columns
+        self.size.columns()
     }
 
     /// Returns the number of rows.
     pub fn rows(&self) -> u8 {
-        self.rows
+        self.size.rows()
     }
 
     /// Returns the rows from the top, with column `i` in bit `i`.
     pub fn words(&self) -> &[u64] {
-        &self.words[..usize::from(self.rows)]
+        &self.words[..usize::from(self.size.rows())]
     }
 
     /// Returns the rows for writing. The caller must leave the bits beyond the last column at 0.
     pub(crate) fn words_mut(&mut self) -> &mut [u64] {
-        &mut self.words[..usize::from(self.rows)]
+        &mut self.words[..usize::from(self.size.rows())]
     }
 
     /// Sets a whole row. Drops bits beyond the last column, and does nothing beyond the last row.
     pub fn set_word(&mut self, row: usize, word: u64) {
         let mask = self.mask();
-        if let Some(slot) = self.words[..usize::from(self.rows)].get_mut(row) {
+        if let Some(slot) = self.words[..usize::from(self.size.rows())].get_mut(row) {
             *slot = word & mask;
         }
     }
@@ -66,7 +69,7 @@ impl Imprint {
     /// Sets rows `2 * pair` and `2 * pair + 1`, like [`Self::set_word`].
     pub(crate) fn set_pair(&mut self, pair: usize, words: [u64; 2]) {
         let mask = self.mask();
-        let rows = &mut self.words[..usize::from(self.rows)];
+        let rows = &mut self.words[..usize::from(self.size.rows())];
         for (slot, word) in rows.iter_mut().skip(2 * pair).zip(words) {
             *slot = word & mask;
         }
@@ -74,17 +77,19 @@ impl Imprint {
 
     /// Returns a row in which all taxels are active.
     pub fn mask(&self) -> u64 {
-        u64::MAX >> (MAX_SIDE - self.columns)
+        u64::MAX >> (MAX_SIDE - self.columns())
     }
 
     /// Returns true if a taxel is active; false beyond the matrix.
     pub fn get(&self, column: u8, row: u8) -> bool {
-        column < self.columns && row < self.rows && self.words[usize::from(row)] >> column & 1 == 1
+        column < self.columns()
+            && row < self.rows()
+            && self.words[usize::from(row)] >> column & 1 == 1
     }
 
     /// Makes a taxel active or inactive; does nothing beyond the matrix.
     pub fn set(&mut self, column: u8, row: u8, active: bool) {
-        if column < self.columns && row < self.rows {
+        if column < self.columns() && row < self.rows() {
             let word = &mut self.words[usize::from(row)];
             *word = *word & !(1 << column) | u64::from(active) << column;
         }
@@ -121,16 +126,16 @@ impl Imprint {
         self.bounds().is_some_and(|bounds| {
             bounds.left == 0
                 || bounds.top == 0
-                || bounds.right == self.columns
-                || bounds.bottom == self.rows
+                || bounds.right == self.columns()
+                || bounds.bottom == self.rows()
         })
     }
 
     /// Iterates over the active taxels as (column, row), in reading order.
     pub fn active(&self) -> impl DoubleEndedIterator<Item = (u8, u8)> {
-        (0..self.rows).flat_map(move |row| {
+        (0..self.rows()).flat_map(move |row| {
             let word = self.words[usize::from(row)];
-            (0..self.columns)
+            (0..self.columns())
                 .filter(move |column| word >> column & 1 == 1)
                 .map(move |column| (column, row))
         })
@@ -182,8 +187,8 @@ impl Imprint {
 
     /// Returns the same imprint on a matrix of another size; active taxels beyond it are dropped.
     #[must_use]
-    pub fn resized(&self, columns: u8, rows: u8) -> Self {
-        let mut resized = Self::empty(columns, rows);
+    pub fn resized(&self, size: MatrixSize) -> Self {
+        let mut resized = Self::empty(size);
         for (row, &word) in self.words().iter().enumerate() {
             resized.set_word(row, word);
         }
@@ -264,15 +269,15 @@ impl fmt::Display for Imprint {
 
 impl fmt::Debug for Imprint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Imprint {}x{}\n{self}", self.columns, self.rows)
+        write!(f, "Imprint {}x{}\n{self}", self.columns(), self.rows())
     }
 }
 
 impl Imprint {
     /// Iterates over the rows as text: `#` for active, `.` for inactive.
     pub fn lines(&self) -> impl DoubleEndedIterator<Item = String> + ExactSizeIterator {
-        (0..self.rows).map(|row| {
-            (0..self.columns)
+        (0..self.rows()).map(|row| {
+            (0..self.columns())
                 .map(|column| if self.get(column, row) { '#' } else { '.' })
                 .collect()
         })
@@ -319,20 +324,16 @@ impl ImprintRows {
         }
         let found = text.len();
         let columns = u8::try_from(found).ok();
-        let columns = columns
-            .filter(|columns| (1..=MAX_SIDE).contains(columns))
-            .ok_or(ImprintError::Columns { row, found })?;
+        let size = columns.and_then(|columns| MatrixSize::new(columns, MAX_SIDE).ok());
+        let size = size.ok_or(ImprintError::Columns { row, found })?;
         let active = text.bytes().map(|byte| u64::from(byte == b'#'));
         let word = active.rev().fold(0, |word, active| word << 1 | active);
-        let imprint = self
-            .imprint
-            .get_or_insert_with(|| Imprint::empty(columns, MAX_SIDE));
-        let expected = imprint.columns;
-        if columns != expected {
+        let imprint = self.imprint.get_or_insert_with(|| Imprint::empty(size));
+        if imprint.size != size {
             return Err(ImprintError::Ragged {
                 row,
                 found,
-                expected,
+                expected: imprint.columns(),
             });
         }
         imprint.words[index] = word;
@@ -347,10 +348,8 @@ impl ImprintRows {
     pub(crate) fn imprint(self) -> Result<Imprint, ImprintError> {
         let Self { imprint, count } = self;
         let imprint = imprint.ok_or(ImprintError::Rows)?;
-        Ok(Imprint {
-            rows: count,
-            ..imprint
-        })
+        let size = MatrixSize::new(imprint.columns(), count).map_err(|_| ImprintError::Rows)?;
+        Ok(Imprint { size, ..imprint })
     }
 }
 

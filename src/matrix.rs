@@ -3,88 +3,87 @@
 use std::fmt;
 
 use crate::parameter::number::counted;
-use crate::sensor::MAX_SIDE;
+use crate::sensor::MatrixSize;
 
 /// A matrix of 1 × 1 to 64 × 64 values, row-major.
 ///
 /// ```
 /// use taxel::matrix::Matrix;
-/// let mut heat = Matrix::filled(3, 2, 0.0);
+/// use taxel::sensor::MatrixSize;
+/// let mut heat = Matrix::filled(MatrixSize::new(3, 2)?, 0.0);
 /// heat.set(2, 1, 7.5);
 /// assert_eq!((heat.columns(), heat.rows(), heat.get(2, 1)), (3, 2, Some(7.5)));
 /// assert_eq!(heat.row(1), [0.0, 0.0, 7.5]);
 /// assert_eq!(heat.get(3, 0), None);
+/// # Ok::<(), taxel::parameter::ParameterError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Matrix<T> {
-    columns: u8,
-    rows: u8,
+    size: MatrixSize,
     values: Vec<T>,
 }
 
+impl<T: Copy + Default> Default for Matrix<T> {
+    /// One cell: memory for what a [`View`](crate::frame::View) shows.
+    fn default() -> Self {
+        Self::filled(MatrixSize::SMALLEST, T::default())
+    }
+}
+
 impl<T: Copy> Matrix<T> {
-    /// Creates a matrix with the same value in every cell. Sides are clamped to 1 to 64.
-    pub fn filled(columns: u8, rows: u8, value: T) -> Self {
-        let mut matrix = Self {
-            columns: 1,
-            rows: 1,
-            values: Vec::new(),
-        };
-        matrix.reset(columns, rows, value);
-        matrix
+    /// Creates a matrix with the same value in every cell.
+    pub fn filled(size: MatrixSize, value: T) -> Self {
+        Self {
+            size,
+            values: vec![value; size.cells()],
+        }
     }
 
     /// Creates a matrix from the values of its cells, row by row.
     ///
     /// ```
     /// use taxel::matrix::Matrix;
-    /// let gain = Matrix::from_values(3, 2, vec![1.0, 1.2, 0.9, 1.0, 1.0, 1.1])?;
+    /// use taxel::sensor::MatrixSize;
+    /// let size = MatrixSize::new(3, 2)?;
+    /// let gain = Matrix::from_values(size, vec![1.0, 1.2, 0.9, 1.0, 1.0, 1.1])?;
     /// assert_eq!(gain.get(2, 1), Some(1.1));
-    /// let error = Matrix::from_values(3, 2, vec![1.0]).unwrap_err();
+    /// let error = Matrix::from_values(size, vec![1.0]).unwrap_err();
     /// assert_eq!(error.to_string(), "found 1 value, expected 6 for a matrix of 3 × 2");
-    /// # Ok::<(), taxel::matrix::MatrixError>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
-    /// Returns an error if a side is not 1 to 64, or the number of values differs from the number of cells.
-    pub fn from_values(columns: u8, rows: u8, values: Vec<T>) -> Result<Self, MatrixError> {
-        let sides = 1..=MAX_SIDE;
-        if !sides.contains(&columns) || !sides.contains(&rows) {
-            return Err(MatrixError::Sides { columns, rows });
-        }
+    /// If the number of values is not that of the cells.
+    pub fn from_values(size: MatrixSize, values: Vec<T>) -> Result<Self, MatrixError> {
         let found = values.len();
-        if found != usize::from(columns) * usize::from(rows) {
-            return Err(MatrixError::Values {
-                columns,
-                rows,
-                found,
-            });
+        if found == size.cells() {
+            Ok(Self { size, values })
+        } else {
+            Err(MatrixError { size, found })
         }
-        Ok(Self {
-            columns,
-            rows,
-            values,
-        })
     }
 
     /// Changes the size and sets every cell to `value`. Allocates only if there are more cells than ever before.
     /// Sides are clamped to 1 to 64.
-    pub fn reset(&mut self, columns: u8, rows: u8, value: T) {
-        self.columns = columns.clamp(1, MAX_SIDE);
-        self.rows = rows.clamp(1, MAX_SIDE);
+    pub fn reset(&mut self, size: MatrixSize, value: T) {
+        self.size = size;
         self.values.clear();
-        let cells = usize::from(self.columns) * usize::from(self.rows);
-        self.values.resize(cells, value);
+        self.values.resize(size.cells(), value);
+    }
+
+    /// Its columns and rows.
+    pub fn size(&self) -> MatrixSize {
+        self.size
     }
 
     /// Returns the number of columns.
     pub fn columns(&self) -> u8 {
-        self.columns
+        self.size.columns()
     }
 
     /// Returns the number of rows.
     pub fn rows(&self) -> u8 {
-        self.rows
+        self.size.rows()
     }
 
     /// Returns all values, row by row.
@@ -99,7 +98,7 @@ impl<T: Copy> Matrix<T> {
 
     /// Returns the values of a row from the left; empty beyond the last row.
     pub fn row(&self, row: u8) -> &[T] {
-        let columns = usize::from(self.columns);
+        let columns = usize::from(self.columns());
         let start = usize::from(row) * columns;
         self.values.get(start..start + columns).unwrap_or(&[])
     }
@@ -117,53 +116,29 @@ impl<T: Copy> Matrix<T> {
     }
 
     fn index(&self, column: u8, row: u8) -> Option<usize> {
-        let inside = column < self.columns && row < self.rows;
-        inside.then(|| usize::from(row) * usize::from(self.columns) + usize::from(column))
+        let inside = column < self.columns() && row < self.rows();
+        inside.then(|| usize::from(row) * usize::from(self.columns()) + usize::from(column))
     }
 }
 
 /// The error for sides or values that do not make a matrix.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum MatrixError {
-    /// A side that is not 1 to 64.
-    Sides {
-        /// The number of columns.
-        columns: u8,
-        /// The number of rows.
-        rows: u8,
-    },
-    /// The number of values differs from the number of cells.
-    Values {
-        /// The number of columns.
-        columns: u8,
-        /// The number of rows.
-        rows: u8,
-        /// The number of values.
-        found: usize,
-    },
+pub struct MatrixError {
+    /// The size of the matrix.
+    pub size: MatrixSize,
+    /// Number of values.
+    pub found: usize,
 }
 
 impl fmt::Display for MatrixError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::Sides { columns, rows } => write!(
-                f,
-                "{columns} × {rows} cells, expected 1 to {MAX_SIDE} columns and rows"
-            ),
-            Self::Values {
-                columns,
-                rows,
-                found,
-            } => {
-                let found = counted(found as u64, "value");
-                let expected = u16::from(columns) * u16::from(rows);
-                write!(
-                    f,
-                    "found {found}, expected {expected} for a matrix of {columns} × {rows}"
-                )
-            }
-        }
+        let Self { size, found } = *self;
+        let (found, expected) = (counted(found as u64, "value"), size.cells());
+        write!(
+            f,
+            "found {found}, expected {expected} for a matrix of {size}"
+        )
     }
 }
 
@@ -175,12 +150,10 @@ mod tests {
 
     #[test]
     fn a_matrix_needs_valid_sides_and_one_value_per_cell() {
-        for (columns, rows) in [(0, 1), (1, 65), (255, 255)] {
-            let error = MatrixError::Sides { columns, rows };
-            assert_eq!(Matrix::from_values(columns, rows, vec![0]), Err(error));
-        }
-        let full = Matrix::from_values(64, 64, vec![0; 4096]);
-        assert_eq!(full, Ok(Matrix::filled(64, 64, 0)));
-        assert!(Matrix::from_values(2, 2, vec![0; 5]).is_err());
+        let full = Matrix::from_values(MatrixSize::LARGEST, vec![0; 4096]);
+        assert_eq!(full, Ok(Matrix::filled(MatrixSize::LARGEST, 0)));
+        let size = MatrixSize::of(2, 2);
+        let error = Matrix::from_values(size, vec![0; 5]);
+        assert_eq!(error, Err(MatrixError { size, found: 5 }));
     }
 }

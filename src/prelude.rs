@@ -8,7 +8,7 @@ pub use crate::geometry::{Polygon, Solid};
 pub use crate::imprint::Imprint;
 pub use crate::parameter::{Parameter, ParameterError};
 pub use crate::picture::Picture;
-pub use crate::sensor::Sensor;
+pub use crate::sensor::{MatrixSize, Sensor};
 pub use crate::source::Source;
 pub use crate::touch::Plane;
 

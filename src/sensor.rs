@@ -12,6 +12,102 @@ use crate::quote::shortened;
 /// The largest number of columns, and of rows.
 pub const MAX_SIDE: u8 = 64;
 
+/// Columns and rows of a sensor, and so of its imprints and its matrices of values, each 1 to [`MAX_SIDE`].
+///
+/// ```
+/// use taxel::prelude::*;
+/// let size = MatrixSize::new(12, 8)?;
+/// assert_eq!((size.columns(), size.rows(), size.cells()), (12, 8, 96));
+/// assert_eq!(size, Imprint::empty(size).size());
+/// assert_eq!(MatrixSize::new(65, 8).unwrap_err().to_string(), "columns: 65 is above 64 (allowed: 1 to 64)");
+/// # Ok::<(), ParameterError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MatrixSize {
+    columns: u8,
+    rows: u8,
+}
+
+impl MatrixSize {
+    /// One cell.
+    pub(crate) const SMALLEST: Self = Self {
+        columns: 1,
+        rows: 1,
+    };
+
+    /// [`MAX_SIDE`] columns and rows.
+    pub const LARGEST: Self = Self {
+        columns: MAX_SIDE,
+        rows: MAX_SIDE,
+    };
+
+    /// The size of a matrix with that many columns and rows.
+    ///
+    /// # Errors
+    /// If a number is not 1 to [`MAX_SIDE`].
+    pub fn new(columns: u8, rows: u8) -> Result<Self, ParameterError> {
+        let largest = Sensor::LARGEST;
+        largest.check(Parameter::Columns, columns.into())?;
+        largest.check(Parameter::Rows, rows.into())?;
+        Ok(Self { columns, rows })
+    }
+
+    /// Number of columns.
+    pub fn columns(self) -> u8 {
+        self.columns
+    }
+
+    /// Number of rows.
+    pub fn rows(self) -> u8 {
+        self.rows
+    }
+
+    /// Number of cells.
+    pub fn cells(self) -> usize {
+        usize::from(self.columns) * usize::from(self.rows)
+    }
+
+    /// The smallest size that holds both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            columns: self.columns.max(other.columns),
+            rows: self.rows.max(other.rows),
+        }
+    }
+
+    /// With so many more columns and rows, but at most [`MAX_SIDE`].
+    #[cfg(feature = "recognition")]
+    pub(crate) fn enlarged(self, by: u8) -> Self {
+        let side = |side: u8| side.saturating_add(by).min(MAX_SIDE);
+        Self {
+            columns: side(self.columns),
+            rows: side(self.rows),
+        }
+    }
+
+    /// Its columns as rows, and its rows as columns.
+    pub(crate) fn transposed(self) -> Self {
+        Self {
+            columns: self.rows,
+            rows: self.columns,
+        }
+    }
+
+    /// A size that a test knows to be one.
+    #[cfg(test)]
+    pub(crate) fn of(columns: u8, rows: u8) -> Self {
+        Self::new(columns, rows).expect("1 to 64")
+    }
+}
+
+impl fmt::Display for MatrixSize {
+    /// `12 × 8`, columns first.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} × {}", self.columns, self.rows)
+    }
+}
+
 /// The parameters of a sensor, in the order in which forms show them.
 pub const SENSOR_PARAMETERS: [Parameter; 4] = [
     Parameter::Columns,
@@ -34,8 +130,7 @@ pub const SENSOR_PARAMETERS: [Parameter; 4] = [
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
-    columns: u8,
-    rows: u8,
+    size: MatrixSize,
     threshold: f64,
     pitch_mm: f64,
 }
@@ -43,56 +138,46 @@ pub struct Sensor {
 impl Default for Sensor {
     /// Returns the paper's sensor: 16 × 16 taxels, a threshold of one half, cells of 1 mm.
     fn default() -> Self {
-        Self {
+        Self::of_size(MatrixSize {
             columns: 16,
             rows: 16,
-            threshold: 0.5,
-            pitch_mm: 1.0,
-        }
+        })
     }
 }
 
 impl fmt::Display for Sensor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
-            columns,
-            rows,
+            size,
             threshold,
             pitch_mm,
         } = self;
         write!(
             f,
-            "{columns} × {rows} with threshold {threshold} and pitch {pitch_mm} mm"
+            "{size} with threshold {threshold} and pitch {pitch_mm} mm"
         )
     }
 }
 
 impl Sensor {
     /// The largest sensor, 64 × 64. It allows every value that any sensor allows.
-    pub const LARGEST: Self = Self {
-        columns: MAX_SIDE,
-        rows: MAX_SIDE,
-        threshold: 0.5,
-        pitch_mm: 1.0,
-    };
+    pub const LARGEST: Self = Self::of_size(MatrixSize::LARGEST);
 
     /// Creates a sensor of `columns × rows` taxels, with the default threshold and pitch.
     ///
     /// # Errors
     /// Returns an error if a number is not from 1 to [`MAX_SIDE`].
     pub fn new(columns: u8, rows: u8) -> Result<Self, ParameterError> {
-        Self::default()
-            .with(Parameter::Columns, columns.into())?
-            .with(Parameter::Rows, rows.into())
+        MatrixSize::new(columns, rows).map(Self::of_size)
     }
 
-    /// Creates a sensor of `columns × rows` taxels, like [`Self::new`], but clamps the numbers to 1 to [`MAX_SIDE`].
-    /// So every imprint has a sensor of its size.
-    pub fn clamped(columns: u8, rows: u8) -> Self {
+    /// Creates a sensor of that size, with the threshold and pitch of the default one. So every imprint is the whole
+    /// matrix of some sensor.
+    pub const fn of_size(size: MatrixSize) -> Self {
         Self {
-            columns: columns.clamp(1, MAX_SIDE),
-            rows: rows.clamp(1, MAX_SIDE),
-            ..Self::default()
+            size,
+            threshold: 0.5,
+            pitch_mm: 1.0,
         }
     }
 
@@ -108,8 +193,8 @@ impl Sensor {
     pub fn with(mut self, parameter: Parameter, value: f64) -> Result<Self, ParameterError> {
         let value = self.check(parameter, value)?;
         match parameter {
-            Parameter::Columns => self.columns = value as u8,
-            Parameter::Rows => self.rows = value as u8,
+            Parameter::Columns => self.size.columns = value as u8,
+            Parameter::Rows => self.size.rows = value as u8,
             Parameter::Threshold => self.threshold = value,
             Parameter::Pitch => self.pitch_mm = value,
             _ => {
@@ -150,27 +235,32 @@ impl Sensor {
     /// Returns the value of a parameter; None if a sensor does not have the parameter.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
-            Parameter::Columns => Some(f64::from(self.columns)),
-            Parameter::Rows => Some(f64::from(self.rows)),
+            Parameter::Columns => Some(f64::from(self.size.columns)),
+            Parameter::Rows => Some(f64::from(self.size.rows)),
             Parameter::Threshold => Some(self.threshold),
             Parameter::Pitch => Some(self.pitch_mm),
             _ => None,
         }
     }
 
+    /// Its columns and rows.
+    pub fn size(&self) -> MatrixSize {
+        self.size
+    }
+
     /// Returns the number of columns.
     pub fn columns(&self) -> u8 {
-        self.columns
+        self.size.columns
     }
 
     /// Returns the number of rows.
     pub fn rows(&self) -> u8 {
-        self.rows
+        self.size.rows
     }
 
     /// Returns the number of columns or rows, whichever is larger. It bounds the lengths and positions of figures.
     pub fn side(&self) -> u8 {
-        self.columns.max(self.rows)
+        self.size.columns.max(self.size.rows)
     }
 
     /// Returns the threshold: the covered share of a cell from which on its taxel is active.

@@ -82,7 +82,7 @@ impl Plane {
         };
         solid.draw(&mut pen);
         let (round, finite) = (!pen.edges, pen.finite);
-        let mut imprint = Imprint::empty(self.sensor.columns(), self.sensor.rows());
+        let mut imprint = Imprint::empty(self.sensor.size());
         if !finite {
             // Clears everything, since the extent of such a shape is not known.
             self.areas.wipe();

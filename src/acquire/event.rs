@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::acquire::growing_file::ReadAnew;
 use crate::formats::recording::{ChannelInfo, RecordingError, RecordingNote};
 use crate::formats::stream::{StreamCounts, StreamFormat};
-use crate::frame::Frame;
+use crate::frame::{Frame, FrameSize};
 
 /// The options of an acquisition: how a source is read.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,10 +14,10 @@ use crate::frame::Frame;
 pub struct AcquireOptions {
     /// The format of a stream; None to detect it. If it is given, a file is a stream, not a recording.
     pub format: Option<StreamFormat>,
-    /// Rows and columns of streams, and of recordings that do not state them.
-    pub shape: Option<(u16, u16)>,
-    /// Rows and columns of streams only, if `shape` is not given; recordings state their own.
-    pub stream_shape: Option<(u16, u16)>,
+    /// The size of frames of streams, and of recordings that do not state it.
+    pub size: Option<FrameSize>,
+    /// The size of frames of streams only, if `size` is not given; recordings state their own.
+    pub stream_size: Option<FrameSize>,
     /// The channel of a recording whose frames are played at its rate; by default the first one. Frames of other
     /// channels are given at once.
     pub channel: Option<String>,
@@ -37,8 +37,8 @@ impl Default for AcquireOptions {
     fn default() -> Self {
         Self {
             format: None,
-            shape: None,
-            stream_shape: None,
+            size: None,
+            stream_size: None,
             channel: None,
             baud: 115_200,
             waits: false,

@@ -75,7 +75,7 @@ impl Pace<'_> {
     fn add(&mut self, info: &ChannelInfo) {
         if self.channel.add(info) {
             self.step = info.seconds_per_frame.unwrap_or(STEP);
-            self.unshaped = info.values.filter(|_| info.shape.is_none());
+            self.unshaped = info.values.filter(|_| info.size.is_none());
         }
     }
 
@@ -316,12 +316,12 @@ impl Player<'_, '_> {
         round: &mut Round<'r>,
     ) -> (Pace<'r>, Result<ControlFlow<()>, RecordingError>) {
         let reading = ReadOptions {
-            shape: self.options.shape,
+            size: self.options.size,
         };
         let mut pace = Pace::new(self.options);
         pace.growth = round.growth;
         let mut flow = ControlFlow::Continue(());
-        let mut renumbered = Frame::new(1, 1);
+        let mut renumbered = Frame::default();
         let read = read_as(format, input, reading, &mut |event| {
             let consumer = &mut **self.consumer.borrow_mut();
             flow = match event {
@@ -404,7 +404,7 @@ mod tests {
             };
             assert_eq!(pace.channel.add(&info), is_watched);
         }
-        let mut frame = Frame::new(1, 1);
+        let mut frame = Frame::default();
         let mut waits = |frame: &Frame| {
             // The consumer stops it at the first wait.
             let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
@@ -423,7 +423,7 @@ mod tests {
         let mut pace = Pace::new(&AcquireOptions::default());
         pace.channel.add(&ChannelInfo::default());
         let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
-        let mut frame = Frame::new(1, 1);
+        let mut frame = Frame::default();
         for (time, is_waited_for) in [(1000.0, false), (1000.0, false), (2000.0, true)] {
             frame.time = Some(time);
             let wait = pace.wait(&frame, &AtomicBool::new(false), consumer);
@@ -457,7 +457,7 @@ mod tests {
             pace.step = 4000.0;
             let stop = AtomicBool::new(false);
             let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
-            let mut frame = Frame::new(1, 1);
+            let mut frame = Frame::default();
             for &time in times {
                 frame.time = time;
                 assert!(pace.wait(&frame, &stop, consumer).is_continue());

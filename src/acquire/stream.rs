@@ -68,7 +68,7 @@ pub(super) fn run(
 ) -> Result<(), AcquireError> {
     let stream = StreamOptions {
         format: options.format,
-        shape: options.shape.or(options.stream_shape),
+        size: options.size.or(options.stream_size),
         from_start: !source.comes_back(),
     };
     let mut decoder = StreamDecoder::new(stream);
@@ -299,6 +299,7 @@ mod tests {
 
     use super::*;
     use crate::formats::stream::StreamFormat;
+    use crate::frame::FrameSize;
 
     #[test]
     fn silence_comes_with_the_rate_of_all_bytes_since_the_last_frame() {
@@ -344,7 +345,7 @@ mod tests {
         });
         let options = AcquireOptions {
             format: Some(StreamFormat::Flexitac),
-            shape: Some((2, 2)),
+            size: Some(FrameSize::of(2, 2)),
             ..AcquireOptions::default()
         };
         let (mut events, mut dropped) = (Vec::new(), 0);
@@ -383,7 +384,7 @@ mod tests {
             }
         });
         let options = AcquireOptions {
-            shape: Some((1, 2)),
+            size: Some(FrameSize::of(2, 1)),
             ..AcquireOptions::default()
         };
         let mut times = Vec::new();

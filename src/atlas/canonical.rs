@@ -7,7 +7,7 @@
 use crate::atlas::counter::ImprintCounter;
 use crate::atlas::packing::Layout;
 use crate::imprint::Imprint;
-use crate::sensor::MAX_SIDE;
+use crate::sensor::{MAX_SIDE, MatrixSize};
 
 /// Counts distinct imprints up to shifts, and up to shifts, quarter turns and mirror images.
 #[derive(Debug)]
@@ -27,10 +27,9 @@ struct Block {
 }
 
 impl Classes {
-    pub(crate) fn new(columns: u8, rows: u8) -> Self {
+    pub(crate) fn new(size: MatrixSize) -> Self {
         // The layout is square, so that a quarter turn fits.
-        let side = columns.max(rows);
-        let layout = Layout::new(side, side);
+        let layout = Layout::new(size.union(size.transposed()));
         let words = layout.words();
         Self {
             layout,

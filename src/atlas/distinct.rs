@@ -8,6 +8,7 @@ use crate::atlas::feature::{ImprintSummary, features};
 use crate::atlas::packing::Layout;
 use crate::imprint::Imprint;
 use crate::index::{narrow, wide};
+use crate::sensor::MatrixSize;
 
 /// The distinct imprints of a sweep, counted and described.
 #[derive(Clone, Debug)]
@@ -34,8 +35,8 @@ pub struct AtlasEntry {
 }
 
 impl Atlas {
-    pub(crate) fn new(columns: u8, rows: u8) -> Self {
-        let layout = Layout::new(columns, rows);
+    pub(crate) fn new(size: MatrixSize) -> Self {
+        let layout = Layout::new(size);
         Self {
             counter: ImprintCounter::new(layout.words()),
             layout,
@@ -140,7 +141,7 @@ impl Atlas {
 
     /// Returns the number of an imprint; None if no pose leaves it.
     pub fn find(&self, imprint: &Imprint) -> Option<u32> {
-        if (imprint.columns(), imprint.rows()) != (self.layout.columns(), self.layout.rows()) {
+        if imprint.size() != self.layout.size() {
             return None;
         }
         let (key, hash) = self.layout.key(imprint);
@@ -167,12 +168,12 @@ impl Atlas {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn find_shifted(&self, imprint: &Imprint) -> Option<(u32, i8, i8)> {
-        let (columns, rows) = (self.layout.columns(), self.layout.rows());
+        let size = self.layout.size();
         let bounds = imprint.bounds()?;
         let (wide, high) = (bounds.columns().len(), bounds.rows().len());
         let mut nearest: Option<(u32, i8, i8)> = None;
-        for top in 0..=rows.checked_sub(u8::try_from(high).ok()?)? {
-            for left in 0..=columns.checked_sub(u8::try_from(wide).ok()?)? {
+        for top in 0..=size.rows().checked_sub(u8::try_from(high).ok()?)? {
+            for left in 0..=size.columns().checked_sub(u8::try_from(wide).ok()?)? {
                 // Both are at most 64.
                 let right = bounds.left.cast_signed() - left.cast_signed();
                 let down = bounds.top.cast_signed() - top.cast_signed();
@@ -181,7 +182,7 @@ impl Atlas {
                 if nearest.is_some_and(|known| far(known) <= far((0, right, down))) {
                     continue;
                 }
-                let mut moved = Imprint::empty(columns, rows);
+                let mut moved = Imprint::empty(size);
                 for (row, from) in (usize::from(top)..).zip(bounds.rows()) {
                     let word = imprint.words()[usize::from(from)] >> bounds.left;
                     moved.set_word(row, word << left);
@@ -227,7 +228,7 @@ impl Atlas {
     /// Returns the number of distinct imprints up to shifts by whole taxels, and up to shifts, quarter turns and mirror
     /// images.
     pub fn distinct_classes(&self) -> (usize, usize) {
-        let mut classes = Classes::new(self.layout.columns(), self.layout.rows());
+        let mut classes = Classes::new(self.layout.size());
         for index in 0..self.len() {
             classes.add(&self.layout.imprint(self.counter.key(index)));
         }
@@ -240,7 +241,7 @@ mod tests {
     use super::*;
     use crate::figure::Figure;
     use crate::pose::{Anchor, PoseGrid, Ranges};
-    use crate::sensor::Sensor;
+    use crate::sensor::{MatrixSize, Sensor};
     use crate::sweep::Sweep;
 
     #[test]
@@ -251,7 +252,7 @@ mod tests {
             let ranges = [x0, y0, "0", "1", "1"].map(|range| range.parse().expect("a range"));
             let grid = PoseGrid::new(bar.into(), sensor, Anchor::Corner, Ranges::new(ranges));
             let atlas = Sweep::new(&grid.expect("in range")).run().atlas;
-            let mut between = Imprint::empty(16, 16);
+            let mut between = Imprint::empty(MatrixSize::of(16, 16));
             (4..7).for_each(|column| between.set(column, 4, true));
             atlas.find_shifted(&between)
         };

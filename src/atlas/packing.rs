@@ -10,6 +10,7 @@ use std::hash::{BuildHasher, RandomState};
 use std::sync::OnceLock;
 
 use crate::imprint::Imprint;
+use crate::sensor::MatrixSize;
 
 /// The seed of the random numbers. The whole run has a single one, because hashes of one sweep are compared with those
 /// of another.
@@ -18,10 +19,8 @@ static SEED: OnceLock<u64> = OnceLock::new();
 /// The way in which the imprints of a sensor are packed.
 #[derive(Clone, Debug)]
 pub(crate) struct Layout {
-    /// The number of columns of the sensor.
-    columns: u8,
-    /// The number of rows of the sensor.
-    rows: u8,
+    /// The size of the sensor.
+    size: MatrixSize,
     /// The binary logarithm of the number of bits that a row takes: 3 to 6.
     log_width: u32,
     /// A random number per taxel, in reading order.
@@ -29,31 +28,28 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    pub(crate) fn new(columns: u8, rows: u8) -> Self {
-        let log_width = columns.next_power_of_two().clamp(8, 64).trailing_zeros();
+    pub(crate) fn new(size: MatrixSize) -> Self {
+        let log_width = size
+            .columns()
+            .next_power_of_two()
+            .clamp(8, 64)
+            .trailing_zeros();
         let mut seed = *SEED.get_or_init(|| RandomState::new().hash_one(0));
-        let numbers = (0..usize::from(columns) * usize::from(rows))
-            .map(|_| split_mix(&mut seed))
-            .collect();
+        let numbers = (0..size.cells()).map(|_| split_mix(&mut seed)).collect();
         Self {
-            columns,
-            rows,
+            size,
             log_width,
             numbers,
         }
     }
 
-    pub(crate) fn columns(&self) -> u8 {
-        self.columns
-    }
-
-    pub(crate) fn rows(&self) -> u8 {
-        self.rows
+    pub(crate) fn size(&self) -> MatrixSize {
+        self.size
     }
 
     /// Returns the number of words in a key.
     pub(crate) fn words(&self) -> usize {
-        (usize::from(self.rows) << self.log_width).div_ceil(64)
+        (usize::from(self.size.rows()) << self.log_width).div_ceil(64)
     }
 
     /// Returns the index of the word that holds a row, and by how many bits the row is shifted in it.
@@ -64,14 +60,14 @@ impl Layout {
 
     /// Returns the random numbers of a row's taxels.
     pub(crate) fn numbers(&self, row: usize) -> &[u64] {
-        let columns = usize::from(self.columns);
+        let columns = usize::from(self.size.columns());
         &self.numbers[row * columns..][..columns]
     }
 
     /// Returns the imprint of a key.
     pub(crate) fn imprint(&self, key: &[u64]) -> Imprint {
-        let mut imprint = Imprint::empty(self.columns, self.rows);
-        for row in 0..usize::from(self.rows) {
+        let mut imprint = Imprint::empty(self.size);
+        for row in 0..usize::from(self.size.rows()) {
             let (word, shift) = self.slot(row);
             imprint.set_word(row, key[word] >> shift);
         }
@@ -113,14 +109,14 @@ impl Layout {
             *turned = before.unbounded_shr(64 - left) | word << left;
             before = word;
         }
-        let rows = 0..usize::from(self.rows);
+        let rows = 0..usize::from(self.size.rows());
         rows.fold(0, |hash, row| hash ^ self.hash(row, self.row(turned, row)))
     }
 
     /// Returns the taxels of a row.
     fn row(&self, key: &[u64], row: usize) -> u64 {
         let (word, shift) = self.slot(row);
-        key[word] >> shift & u64::MAX >> (u64::BITS - u32::from(self.columns))
+        key[word] >> shift & u64::MAX >> (u64::BITS - u32::from(self.size.columns()))
     }
 
     /// Returns the contribution of a row's taxels to a hash.
@@ -159,7 +155,8 @@ mod tests {
             (33, 7),
             (64, 64),
         ] {
-            let layout = Layout::new(columns, rows);
+            let size = MatrixSize::of(columns, rows);
+            let layout = Layout::new(size);
             // An L, away from the sides if there is room.
             let left = columns / 3;
             let (top, right, bottom) = (rows / 3, columns - left / 2 - 1, rows - rows / 3 - 1);
@@ -171,7 +168,7 @@ mod tests {
                 for &(column, row) in taxels {
                     words[usize::from(row)] |= 1 << column;
                 }
-                let mut imprint = Imprint::empty(columns, rows);
+                let mut imprint = Imprint::empty(size);
                 for (row, word) in words.into_iter().enumerate() {
                     imprint.set_word(row, word);
                 }

@@ -16,6 +16,7 @@ use crate::parameter::number::short;
 use crate::pose::GridError;
 use crate::quote::shortened_message;
 use crate::recognition::{NoiseError, TrainingError};
+use crate::sensor::MatrixSize;
 use crate::storage::{ArchiveFileError, FileError, LibraryError};
 use crate::sweep::MergeError;
 use crate::tui::script::runner;
@@ -144,14 +145,12 @@ pub(crate) enum CliError {
     #[error("{0}")]
     NoSet(String),
     /// None of a shape's imprints fits on the matrix.
-    #[error("{name}: none of its imprints fits on {columns} × {rows} taxels")]
+    #[error("{name}: none of its imprints fits on {size} taxels")]
     NoTouch {
         /// The first such shape.
         name: String,
-        /// Columns of the matrix.
-        columns: u8,
-        /// Rows of the matrix.
-        rows: u8,
+        /// The size of the matrix.
+        size: MatrixSize,
     },
     /// No model beside the library has this name.
     #[error("no model is called {name:?}; 'taxel model list' shows all{near}")]
@@ -165,12 +164,12 @@ pub(crate) enum CliError {
     #[error(transparent)]
     Noise(#[from] NoiseError),
     /// A mask of another size than the imprint.
-    #[error("--mask has {} × {} taxels, the imprint {} × {}", mask.0, mask.1, imprint.0, imprint.1)]
+    #[error("--mask has {mask} taxels, the imprint {imprint}")]
     Mask {
-        /// Columns and rows of the mask.
-        mask: (u8, u8),
-        /// Columns and rows of the imprint.
-        imprint: (u8, u8),
+        /// The size of the mask.
+        mask: MatrixSize,
+        /// The size of the imprint.
+        imprint: MatrixSize,
     },
     /// A name that no shape of the model has.
     #[error("--expect: no shape of the model is called {name:?}{near}")]

@@ -136,8 +136,7 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
     components(imprint, bounds, RegionKind::Exterior, |piece| {
         if let Some(filled) = &piece.filled {
             let bounds = piece.bounds;
-            let holes =
-                holes.get_or_insert_with(|| Imprint::empty(imprint.columns(), imprint.rows()));
+            let holes = holes.get_or_insert_with(|| Imprint::empty(imprint.size()));
             let holes = rows_mut(holes, bounds).iter_mut();
             let inside = rows(filled, bounds).iter().zip(rows(imprint, bounds));
             for (hole, (filled, active)) in holes.zip(inside) {
@@ -190,7 +189,7 @@ fn rows_mut(matrix: &mut Imprint, bounds: Bounds) -> &mut [u64] {
 /// Calls `visit` with the connected components of a matrix in reading order: exteriors 8-connected, holes 4-connected.
 fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: impl FnMut(&Region)) {
     let diagonal = kind == RegionKind::Exterior;
-    let none = || Imprint::empty(matrix.columns(), matrix.rows());
+    let none = || Imprint::empty(matrix.size());
     if hangs_together(rows(matrix, bounds), diagonal) {
         if rows(matrix, bounds).iter().all(|&word| is_run(word)) {
             visit(&Region::borrowed(kind, matrix, None, bounds));
@@ -381,8 +380,8 @@ fn fill(piece: &Imprint, bounds: Bounds, filled: &mut Imprint) -> bool {
     if met | inner_above == 0 {
         return true;
     }
-    let mut inner = Imprint::empty(piece.columns(), piece.rows());
-    let mut outside = Imprint::empty(piece.columns(), piece.rows());
+    let mut inner = Imprint::empty(piece.size());
+    let mut outside = Imprint::empty(piece.size());
     let (inner, outside) = (rows_mut(&mut inner, bounds), rows_mut(&mut outside, bounds));
     for (row, &word) in words.iter().enumerate() {
         let far = |row: usize| !filled.get(row).unwrap_or(&0);

@@ -12,7 +12,7 @@ use crate::formats::npy::{Dtype, NumberType};
 use crate::imprint::Imprint;
 use crate::parameter::number::counted;
 use crate::quote::shortened;
-use crate::sensor::MAX_SIDE;
+use crate::sensor::MatrixSize;
 
 /// The error for bytes that are not an imprint as an array.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -147,30 +147,29 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ArrayError> {
     let kind = TaxelType::of(&header.code).ok_or_else(|| ArrayError::Type {
         found: shortened(&header.code),
     })?;
-    let side = |length: &u64| u8::try_from(*length).ok();
-    let side = |length: &u64| side(length).filter(|side| (1..=MAX_SIDE).contains(side));
-    let (rows, columns) = match &header.shape[..] {
-        [rows, columns] => side(rows).zip(side(columns)),
+    let size = match &header.shape[..] {
+        [rows, columns] => u8::try_from(*columns).ok().zip(u8::try_from(*rows).ok()),
         _ => None,
-    }
-    .ok_or_else(|| ArrayError::Shape {
+    };
+    let size = size.and_then(|(columns, rows)| MatrixSize::new(columns, rows).ok());
+    let size = size.ok_or_else(|| ArrayError::Shape {
         found: header.shape.iter().copied().take(8).collect(),
     })?;
-    let size = kind.number.size();
-    let expected = usize::from(rows) * usize::from(columns) * size;
+    let width = kind.number.size();
+    let expected = size.cells() * width;
     if numbers.len() != expected {
         let found = numbers.len();
         return Err(ArrayError::Length { found, expected });
     }
-    let mut imprint = Imprint::empty(columns, rows);
+    let mut imprint = Imprint::empty(size);
     let mut mask = Mask::new();
     let (slow, fast) = if header.fortran_order {
-        (columns, rows)
+        (size.columns(), size.rows())
     } else {
-        (rows, columns)
+        (size.rows(), size.columns())
     };
     let taxels = (0..slow).flat_map(|outer| (0..fast).map(move |inner| (outer, inner)));
-    for ((outer, inner), bytes) in taxels.zip(numbers.chunks(size)) {
+    for ((outer, inner), bytes) in taxels.zip(numbers.chunks(width)) {
         let (column, row) = if header.fortran_order {
             (outer, inner)
         } else {

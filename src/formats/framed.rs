@@ -7,7 +7,7 @@ use crate::frame::{Frame, FrameError, LARGEST_VALUE, Processing, Rule};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::parameter::number::counted;
-use crate::sensor::MAX_SIDE;
+use crate::sensor::{MAX_SIDE, MatrixSize};
 
 /// The keys beside `frame` that say which values are active.
 pub(crate) const RULE_KEYS: [&str; 5] = ["at_least", "percent", "low", "high", "least"];
@@ -62,7 +62,7 @@ impl RuleRecord {
         processing.least = self.least.unwrap_or_default();
         let wrong = |error: String| format!("frame: {error}");
         let values = matrix(rows).map_err(wrong)?;
-        let mut frame = Frame::new(values.columns().into(), values.rows().into());
+        let mut frame = Frame::new(values.size().into());
         frame.values_mut().copy_from_slice(values.values());
         let processed = processing
             .run(&frame)
@@ -83,11 +83,10 @@ const MOST_TAXELS: u32 = MAX_SIDE as u32 * MAX_SIDE as u32;
 /// value is beyond ±[`LARGEST_VALUE`].
 pub(crate) fn matrix(rows: &[Vec<Option<f64>>]) -> Result<Matrix<f64>, String> {
     let (height, width) = (rows.len(), rows.first().map_or(0, Vec::len));
-    let side = |length: usize| {
-        let side = u8::try_from(length).ok();
-        side.filter(|side| (1..=MAX_SIDE).contains(side))
-    };
-    let (Some(columns), Some(lines)) = (side(width), side(height)) else {
+    let side = |length: usize| u8::try_from(length).ok();
+    let sides = side(width).zip(side(height));
+    let size = sides.and_then(|(columns, rows)| MatrixSize::new(columns, rows).ok());
+    let Some(size) = size else {
         return Err(format!(
             "{} of {width}, expected 1 to {MAX_SIDE} of each",
             counted(height as u64, "row")
@@ -103,7 +102,7 @@ pub(crate) fn matrix(rows: &[Vec<Option<f64>>]) -> Result<Matrix<f64>, String> {
     if let Some(&value) = values.find(|value| value.abs() > LARGEST_VALUE) {
         return Err(too_large(value));
     }
-    let mut matrix = Matrix::filled(columns, lines, f64::NAN);
+    let mut matrix = Matrix::filled(size, f64::NAN);
     for (slot, value) in matrix.values_mut().iter_mut().zip(rows.iter().flatten()) {
         *slot = value.unwrap_or(f64::NAN);
     }

@@ -24,7 +24,7 @@ use crate::imprint::Imprint;
 use crate::pose::Axis;
 use crate::quote::shortened;
 use crate::recognition::{Model, ModelParts, NamedShape, ShapeCount};
-use crate::sensor::{MAX_SIDE, Sensor};
+use crate::sensor::{MatrixSize, Sensor};
 
 /// The required value of the header's key `format`.
 pub const FORMAT: &str = "taxel-model/1";
@@ -237,10 +237,7 @@ fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<Keys, ArchiveErr
 
 /// Returns the imprint of a key that has taxels; None if it is not cut to its box.
 fn imprint(rows: &[u8], kind: Dtype, (width, height): (u8, u8)) -> Option<Imprint> {
-    if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE {
-        return None;
-    }
-    let mut imprint = Imprint::empty(width, height);
+    let mut imprint = Imprint::empty(MatrixSize::new(width, height).ok()?);
     for (row, bytes) in rows.chunks_exact(kind.width()).enumerate() {
         let mut word = [0; 8];
         word[..kind.width()].copy_from_slice(bytes);

@@ -11,8 +11,9 @@ mod pgm;
 use std::fmt;
 
 use crate::imprint::Imprint;
+use crate::parameter::ParameterError;
 use crate::parameter::number::counted;
-use crate::sensor::MAX_SIDE;
+use crate::sensor::MatrixSize;
 
 /// The error for bytes that are not a bitmap, or not one of an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -155,9 +156,9 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, PbmError> {
     };
     let grey = matches!(bytes.get(1), Some(b'2' | b'5'));
     let mut cursor = Cursor { bytes, at: 2 };
-    let columns = cursor.side("width")?;
-    let rows = cursor.side("height")?;
-    let mut imprint = Imprint::empty(columns, rows);
+    let one_row = cursor.side("width", |columns| MatrixSize::new(columns, 1))?;
+    let size = cursor.side("height", |rows| MatrixSize::new(one_row.columns(), rows))?;
+    let mut imprint = Imprint::empty(size);
     let end = if grey {
         pgm::shades(&mut cursor, raw, &mut imprint)?
     } else if raw {
@@ -202,11 +203,16 @@ impl Cursor<'_> {
         }
     }
 
-    fn side(&mut self, what: &'static str) -> Result<u8, PbmError> {
+    /// Reads a side; `size` is that of a matrix which has it.
+    fn side(
+        &mut self,
+        what: &'static str,
+        size: impl Fn(u8) -> Result<MatrixSize, ParameterError>,
+    ) -> Result<MatrixSize, PbmError> {
         let (side, (line, column)) = self.number();
         let side = side.and_then(|side| u8::try_from(side).ok());
-        let side = side.filter(|side| (1..=MAX_SIDE).contains(side));
-        side.ok_or(PbmError::Side { line, column, what })
+        side.and_then(|side| size(side).ok())
+            .ok_or(PbmError::Side { line, column, what })
     }
 
     /// Reads a number that is separated from what is before and after it; returns it with its line and column.

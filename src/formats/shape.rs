@@ -10,7 +10,7 @@ use crate::formats::name::Name;
 use crate::formats::record::{ImprintRecord, Record, RecordError, Values, value_of};
 use crate::imprint::Imprint;
 use crate::quote::shortened;
-use crate::sensor::Sensor;
+use crate::sensor::{MatrixSize, Sensor};
 use crate::source::Source;
 
 /// The required value of a file's first key.
@@ -57,12 +57,12 @@ pub enum ShapeError {
     #[error("source: {0}")]
     Source(RecordError),
     /// An imprint of another size than the sensor's.
-    #[error("imprint: {} × {} taxels, expected {} × {} as the sensor has", found.0, found.1, expected.0, expected.1)]
+    #[error("imprint: {found} taxels, expected {expected} as the sensor has")]
     Size {
-        /// Columns and rows of the imprint.
-        found: (u8, u8),
-        /// Columns and rows of the sensor.
-        expected: (u8, u8),
+        /// The size of the imprint.
+        found: MatrixSize,
+        /// The size of the sensor.
+        expected: MatrixSize,
     },
 }
 
@@ -77,10 +77,7 @@ impl StoredShape {
         imprint: Imprint,
         source: Option<Source>,
     ) -> Result<Self, ShapeError> {
-        let (found, expected) = (
-            (imprint.columns(), imprint.rows()),
-            (sensor.columns(), sensor.rows()),
-        );
+        let (found, expected) = (imprint.size(), sensor.size());
         if found != expected {
             return Err(ShapeError::Size { found, expected });
         }

@@ -13,7 +13,7 @@ use crate::formats::mask::Mask;
 use crate::imprint::Imprint;
 use crate::parameter::number::counted;
 use crate::quote::shortened;
-use crate::sensor::MAX_SIDE;
+use crate::sensor::{MAX_SIDE, MatrixSize};
 
 /// The error for bytes that are not a table of an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -150,13 +150,11 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, TableError> {
         TableError::Text { line }
     })?;
     let table = Table::of(text)?;
-    let rows = u8::try_from(table.rows.len()).unwrap_or(MAX_SIDE);
-    let columns = table.rows.first().map_or(0, |row| row.fields.len());
-    let columns = u8::try_from(columns).unwrap_or(MAX_SIDE);
-    let mut imprint = Imprint::empty(columns, rows);
+    let size = table.size()?;
+    let mut imprint = Imprint::empty(size);
     let mut mask = Mask::new();
-    for (row, cells) in (0..rows).zip(&table.rows) {
-        for (column, field) in (0..columns).zip(&cells.fields) {
+    for (row, cells) in (0..size.rows()).zip(&table.rows) {
+        for (column, field) in (0..size.columns()).zip(&cells.fields) {
             let (line, place) = (cells.line, table.skipped + usize::from(column) + 1);
             let found = || shortened(field);
             let value = table.value(field).ok_or_else(|| TableError::Value {
@@ -243,7 +241,6 @@ impl<'a> Table<'a> {
             table.rows.push(Row { line, fields });
         }
         table.drop_names();
-        table.check()?;
         Ok(table)
     }
 
@@ -293,12 +290,15 @@ impl<'a> Table<'a> {
         words || numbered
     }
 
-    /// Checks that an imprint can have this number of rows and columns, and that all rows have equally many columns.
-    fn check(&self) -> Result<(), TableError> {
+    /// Its size, which is that of an imprint, with the same number of columns in each row.
+    fn size(&self) -> Result<MatrixSize, TableError> {
         let most = usize::from(MAX_SIDE);
         let found = self.rows.len();
-        let first = self.rows.first().filter(|_| found <= most);
-        let first = first.ok_or(TableError::Lines { found })?;
+        let side = |count: usize| u8::try_from(count).ok();
+        let one_column = side(found).and_then(|rows| MatrixSize::new(1, rows).ok());
+        let Some((first, one_column)) = self.rows.first().zip(one_column) else {
+            return Err(TableError::Lines { found });
+        };
         let expected = first.fields.len();
         for row in &self.rows {
             let (line, found) = (row.line, row.fields.len());
@@ -314,7 +314,12 @@ impl<'a> Table<'a> {
                 });
             }
         }
-        Ok(())
+        side(expected)
+            .and_then(|columns| MatrixSize::new(columns, one_column.rows()).ok())
+            .ok_or(TableError::Columns {
+                line: first.line,
+                found: expected,
+            })
     }
 
     /// Returns the number in a field; None if it is not a number, or not finite.

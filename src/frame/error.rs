@@ -2,8 +2,10 @@
 
 use std::fmt;
 
+use crate::frame::size::{FrameSize, FrameSizeError};
 use crate::matrix::Matrix;
 use crate::parameter::number::counted;
+use crate::sensor::MatrixSize;
 
 /// The error for a frame that cannot be processed, or for settings that do not fit it.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,42 +13,31 @@ use crate::parameter::number::counted;
 pub enum FrameError {
     /// More cells are left than an imprint can have.
     Large {
-        /// The number of columns that are left.
-        columns: u16,
-        /// The number of rows that are left.
-        rows: u16,
+        /// What is left.
+        size: FrameSize,
     },
     /// A side of a frame that is not 1 to 512.
-    Sides {
-        /// The number of columns.
-        columns: u16,
-        /// The number of rows.
-        rows: u16,
-    },
+    Sides(FrameSizeError),
     /// The number of values differs from the number of cells.
     Values {
-        /// The number of the frame's columns.
-        columns: u16,
-        /// The number of the frame's rows.
-        rows: u16,
+        /// The frame's size.
+        size: FrameSize,
         /// The number of values.
         found: usize,
     },
     /// The crop reaches beyond the frame.
     Crop {
-        /// The number of the frame's columns.
-        columns: u16,
-        /// The number of the frame's rows.
-        rows: u16,
+        /// The frame's size.
+        size: FrameSize,
     },
     /// A mask, a gain or a tare differs in size from the visible part of the frame.
     Size {
         /// "mask", "gain" or "tare".
         what: &'static str,
-        /// The columns and rows of the mask, gain or tare.
-        found: (u16, u16),
-        /// The columns and rows of the visible part of the frame.
-        expected: (u16, u16),
+        /// Its size.
+        found: MatrixSize,
+        /// That of the frame.
+        expected: MatrixSize,
     },
     /// A threshold is not a number, or out of range.
     Rule {
@@ -87,24 +78,23 @@ impl FrameError {
 impl fmt::Display for FrameError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Large { columns, rows } => write!(
+            Self::Large { size } => write!(
                 f,
-                "{columns} × {rows} cells are left, expected at most 64 × 64: crop the frame"
+                "{size} cells are left, expected at most 64 × 64: crop the frame"
             ),
-            Self::Sides { columns, rows } => write!(
-                f,
-                "a frame of {columns} × {rows}, expected 1 to 512 columns and rows"
-            ),
-            Self::Values {
-                columns,
-                rows,
-                found,
-            } => f.write_str(&wrong_values((*columns, *rows), *found)),
-            Self::Crop { columns, rows } => write!(
+            Self::Sides(error) => error.fmt(f),
+            Self::Values { size, found } => {
+                let (found, expected) = (counted(*found as u64, "value"), size.cells());
+                write!(
+                    f,
+                    "found {found}, expected {expected} for a frame of {size}"
+                )
+            }
+            Self::Crop { size } => write!(
                 f,
                 "the crop reaches beyond the frame, which has {} and {}",
-                counted(*columns, "column"),
-                counted(*rows, "row")
+                counted(size.columns(), "column"),
+                counted(size.rows(), "row")
             ),
             Self::Size {
                 what,
@@ -113,10 +103,10 @@ impl fmt::Display for FrameError {
             } => write!(
                 f,
                 "the {what} has {} and {}, expected {} and {} as the frame has",
-                counted(found.0, "column"),
-                counted(found.1, "row"),
-                expected.0,
-                expected.1
+                counted(found.columns(), "column"),
+                counted(found.rows(), "row"),
+                expected.columns(),
+                expected.rows()
             ),
             Self::Rule {
                 what,
@@ -141,10 +131,10 @@ impl fmt::Display for FrameError {
 
 impl std::error::Error for FrameError {}
 
-fn wrong_values((columns, rows): (u16, u16), found: usize) -> String {
-    let found = counted(found as u64, "value");
-    let expected = u32::from(columns) * u32::from(rows);
-    format!("found {found}, expected {expected} for a frame of {columns} × {rows}")
+impl From<FrameSizeError> for FrameError {
+    fn from(error: FrameSizeError) -> Self {
+        Self::Sides(error)
+    }
 }
 
 /// Returns an error if a matrix differs in size from the values.
@@ -153,8 +143,7 @@ pub(super) fn check_size(
     found: &Matrix<f64>,
     values: &Matrix<f64>,
 ) -> Result<(), FrameError> {
-    let size = |of: &Matrix<f64>| (u16::from(of.columns()), u16::from(of.rows()));
-    let (found, expected) = (size(found), size(values));
+    let (found, expected) = (found.size(), values.size());
     if found == expected {
         Ok(())
     } else {

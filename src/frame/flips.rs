@@ -70,7 +70,7 @@ impl FlipReport {
 impl FlipCounter {
     /// Creates a counter for imprints in which these taxels exist.
     pub fn new(cells: Imprint) -> Self {
-        let count = usize::from(cells.columns()) * usize::from(cells.rows());
+        let count = cells.size().cells();
         Self {
             cells,
             frames: 0,
@@ -83,7 +83,7 @@ impl FlipCounter {
 
     /// Adds an imprint; an imprint of another size is ignored.
     pub fn add(&mut self, imprint: &Imprint) {
-        if (imprint.columns(), imprint.rows()) != (self.cells.columns(), self.cells.rows()) {
+        if imprint.size() != self.cells.size() {
             return;
         }
         self.frames += 1;
@@ -134,7 +134,7 @@ impl FlipCounter {
     /// Returns the estimates from the frames so far.
     pub fn finish(&self) -> FlipReport {
         let (columns, rows) = (self.cells.columns(), self.cells.rows());
-        let mut stuck_on = Imprint::empty(columns, rows);
+        let mut stuck_on = Imprint::empty(self.cells.size());
         let mut stuck_off = stuck_on;
         for row in 0..rows {
             for column in 0..columns {
@@ -197,6 +197,7 @@ fn noise(flips: u64, repeated: u64) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sensor::MatrixSize;
 
     /// Pseudo-random numbers, the same each time.
     fn next(state: &mut u64) -> u64 {
@@ -214,7 +215,7 @@ mod tests {
             let mut recording = || {
                 let mut counter = FlipCounter::new(cells);
                 for _ in 0..40 {
-                    let mut imprint = Imprint::empty(8, 8);
+                    let mut imprint = Imprint::empty(MatrixSize::of(8, 8));
                     for row in 0..8 {
                         for column in 0..8 {
                             imprint.set(column, row, next(&mut state) % 100 < percent);
@@ -245,7 +246,7 @@ mod tests {
             "........", "..####..", "..####..", "..####..", "..####..", "........", "........",
             "........",
         ];
-        let idle = Imprint::empty(8, 8);
+        let idle = Imprint::empty(MatrixSize::of(8, 8));
         let square = Imprint::from_rows(rows.iter().copied()).expect("rows");
         let cells = Imprint::from_rows(["########"; 8].iter().copied()).expect("rows");
         let mut counter = FlipCounter::new(cells);

@@ -11,8 +11,9 @@
 //! Nothing is interpolated, smoothed or normalised. A cell without a value is NaN in memory and never active.
 //!
 //! ```
-//! use taxel::frame::{Frame, Processing, Rule};
-//! let frame = Frame::from_values(3, 2, &[0.0, 12.0, f64::NAN, 3.0, 10.0, 0.0])?;
+//! use taxel::frame::{Frame, FrameSize, Processing, Rule};
+//! let size = FrameSize::new(3, 2)?;
+//! let frame = Frame::from_values(size, &[0.0, 12.0, f64::NAN, 3.0, 10.0, 0.0])?;
 //! let mut processing = Processing::default();
 //! processing.rule = Some(Rule::at_least(10.0)?);
 //! let processed = processing.run(&frame)?;
@@ -22,6 +23,8 @@
 //! ```
 
 mod error;
+
+mod size;
 
 mod recorded;
 
@@ -43,8 +46,9 @@ pub use error::FrameError;
 pub use flips::{FlipCounter, FlipReport};
 pub use peak::Peak;
 pub use processing::{Processed, Processing};
-pub use recorded::{Frame, LARGEST_VALUE, MAX_FRAME_SIDE};
+pub use recorded::{FirstCell, Frame, LARGEST_VALUE};
 pub use rule::Rule;
 pub use set_rule::{RuleOrigin, SetRule};
+pub use size::{FrameSize, FrameSizeError, MAX_FRAME_SIDE};
 pub use tare::{Tare, TareFrames};
 pub use view::{Crop, View};

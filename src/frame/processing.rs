@@ -34,8 +34,8 @@ impl Default for Processing {
             gain: None,
             rule: None,
             least: 0,
-            raw: Matrix::filled(1, 1, f64::NAN),
-            tared: Matrix::filled(1, 1, f64::NAN),
+            raw: Matrix::default(),
+            tared: Matrix::default(),
         }
     }
 }
@@ -68,7 +68,7 @@ impl Processing {
     /// Returns an error if the view, the tare or the gain does not fit the frame.
     pub fn values(&mut self, frame: &Frame) -> Result<[&Matrix<f64>; 2], FrameError> {
         self.view.of(frame, &mut self.raw)?;
-        self.tared.reset(self.raw.columns(), self.raw.rows(), 0.0);
+        self.tared.reset(self.raw.size(), 0.0);
         self.tared.values_mut().copy_from_slice(self.raw.values());
         if let Some(tare) = &self.tare {
             tare.take_off(&mut self.tared)?;
@@ -141,18 +141,20 @@ fn multiply(values: &mut Matrix<f64>, gain: &Matrix<f64>) -> Result<(), FrameErr
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::FrameSize;
     use crate::frame::TareFrames;
+    use crate::sensor::MatrixSize;
 
     #[test]
     fn sum_and_max_are_raw_and_the_imprint_is_tared() {
-        let mut frame = Frame::new(2, 1);
+        let mut frame = Frame::new(FrameSize::of(2, 1));
         frame.values_mut().copy_from_slice(&[10.0, 12.0]);
         let mut processing = Processing::default();
         let raw = processing.run(&frame).expect("it fits").raw.clone();
         let mut tare = TareFrames::new(1);
         tare.add(&raw).expect("it fits");
         processing.tare = Some(tare.finish().expect("one frame"));
-        let mut gain = Matrix::filled(2, 1, 1.0);
+        let mut gain = Matrix::filled(MatrixSize::of(2, 1), 1.0);
         gain.set(1, 0, 3.0);
         processing.gain = Some(gain);
         processing.rule = Some(Rule::AtLeast(9.0));
@@ -169,16 +171,17 @@ mod tests {
     fn the_gain_applies_to_the_noise_of_a_cell_too() {
         let mut tare = TareFrames::new(3);
         for value in [10.0, 11.0, 12.0] {
-            tare.add(&Matrix::filled(1, 1, value)).expect("it fits");
+            tare.add(&Matrix::filled(MatrixSize::SMALLEST, value))
+                .expect("it fits");
         }
         let mut processing = Processing {
             tare: Some(tare.finish().expect("three frames")),
-            gain: Some(Matrix::filled(1, 1, 10.0)),
+            gain: Some(Matrix::filled(MatrixSize::SMALLEST, 10.0)),
             rule: Some(Rule::Noise(3.0)),
             ..Processing::default()
         };
         let mut active = |value: f64| {
-            let mut frame = Frame::new(1, 1);
+            let mut frame = Frame::default();
             frame.values_mut().copy_from_slice(&[value]);
             let processed = processing.run(&frame).expect("it fits");
             processed.imprint.map(|imprint| imprint.count())
@@ -193,7 +196,9 @@ mod tests {
             rule: Some(Rule::Percent(50.0)),
             ..Processing::default()
         };
-        let processed = processing.run(&Frame::new(3, 3)).expect("it fits");
+        let processed = processing
+            .run(&Frame::new(FrameSize::of(3, 3)))
+            .expect("it fits");
         assert_eq!(
             (processed.sum, processed.max, processed.cells),
             (0.0, None, 0)
@@ -203,11 +208,12 @@ mod tests {
 
     #[test]
     fn peaks_are_compared_after_a_tare_and_after_a_gain_alone() {
-        let mut frame = Frame::new(2, 1);
+        let mut frame = Frame::new(FrameSize::of(2, 1));
         frame.values_mut().copy_from_slice(&[10.0, 12.0]);
         let mut processing = Processing::default();
         let mut tare = TareFrames::new(1);
-        tare.add(&Matrix::filled(2, 1, 4.0)).expect("it fits");
+        tare.add(&Matrix::filled(MatrixSize::of(2, 1), 4.0))
+            .expect("it fits");
         let mut sums = |tare: Option<Tare>, gain: Option<Matrix<f64>>| {
             (processing.tare, processing.gain) = (tare, gain);
             let processed = processing.run(&frame).expect("it fits");
@@ -215,14 +221,17 @@ mod tests {
         };
         assert_eq!(sums(None, None), (22.0, 22.0));
         assert_eq!(sums(tare.finish().ok(), None), (22.0, 14.0));
-        assert_eq!(sums(None, Some(Matrix::filled(2, 1, 0.5))), (22.0, 11.0));
+        assert_eq!(
+            sums(None, Some(Matrix::filled(MatrixSize::of(2, 1), 0.5))),
+            (22.0, 11.0)
+        );
     }
 
     #[test]
     fn a_product_that_is_too_large_for_a_sum_counts_as_no_value() {
-        let mut frame = Frame::new(3, 1);
+        let mut frame = Frame::new(FrameSize::of(3, 1));
         frame.values_mut().copy_from_slice(&[1e299, -1e299, 2.0]);
-        let mut gain = Matrix::filled(3, 1, 100.0);
+        let mut gain = Matrix::filled(MatrixSize::of(3, 1), 100.0);
         gain.set(2, 0, 1.0);
         let mut processing = Processing {
             gain: Some(gain),

@@ -1,12 +1,19 @@
 //! A raw frame: the values of all cells at one moment, before any processing.
 
 use crate::frame::error::FrameError;
-
-/// The largest number of columns, and of rows, that a frame may have before it is cropped.
-pub const MAX_FRAME_SIDE: u16 = 512;
+use crate::frame::size::FrameSize;
 
 /// The largest value that a cell may have; the smallest is its negative. So the sum of a frame is always finite.
 pub const LARGEST_VALUE: f64 = 1e300;
+
+/// The cell of the whole sensor that is the first one of a frame, as the recording counts columns and rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FirstCell {
+    /// Its column.
+    pub column: u32,
+    /// Its row.
+    pub row: u32,
+}
 
 /// The values of a sensor's cells at one moment, in the sensor's unit.
 ///
@@ -21,37 +28,40 @@ pub struct Frame {
     pub label: Option<i64>,
     /// The time in seconds since the start of the recording, if known. Times may repeat and go back.
     pub time: Option<f64>,
-    /// The row and column of the whole sensor at which the frame begins, counted as in the recording; None if the
-    /// recording does not state them.
-    pub first: Option<(u32, u32)>,
-    columns: u16,
-    rows: u16,
+    /// The cell of the whole sensor at which the frame begins, if the recording states it.
+    pub first: Option<FirstCell>,
+    size: FrameSize,
     values: Vec<f64>,
 }
 
+impl Default for Frame {
+    /// One cell without a value: memory for the frames of a reader.
+    fn default() -> Self {
+        Self::new(FrameSize::SMALLEST)
+    }
+}
+
 impl Frame {
-    /// Creates a frame whose cells have no values. Sides are clamped to 1 to 512.
-    pub fn new(columns: u16, rows: u16) -> Self {
-        let mut frame = Self {
+    /// Creates a frame of cells without values.
+    pub fn new(size: FrameSize) -> Self {
+        Self {
             number: 0,
             channel: 0,
             label: None,
             time: None,
             first: None,
-            columns: 1,
-            rows: 1,
-            values: Vec::new(),
-        };
-        frame.reset(columns, rows);
-        frame
+            size,
+            values: vec![f64::NAN; size.cells()],
+        }
     }
 
     /// Creates a frame from the values of its cells, row by row; NaN stands for no cell. A value that is infinite or
     /// beyond ±[`LARGEST_VALUE`] counts as no value.
     ///
     /// ```
-    /// use taxel::frame::Frame;
-    /// let mut frame = Frame::from_values(3, 2, &[0.0, 12.0, f64::NAN, 3.0, 10.0, 0.0])?;
+    /// use taxel::frame::{Frame, FrameSize};
+    /// let size = FrameSize::new(3, 2)?;
+    /// let mut frame = Frame::from_values(size, &[0.0, 12.0, f64::NAN, 3.0, 10.0, 0.0])?;
     /// assert_eq!((frame.columns(), frame.rows(), frame.cells()), (3, 2, 5));
     /// // The next frame, in the same memory.
     /// frame.set_values(&[0.0, 11.0, f64::NAN, 4.0, 10.0, 0.0])?;
@@ -60,12 +70,9 @@ impl Frame {
     /// ```
     ///
     /// # Errors
-    /// Returns an error if a side is not 1 to 512, or the number of values differs from the number of cells.
-    pub fn from_values(columns: u16, rows: u16, values: &[f64]) -> Result<Self, FrameError> {
-        let mut frame = Self::new(columns, rows);
-        if (frame.columns, frame.rows) != (columns, rows) {
-            return Err(FrameError::Sides { columns, rows });
-        }
+    /// If the number of values is not that of the cells.
+    pub fn from_values(size: FrameSize, values: &[f64]) -> Result<Self, FrameError> {
+        let mut frame = Self::new(size);
         frame.set_values(values)?;
         Ok(frame)
     }
@@ -77,8 +84,7 @@ impl Frame {
     pub fn set_values(&mut self, values: &[f64]) -> Result<(), FrameError> {
         if values.len() != self.values.len() {
             return Err(FrameError::Values {
-                columns: self.columns,
-                rows: self.rows,
+                size: self.size,
                 found: values.len(),
             });
         }
@@ -88,12 +94,10 @@ impl Frame {
 
     /// Changes the size, clamped to 1 to 512 on each side, and removes all values; everything else stays. Allocates
     /// only if there are more cells than ever before.
-    pub fn reset(&mut self, columns: u16, rows: u16) {
-        self.columns = columns.clamp(1, MAX_FRAME_SIDE);
-        self.rows = rows.clamp(1, MAX_FRAME_SIDE);
+    pub fn reset(&mut self, size: FrameSize) {
+        self.size = size;
         self.values.clear();
-        let cells = usize::from(self.columns) * usize::from(self.rows);
-        self.values.resize(cells, f64::NAN);
+        self.values.resize(size.cells(), f64::NAN);
     }
 
     /// Copies another frame into this one, reusing its memory.
@@ -106,21 +110,25 @@ impl Frame {
             label: other.label,
             time: other.time,
             first: other.first,
-            columns: other.columns,
-            rows: other.rows,
+            size: other.size,
         };
         self.values.clear();
         self.values.extend_from_slice(&other.values);
     }
 
+    /// Its columns and rows.
+    pub fn size(&self) -> FrameSize {
+        self.size
+    }
+
     /// Returns the number of columns.
     pub fn columns(&self) -> u16 {
-        self.columns
+        self.size.columns()
     }
 
     /// Returns the number of rows.
     pub fn rows(&self) -> u16 {
-        self.rows
+        self.size.rows()
     }
 
     /// Returns the values row by row; NaN where the sensor has no cell.
@@ -146,11 +154,11 @@ mod tests {
 
     #[test]
     fn a_copy_equals_the_frame() {
-        let mut frame = Frame::new(2, 1);
+        let mut frame = Frame::new(FrameSize::of(2, 1));
         frame.values_mut().copy_from_slice(&[1.0, 2.0]);
         (frame.number, frame.channel, frame.label) = (3, 4, Some(5));
-        (frame.time, frame.first) = (Some(0.5), Some((6, 7)));
-        let mut copy = Frame::new(5, 5);
+        (frame.time, frame.first) = (Some(0.5), Some(FirstCell { column: 7, row: 6 }));
+        let mut copy = Frame::new(FrameSize::of(5, 5));
         copy.copy_from(&frame);
         assert_eq!(format!("{copy:?}"), format!("{frame:?}"));
     }

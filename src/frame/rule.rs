@@ -118,11 +118,11 @@ impl Rule {
                     // 100 % of the largest value may be rounded to more than that value.
                     from(values, Self::share(percent, max).min(max))
                 } else {
-                    Imprint::empty(values.columns(), values.rows())
+                    Imprint::empty(values.size())
                 }
             }
             Self::Hysteresis { low, high } => {
-                let mut imprint = Imprint::empty(values.columns(), values.rows());
+                let mut imprint = Imprint::empty(values.size());
                 let (weak, strong) = (from(values, low), from(values, high));
                 each_region(&weak, |region| {
                     let piece = region.taxels();
@@ -161,7 +161,7 @@ fn from(values: &Matrix<f64>, threshold: f64) -> Imprint {
 
 fn active(values: &Matrix<f64>, is_active: impl Fn(usize, f64) -> bool) -> Imprint {
     let columns = usize::from(values.columns());
-    let mut imprint = Imprint::empty(values.columns(), values.rows());
+    let mut imprint = Imprint::empty(values.size());
     for (row, line) in values.values().chunks(columns).enumerate() {
         let mut word = 0;
         for (column, &value) in line.iter().enumerate() {
@@ -174,7 +174,7 @@ fn active(values: &Matrix<f64>, is_active: impl Fn(usize, f64) -> bool) -> Impri
 
 /// Returns the imprint without its 8-connected pieces of fewer than `least` taxels.
 pub(crate) fn without_small(imprint: &Imprint, least: u32) -> Imprint {
-    let mut rest = Imprint::empty(imprint.columns(), imprint.rows());
+    let mut rest = Imprint::empty(imprint.size());
     each_region(imprint, |region| {
         let piece = region.taxels();
         if region.kind() == RegionKind::Exterior && piece.count() >= least {
@@ -188,12 +188,12 @@ pub(crate) fn without_small(imprint: &Imprint, least: u32) -> Imprint {
 mod tests {
     use super::*;
     use crate::frame::tare::TareFrames;
+    use crate::sensor::MatrixSize;
 
     fn matrix(rows: &[&[f64]]) -> Matrix<f64> {
-        let columns = u8::try_from(rows[0].len()).expect("few");
-        let mut matrix = Matrix::filled(columns, u8::try_from(rows.len()).expect("few"), 0.0);
-        matrix.values_mut().copy_from_slice(&rows.concat());
-        matrix
+        let side = |length: usize| u8::try_from(length).expect("few");
+        let size = MatrixSize::of(side(rows[0].len()), side(rows.len()));
+        Matrix::from_values(size, rows.concat()).expect("rows of one length")
     }
 
     fn imprint(rule: Result<Rule, FrameError>, values: &Matrix<f64>) -> String {
@@ -248,7 +248,7 @@ mod tests {
             "#..#\n.#.#\n..#.\n...."
         );
         // A weak ring around a strong one is another piece.
-        let mut ring = Matrix::filled(5, 5, 5.0);
+        let mut ring = Matrix::filled(MatrixSize::of(5, 5), 5.0);
         for (column, row) in [
             (1, 1),
             (2, 1),
@@ -312,7 +312,7 @@ mod tests {
         let values = matrix(&[&[0.9, 9.0, 0.009, 0.0, 9.0]]);
         let imprint = rule.imprint(&values, Some(&tare), Some(&gain));
         assert_eq!(imprint.map(|imprint| imprint.count()), Ok(0));
-        let other = Matrix::filled(2, 2, 1.0);
+        let other = Matrix::filled(MatrixSize::of(2, 2), 1.0);
         assert!(rule.imprint(&values, Some(&tare), Some(&other)).is_err());
     }
 

@@ -2,6 +2,7 @@
 
 use crate::frame::error::{FrameError, check_size};
 use crate::matrix::Matrix;
+use crate::sensor::MatrixSize;
 
 /// The largest number of values that a tare stores until it is finished: 256 MiB.
 const MAX_VALUES: u64 = 1 << 25;
@@ -13,7 +14,7 @@ const MAD_TO_DEVIATION: f64 = 1.4826;
 #[derive(Clone, Debug)]
 pub struct TareFrames {
     wanted: u64,
-    size: Option<(u8, u8)>,
+    size: Option<MatrixSize>,
     /// All values, frame by frame.
     values: Vec<f64>,
     frames: u64,
@@ -63,13 +64,13 @@ impl TareFrames {
             return Ok(());
         }
         self.check_memory(frame.values().len())?;
-        let size = (frame.columns(), frame.rows());
+        let size = frame.size();
         let expected = *self.size.get_or_insert(size);
         if size != expected {
             return Err(FrameError::Size {
                 what: "tare",
-                found: (expected.0.into(), expected.1.into()),
-                expected: (size.0.into(), size.1.into()),
+                found: expected,
+                expected: size,
             });
         }
         self.values.extend_from_slice(frame.values());
@@ -83,10 +84,10 @@ impl TareFrames {
     /// Returns an error if frames are missing.
     pub fn finish(self) -> Result<Tare, FrameError> {
         let (frames, wanted) = (self.frames, self.wanted);
-        let (Some((columns, rows)), true) = (self.size, frames == wanted) else {
+        let (Some(size), true) = (self.size, frames == wanted) else {
             return Err(FrameError::Tare { frames, wanted });
         };
-        let mut baseline = Matrix::filled(columns, rows, f64::NAN);
+        let mut baseline = Matrix::filled(size, f64::NAN);
         let mut deviation = baseline.clone();
         let cells = baseline.values().len();
         let mut present = Vec::new();
@@ -161,8 +162,7 @@ impl Tare {
         step: Option<f64>,
         frames: u64,
     ) -> Result<Self, FrameError> {
-        let deviation =
-            deviation.unwrap_or_else(|| Matrix::filled(baseline.columns(), baseline.rows(), 0.0));
+        let deviation = deviation.unwrap_or_else(|| Matrix::filled(baseline.size(), 0.0));
         check_size("tare", &deviation, &baseline)?;
         Ok(Self {
             baseline,
@@ -214,7 +214,7 @@ mod tests {
     fn tare(frames: &[[f64; 2]]) -> Result<Tare, FrameError> {
         let mut tare = TareFrames::new(frames.len() as u64);
         for frame in frames {
-            let mut matrix = Matrix::filled(2, 1, 0.0);
+            let mut matrix = Matrix::filled(MatrixSize::of(2, 1), 0.0);
             matrix.values_mut().copy_from_slice(frame);
             tare.add(&matrix)?;
         }
@@ -229,7 +229,7 @@ mod tests {
         // Deviations 2.5, 0.5, 0.5, 6.5 and 1, 1; the values are 1, 3, 4, 7, 9, 10.
         assert_eq!(tare.margin(0, 2.0), 2.0 * MAD_TO_DEVIATION * 1.5);
         assert_eq!(tare.margin(1, 0.1), 1.0);
-        let mut values = Matrix::filled(2, 1, 10.0);
+        let mut values = Matrix::filled(MatrixSize::of(2, 1), 10.0);
         tare.take_off(&mut values).expect("of its size");
         assert_eq!(values.values(), [6.5, 2.0]);
     }
@@ -241,7 +241,7 @@ mod tests {
             few.map_err(|error| error.to_string()),
             Err("frames for the tare: found 0, expected 3".to_owned())
         );
-        let many = TareFrames::new(1 << 40).add(&Matrix::filled(64, 64, 0.0));
+        let many = TareFrames::new(1 << 40).add(&Matrix::filled(MatrixSize::of(64, 64), 0.0));
         assert_eq!(many, Err(FrameError::TareSize { most: 8192 }));
     }
 

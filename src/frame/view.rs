@@ -2,9 +2,10 @@
 
 use crate::frame::error::FrameError;
 use crate::frame::recorded::{Frame, LARGEST_VALUE};
+use crate::frame::size::FrameSize;
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
-use crate::sensor::MAX_SIDE;
+use crate::sensor::MatrixSize;
 
 /// A rectangle of whole cells of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,6 +44,38 @@ impl View {
     /// Returns an error if the crop reaches beyond the frame, more than 64 × 64 cells are left, or the mask is of
     /// another size.
     pub fn of(&self, frame: &Frame, seen: &mut Matrix<f64>) -> Result<(), FrameError> {
+        let crop = self.part(frame.size())?;
+        let left = matrix_size(FrameSize::new(crop.columns, crop.rows)?)?;
+        let size = if self.keeps_sides() {
+            left
+        } else {
+            left.transposed()
+        };
+        seen.reset(size, f64::NAN);
+        self.copy(frame, crop, left, seen);
+        self.hide(seen)
+    }
+
+    /// The size of the visible part of a frame of that size; it may exceed that of a matrix.
+    ///
+    /// # Errors
+    /// If the crop reaches beyond the frame.
+    pub fn size(&self, frame: FrameSize) -> Result<FrameSize, FrameError> {
+        let Crop { columns, rows, .. } = self.part(frame)?;
+        if self.keeps_sides() {
+            Ok(FrameSize::new(columns, rows)?)
+        } else {
+            Ok(FrameSize::new(rows, columns)?)
+        }
+    }
+
+    /// Whether columns stay columns when it is turned.
+    fn keeps_sides(&self) -> bool {
+        self.quarter_turns.is_multiple_of(2)
+    }
+
+    /// The part of a frame that is kept, which has cells and lies in the frame.
+    fn part(&self, frame: FrameSize) -> Result<Crop, FrameError> {
         let whole = Crop {
             left: 0,
             top: 0,
@@ -53,48 +86,21 @@ impl View {
         let fits = |start: u16, length: u16, all: u16| {
             length > 0 && u32::from(start) + u32::from(length) <= u32::from(all)
         };
-        if !fits(crop.left, crop.columns, frame.columns())
-            || !fits(crop.top, crop.rows, frame.rows())
+        if fits(crop.left, crop.columns, frame.columns()) && fits(crop.top, crop.rows, frame.rows())
         {
-            let (columns, rows) = (frame.columns(), frame.rows());
-            return Err(FrameError::Crop { columns, rows });
-        }
-        let side = |length: u16| u8::try_from(length).ok().filter(|&side| side <= MAX_SIDE);
-        let (Some(columns), Some(rows)) = (side(crop.columns), side(crop.rows)) else {
-            let (columns, rows) = (crop.columns, crop.rows);
-            return Err(FrameError::Large { columns, rows });
-        };
-        if self.quarter_turns.is_multiple_of(2) {
-            seen.reset(columns, rows, f64::NAN);
+            Ok(crop)
         } else {
-            seen.reset(rows, columns, f64::NAN);
-        }
-        self.copy(frame, crop, columns, seen);
-        self.hide(seen)
-    }
-
-    /// Returns the columns and rows of the visible part of a frame of the given size. They may exceed 64.
-    pub fn size(&self, columns: u16, rows: u16) -> (u16, u16) {
-        let (columns, rows) = self
-            .crop
-            .map_or((columns, rows), |crop| (crop.columns, crop.rows));
-        if self.quarter_turns.is_multiple_of(2) {
-            (columns, rows)
-        } else {
-            (rows, columns)
+            Err(FrameError::Crop { size: frame })
         }
     }
 
-    fn copy(&self, frame: &Frame, crop: Crop, columns: u8, seen: &mut Matrix<f64>) {
+    fn copy(&self, frame: &Frame, crop: Crop, left: MatrixSize, seen: &mut Matrix<f64>) {
+        let columns = left.columns();
         let width = usize::from(frame.columns());
         let from = usize::from(crop.top) * width + usize::from(crop.left);
         let plain = self.quarter_turns.is_multiple_of(4) && !self.flip_x && !self.flip_y;
-        let rows = seen.rows().max(seen.columns());
-        for row in 0..rows {
+        for row in 0..left.rows() {
             let start = from + usize::from(row) * width;
-            if u16::from(row) >= crop.rows {
-                break;
-            }
             let values = &frame.values()[start..start + usize::from(columns)];
             if plain {
                 let to = usize::from(row) * usize::from(columns);
@@ -102,7 +108,7 @@ impl View {
                 continue;
             }
             for (column, &value) in (0..columns).zip(values) {
-                let (x, y) = self.position(column, row, columns, crop.rows);
+                let (x, y) = self.position(column, row, left);
                 seen.set(x, y, value);
             }
         }
@@ -114,10 +120,8 @@ impl View {
     }
 
     /// Returns the cell of the visible part that a cell of the cropped frame becomes.
-    fn position(&self, column: u8, row: u8, columns: u8, rows: u16) -> (u8, u8) {
-        // At most 64 rows, as `of` has checked.
-        let last_row = u8::try_from(rows.saturating_sub(1)).unwrap_or(MAX_SIDE - 1);
-        let last_column = columns.saturating_sub(1);
+    fn position(&self, column: u8, row: u8, left: MatrixSize) -> (u8, u8) {
+        let (last_column, last_row) = (left.columns() - 1, left.rows() - 1);
         let x = if self.flip_x {
             last_column - column
         } else {
@@ -136,8 +140,7 @@ impl View {
         let Some(mask) = &self.mask else {
             return Ok(());
         };
-        let found = (mask.columns().into(), mask.rows().into());
-        let expected = (seen.columns().into(), seen.rows().into());
+        let (found, expected) = (mask.size(), seen.size());
         if found != expected {
             return Err(FrameError::Size {
                 what: "mask",
@@ -152,17 +155,26 @@ impl View {
     }
 }
 
+/// The size of what is left of a frame, as that of a matrix.
+fn matrix_size(left: FrameSize) -> Result<MatrixSize, FrameError> {
+    let side = |length: u16| u8::try_from(length).ok();
+    side(left.columns())
+        .zip(side(left.rows()))
+        .and_then(|(columns, rows)| MatrixSize::new(columns, rows).ok())
+        .ok_or(FrameError::Large { size: left })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     /// Returns the view of the frame `1 2 3 / 4 5 6`, with rows separated by `/`.
     fn seen(view: &View) -> Result<String, FrameError> {
-        let mut frame = Frame::new(3, 2);
+        let mut frame = Frame::new(FrameSize::of(3, 2));
         frame
             .values_mut()
             .copy_from_slice(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-        let mut seen = Matrix::filled(1, 1, 0.0);
+        let mut seen = Matrix::default();
         view.of(&frame, &mut seen)?;
         let row = |row| {
             seen.row(row)
@@ -219,14 +231,13 @@ mod tests {
 
     #[test]
     fn a_crop_leaves_at_most_64_cells_a_side() {
-        let mut matrix = Matrix::filled(1, 1, 0.0);
-        let frame = Frame::new(65, 2);
+        let mut matrix = Matrix::default();
+        let frame = Frame::new(FrameSize::of(65, 2));
         let large = View::default().of(&frame, &mut matrix);
         assert_eq!(
             large,
             Err(FrameError::Large {
-                columns: 65,
-                rows: 2
+                size: FrameSize::of(65, 2)
             })
         );
         let crop = |left, columns| View {
@@ -258,8 +269,7 @@ mod tests {
         };
         assert_eq!(seen(&crop(1, 1)).as_deref(), Ok("6"));
         let refused = Err(FrameError::Crop {
-            columns: 3,
-            rows: 2,
+            size: FrameSize::of(3, 2),
         });
         assert_eq!(
             (seen(&crop(0, 1)), seen(&crop(1, 0))),

@@ -200,7 +200,7 @@ impl GivenDescriptors {
     /// let given: GivenDescriptors = "na,p".parse()?;
     /// let rate = |noise: f64| {
     ///     let noise = Noise::new(noise).expect("below ½");
-    ///     let touches = NoisyTouches::new(model.sensor(), noise, 100, 0);
+    ///     let touches = NoisyTouches::new(model.sensor().size(), noise, 100, 0);
     ///     given.rate(&model, &touches, &|_| true).expect("not stopped")
     /// };
     /// assert!(rate(0.0).accuracy() > rate(0.02).accuracy());

@@ -9,7 +9,7 @@ use crate::parameter::number::share;
 use crate::pose::Axis;
 use crate::recognition::model::{Model, ShapeCount};
 use crate::recognition::training::{Training, TrainingError};
-use crate::sensor::MAX_SIDE;
+use crate::sensor::MatrixSize;
 
 /// The result of touches half a step off the grid, in x0, y0 and angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,14 +112,13 @@ impl Model {
 fn with_margin(imprint: Option<&Imprint>) -> Imprint {
     const MARGIN: u8 = 2;
     let Some(imprint) = imprint else {
-        return Imprint::empty(MARGIN, MARGIN);
+        return Imprint::empty(MatrixSize::SMALLEST.enlarged(MARGIN - 1));
     };
-    let side = |side: u8| (side + 2 * MARGIN).min(MAX_SIDE);
-    let (columns, rows) = (side(imprint.columns()), side(imprint.rows()));
-    let mut wider = Imprint::empty(columns, rows);
+    let size = imprint.size().enlarged(2 * MARGIN);
+    let mut wider = Imprint::empty(size);
     let (left, top) = (
-        (columns - imprint.columns()) / 2,
-        usize::from((rows - imprint.rows()) / 2),
+        (size.columns() - imprint.columns()) / 2,
+        usize::from((size.rows() - imprint.rows()) / 2),
     );
     for (row, &word) in imprint.words().iter().enumerate() {
         wider.set_word(row + top, word << left);
@@ -175,7 +174,7 @@ mod tests {
         for key in 0..between.keys().len() {
             let touch = between.keys().imprint(key).expect("none is empty");
             // Two taxels more on each side.
-            let mut wider = Imprint::empty(touch.columns() + 4, touch.rows() + 4);
+            let mut wider = Imprint::empty(touch.size().enlarged(4));
             for (column, row) in touch.active() {
                 wider.set(column + 2, row + 2, true);
             }

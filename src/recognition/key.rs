@@ -5,6 +5,7 @@ use std::hash::BuildHasher;
 use hashbrown::{DefaultHashBuilder, HashTable};
 
 use crate::imprint::Imprint;
+use crate::sensor::MatrixSize;
 
 /// The key of an imprint: its active taxels, of all its pieces, cropped to their bounding box. The key of an empty
 /// imprint has sides of 0.
@@ -19,7 +20,7 @@ use crate::imprint::Imprint;
 /// let there: Imprint = "##\n.#".parse().unwrap();
 /// assert_eq!(ImprintKey::of(&here), ImprintKey::of(&there));
 /// assert_eq!(ImprintKey::of(&here).imprint(), Some(there));
-/// assert_eq!(ImprintKey::of(&Imprint::empty(4, 4)).imprint(), None);
+/// assert_eq!(ImprintKey::of(&here.without(&here)).imprint(), None);
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ImprintKey {
@@ -126,10 +127,7 @@ impl KeyRef<'_> {
     }
 
     pub(super) fn imprint(self) -> Option<Imprint> {
-        if self.height == 0 {
-            return None;
-        }
-        let mut imprint = Imprint::empty(self.width, self.height);
+        let mut imprint = Imprint::empty(MatrixSize::new(self.width, self.height).ok()?);
         for (row, word) in self.rows().enumerate() {
             imprint.set_word(row, word);
         }
@@ -249,14 +247,17 @@ mod tests {
     fn keys_give_back_their_imprints_of_any_size() {
         let mut table = KeyTable::default();
         for side in [1_u8, 7, 8, 9, 31, 63, 64] {
-            let mut imprint = Imprint::empty(64, 64);
+            let mut imprint = Imprint::empty(MatrixSize::of(64, 64));
             // Both corners, and a pattern that no shift repeats.
             for place in 0..side {
                 imprint.set(place, place, true);
                 imprint.set(side - 1, place.wrapping_mul(5) % side, true);
             }
             let key = ImprintKey::of(&imprint);
-            assert_eq!(key.imprint(), Some(imprint.resized(side, side)));
+            assert_eq!(
+                key.imprint(),
+                Some(imprint.resized(MatrixSize::of(side, side)))
+            );
             assert_eq!((key.width(), key.height()), (side, side));
             let index = table.intern(key.borrowed());
             assert_eq!(

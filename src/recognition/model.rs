@@ -9,7 +9,7 @@ use crate::pose::{Anchor, Axis, MAX_POSES, Ranges};
 use crate::quote::shortened;
 use crate::recognition::key::{ImprintKey, KeyTable};
 use crate::recognition::scan::KeyIndex;
-use crate::sensor::Sensor;
+use crate::sensor::{MatrixSize, Sensor};
 use crate::source::Source;
 use crate::sweep::Shard;
 
@@ -244,9 +244,9 @@ impl Model {
         let keys = std::mem::take(&mut parts.keys);
         let mut table = KeyTable::default();
         let mut counted = Vec::with_capacity(keys.len());
-        let mut key = ImprintKey::of(&Imprint::empty(1, 1));
+        let mut key = ImprintKey::of(&Imprint::empty(MatrixSize::SMALLEST));
         for (imprint, counts) in &keys {
-            key.set(&imprint.unwrap_or(Imprint::empty(1, 1)));
+            key.set(&imprint.unwrap_or(Imprint::empty(MatrixSize::SMALLEST)));
             if table.intern(key.borrowed()) != counted.len() {
                 return Err(ModelError::Parts("a key is there twice"));
             }

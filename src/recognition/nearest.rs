@@ -50,7 +50,7 @@ impl Model {
         }
         let rank = |key: usize| Reverse(self.most_frequent(key).1);
         let found = (self.index()).nearest(&Observed::new(observed, dead), rank)?;
-        let mut imprint = Imprint::empty(observed.columns(), observed.rows());
+        let mut imprint = Imprint::empty(observed.size());
         let (column, row) = found.place;
         for (index, word) in self.keys().get(found.key).rows().enumerate() {
             imprint.set_word(usize::from(row) + index, word << column);

@@ -21,6 +21,7 @@ use crate::index::wide;
 use crate::parameter::named;
 use crate::recognition::model::{Model, float};
 use crate::recognition::scan::{Observed, shift_count};
+use crate::sensor::MatrixSize;
 
 /// The largest change of a probability that leaving out far keys may cause.
 pub(super) const NEGLIGIBLE: f64 = 1e-9;
@@ -117,11 +118,9 @@ impl Noise {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn unexplained(&self, touch: &Imprint, found: u32) -> Option<UnexplainedDifference> {
-        let (columns, rows) = (touch.columns(), touch.rows());
-        let dead = self
-            .dead
-            .map_or(0, |dead| dead.resized(columns, rows).count());
-        let cells = u32::from(columns) * u32::from(rows) - dead;
+        let size = touch.size();
+        let dead = self.dead.map_or(0, |dead| dead.resized(size).count());
+        let cells = u32::from(size.columns()) * u32::from(size.rows()) - dead;
         (self.at_least(found, cells) < EXPLAINED).then(|| UnexplainedDifference {
             found,
             expected: self.flip * f64::from(cells),
@@ -250,7 +249,7 @@ impl Model {
             0 => 0.0,
             total => weighed(touches, noise) / float(total),
         };
-        let totals = self.touches_on((imprint.columns(), imprint.rows()));
+        let totals = self.touches_on(imprint.size());
         let weights = self.shapes().iter().map(|shape| shape.weight);
         let own = distances.touches.iter().zip(totals).map(likelihood);
         own.zip(weights)
@@ -290,14 +289,13 @@ impl Model {
             };
             [least, log_of_sum(least, beyond)]
         };
-        let totals = self.touches_on((imprint.columns(), imprint.rows()));
+        let totals = self.touches_on(imprint.size());
         let own = distances.touches.iter().zip(totals);
         own.map(bounds).collect()
     }
 
-    /// Returns the first shape of the set that leaves nothing on a matrix of this size, since none of its imprints
-    /// fits there; None if there is no such shape.
-    pub fn first_too_large(&self, size: (u8, u8)) -> Option<usize> {
+    /// The first shape of the set that leaves nothing on a matrix of that size, since none of its imprints fits there.
+    pub fn first_too_large(&self, size: MatrixSize) -> Option<usize> {
         self.touches_on(size)
             .iter()
             .position(|&touches| touches == 0)
@@ -305,10 +303,10 @@ impl Model {
 
     /// Returns, for each shape of the set, how many of its poses leave an imprint that does not fit on a matrix of
     /// this size. [`Self::recognition_rate`] draws no such touches.
-    pub fn poses_too_large(&self, (columns, rows): (u8, u8)) -> Vec<u64> {
+    pub fn poses_too_large(&self, size: MatrixSize) -> Vec<u64> {
         let mut too_large = vec![0; self.shapes().len()];
         for (own, poses) in self.index().boxes().iter().zip(self.poses_by_box()) {
-            if own.width > columns || own.height > rows {
+            if own.width > size.columns() || own.height > size.rows() {
                 for (sum, poses) in too_large.iter_mut().zip(poses) {
                     *sum += poses;
                 }
@@ -319,7 +317,7 @@ impl Model {
 
     /// Returns the number of touches of each shape on a matrix of this size: its poses, in every place where they
     /// fit.
-    fn touches_on(&self, size: (u8, u8)) -> Vec<u64> {
+    fn touches_on(&self, size: MatrixSize) -> Vec<u64> {
         let mut totals = vec![0; self.shapes().len()];
         for (own, poses) in self.index().boxes().iter().zip(self.poses_by_box()) {
             let shifts = shift_count((own.width, own.height), size);
@@ -331,7 +329,7 @@ impl Model {
     }
 
     /// Returns the number of pairs of a key and a place on a matrix of this size.
-    pub fn pairs(&self, size: (u8, u8)) -> u64 {
+    pub fn pairs(&self, size: MatrixSize) -> u64 {
         let boxes = self.index().boxes().iter();
         let pairs =
             boxes.map(|own| own.keys.len() as u64 * shift_count((own.width, own.height), size));
@@ -351,7 +349,7 @@ impl Model {
         noise: &Noise,
         further: u32,
     ) -> Option<Distances> {
-        let totals = self.touches_on((imprint.columns(), imprint.rows()));
+        let totals = self.touches_on(imprint.size());
         // All touches of a shape together weigh w; the nearest one weighs w / T of its shape.
         let weights = self.shapes().iter().map(|shape| f64::from(shape.weight));
         let of_all: f64 = weights.clone().sum();
@@ -379,7 +377,7 @@ impl Model {
     /// Looks up the key of the imprint itself and, if larger distances matter, the keys of all imprints that differ by
     /// one taxel. None if that is not enough.
     fn near(&self, imprint: &Imprint, reach: u32) -> Option<Distances> {
-        let nowhere = shift_count((0, 0), (imprint.columns(), imprint.rows()));
+        let nowhere = shift_count((0, 0), imprint.size());
         let at = |imprint: &Imprint, sums: &mut [u64]| {
             // The empty key is the same in every place.
             let times = if imprint.is_empty() { nowhere } else { 1 };
@@ -472,7 +470,7 @@ mod tests {
     use crate::figure::Figure;
     use crate::pose::{Anchor, Axis, Ranges};
     use crate::recognition::{NamedShape, Training};
-    use crate::sensor::Sensor;
+    use crate::sensor::{MatrixSize, Sensor};
 
     fn rectangles() -> Model {
         let sensor = Sensor::default();
@@ -491,7 +489,7 @@ mod tests {
 
     #[test]
     fn a_noise_explains_differences_down_to_one_in_a_million() {
-        let touch = Imprint::empty(16, 16);
+        let touch = Imprint::empty(MatrixSize::of(16, 16));
         let noise = Noise::new(0.01).expect("in range");
         assert!(noise.at_least(0, 256) > 1.0 - 1e-12);
         // The Poisson distribution with the same mean gives 2.4e-6 and 4.7e-7 here.
@@ -507,7 +505,7 @@ mod tests {
         assert_eq!(found.map(|own| own.expected), Some(2.4));
         // The largest matrix, where the probability of no flip is too small for an `f64`.
         let most = Noise::new(0.49).expect("in range");
-        let largest = Imprint::empty(64, 64);
+        let largest = Imprint::empty(MatrixSize::of(64, 64));
         assert_eq!(most.unexplained(&largest, 2100), None);
         assert!(most.unexplained(&largest, 2300).is_some());
     }
@@ -517,7 +515,7 @@ mod tests {
         let model = rectangles();
         let tasks = model.keys().len() / 64;
         assert!(tasks > 4, "{tasks} tasks");
-        let mut touch = Imprint::empty(16, 16);
+        let mut touch = Imprint::empty(MatrixSize::of(16, 16));
         for row in 3..7 {
             touch.set_word(row, 0b1111_1000);
         }
@@ -542,7 +540,7 @@ mod tests {
             .parse()
             .expect("an imprint");
         let mask = |columns, rows| {
-            let mut dead = Imprint::empty(columns, rows);
+            let mut dead = Imprint::empty(MatrixSize::of(columns, rows));
             dead.set(1, 4, true);
             let noise = Noise::new(0.01).expect("in range").without(dead);
             model.posterior_under(&touch, &noise)

@@ -347,6 +347,7 @@ mod tests {
     use super::*;
     use crate::recognition::sets::{GridSteps, equal_figures};
     use crate::recognition::training::Training;
+    use crate::sensor::MatrixSize;
 
     #[test]
     fn the_poses_of_an_imprint_agree_with_its_count_and_with_a_sum_by_hand() {
@@ -397,7 +398,10 @@ mod tests {
                 "only a disc has no angle"
             );
         }
-        assert_eq!(model.pose_of(7, &Imprint::empty(4, 4), &|_| true), None);
+        assert_eq!(
+            model.pose_of(7, &Imprint::empty(MatrixSize::of(4, 4)), &|_| true),
+            None
+        );
     }
 
     /// Angles at which a heptagon looks alike count as one.

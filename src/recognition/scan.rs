@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use crate::imprint::Imprint;
 use crate::index::{narrow, wide};
 use crate::recognition::key::{KeyRef, KeyTable, or_bits};
+use crate::sensor::MatrixSize;
 
 /// The number of keys that are compared with all windows before the next ones, so that their counts stay in the cache.
 const BLOCK: usize = 64;
@@ -72,9 +73,9 @@ pub(super) struct PlacedKey {
 }
 
 /// Returns the number of places of a box on a matrix; 0 if it does not fit.
-pub(super) fn shift_count((width, height): (u8, u8), (columns, rows): (u8, u8)) -> u64 {
+pub(super) fn shift_count((width, height): (u8, u8), size: MatrixSize) -> u64 {
     let fits = |side: u8, of: u8| of.checked_sub(side).map_or(0, |rest| u64::from(rest) + 1);
-    fits(width, columns) * fits(height, rows)
+    fits(width, size.columns()) * fits(height, size.rows())
 }
 
 /// An observed imprint, without its dead taxels.
@@ -129,13 +130,13 @@ struct BoxPosition {
 
 impl Observed {
     pub(super) fn new(imprint: &Imprint, dead: Option<&Imprint>) -> Self {
-        let (columns, rows) = (imprint.columns(), imprint.rows());
+        let size = imprint.size();
         // Fitted to the matrix of the imprint: what lies beyond it is dropped.
-        let dead = dead.map(|dead| dead.resized(columns, rows));
+        let dead = dead.map(|dead| dead.resized(size));
         let dead = dead.filter(|dead| !dead.is_empty());
         let seen = dead.map_or(*imprint, |dead| imprint.without(&dead));
         let living = dead.map(|dead| {
-            let mut living = Imprint::empty(columns, rows);
+            let mut living = Imprint::empty(size);
             for (row, &word) in dead.words().iter().enumerate() {
                 living.set_word(row, !word);
             }
@@ -150,14 +151,9 @@ impl Observed {
         }
     }
 
-    /// Returns the size of the matrix.
-    pub(super) fn size(&self) -> (u8, u8) {
-        (self.seen.columns(), self.seen.rows())
-    }
-
     /// Visits all places of a box in reading order; none if the box does not fit.
     fn each_place(&self, (width, height): (u8, u8), mut visit: impl FnMut(BoxPosition)) {
-        let (columns, rows) = self.size();
+        let (columns, rows) = (self.seen.columns(), self.seen.rows());
         let size = (usize::from(width), usize::from(height));
         if width > columns {
             return;

@@ -16,7 +16,7 @@ use crate::recognition::key::ImprintKey;
 use crate::recognition::model::{Model, add_log_counts, first_of_most, float};
 use crate::recognition::noise::Noise;
 use crate::recognition::scan::shift_count;
-use crate::sensor::Sensor;
+use crate::sensor::MatrixSize;
 
 /// The rate at which noisy touches are named right. The same number of touches is drawn for each shape; in shares and
 /// means, each touch counts with the weight of its shape.
@@ -165,8 +165,9 @@ fn unit(random: &mut Pcg64) -> f64 {
 }
 
 /// Draws `count` different taxels of a matrix; all taxels if it has no more.
-fn random_taxels((columns, rows): (u8, u8), count: u32, random: &mut Pcg64) -> Imprint {
-    let mut taxels = Imprint::empty(columns, rows);
+fn random_taxels(size: MatrixSize, count: u32, random: &mut Pcg64) -> Imprint {
+    let mut taxels = Imprint::empty(size);
+    let (columns, rows) = (size.columns(), size.rows());
     let cells = u32::from(columns) * u32::from(rows);
     let mut missing = count.min(cells);
     while missing > 0 {
@@ -184,7 +185,7 @@ fn random_taxels((columns, rows): (u8, u8), count: u32, random: &mut Pcg64) -> I
 /// Touches to simulate: the same number of each shape, each in a random place, with taxels that flip or are dead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoisyTouches {
-    size: (u8, u8),
+    size: MatrixSize,
     noise: Noise,
     random_dead: u32,
     per_shape: u64,
@@ -192,11 +193,11 @@ pub struct NoisyTouches {
 }
 
 impl NoisyTouches {
-    /// Describes `per_shape` touches of each shape on a sensor, of which only the columns and rows count. Taxels flip
-    /// as `noise` says, and its dead taxels always read as inactive.
-    pub fn new(sensor: &Sensor, noise: Noise, per_shape: u64, seed: u64) -> Self {
+    /// Draws `per_shape` touches of each shape on a matrix of that size. Taxels flip as `noise` says, and its dead taxels
+    /// always read as inactive.
+    pub fn new(size: MatrixSize, noise: Noise, per_shape: u64, seed: u64) -> Self {
         Self {
-            size: (sensor.columns(), sensor.rows()),
+            size,
             noise,
             random_dead: 0,
             per_shape,
@@ -263,7 +264,7 @@ impl Model {
     ///
     /// let model = Training::fitting(equal_figures(), GridSteps::new(4, 15)?)?.run()?;
     /// let noise = Noise::new(0.01)?;
-    /// let touches = NoisyTouches::new(model.sensor(), noise, 100, 0);
+    /// let touches = NoisyTouches::new(model.sensor().size(), noise, 100, 0);
     /// let rate = model.recognition_rate(&touches, &noise, &|_| true).expect("not stopped");
     /// let touches = touches.with_random_dead(64);
     /// let fewer = model.recognition_rate(&touches, &noise, &|_| true).expect("not stopped");
@@ -278,7 +279,7 @@ impl Model {
     ) -> Option<RecognitionRate> {
         let judge = |touch: &Imprint, dead: &Imprint| {
             let known = match assumed.dead() {
-                Some(known) => known.resized(dead.columns(), dead.rows()).union(dead),
+                Some(known) => known.resized(dead.size()).union(dead),
                 None => *dead,
             };
             let posterior = self.posterior_under(touch, &assumed.without(known));
@@ -354,9 +355,10 @@ impl Model {
 
     /// Returns the imprint of a key in a random place, with random flips.
     fn touch_of(&self, key: usize, touches: &NoisyTouches, random: &mut Pcg64) -> Imprint {
-        let ((columns, rows), noise) = (touches.size, &touches.noise);
+        let (size, noise) = (touches.size, &touches.noise);
+        let (columns, rows) = (size.columns(), size.rows());
         let key = self.keys().get(key);
-        let mut touch = Imprint::empty(columns, rows);
+        let mut touch = Imprint::empty(size);
         let column = below(random, u64::from(columns - key.width) + 1);
         let row = crate::index::index(below(random, u64::from(rows - key.height) + 1));
         for (index, word) in key.rows().enumerate() {
@@ -461,13 +463,17 @@ mod tests {
     use crate::figure::Figure;
     use crate::pose::{Anchor, Ranges};
     use crate::recognition::{NamedShape, Training};
+    use crate::sensor::Sensor;
 
     #[test]
     fn drawing_more_taxels_than_there_are_draws_all() {
         let mut random = generator(0, 0);
-        let taxels = random_taxels((64, 64), 5000, &mut random);
+        let taxels = random_taxels(MatrixSize::LARGEST, 5000, &mut random);
         assert_eq!(taxels.count(), 64 * 64);
-        assert_eq!(random_taxels((16, 16), 7, &mut random).count(), 7);
+        assert_eq!(
+            random_taxels(MatrixSize::of(16, 16), 7, &mut random).count(),
+            7
+        );
     }
 
     #[test]
@@ -486,7 +492,7 @@ mod tests {
         let training = Training::new(shapes, sensor, Anchor::Centre, ranges);
         let model = training.expect("a set").run().expect("not stopped");
         let noise = Noise::new(0.0).expect("in range");
-        let touches = NoisyTouches::new(&sensor, noise, 2000, 0);
+        let touches = NoisyTouches::new(sensor.size(), noise, 2000, 0);
         let rate = model.recognition_rate(&touches, &noise, &|_| true);
         let rate = rate.expect("not stopped");
         // The long one is always named, so only the claimed probability is left to chance.
@@ -502,7 +508,7 @@ mod tests {
             let mut random = generator(seed, 0);
             let side = || below(&mut random, 64);
             let numbers: Vec<u64> = std::iter::repeat_with(side).take(100).collect();
-            let dead = random_taxels((64, 64), 50, &mut generator(seed, !0));
+            let dead = random_taxels(MatrixSize::LARGEST, 50, &mut generator(seed, !0));
             let is_dead = |place: &&[u64]| {
                 let place = [place[0], place[1]].map(|side| u8::try_from(side).expect("below 64"));
                 dead.get(place[0], place[1])
@@ -528,7 +534,7 @@ mod tests {
         let model = training.expect("a set").run().expect("not stopped");
         let noise = Noise::new(0.0).expect("in range");
         let rate = |seed| {
-            let touches = NoisyTouches::new(&sensor, noise, 200, seed).with_random_dead(2);
+            let touches = NoisyTouches::new(sensor.size(), noise, 200, seed).with_random_dead(2);
             let rate = model.recognition_rate(&touches, &noise, &|_| true);
             rate.expect("not stopped")
         };
@@ -553,13 +559,12 @@ mod tests {
         let ranges = Ranges::new(["5:5.9:0.1", "5", "0", "1", "1"].map(range));
         let training = Training::new(shapes, sensor, Anchor::Corner, ranges);
         let model = training.expect("a set").run().expect("not stopped");
-        let too_large = [5, 6, 7].map(|columns| model.poses_too_large((columns, 1)));
+        let too_large = [5, 6, 7].map(|columns| model.poses_too_large(MatrixSize::of(columns, 1)));
         assert_eq!(too_large, [vec![3], vec![0], vec![0]]);
-        assert_eq!(model.poses_too_large((16, 0)), [10]);
         let noise = Noise::new(0.0).expect("in range");
         let rate = |columns| {
             let sensor = Sensor::new(columns, 1).expect("in range");
-            let touches = NoisyTouches::new(&sensor, noise, 10, 0);
+            let touches = NoisyTouches::new(sensor.size(), noise, 10, 0);
             let rate = model.recognition_rate(&touches, &noise, &|_| true);
             rate.map(|rate| rate.touches)
         };
@@ -599,7 +604,7 @@ mod tests {
         });
         assert_eq!(means, Some(vec![(None, None), (None, None)]));
         let noise = Noise::new(0.0).expect("in range");
-        let touches = NoisyTouches::new(&sensor, noise, 10, 0);
+        let touches = NoisyTouches::new(sensor.size(), noise, 10, 0);
         let rate = model.recognition_rate(&touches, &noise, &|_| true);
         assert_eq!(rate.map(|rate| (rate.touches, rate.right)), Some((20, 10)));
         // One is always named right, the other never: the accuracy is ½ for every seed.

@@ -132,6 +132,7 @@ fn in_common(own: &[u32], other: &[u32], shift: isize) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sensor::MatrixSize;
 
     #[test]
     fn distances_take_the_best_shift() {
@@ -171,7 +172,7 @@ mod tests {
             let mut imprint = || {
                 let side = |random: u64| u8::try_from(random + 1).expect("small");
                 let (columns, rows) = (side(random(9)), side(random(9)));
-                let mut imprint = Imprint::empty(columns, rows);
+                let mut imprint = Imprint::empty(MatrixSize::of(columns, rows));
                 for row in 0..rows {
                     for column in 0..columns {
                         imprint.set(column, row, random(3) > 0);

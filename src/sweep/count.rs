@@ -70,7 +70,7 @@ impl Sweep<'_> {
     /// ```
     pub fn count(self) -> Option<CountedImprints> {
         let sensor = *self.grid.sensor();
-        let layout = Layout::new(sensor.columns(), sensor.rows());
+        let layout = Layout::new(sensor.size());
         let mut counted = CountedImprints {
             counter: ImprintCounter::new(layout.words()),
             layout,
@@ -106,7 +106,7 @@ impl Sweep<'_> {
     pub fn poses_where(self, wanted: &(dyn Fn(&Imprint) -> bool + Sync)) -> Option<Vec<PoseRun>> {
         let (width, height) = (self.grid.row_length(), self.grid.rows_per_orientation());
         let sensor = self.grid.sensor();
-        let layout = Layout::new(sensor.columns(), sensor.rows());
+        let layout = Layout::new(sensor.size());
         let mut runs = Vec::new();
         self.each_portion(&layout, true, |portion| {
             for found in portion {

@@ -50,7 +50,7 @@ impl Begun {
         Self {
             of: first.shard.of(),
             last: 0,
-            atlas: Atlas::new(sensor.columns(), sensor.rows()),
+            atlas: Atlas::new(sensor.size()),
             variance_parts: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
             grid,
             poses: 0,

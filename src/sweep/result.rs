@@ -150,8 +150,8 @@ impl SweepResult {
         parts: &Parts,
     ) -> Result<Self, PartsError> {
         let check = |holds: bool, what: &'static str| holds.then_some(()).ok_or(PartsError(what));
-        let (columns, rows) = (grid.sensor().columns(), grid.sensor().rows());
-        let height = usize::from(rows);
+        let size = grid.sensor().size();
+        let height = usize::from(size.rows());
         let same = parts.counts.len() == parts.first_poses.len()
             && parts.counts.len().checked_mul(height) == Some(parts.rows.len());
         check(same, "arrays of different lengths")?;
@@ -172,11 +172,11 @@ impl SweepResult {
         let inside = first.is_none_or(|&first| first >= own.start * width)
             && last.is_none_or(|&last| last < own.end * width);
         check(ascending && inside, "first poses out of order")?;
-        let mut atlas = Atlas::new(columns, rows);
+        let mut atlas = Atlas::new(size);
         let mut counter = ImprintCounter::new(atlas.layout().words());
         let entries = parts.counts.iter().zip(&parts.first_poses);
         for (words, (&count, &first)) in parts.rows.chunks_exact(height).zip(entries) {
-            let mut imprint = Imprint::empty(columns, rows);
+            let mut imprint = Imprint::empty(size);
             for (row, &word) in words.iter().enumerate() {
                 imprint.set_word(row, word);
             }

@@ -97,7 +97,7 @@ impl<'a> Sweep<'a> {
         let sensor = grid.sensor();
         let mut done = Done {
             grid,
-            atlas: Atlas::new(sensor.columns(), sensor.rows()),
+            atlas: Atlas::new(sensor.size()),
             table: Table::default(),
             variance_parts: VarianceParts::new(grid.row_length() * grid.rows_per_orientation()),
             poses: 0,

@@ -341,9 +341,9 @@ fn frames_of_another_size_do_not_end_the_stream() {
     // Two frames of each new size are dropped before it counts as the new size.
     assert_eq!(frames, [0, 1, 2, 6, 7]);
     for said in [
-        "standard input: 1 x 3 cells from frame 3 on",
+        "standard input: 1 row of 3 cells from frame 3 on",
         "standard input: frame 3 is not printed: the crop reaches beyond the frame",
-        "standard input: 2 x 2 cells from frame 6 on",
+        "standard input: 2 rows of 2 cells from frame 6 on",
         "standard input: 3 frames of another size not printed",
     ] {
         assert!(run.stderr.contains(said), "{said}: {}", run.stderr);

@@ -80,7 +80,7 @@ fn the_second_recording_to_one_file_is_refused() {
     let file = folder.path().join("both.npy");
     let begun = || FrameRecorder::create(&file, Existing::Kept, &RecordingMetadata::default());
     let (mut first, mut late) = (begun().expect("free"), begun().expect("still free"));
-    let frame = Frame::new(2, 2);
+    let frame = Frame::default();
     first.add(&frame, None).expect("recorded");
     assert_eq!(first.finish().expect("written"), 1);
     let both = || [file.clone(), file.with_extension("json")].map(|path| fs::read(path).ok());
@@ -264,7 +264,7 @@ fn frames_of_another_size_do_not_end_a_recording() {
         .map(|line| line["sum"].clone())
         .collect();
     assert_eq!(sums, [10, 10, 15, 15, 10]);
-    let said = "frame 2 has 1 x 3 cells; the recording has frames of 1 x 2 and leaves out others";
+    let said = "frame 2 has 1 row of 3 cells; the recording has frames of 1 row of 2 and leaves out others";
     assert!(run.stderr.contains(said), "{run:?}");
     assert!(run.stderr.contains("5 frames dropped so far"), "{run:?}");
     assert!(
@@ -547,7 +547,7 @@ fn noise_and_greetings_before_the_first_frame_do_not_affect_the_format() {
 fn the_message_says_why_lines_of_numbers_are_not_frames() {
     let timed = "50,1,2,3,1\n100,1,2,3,2\n150,1,2,3,3\n";
     let said = refused("watch - --once --rows 2 --columns 2", timed);
-    let expected = "35 bytes but no frame; the last line: 5 numbers, expected 4 for a frame of 2 x 2, or 2 for a row";
+    let expected = "35 bytes but no frame; the last line: 5 numbers, expected 4 for a frame of 2 rows of 2, or 2 for a row";
     assert!(said.contains(expected), "{said}");
     for (line, text) in [
         ("watch - --once", "1,2\r3,4\r\r5,6\r7,8\r"),

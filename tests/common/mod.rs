@@ -5,7 +5,12 @@ use taxel::figure::{Figure, FigureKind};
 use taxel::imprint::Imprint;
 use taxel::parameter::Parameter;
 use taxel::picture::Picture;
-use taxel::sensor::Sensor;
+use taxel::sensor::{MatrixSize, Sensor};
+
+/// The size of a matrix that a test knows to be one.
+pub(crate) fn size(columns: u8, rows: u8) -> MatrixSize {
+    MatrixSize::new(columns, rows).expect("1 to 64")
+}
 
 /// Random numbers by xorshift (G. Marsaglia, *Xorshift RNGs*, 2003): the same on every machine and in every run.
 pub(crate) struct Random(u64);

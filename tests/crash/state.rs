@@ -17,7 +17,7 @@ const DEADLINE: Duration = Duration::from_secs(20);
 
 /// Returns a shape whose taxels encode a number.
 pub(crate) fn shape(name: &str, version: u32) -> StoredShape {
-    let mut imprint = Imprint::empty(16, 16);
+    let mut imprint = Imprint::empty(Sensor::default().size());
     for row in 0..16 {
         // Every second row holds the same half of the number, so no part of another file can pass for it.
         imprint.set_word(row, u64::from(version >> (row % 2 * 16) & 0xffff));

@@ -12,6 +12,8 @@ use taxel::picture::Picture;
 use taxel::sensor::Sensor;
 use taxel::touch::Plane;
 
+use crate::common::size;
+
 /// Returns the ring of the paper's Fig. 1 and its imprint.
 fn ring() -> (Figure, Imprint) {
     let sensor = Sensor::default();
@@ -56,12 +58,12 @@ fn pieces_a_hole_and_a_picture_are_drawn_in_cells() {
 
 #[test]
 fn absent_parts_are_not_drawn() {
-    let empty = Drawing::new(&Imprint::empty(1, 2)).svg();
+    let empty = Drawing::new(&Imprint::empty(size(1, 2))).svg();
     golden("empty", &empty);
     for absent in ["rectangle", "CG", "CD", "outline", "cg"] {
         assert!(!empty.contains(absent), "{absent} in\n{empty}");
     }
-    let imprint = Imprint::empty(3, 3);
+    let imprint = Imprint::empty(size(3, 3));
     let plain = Drawing::new(&imprint).svg();
     let pitched = |mm: f64| Drawing::new(&imprint).with_pitch(mm).svg();
     for mm in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -74,7 +76,7 @@ fn absent_parts_are_not_drawn() {
 fn every_size_and_title_has_a_page_of_bounded_size() {
     let long = "é<&>\"\u{1b}".repeat(1000);
     for (columns, rows) in [(1, 1), (1, 64), (64, 1), (64, 64), (3, 2)] {
-        let imprint = Imprint::empty(columns, rows);
+        let imprint = Imprint::empty(size(columns, rows));
         let svg = Drawing::new(&imprint)
             .with_title(&long)
             .with_pitch(0.001)

@@ -6,6 +6,8 @@ use taxel::formats::imprint_file::MAX_BYTES;
 use taxel::formats::{ImprintFormat, ImprintFormatError, read_imprint};
 use taxel::imprint::Imprint;
 
+use crate::common::size;
+
 /// An imprint of any size, with rows of few, many or all bits.
 fn imprints() -> impl Strategy<Value = Imprint> {
     let word = prop_oneof![
@@ -16,7 +18,7 @@ fn imprints() -> impl Strategy<Value = Imprint> {
     ];
     (1..=64_u8, vec(word, 1..=64)).prop_map(|(columns, words)| {
         let rows = u8::try_from(words.len()).expect("at most 64");
-        let mut imprint = Imprint::empty(columns, rows);
+        let mut imprint = Imprint::empty(size(columns, rows));
         for (row, word) in words.into_iter().enumerate() {
             imprint.set_word(row, word);
         }

@@ -6,7 +6,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use crate::common::Random;
+use crate::common::{Random, size};
 use taxel::description::{DESCRIPTORS, Description, RegionKind, Value, main_region, regions};
 use taxel::imprint::Imprint;
 
@@ -328,12 +328,12 @@ fn enclosed_or(mask: &Mask, holes: &Mask) -> Mask {
 
 fn drawn_size(random: &mut Random) -> Imprint {
     match random.whole(0, 999) {
-        0..=19 => Imprint::empty(1, 1),
-        20..=39 => Imprint::empty(1, 64),
-        40..=59 => Imprint::empty(64, 1),
-        60..=64 => Imprint::empty(64, 64),
-        65..=79 => Imprint::empty(random.side(1, 64), random.side(1, 64)),
-        _ => Imprint::empty(random.side(1, 14), random.side(1, 14)),
+        0..=19 => Imprint::empty(size(1, 1)),
+        20..=39 => Imprint::empty(size(1, 64)),
+        40..=59 => Imprint::empty(size(64, 1)),
+        60..=64 => Imprint::empty(size(64, 64)),
+        65..=79 => Imprint::empty(size(random.side(1, 64), random.side(1, 64))),
+        _ => Imprint::empty(size(random.side(1, 14), random.side(1, 14))),
     }
 }
 
@@ -387,7 +387,7 @@ fn matrices_of_all_sizes_agree() {
     let mut random = Random::new(13);
     for columns in 1..=64 {
         for rows in 1..=64 {
-            let mut imprint = Imprint::empty(columns, rows);
+            let mut imprint = Imprint::empty(size(columns, rows));
             let density = u64::from(random.side(1, 49)) * 20;
             for row in 0..rows {
                 for column in 0..columns {
@@ -427,7 +427,7 @@ fn spirals_checkerboards_and_combs_agree() {
             [&checkerboard, &comb, &rings, &spiral, &grate];
         for pattern in patterns {
             for turned in [false, true] {
-                let mut imprint = Imprint::empty(side, side);
+                let mut imprint = Imprint::empty(size(side, side));
                 for row in 0..side {
                     for column in 0..side {
                         let (i, j) = if turned {

@@ -7,6 +7,7 @@ use serde_json::Value;
 use taxel::prelude::*;
 use taxel::recognition::{AnswerState, Evidence, Method, Model, NamedShape, Noise, NoisyTouches};
 
+use crate::common::size;
 use crate::recognition::{float, published, ranges, s1, s4, sensor, train};
 
 /// Returns a model of shapes that fit a matrix of 5 × 5, with few keys.
@@ -32,7 +33,7 @@ fn by_definition(model: &Model, imprint: &Imprint, flip: f64, dead: &Imprint) ->
         }
         for down in 0..=usize::from(imprint.rows() - own.rows()) {
             for across in 0..=imprint.columns() - own.columns() {
-                let mut moved = Imprint::empty(imprint.columns(), imprint.rows());
+                let mut moved = Imprint::empty(imprint.size());
                 for (row, &word) in own.words().iter().enumerate() {
                     moved.set_word(row + down, word << across);
                 }
@@ -69,7 +70,7 @@ fn of_several(model: &Model, touches: &[Imprint], flip: f64) -> Vec<f64> {
     let weights = model.shapes().iter().map(|shape| f64::from(shape.weight));
     let mut odds: Vec<f64> = weights.clone().collect();
     for touch in touches {
-        let none = Imprint::empty(touch.columns(), touch.rows());
+        let none = Imprint::empty(touch.size());
         let own = by_definition(model, touch, flip, &none);
         for ((odds, own), weight) in odds.iter_mut().zip(own).zip(weights.clone()) {
             *odds *= own / weight;
@@ -82,7 +83,7 @@ fn of_several(model: &Model, touches: &[Imprint], flip: f64) -> Vec<f64> {
 /// Returns two hundred imprints of 5 × 5, with few and many taxels.
 fn imprints() -> impl Iterator<Item = Imprint> {
     (0_u64..200).map(|seed| {
-        let mut imprint = Imprint::empty(5, 5);
+        let mut imprint = Imprint::empty(size(5, 5));
         let bits = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 20;
         let thinned = if seed % 2 == 0 {
             bits & bits >> 7
@@ -99,13 +100,16 @@ fn imprints() -> impl Iterator<Item = Imprint> {
 #[test]
 fn posteriors_equal_those_from_the_definition() {
     let model = tiny();
-    let mut dead = Imprint::empty(5, 5);
+    let mut dead = Imprint::empty(size(5, 5));
     dead.set(2, 2, true);
     dead.set(0, 4, true);
     for flip in [1e-11, 1e-6, 0.001, 0.01, 0.2, 0.45] {
         let noise = Noise::new(flip).expect("in range");
         for imprint in imprints() {
-            for (noise, dead) in [(noise, Imprint::empty(5, 5)), (noise.without(dead), dead)] {
+            for (noise, dead) in [
+                (noise, Imprint::empty(size(5, 5))),
+                (noise.without(dead), dead),
+            ] {
                 let expected = by_definition(&model, &imprint, flip, &dead);
                 let found = model.posterior_under(&imprint, &noise).expect("keys fit");
                 for (found, expected) in found.iter().zip(&expected) {
@@ -196,7 +200,7 @@ fn shapes_with_a_large_weight_count_at_large_distances() {
         .expect("an imprint");
     for flip in [0.01, 0.05, 0.08] {
         let noise = Noise::new(flip).expect("in range");
-        let expected = by_definition(&model, &touch, flip, &Imprint::empty(7, 5));
+        let expected = by_definition(&model, &touch, flip, &Imprint::empty(size(7, 5)));
         let found = model.posterior_under(&touch, &noise).expect("keys fit");
         assert!(
             (found[1] - expected[1]).abs() < 1e-9,
@@ -211,14 +215,14 @@ fn without_noise_dead_taxels_do_not_make_an_impossible_touch_certain() {
     let torn: Imprint = "##...\n.....\n.....\n....#\n....."
         .parse()
         .expect("an imprint");
-    let mut dead = Imprint::empty(5, 5);
+    let mut dead = Imprint::empty(size(5, 5));
     dead.set(0, 4, true);
     let noise = Noise::new(0.0).expect("in range").without(dead);
     assert_eq!(model.posterior_under(&torn, &noise), None);
     let answer = model.recognise(Evidence::of(&[torn]).under(Some(&noise)));
     assert_eq!(answer.state, AnswerState::Unknown);
     // If the stray taxel is known to be dead, the touch is possible.
-    let mut dead = Imprint::empty(5, 5);
+    let mut dead = Imprint::empty(size(5, 5));
     dead.set(4, 3, true);
     let noise = Noise::new(0.0).expect("in range").without(dead);
     let touches = [torn];
@@ -232,7 +236,7 @@ fn without_noise_dead_taxels_do_not_make_an_impossible_touch_certain() {
     let square: Imprint = ".....\n.##..\n.##..\n.....\n....."
         .parse()
         .expect("an imprint");
-    let mut hole = Imprint::empty(5, 5);
+    let mut hole = Imprint::empty(size(5, 5));
     hole.set(1, 1, true);
     let noise = Noise::new(0.0).expect("in range").without(hole);
     let touches = [square, torn];
@@ -265,7 +269,7 @@ fn a_dead_taxel_at_the_rim_is_not_taken_for_contact_there() {
     let mut touch: Imprint = ".....\n.##..\n.....\n.....\n....."
         .parse()
         .expect("an imprint");
-    let mut dead = Imprint::empty(5, 5);
+    let mut dead = Imprint::empty(size(5, 5));
     dead.set(4, 4, true);
     touch.set(4, 4, true);
     let noise = Noise::new(0.01).expect("in range");
@@ -286,12 +290,12 @@ fn probabilities_of_all_imprints_sum_up_to_one() {
     let noise = Noise::new(flip).expect("in range");
     let mut sums = [0.0; 2];
     for bits in 0_u64..512 {
-        let mut imprint = Imprint::empty(3, 3);
+        let mut imprint = Imprint::empty(size(3, 3));
         for row in 0..3 {
             imprint.set_word(row, bits >> (3 * row));
         }
         let posterior = model.posterior_under(&imprint, &noise).expect("keys fit");
-        let expected = by_definition(&model, &imprint, 0.2, &Imprint::empty(3, 3));
+        let expected = by_definition(&model, &imprint, 0.2, &Imprint::empty(size(3, 3)));
         let distances = model.distances(&imprint, &noise).expect("keys fit");
         for shape in 0..2 {
             assert!((posterior[shape] - expected[shape]).abs() < 2e-9);
@@ -345,7 +349,7 @@ fn lookup_and_scan_count_the_empty_imprint_alike() {
     // The dot leaves one taxel or none.
     let shapes = vec![shape("bar", (2.0, 1.0)), shape("dot", (0.8, 0.9))];
     let model = train(shapes, 16, ranges("5:5.9:0.1", "5:5.9:0.1", "0"));
-    let nothing = Imprint::empty(5, 5);
+    let nothing = Imprint::empty(size(5, 5));
     let distances = |flip: f64| {
         let noise = Noise::new(flip).expect("in range");
         model.distances(&nothing, &noise).expect("keys fit")
@@ -402,7 +406,7 @@ fn the_recognition_rate_is_as_published_and_as_claimed() {
     // S1 with one flipped taxel in a hundred on 16 × 16: 0.654, from 7,000 touches.
     let model = train(s1(), 32, published());
     let noise = Noise::new(0.01).expect("in range");
-    let touches = NoisyTouches::new(&Sensor::default(), noise, 1000, 7);
+    let touches = NoisyTouches::new(Sensor::default().size(), noise, 1000, 7);
     let rate = model.recognition_rate(&touches, &noise, &|_| true);
     let rate = rate.expect("not stopped");
     let apart = |found: f64, expected: f64, error: f64| (found - expected).abs() / error;
@@ -425,7 +429,7 @@ fn the_claimed_accuracy_is_reached_at_every_noise() {
         let model = train(set, 32, published());
         for flip in [0.001, 0.01, 0.05] {
             let noise = Noise::new(flip).expect("in range");
-            let touches = NoisyTouches::new(&Sensor::default(), noise, 150, 11);
+            let touches = NoisyTouches::new(Sensor::default().size(), noise, 150, 11);
             let rate = model.recognition_rate(&touches, &noise, &|_| true);
             let rate = rate.expect("not stopped");
             let apart = (rate.claimed() - rate.accuracy()).abs() / rate.standard_error();

@@ -10,6 +10,8 @@ use taxel::recognition::{
 };
 use taxel::sweep::Shard;
 
+use crate::common::size;
+
 /// Converts a count to a number to compute with.
 #[expect(clippy::cast_precision_loss, reason = "all counts are small")]
 pub(crate) fn float(count: u64) -> f64 {
@@ -413,8 +415,8 @@ fn answers_say_how_far_they_can_be_trusted() {
 fn the_nearest_imprint_of_an_unknown_one_is_found() {
     let model = train(s4(), 32, published());
     let mut touch: Imprint = ".########.".to_string().parse().expect("an imprint");
-    touch = touch.resized(12, 9);
-    let mut shifted = Imprint::empty(12, 9);
+    touch = touch.resized(size(12, 9));
+    let mut shifted = Imprint::empty(size(12, 9));
     for row in 2..5 {
         shifted.set_word(row, 0b0111_1110 << 1);
     }
@@ -443,7 +445,7 @@ fn the_nearest_imprint_of_an_unknown_one_is_found() {
             }
             for row in 0..=usize::from(touch.rows() - imprint.rows()) {
                 for column in 0..=touch.columns() - imprint.columns() {
-                    let mut moved = Imprint::empty(touch.columns(), touch.rows());
+                    let mut moved = Imprint::empty(touch.size());
                     for (index, &word) in imprint.words().iter().enumerate() {
                         moved.set_word(row + index, word << column);
                     }
@@ -454,7 +456,7 @@ fn the_nearest_imprint_of_an_unknown_one_is_found() {
         assert_eq!(nearest.distance, least);
         assert_eq!(nearest.imprint.differing(&touch).count(), least);
     }
-    assert!(model.nearest(&Imprint::empty(2, 2)).is_none());
+    assert!(model.nearest(&Imprint::empty(size(2, 2))).is_none());
 }
 
 #[test]
@@ -501,7 +503,7 @@ fn a_shape_that_may_leave_an_empty_imprint_is_named_by_its_template() {
     };
     let shapes = vec![shape("bar", (3.0, 1.0)), shape("dot", (0.5, 0.5))];
     let model = train(shapes, 16, ranges("5:5.9:0.1", "5:5.9:0.1", "0"));
-    let nothing = Imprint::empty(16, 16);
+    let nothing = Imprint::empty(size(16, 16));
     assert_eq!(model.recognise(Evidence::of(&[nothing])).shape, Some(1));
     let reached = Classifier::Template.evaluate(&model, &ClassifierSettings::default());
     assert_eq!(reached.evaluation.error(), 0.0);

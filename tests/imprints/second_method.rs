@@ -10,7 +10,7 @@
 
 use std::f64::consts::PI;
 
-use crate::common::{Random, sensor};
+use crate::common::{Random, sensor, size};
 use taxel::figure::{Figure, FigureKind};
 use taxel::geometry::Solid;
 use taxel::imprint::Imprint;
@@ -364,7 +364,7 @@ fn pictures_agree() {
     let mut ties = 0;
     for _ in 0..PICTURES {
         let mut plane = drawn_plane(&mut random);
-        let mut imprint = Imprint::empty(random.side(1, 8), random.side(1, 8));
+        let mut imprint = Imprint::empty(size(random.side(1, 8), random.side(1, 8)));
         for row in 0..usize::from(imprint.rows()) {
             let word = random.word() | random.word();
             imprint.set_word(row, word);

@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use taxel::frame::{Rule, RuleOrigin, SetRule};
+use taxel::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule};
 use taxel::imprint::Imprint;
 use taxel::matrix::Matrix;
 use taxel::recognition::Noise;
+use taxel::sensor::MatrixSize;
 use taxel::tui::app::message::Message;
 use taxel::tui::app::worker_event::WorkerEvent;
 use taxel::tui::live::message::{FrameBatch, LiveEvent, LiveMessage, SourceState};
@@ -242,10 +243,15 @@ fn the_question_before_quitting_mentions_the_recording() {
     );
 }
 
+/// The same gain for every cell of a matrix.
+fn gain_of(columns: u8, rows: u8, gain: f64) -> Matrix<f64> {
+    Matrix::filled(MatrixSize::new(columns, rows).expect("1 to 64"), gain)
+}
+
 #[test]
 fn a_frame_that_cannot_be_processed_is_still_shown() {
     let mut page = set(|request| {
-        request.processing.gain = Some(Matrix::filled(2, 2, 1.0));
+        request.processing.gain = Some(gain_of(2, 2, 1.0));
     });
     page.frames(2);
     shows(&page, &["frame 1  0.1 s", "! the gain has 2 columns"]);
@@ -502,7 +508,7 @@ fn a_recording_stores_the_threshold_and_tare_at_its_end() {
 fn an_error_replaces_an_older_notice_at_once() {
     let mut page = watched(6, "t");
     shows(&page, &["tare of the last 6 frames"]);
-    let frame = Arc::new(taxel::frame::Frame::new(3, 3));
+    let frame = Arc::new(Frame::new(FrameSize::new(3, 3).expect("1 to 512")));
     let frames = vec![frame];
     let batch = FrameBatch {
         frames,
@@ -815,7 +821,7 @@ fn the_range_and_the_first_threshold_depend_on_the_values_shown() {
     page.frames(3);
     shows(&page, &["range      0 ░▒▓█ 2000"]);
     let mut page = opened(&|request| {
-        request.processing.gain = Some(Matrix::filled(2, 1, 0.01));
+        request.processing.gain = Some(gain_of(2, 1, 0.01));
     });
     shows(&page, &["range      0 ░▒▓█ 50\n"]);
     then(&mut page, "+", &["threshold  5\n"]);

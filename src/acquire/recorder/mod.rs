@@ -30,7 +30,7 @@ use crate::acquire::frame_rate::FrameRate;
 #[cfg(feature = "tui")]
 use crate::formats::recording::RecordedView;
 use crate::formats::recording::RecordingMetadata;
-use crate::frame::Frame;
+use crate::frame::{Frame, FrameSize};
 use crate::storage::{Existing, FinishedFile, UnfinishedFile, persist_pair};
 
 /// The largest number of bursts over which the rate is measured: several minutes.
@@ -44,14 +44,14 @@ const MOST_BURSTS: usize = 4096;
 /// ```
 /// use taxel::acquire::{FrameRecorder, description_beside};
 /// use taxel::formats::recording::RecordingMetadata;
-/// use taxel::frame::Frame;
+/// use taxel::frame::{Frame, FrameSize};
 /// use taxel::storage::Existing;
 /// # let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("touch.npy");
 /// let mut metadata = RecordingMetadata::default();
 /// metadata.unit = Some("kPa".to_owned());
 /// let mut recorder = FrameRecorder::create(&path, Existing::Kept, &metadata)?;
-/// recorder.add(&Frame::new(16, 16), Some(0.0))?;
+/// recorder.add(&Frame::new(FrameSize::new(16, 16)?), Some(0.0))?;
 /// assert_eq!(recorder.finish()?, 1);
 /// assert_eq!(description_beside(&path).unwrap()?.ended, Some(true));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -206,8 +206,8 @@ impl FrameRecorder {
         self.left_out
     }
 
-    /// Returns rows and columns of the frames that are recorded; None before the first one.
-    pub fn size(&self) -> Option<(u16, u16)> {
+    /// The size of the frames that are recorded; None before the first one.
+    pub fn size(&self) -> Option<FrameSize> {
         self.array.size()
     }
 
@@ -221,7 +221,7 @@ impl FrameRecorder {
     }
 
     fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), RecorderError> {
-        let found = (frame.rows(), frame.columns());
+        let found = frame.size();
         if self.array.size().is_none() {
             let begun = self.array.begin(found);
             begun.map_err(|error| self.refused(error))?;
@@ -344,7 +344,7 @@ mod tests {
                 ..RecordedView::default()
             });
             let add = |recorder: &mut FrameRecorder| {
-                recorder.add(&Frame::new(1, 1), None).expect("recorded");
+                recorder.add(&Frame::default(), None).expect("recorded");
             };
             let prepare = || draft.prepare().expect("on the disk");
             let file = if comes_first {
@@ -374,7 +374,7 @@ mod tests {
         };
         recorder.set_view(view(&[3]));
         for number in [5, 6] {
-            let mut frame = Frame::new(1, 1);
+            let mut frame = Frame::default();
             frame.number = number;
             recorder.add(&frame, None).expect("recorded");
         }
@@ -390,7 +390,7 @@ mod tests {
         let path = folder.path().join("a.npy");
         let mut recorder = begun(&path);
         for number in [5, 6, 0, 1] {
-            let mut frame = Frame::new(1, 1);
+            let mut frame = Frame::default();
             frame.number = number;
             recorder.add(&frame, None).expect("recorded");
         }
@@ -419,7 +419,7 @@ mod tests {
             let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
             let mut recorder = recorder.expect("begun");
             for time in [0.0, 0.25, 0.5, 0.75] {
-                let added = recorder.add(&Frame::new(1, 1), Some(time));
+                let added = recorder.add(&Frame::default(), Some(time));
                 added.expect("recorded");
             }
             recorder.finish().expect("finished");
@@ -434,13 +434,13 @@ mod tests {
         let path = folder.path().join("a.npy");
         let mut recorder = begun(&path);
         for _ in 0..3 {
-            recorder.add(&Frame::new(1, 1), None).expect("recorded");
+            recorder.add(&Frame::default(), None).expect("recorded");
         }
         drop(recorder);
         let bytes = std::fs::read(&path).expect("there");
         assert_eq!(
             bytes[..],
-            [header(Some((1, 1)), 3), bytes[256..].to_vec()].concat()
+            [header(Some(FrameSize::SMALLEST), 3), bytes[256..].to_vec()].concat()
         );
         assert_eq!(bytes.len(), 256 + 3 * 24);
         let beside = description_beside(&path).expect("there").expect("read");
@@ -461,7 +461,7 @@ mod tests {
         let file = recorder.set_view(RecordedView::default()).prepare();
         let named = recorder.take_description(file.expect("on the disk"));
         assert!(named.is_none(), "it waits for the first frame");
-        let added = recorder.add(&Frame::new(1, 1), None);
+        let added = recorder.add(&Frame::default(), None);
         assert!(matches!(added, Err(RecorderError::Exists { .. })));
         assert_eq!(std::fs::read_to_string(&beside).expect("read"), "mine");
     }
@@ -474,7 +474,7 @@ mod tests {
         let record = || {
             let metadata = RecordingMetadata::default();
             let mut recorder = FrameRecorder::create(&path, Existing::Replaced, &metadata)?;
-            recorder.add(&Frame::new(1, 1), None)
+            recorder.add(&Frame::default(), None)
         };
         std::fs::write(&beside, "{\"mine\":1}").expect("written");
         assert!(matches!(record(), Err(RecorderError::Foreign { .. })));
@@ -500,7 +500,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.npy");
         let mut recorder = begun(&path);
-        let mut frame = Frame::new(3, 1);
+        let mut frame = Frame::new(FrameSize::of(3, 1));
         let values = [1e300, 1.1e300, f64::NEG_INFINITY];
         frame.values_mut().copy_from_slice(&values);
         recorder.add(&frame, None).expect("recorded");

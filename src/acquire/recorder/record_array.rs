@@ -11,7 +11,7 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::time::{Duration, Instant};
 
 use crate::acquire::recorder::syncer::Syncer;
-use crate::frame::{Frame, LARGEST_VALUE};
+use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
 use crate::index::index;
 
 /// The number of bytes in the header's text; with the ten bytes before it, 256. The longest text has about 150.
@@ -33,8 +33,8 @@ const BUFFER: usize = 1 << 18;
 #[derive(Debug)]
 pub(super) struct RecordArray {
     file: File,
-    /// Rows and columns of the frames; None before the first one.
-    size: Option<(u16, u16)>,
+    /// The size of the frames; None before the first one.
+    size: Option<FrameSize>,
     buffer: Vec<u8>,
     /// The number of records in the file and in the buffer.
     records: u64,
@@ -64,8 +64,8 @@ impl RecordArray {
         self.file = file;
     }
 
-    /// Returns rows and columns of the frames; None before the first one.
-    pub(super) fn size(&self) -> Option<(u16, u16)> {
+    /// The size of the frames; None before the first one.
+    pub(super) fn size(&self) -> Option<FrameSize> {
         self.size
     }
 
@@ -73,7 +73,7 @@ impl RecordArray {
     ///
     /// # Errors
     /// Returns the system's error.
-    pub(super) fn begin(&mut self, size: (u16, u16)) -> io::Result<()> {
+    pub(super) fn begin(&mut self, size: FrameSize) -> io::Result<()> {
         self.size = Some(size);
         self.count()
     }
@@ -183,8 +183,8 @@ impl RecordArray {
 
     /// Returns the number of bytes of a record.
     fn record_bytes(&self) -> u64 {
-        let (rows, columns) = self.size.unwrap_or((1, 1));
-        RECORD_HEAD + 8 * u64::from(rows) * u64::from(columns)
+        let size = self.size.unwrap_or(FrameSize::SMALLEST);
+        RECORD_HEAD + 8 * size.cells() as u64
     }
 
     /// Writes the header with the number of records in the file, in one piece.
@@ -201,8 +201,9 @@ pub(super) fn empty() -> Vec<u8> {
 }
 
 /// Returns the header of an array of records.
-pub(super) fn header(size: Option<(u16, u16)>, records: u64) -> Vec<u8> {
-    let (rows, columns) = size.unwrap_or((1, 1));
+pub(super) fn header(size: Option<FrameSize>, records: u64) -> Vec<u8> {
+    let size = size.unwrap_or(FrameSize::SMALLEST);
+    let (rows, columns) = (size.rows(), size.columns());
     let text = format!(
         "{{'descr': [('time', '<f8'), ('number', '<u8'), ('values', '<f8', ({rows}, {columns}))], \
          'fortran_order': False, 'shape': ({records},), }}"

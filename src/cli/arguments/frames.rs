@@ -19,7 +19,7 @@ use crate::cli::arguments::recognise::parse_noise;
 use crate::cli::commands::naming::NamingArguments;
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::SensorSettings;
-use crate::frame::{Crop, FrameError, Rule, RuleOrigin, SetRule};
+use crate::frame::{Crop, FrameError, FrameSize, Rule, RuleOrigin, SetRule};
 use crate::recognition::Noise;
 
 /// The frames that are answered.
@@ -40,8 +40,8 @@ pub(crate) enum FrameChoice {
 /// The processing that turns frames into imprints.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ProcessingArguments {
-    /// Rows and columns, for recordings and streams that do not state them.
-    pub(crate) shape: Option<(u16, u16)>,
+    /// The size of a frame, of what does not say it.
+    pub(crate) size: Option<FrameSize>,
     /// The channel of a recording that has several.
     pub(crate) channel: Option<String>,
     /// The part of the frame that is kept, before it is flipped and turned.
@@ -338,7 +338,7 @@ impl ProcessingArguments {
         let path = |id| matches.get_one::<PathBuf>(id).cloned();
         let tare = matches.get_one("tare").copied();
         Ok(Self {
-            shape: side("frame_rows").zip(side("frame_columns")),
+            size: FrameSize::of_sides(side("frame_columns"), side("frame_rows")),
             channel: matches.get_one::<String>("channel").cloned(),
             crop: matches.get_one::<Crop>("crop").copied(),
             flip_x: flips('x'),

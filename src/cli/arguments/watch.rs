@@ -120,7 +120,7 @@ impl WatchArguments {
         if let Some(name) = format {
             options.format = StreamFormat::from_name(name);
         }
-        options.shape = processing.shape;
+        options.size = processing.size;
         options.channel.clone_from(&processing.channel);
         options.baud = matches.get_one("baud").copied().unwrap_or(options.baud);
         options.once = matches.get_flag("once");

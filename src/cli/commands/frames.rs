@@ -83,8 +83,8 @@ impl FramesOutput<'_> {
 /// Returns an error if it cannot be opened.
 pub(crate) fn open(asked: &FramesArguments) -> Result<RecordingFile, CliError> {
     let mut options = ReadOptions::default();
-    if let Some((rows, columns)) = asked.processing.shape {
-        options = options.with_shape(rows, columns);
+    if let Some(size) = asked.processing.size {
+        options = options.with_size(size);
     }
     RecordingFile::open(&asked.file, options)
 }
@@ -109,7 +109,7 @@ pub(crate) fn frames(
     {
         (output.notes)(&format!("warning: {warning}"));
     }
-    if let Some(unused) = scan.unused_shape(asked.processing.shape) {
+    if let Some(unused) = scan.unused_size(asked.processing.size) {
         (output.notes)(&format!("warning: {}: {unused}", recording.name()));
     }
     let damage = scan.error.take().map(|error| recording.damaged(error));
@@ -247,7 +247,7 @@ impl Selection {
         recording: &mut RecordingFile,
         (channel, listed): (usize, &ListedChannel),
     ) -> Result<(Self, Processing), CliError> {
-        if listed.info.shape.is_none() {
+        if listed.info.size.is_none() {
             let values = listed.values;
             return Err(recording.damaged(RecordingError::Shape { values }));
         }

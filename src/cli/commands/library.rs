@@ -206,7 +206,7 @@ pub(crate) fn save(shelf: &Shelf, saving: Saving, what: &OsStr) -> Result<String
         Content::Shape(shape) => shape.renamed(saving.name),
         Content::Imprint(imprint) => StoredShape {
             name: saving.name,
-            sensor: Sensor::clamped(imprint.columns(), imprint.rows()),
+            sensor: Sensor::of_size(imprint.size()),
             imprint,
             source: None,
         },

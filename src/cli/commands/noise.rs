@@ -38,7 +38,7 @@ use crate::parameter::number::share;
 use crate::recognition::{
     GivenDescriptors, MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate, TouchesUntil,
 };
-use crate::sensor::Sensor;
+use crate::sensor::{MatrixSize, Sensor};
 
 /// A row of the table: the noise, the number of dead taxels, and the result.
 struct NoiseRow {
@@ -81,7 +81,7 @@ pub(crate) fn degradation(
     for &dead in &asked.dead {
         for &value in &values {
             let noise = Noise::new(value)?;
-            let touches = NoisyTouches::new(&sensor, noise, asked.touches, asked.seed);
+            let touches = NoisyTouches::new(sensor.size(), noise, asked.touches, asked.seed);
             let touches = touches.with_random_dead(dead);
             let rate = match &given {
                 None => model.recognition_rate(&touches, &noise, &report),
@@ -141,16 +141,13 @@ fn write_noise(table: &[NoiseRow], asked: &ConfusionArguments) -> Result<(), Cli
 ///
 /// # Errors
 /// Returns [`CliError::NoTouch`] if no imprint of a shape fits on it.
-fn matrix(model: &Model, size: Option<(u8, u8)>) -> Result<Sensor, CliError> {
-    let sensor = size.map(|(columns, rows)| Sensor::clamped(columns, rows));
-    let sensor = sensor.unwrap_or(*model.sensor());
-    let (columns, rows) = (sensor.columns(), sensor.rows());
-    match model.first_too_large((columns, rows)) {
+fn matrix(model: &Model, size: Option<MatrixSize>) -> Result<Sensor, CliError> {
+    let sensor = size.map_or(*model.sensor(), Sensor::of_size);
+    match model.first_too_large(sensor.size()) {
         None => Ok(sensor),
         Some(shape) => Err(CliError::NoTouch {
             name: model.shapes()[shape].name.clone(),
-            columns,
-            rows,
+            size: sensor.size(),
         }),
     }
 }
@@ -160,8 +157,8 @@ fn matrix(model: &Model, size: Option<(u8, u8)>) -> Result<Sensor, CliError> {
 fn left_out(model: &Model, sensor: &Sensor) -> Option<String> {
     /// The most shapes that are named.
     const NAMED: usize = 3;
-    let (columns, rows) = (sensor.columns(), sensor.rows());
-    let too_large = model.poses_too_large((columns, rows));
+    let size = sensor.size();
+    let too_large = model.poses_too_large(size);
     let all = model.poses();
     let shapes = model.shapes().iter().zip(too_large);
     let mut shapes: Vec<_> = shapes.filter(|(_, poses)| *poses > 0).collect();
@@ -177,7 +174,7 @@ fn left_out(model: &Model, sensor: &Sensor) -> Option<String> {
         more => format!(" and some of {more} other shapes"),
     };
     (!shapes.is_empty())
-        .then(|| format!("left out, because they do not fit on {columns} × {rows}: {named}{more}"))
+        .then(|| format!("left out, because they do not fit on {size}: {named}{more}"))
 }
 
 /// Returns the known descriptors, rounded to the given steps; None for the whole imprint.

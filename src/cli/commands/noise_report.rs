@@ -51,7 +51,7 @@ pub(crate) fn gather(
             Ok(processed) => {
                 let counter = counter.get_or_insert_with(|| {
                     let values = processed.raw;
-                    let mut cells = Imprint::empty(values.columns(), values.rows());
+                    let mut cells = Imprint::empty(values.size());
                     for row in 0..values.rows() {
                         for (column, value) in (0..values.columns()).zip(values.row(row)) {
                             cells.set(column, row, !value.is_nan());

@@ -178,14 +178,13 @@ impl Recogniser<'_> {
     fn answer(&self, touches: &[Imprint]) -> Result<Answer, CliError> {
         let mut evidence = self.evidence(touches);
         if let Some(noise) = &self.noise {
-            let size = |imprint: &Imprint| (imprint.columns(), imprint.rows());
             for touch in touches {
                 if let Some(mask) = noise.dead()
-                    && size(mask) != size(touch)
+                    && mask.size() != touch.size()
                 {
                     return Err(CliError::Mask {
-                        mask: size(mask),
-                        imprint: size(touch),
+                        mask: mask.size(),
+                        imprint: touch.size(),
                     });
                 }
             }

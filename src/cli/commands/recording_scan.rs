@@ -12,7 +12,7 @@ use crate::cli::input::recording::RecordingFile;
 use crate::cli::output::recording_list::ListedChannel;
 use crate::formats::recording::{RecordingError, RecordingEvent, RecordingFormat, RecordingNote};
 use crate::formats::value::counted;
-use crate::frame::{FrameError, View};
+use crate::frame::{FrameError, FrameSize, View};
 use crate::matrix::Matrix;
 
 /// The most warnings that are shown; further ones are counted.
@@ -39,7 +39,7 @@ impl Scan {
     /// Reads a recording. Sums are those of the part that the view shows, or of the whole frame if this is too large.
     pub(super) fn of(recording: &mut RecordingFile, view: &View) -> Self {
         let mut scan = Self::default();
-        let mut seen = Matrix::filled(1, 1, f64::NAN);
+        let mut seen = Matrix::default();
         let result = recording.read(&mut |event| {
             match event {
                 RecordingEvent::Channel(info) => {
@@ -91,14 +91,11 @@ impl Scan {
     }
 
     /// Returns a warning if the given rows and columns differ from those that the recording states.
-    pub(super) fn unused_shape(&self, given: Option<(u16, u16)>) -> Option<String> {
-        let stated = self
-            .channels
-            .iter()
-            .find_map(|channel| channel.info.shape)?;
-        let (rows, columns) = stated;
+    pub(super) fn unused_size(&self, given: Option<FrameSize>) -> Option<String> {
+        let stated = self.channels.iter().find_map(|channel| channel.info.size)?;
         (given? != stated).then(|| {
-            let (rows, columns) = (counted(rows, "row"), counted(columns, "column"));
+            let rows = counted(stated.rows(), "row");
+            let columns = counted(stated.columns(), "column");
             format!("it states {rows} and {columns}; --rows and --columns have no effect")
         })
     }

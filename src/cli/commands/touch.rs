@@ -102,10 +102,7 @@ pub(crate) fn picture(
         }
         Content::Imprint(imprint) => {
             let paper = Sensor::default();
-            let sensor = Sensor::clamped(
-                imprint.columns().max(paper.columns()),
-                imprint.rows().max(paper.rows()),
-            );
+            let sensor = Sensor::of_size(imprint.size().union(paper.size()));
             (Picture::at_home(imprint), sensor)
         }
     };

@@ -40,7 +40,7 @@ use crate::formats::recording::{
 };
 use crate::formats::stream::{StreamCounts, StreamRefusal};
 use crate::formats::value::counted;
-use crate::frame::{Frame, FrameError, Processing, SetRule, Tare, TareFrames};
+use crate::frame::{Frame, FrameError, FrameSize, Processing, SetRule, Tare, TareFrames};
 use crate::matrix::Matrix;
 use crate::quote::did_you_mean;
 use crate::tui::live::request::WatchRequest;
@@ -76,7 +76,7 @@ struct Watcher<'a> {
     /// The memory of a frame, reused for the next one.
     frame: Frame,
     /// Rows and columns of the last frame; None before the first.
-    size: Option<(u16, u16)>,
+    size: Option<FrameSize>,
     /// The number of frames answered.
     answered: u64,
     /// The number of frames not answered because crop, tare, mask or gain do not fit their size.
@@ -132,7 +132,7 @@ pub(crate) fn watch(
         held: None,
         begun: false,
         lines,
-        frame: Frame::new(1, 1),
+        frame: Frame::default(),
         size: None,
         answered: 0,
         unfit: 0,
@@ -212,7 +212,7 @@ fn channels(
     up_to: Option<&str>,
 ) -> Result<(Vec<String>, bool), CliError> {
     let options = ReadOptions {
-        shape: asked.options.shape,
+        size: asked.options.size,
     };
     let mut names = Vec::new();
     let read = RecordingFile::open(path, options)?.read(&mut |event| {
@@ -444,12 +444,12 @@ impl Watcher<'_> {
         };
         let before = recorder.left_out();
         recorder.add(frame, time).map_err(CliError::Recorder)?;
-        if let (0, 1, Some((rows, columns))) = (before, recorder.left_out(), recorder.size()) {
-            let found = (frame.number, frame.rows(), frame.columns());
-            let (number, found_rows, found_columns) = found;
+        if let (0, 1, Some(size)) = (before, recorder.left_out(), recorder.size()) {
             let text = format!(
-                "frame {number} has {found_rows} x {found_columns} cells; the recording has frames of {rows} x {columns} \
-                 and leaves out others"
+                "frame {} has {} cells; the recording has frames of {} and leaves out others",
+                frame.number,
+                frame.size().in_words(),
+                size.in_words()
             );
             self.say(&text);
         }
@@ -458,16 +458,16 @@ impl Watcher<'_> {
 
     /// Takes a frame of the channel: records it, and answers it or keeps it for the tare.
     fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
-        let (rows, columns) = (frame.rows(), frame.columns());
-        let before = self.size.replace((rows, columns));
-        let is_new_size = before.is_some_and(|before| before != (rows, columns));
+        let size = frame.size();
+        let before = self.size.replace(size);
+        let is_new_size = before.is_some_and(|before| before != size);
         // In a recording, each frame may have a size of its own.
         if is_new_size && self.channels.is_empty() {
-            let number = frame.number;
-            self.say(&format!("{rows} x {columns} cells from frame {number} on"));
+            let (number, size) = (frame.number, size.in_words());
+            self.say(&format!("{size} cells from frame {number} on"));
         }
         self.record(frame, time)?;
-        let mut own = std::mem::replace(&mut self.frame, Frame::new(1, 1));
+        let mut own = std::mem::take(&mut self.frame);
         own.copy_from(frame);
         own.time = time;
         let Some((tare, waiting)) = &mut self.tare else {
@@ -475,7 +475,7 @@ impl Watcher<'_> {
             self.frame = own;
             return answered;
         };
-        let mut seen = Matrix::filled(1, 1, f64::NAN);
+        let mut seen = Matrix::default();
         // The whole frames wait, not only their visible parts.
         let added = tare.check_memory(own.values().len());
         let added = added.and_then(|()| self.processing.view.of(&own, &mut seen));

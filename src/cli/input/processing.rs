@@ -9,6 +9,7 @@ use crate::cli::output::recording_list::ListedChannel;
 use crate::formats::recording::{ChannelInfo, ReadOptions, RecordingError, RecordingEvent};
 use crate::frame::{Peak, Processing, SetRule, TareFrames, View};
 use crate::matrix::Matrix;
+use crate::sensor::MatrixSize;
 
 /// Returns the processing of the flags, without tare and rule, which need the recording. Crop, flips, turn and mask
 /// are applied in this order, then the tare, then the gain.
@@ -38,7 +39,7 @@ pub(crate) fn processing(asked: &ProcessingArguments) -> Result<Processing, CliE
 fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
     let mut file = RecordingFile::open(path, ReadOptions::default())?;
     file.prefix_name("--gain ");
-    let mut gain = Matrix::filled(1, 1, 1.0);
+    let mut gain = Matrix::filled(MatrixSize::SMALLEST, 1.0);
     let (mut found, mut is_recording) = (None, false);
     let mut take = |event: RecordingEvent<'_>| {
         if let RecordingEvent::Frame(frame) = event {
@@ -125,7 +126,7 @@ pub(crate) fn tare(
     processing: &mut Processing,
 ) -> Result<(), CliError> {
     let mut frames = TareFrames::new(wanted);
-    let mut seen = Matrix::filled(1, 1, f64::NAN);
+    let mut seen = Matrix::default();
     let mut failure = None;
     let view = processing.view.clone();
     // Damage after the tare's frames does not matter here.

@@ -21,7 +21,7 @@ use crate::cli::output::charset::Charset;
 use crate::formats::json;
 use crate::formats::recording::{ChannelInfo, RecordingFormat};
 use crate::formats::value::{counted, decimal};
-use crate::frame::{Frame, Peak, View};
+use crate::frame::{FirstCell, Frame, FrameSize, Peak, View};
 use crate::parameter::number::short;
 
 /// A channel of a recording.
@@ -29,8 +29,8 @@ use crate::parameter::number::short;
 pub(crate) struct ListedChannel {
     /// What the recording states about the channel.
     pub(crate) info: ChannelInfo,
-    /// Rows and columns of the visible part of its frames, after the crop.
-    seen: Option<(u16, u16)>,
+    /// The size of what is seen of its frames, after the crop.
+    seen: Option<FrameSize>,
     /// The number of frames.
     pub(crate) frames: u64,
     /// The frame with the greatest sum of values.
@@ -39,8 +39,8 @@ pub(crate) struct ListedChannel {
     pub(crate) values: u64,
     /// The largest number of cells with a value in a frame.
     cells: usize,
-    /// The row and column of the whole sensor at which frames begin.
-    first: Option<(u32, u32)>,
+    /// The cell of the whole sensor that frames begin at.
+    first: Option<FirstCell>,
     /// The times of its frames; None if they have no times.
     times: Option<FrameTimes>,
 }
@@ -81,13 +81,9 @@ impl fmt::Display for FrameTimes {
 impl ListedChannel {
     /// Creates a channel without frames; their size is that of the part that the view shows.
     pub(crate) fn new(info: &ChannelInfo, view: &View) -> Self {
-        let seen = info.shape.map(|(rows, columns)| {
-            let (columns, rows) = view.size(columns, rows);
-            (rows, columns)
-        });
         Self {
             info: info.clone(),
-            seen,
+            seen: info.size.map(|size| view.size(size).unwrap_or(size)),
             ..Self::default()
         }
     }
@@ -120,8 +116,8 @@ impl Serialize for ListedChannel {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("name", &info.name)?;
         map.serialize_entry("frames", &self.frames)?;
-        map.serialize_entry("rows", &self.seen.map(|(rows, _)| rows))?;
-        map.serialize_entry("columns", &self.seen.map(|(_, columns)| columns))?;
+        map.serialize_entry("rows", &self.seen.map(FrameSize::rows))?;
+        map.serialize_entry("columns", &self.seen.map(FrameSize::columns))?;
         map.serialize_entry("cells", &self.cells)?;
         map.serialize_entry("unit", &info.unit)?;
         map.serialize_entry("start", &info.start)?;
@@ -133,7 +129,7 @@ impl Serialize for ListedChannel {
             let numbers: Vec<u64> = info.marks.iter().map(|mark| mark.number).collect();
             map.serialize_entry("marks", &numbers)?;
         }
-        if let Some((row, column)) = self.first {
+        if let Some(FirstCell { column, row }) = self.first {
             map.serialize_entry("first_row", &row)?;
             map.serialize_entry("first_column", &column)?;
         }
@@ -179,16 +175,19 @@ pub(crate) fn text(
 
 /// Returns rows, columns and cells; if only a part is visible, also the size of the whole.
 fn size(channel: &ListedChannel) -> String {
-    let Some((rows, columns)) = channel.seen else {
+    let Some(seen) = channel.seen else {
         let values = counted(channel.values, "value");
         return format!("{values} a frame; give --rows and --columns");
     };
-    let whole = channel.info.shape.filter(|whole| *whole != (rows, columns));
-    let whole = whole.map_or(String::new(), |(rows, columns)| {
-        format!(" of {rows} × {columns}")
+    let whole = channel.info.size.filter(|whole| *whole != seen);
+    let whole = whole.map_or(String::new(), |whole| {
+        format!(" of {} × {}", whole.rows(), whole.columns())
     });
     let cells = counted(channel.cells as u64, "cell");
-    let (rows, columns) = (counted(rows, "row"), counted(columns, "column"));
+    let (rows, columns) = (
+        counted(seen.rows(), "row"),
+        counted(seen.columns(), "column"),
+    );
     format!("{rows} × {columns}{whole}, {cells}")
 }
 
@@ -213,9 +212,9 @@ fn channel_lines(channel: &ListedChannel) -> Vec<String> {
         row("size", Some(size(channel))),
         row(
             "from",
-            channel
-                .first
-                .map(|(row, column)| format!("row {row}, column {column} of the whole sensor")),
+            channel.first.map(|FirstCell { column, row }| {
+                format!("row {row}, column {column} of the whole sensor")
+            }),
         ),
         row("unit", info.unit.clone()),
         row("start", info.start.clone()),

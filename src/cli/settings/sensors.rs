@@ -4,7 +4,7 @@
 
 use crate::acquire::AcquireOptions;
 use crate::formats::stream::StreamFormat;
-use crate::frame::{Rule, RuleOrigin, SetRule};
+use crate::frame::{FrameSize, Rule, RuleOrigin, SetRule};
 use crate::tui::live::history::HISTORY_BYTES;
 use crate::tui::live::request::WatchRequest;
 
@@ -239,8 +239,8 @@ impl SensorSettings {
             options.format = *format;
         }
         options.baud = self.whole(SensorKey::Baud).unwrap_or(options.baud);
-        let rows = self.whole(SensorKey::Rows);
-        options.stream_shape = rows.zip(self.whole(SensorKey::Columns));
+        let sides = [SensorKey::Columns, SensorKey::Rows].map(|key| self.whole(key));
+        options.stream_size = FrameSize::of_sides(sides[0], sides[1]);
     }
 
     /// Returns the request that `:watch` starts with; its source is still missing.

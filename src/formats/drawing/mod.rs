@@ -130,8 +130,7 @@ impl Drawing {
     /// active taxels. A NaN means that there is no cell. A matrix of another size changes nothing.
     #[must_use]
     pub fn with_heat(mut self, values: &Matrix<f64>) -> Self {
-        let size = (values.columns(), values.rows());
-        if size == (self.imprint.columns(), self.imprint.rows()) {
+        if values.size() == self.imprint.size() {
             self.heat = Some(values.clone());
         }
         self

@@ -210,7 +210,7 @@ impl PageLayout<'_> {
             self.line("imprint", edges.collect(), EDGE);
             return;
         }
-        let none = Imprint::empty(imprint.columns(), imprint.rows());
+        let none = Imprint::empty(imprint.size());
         let described = subject.described.as_ref();
         let described = described.map_or(&none, |(taxels, _)| *taxels);
         let mut others = *imprint;

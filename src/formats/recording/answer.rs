@@ -108,11 +108,12 @@ impl Serialize for Shortest {
 mod tests {
     use super::*;
     use crate::formats::json;
+    use crate::frame::FrameSize;
     use crate::frame::{Processing, RuleOrigin};
 
     #[test]
     fn without_a_rule_there_is_no_imprint() {
-        let mut frame = Frame::new(2, 1);
+        let mut frame = Frame::new(FrameSize::of(2, 1));
         frame.values_mut().copy_from_slice(&[1.0, 2.5]);
         let mut processing = Processing::default();
         let answer = FrameAnswer {

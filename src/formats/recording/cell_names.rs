@@ -13,16 +13,17 @@
 //! cells.
 
 use crate::formats::recording::frame_time::TimeUnit;
+use crate::frame::FrameSize;
 
 /// The cells that the header of a table names.
 #[derive(Debug, PartialEq)]
 pub(crate) enum NamedCells {
-    /// Rows, columns, and the field of each cell in reading order.
-    Grid(u16, u16, Vec<usize>),
+    /// The size of a frame, and the field of each cell in reading order.
+    Grid(FrameSize, Vec<usize>),
     /// Consecutive fields that count up: the first of them and their number.
     Counted(usize, usize),
-    /// A grid with missing cells: rows, columns and the number of cells that are there.
-    Incomplete(u16, u16, usize),
+    /// Only this many of the cells of a frame of that size.
+    Incomplete(FrameSize, usize),
 }
 
 /// The role of a field that is not a cell.
@@ -123,26 +124,23 @@ fn grid(named: &[NumberedField]) -> Option<NamedCells> {
         numbers.clone().min().zip(numbers.max())
     };
     let ((top, bottom), (left, right)) = range(0).zip(range(1))?;
-    let side = |low: u32, high: u32| {
-        let side = u16::try_from(high - low).ok()?.checked_add(1);
-        side.filter(|&side| side <= 512)
-    };
-    let (rows, columns) = side(top, bottom).zip(side(left, right))?;
-    let mut fields = vec![None; usize::from(rows) * usize::from(columns)];
+    let side = |low: u32, high: u32| u16::try_from(high - low).ok()?.checked_add(1);
+    let size = FrameSize::of_sides(side(left, right), side(top, bottom))?;
+    let mut fields = vec![None; size.cells()];
     if named.len() < 2 || named.len() > fields.len() {
         return None;
     }
     if named.len() < fields.len() {
         let found = named.len();
-        return (2 * found > fields.len()).then_some(NamedCells::Incomplete(rows, columns, found));
+        return (2 * found > fields.len()).then_some(NamedCells::Incomplete(size, found));
     }
     for &(field, [row, column]) in named {
         // Both are below 512.
-        let index = (row - top) * u32::from(columns) + (column - left);
+        let index = (row - top) * u32::from(size.columns()) + (column - left);
         fields[usize::try_from(index).ok()?] = Some(field);
     }
     let fields: Option<Vec<usize>> = fields.into_iter().collect();
-    Some(NamedCells::Grid(rows, columns, fields?))
+    Some(NamedCells::Grid(size, fields?))
 }
 
 /// Returns the longest run of names that count up from 0 or 1; it must have at least three.
@@ -364,7 +362,10 @@ mod tests {
     #[test]
     fn names_of_cells_are_found() {
         let grid = |rows, columns, fields: &[usize]| {
-            Some(NamedCells::Grid(rows, columns, fields.to_vec()))
+            Some(NamedCells::Grid(
+                FrameSize::of(columns, rows),
+                fields.to_vec(),
+            ))
         };
         assert_eq!(cells(&["time", "S0_0", "S0_1"]), grid(1, 2, &[1, 2]));
         assert_eq!(
@@ -397,7 +398,9 @@ mod tests {
             Some(NamedCells::Counted(0, 3))
         );
         // A cell is missing, and no names count up.
-        let incomplete = |rows, columns, found| Some(NamedCells::Incomplete(rows, columns, found));
+        let incomplete = |rows, columns, found| {
+            Some(NamedCells::Incomplete(FrameSize::of(columns, rows), found))
+        };
         assert_eq!(cells(&["r0c0", "r0c1", "r1c0"]), incomplete(2, 2, 3));
         assert_eq!(
             cells(&["r0c0", "r0c1", "r0c2", "r0c4"]),
@@ -438,7 +441,7 @@ mod tests {
         let sides = |names: &[String]| {
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
             match cells(&names) {
-                Some(NamedCells::Grid(rows, columns, _)) => Some((rows, columns)),
+                Some(NamedCells::Grid(size, _)) => Some((size.rows(), size.columns())),
                 _ => None,
             }
         };

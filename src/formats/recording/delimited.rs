@@ -38,7 +38,7 @@ use crate::formats::recording::side::side;
 use crate::formats::recording::table_layout::{FrameFields, LineLayout, TableLayout, layout};
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::recording::unnamed_fields::whole;
-use crate::frame::Frame;
+use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::counted;
 
 /// Reads a recording.
@@ -50,7 +50,7 @@ pub(super) fn read(
     let layout = layout(&mut input, options)?;
     input.rewind()?;
     let info = ChannelInfo {
-        shape: Some(layout.shape),
+        size: Some(layout.size),
         unit: layout.unit.clone(),
         start: layout.start.clone(),
         ..ChannelInfo::default()
@@ -66,7 +66,7 @@ pub(super) fn read(
     let mut lines = TextLines::new(input);
     match &layout.lines {
         LineLayout::Row { parted } => {
-            RowBlock::new(layout.separator, layout.shape, *parted).read(&mut lines, sink)
+            RowBlock::new(layout.separator, layout.size, *parted).read(&mut lines, sink)
         }
         LineLayout::Frame(fields) => frames(&mut lines, &layout, fields, sink),
     }
@@ -93,10 +93,8 @@ pub(crate) fn read_rows(text: &[u8], sink: &mut Sink<'_>) -> Result<(), Recordin
     while lines.advance()? && !is_blank(lines.line()) {
         rows += usize::from(!is_comment(lines.line()));
     }
-    let (Some(rows), Some(columns)) = (side(rows), columns) else {
-        return Err(RecordingError::Unknown);
-    };
-    RowBlock::new(separator, (rows, columns), false).read(&mut TextLines::new(text), sink)
+    let size = FrameSize::of_sides(columns, side(rows)).ok_or(RecordingError::Unknown)?;
+    RowBlock::new(separator, size, false).read(&mut TextLines::new(text), sink)
 }
 
 /// Reads frames of one line each.
@@ -111,8 +109,7 @@ fn frames(
     for (slot, &field) in fields.cells.iter().enumerate() {
         slots[field] = Some(slot);
     }
-    let (rows, columns) = layout.shape;
-    let mut frame = Frame::new(columns, rows);
+    let mut frame = Frame::new(layout.size);
     let mut clock = TableClock::new(layout.separator, fields.time);
     // The number of lines of commas since the last frame.
     let mut without_cells = 0_u64;
@@ -224,11 +221,11 @@ struct RowBlock {
 }
 
 impl RowBlock {
-    /// Starts before the first row of frames with that many rows and columns.
-    fn new(separator: Separator, (rows, columns): (u16, u16), parted: bool) -> Self {
+    /// Before the first row of frames of that size.
+    fn new(separator: Separator, size: FrameSize, parted: bool) -> Self {
         Self {
             separator,
-            frame: Frame::new(columns, rows),
+            frame: Frame::new(size),
             found: 0,
             parted,
             clock: TableClock::new(separator, None),

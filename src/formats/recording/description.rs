@@ -226,10 +226,11 @@ fn rows(matrix: &Matrix<f64>) -> FrameRows {
 mod tests {
     use super::*;
     use crate::frame::TareFrames;
+    use crate::sensor::MatrixSize;
 
     #[test]
     fn a_description_is_read_as_it_was_written() {
-        let mut values = Matrix::filled(2, 1, 0.5);
+        let mut values = Matrix::filled(MatrixSize::of(2, 1), 0.5);
         values.set(1, 0, f64::NAN);
         let mut tare = TareFrames::new(2);
         tare.add(&values).expect("it fits");

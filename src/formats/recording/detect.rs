@@ -72,7 +72,7 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
         _ if is_ros(ros_text::without_notices(trimmed)) => RecordingFormat::Ros2,
         // For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.
         _ if is_list_of(trimmed, b'[') || is_list_of(trimmed, b'{') => RecordingFormat::JsonLines,
-        _ if is_table(row) || options.shape.is_some() && is_number(row) => RecordingFormat::Csv,
+        _ if is_table(row) || options.size.is_some() && is_number(row) => RecordingFormat::Csv,
         _ => return None,
     })
 }

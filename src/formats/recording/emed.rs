@@ -29,10 +29,10 @@ use crate::formats::recording::event::{ChannelInfo, RecordingEvent, RecordingNot
 use crate::formats::recording::lines::{TextLines, text};
 use crate::formats::recording::number;
 use crate::formats::recording::separator::Separator;
-use crate::formats::recording::side::{shape, side};
+use crate::formats::recording::side::{frame_size, side};
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::seconds::to_nanoseconds;
-use crate::frame::{Frame, MAX_FRAME_SIDE};
+use crate::frame::{FirstCell, Frame, MAX_FRAME_SIDE};
 
 /// The force in N of a pressure of 1 kPa on 1 cm².
 const NEWTON: f64 = 0.1;
@@ -432,7 +432,7 @@ impl EmedState {
         frame.label = Some(first.label);
         if self.frames == 0 {
             let info = ChannelInfo {
-                shape: Some((frame.rows(), frame.columns())),
+                size: Some(frame.size()),
                 unit: Some("kPa".to_owned()),
                 seconds_per_frame: self.seconds,
                 pitch_mm: self.pitch_mm,
@@ -461,7 +461,7 @@ impl EmedState {
     /// A force has two decimals, as has each value that it sums: the difference may be half of the last digit for
     /// each. The force of all cells may be the sum of those of the rows or of the columns.
     fn odd_sums(&self, frame: &Frame, pages: &[EmedWindow]) -> Vec<RecordingNote> {
-        let (Some(area), Some((top, left))) = (self.area_cm2, frame.first) else {
+        let (Some(area), Some(corner)) = (self.area_cm2, frame.first) else {
             return Vec::new();
         };
         let columns = usize::from(frame.columns());
@@ -484,7 +484,7 @@ impl EmedState {
         };
         let values = frame.values();
         for row in 0..frame.rows() {
-            let number = top + u32::from(row);
+            let number = corner.row + u32::from(row);
             let stated = pages.iter().filter_map(|page| {
                 let index = number.checked_sub(page.first_row)?;
                 page.row_forces.get(usize::try_from(index).ok()?)
@@ -496,7 +496,7 @@ impl EmedState {
             }
         }
         for column in 0..frame.columns() {
-            let number = left + u32::from(column);
+            let number = corner.column + u32::from(column);
             let stated = pages.iter().filter_map(|page| {
                 let index = usize::try_from(number.checked_sub(page.first_column)?).ok()?;
                 let own = page.column_forces.get(..page.columns.into())?;
@@ -531,11 +531,11 @@ fn joined(first: &EmedWindow, pages: &[EmedWindow]) -> Result<Frame, RecordingEr
     };
     let ((top, bottom), (left, right)) = (range(0), range(1));
     let label = first.label;
-    let Some((rows, columns)) = shape(bottom - top, right - left) else {
+    let Some(size) = frame_size(right - left, bottom - top) else {
         let message = format!("picture {label} has more than {MAX_FRAME_SIDE} rows or columns");
         return Err(RecordingError::damaged(message));
     };
-    let mut frame = Frame::new(columns, rows);
+    let mut frame = Frame::new(size);
     let cells: usize = pages.iter().map(|page| page.values.len()).sum();
     if cells != frame.values().len() {
         let message = format!("the pages of picture {label} do not make up a rectangle");
@@ -544,13 +544,17 @@ fn joined(first: &EmedWindow, pages: &[EmedWindow]) -> Result<Frame, RecordingEr
     for page in pages {
         // The page lies within the bounds of all pages, which are those of the frame.
         let (above, before) = (top..page.first_row, left..page.first_column);
-        let start = above.count() * usize::from(columns) + before.count();
+        let columns = usize::from(size.columns());
+        let start = above.count() * columns + before.count();
         let width = usize::from(page.columns);
-        let starts = (start..).step_by(columns.into());
+        let starts = (start..).step_by(columns);
         for (start, row) in starts.zip(page.values.chunks(width)) {
             frame.values_mut()[start..start + width].copy_from_slice(row);
         }
     }
-    frame.first = Some((top, left));
+    frame.first = Some(FirstCell {
+        column: left,
+        row: top,
+    });
     Ok(frame)
 }

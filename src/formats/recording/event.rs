@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::formats::recording::description::{FrameMark, RecordingMetadata};
-use crate::frame::{Frame, Rule, RuleOrigin, SetRule, Tare, View};
+use crate::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule, Tare, View};
 use crate::parameter::named;
 use crate::parameter::number::counted;
 #[cfg(feature = "tui")]
@@ -92,15 +92,15 @@ named!(RecordingFormat, "format", &RecordingFormat::ALL);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// The rows and columns of a frame, for files that do not give them.
-    pub shape: Option<(u16, u16)>,
+    /// The size of a frame, for files that do not say it.
+    pub size: Option<FrameSize>,
 }
 
 impl ReadOptions {
     /// Sets the rows and columns of a frame, for files that do not give them.
     #[must_use]
-    pub fn with_shape(mut self, rows: u16, columns: u16) -> Self {
-        self.shape = Some((rows, columns));
+    pub fn with_size(mut self, size: FrameSize) -> Self {
+        self.size = Some(size);
         self
     }
 }
@@ -114,9 +114,9 @@ pub(crate) const UNNAMED: &str = "unnamed";
 pub struct ChannelInfo {
     /// The name of the channel: a sensor, an array, a topic.
     pub name: Option<String>,
-    /// The rows and columns of its frames.
-    pub shape: Option<(u16, u16)>,
-    /// The number of values in a frame, if rows and columns are not known.
+    /// The size of its frames.
+    pub size: Option<FrameSize>,
+    /// How many values a frame has, where its size is not known.
     pub values: Option<u64>,
     /// The unit of the values.
     pub unit: Option<String>,
@@ -178,11 +178,9 @@ impl ChannelInfo {
 
     /// Returns the recording's own tare, if it has the size of the frames in that view.
     pub fn tare_for(&self, view: &View) -> Option<&Tare> {
-        let (rows, columns) = self.shape?;
-        self.tare.as_ref().filter(|tare| {
-            let baseline = tare.baseline();
-            (baseline.columns().into(), baseline.rows().into()) == view.size(columns, rows)
-        })
+        let seen = view.size(self.size?).ok()?;
+        let fits = |tare: &&Tare| FrameSize::from(tare.baseline().size()) == seen;
+        self.tare.as_ref().filter(fits)
     }
 
     /// Returns the rule of the recording itself: that of its description, otherwise its threshold. Pieces of fewer
@@ -323,6 +321,7 @@ pub(crate) type Sink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a
 mod tests {
     use super::*;
     use crate::matrix::Matrix;
+    use crate::sensor::MatrixSize;
 
     #[test]
     fn a_description_fills_only_the_missing_fields_of_a_channel() {
@@ -379,9 +378,10 @@ mod tests {
 
     #[test]
     fn a_tare_fits_only_views_of_its_size() {
-        let tare = Tare::from_parts(Matrix::filled(3, 2, 1.0), None, None, 1).expect("sizes fit");
+        let tare = Tare::from_parts(Matrix::filled(MatrixSize::of(3, 2), 1.0), None, None, 1)
+            .expect("sizes fit");
         let info = ChannelInfo {
-            shape: Some((2, 3)),
+            size: Some(FrameSize::of(3, 2)),
             tare: Some(tare.clone()),
             ..ChannelInfo::default()
         };
@@ -392,10 +392,7 @@ mod tests {
         assert_eq!(info.tare_for(&View::default()), Some(&tare));
         assert_eq!(info.tare_for(&turned), None);
         // If the size of the frames is unknown, nothing shows whether the tare fits.
-        let unknown = ChannelInfo {
-            shape: None,
-            ..info
-        };
+        let unknown = ChannelInfo { size: None, ..info };
         assert_eq!(unknown.tare_for(&View::default()), None);
     }
 }

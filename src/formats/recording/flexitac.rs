@@ -27,7 +27,7 @@ pub(super) fn read(
     sink: &mut Sink<'_>,
 ) -> Result<(), RecordingError> {
     let mut bytes = vec![0; CHUNK];
-    let Some((rows, columns)) = options.shape else {
+    let Some(size) = options.size else {
         let length = super::numpy::fill(input, &mut bytes)?;
         let marker = |at: &usize| bytes[..length].get(*at..at + 2) == Some(&[0xaa, 0x55]);
         let next = (3..length).find(marker).unwrap_or(length);
@@ -35,7 +35,7 @@ pub(super) fn read(
         return Err(RecordingError::Shape { values });
     };
     let info = ChannelInfo {
-        shape: options.shape,
+        size: options.size,
         ..ChannelInfo::default()
     };
     if sink(RecordingEvent::Channel(&info)).is_break() {
@@ -43,7 +43,7 @@ pub(super) fn read(
     }
     let stream = StreamOptions::default()
         .with_format(StreamFormat::Flexitac)
-        .with_shape(rows, columns)
+        .with_size(size)
         .from_start();
     let mut decoder = StreamDecoder::new(stream);
     let state = Cell::new(ControlFlow::Continue(()));

@@ -28,9 +28,9 @@ use crate::formats::recording::event::{
 };
 use crate::formats::recording::json_time::{JsonClock, TimeCandidates};
 use crate::formats::recording::lines::TextLines;
-use crate::formats::recording::side::{changed, shape};
+use crate::formats::recording::side::{changed, frame_size};
 use crate::formats::seconds::since;
-use crate::frame::{Frame, LARGEST_VALUE};
+use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
 use crate::parameter::number::counted;
 
 /// The most channels of a recording or a stream.
@@ -46,11 +46,11 @@ pub(super) fn read(
     sink: &mut Sink<'_>,
 ) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(input);
-    let mut line = FrameLine::new(options.shape);
+    let mut line = FrameLine::new(options.size);
     let (mut clock, mut start) = (JsonClock::default(), None);
     // The name of each channel, the size of its frames, and their number so far.
-    let mut channels: Vec<(Option<String>, (u16, u16), u64)> = Vec::new();
-    let mut frame = Frame::new(1, 1);
+    let mut channels: Vec<(Option<String>, FrameSize, u64)> = Vec::new();
+    let mut frame = Frame::default();
     while lines.advance_to_content()? {
         let number = lines.number();
         line.read(lines.line(), &mut clock)
@@ -61,21 +61,20 @@ pub(super) fn read(
                 let message = format!("more than {MOST_CHANNELS} channels");
                 return Err(RecordingError::in_line(number, message));
             }
-            channels.push((line.channel.clone(), line.shape, 0));
+            channels.push((line.channel.clone(), line.size, 0));
             if sink(RecordingEvent::Channel(&line.channel_info())).is_break() {
                 break;
             }
         }
         frame.channel = known.unwrap_or(channels.len() - 1);
         let (_, size, count) = &mut channels[frame.channel];
-        let (rows, columns) = line.shape;
-        if *size != line.shape {
-            let message = changed(line.shape, *size);
+        if *size != line.size {
+            let message = changed(line.size, *size);
             return Err(RecordingError::in_line(number, message));
         }
         frame.number = *count;
         *count += 1;
-        frame.reset(columns, rows);
+        frame.reset(line.size);
         frame.values_mut().copy_from_slice(&line.values);
         frame.time = line
             .time
@@ -97,10 +96,10 @@ pub(super) fn read(
 /// The content of a line, in memory that is reused.
 #[derive(Debug)]
 pub(crate) struct FrameLine {
-    /// The given rows and columns, for lists of cells without rows.
-    asked: Option<(u16, u16)>,
-    /// The rows and columns of the frame.
-    pub(crate) shape: (u16, u16),
+    /// The size of a frame, for lists of cells without rows.
+    asked: Option<FrameSize>,
+    /// The size of the frame; of one cell before the first.
+    pub(crate) size: FrameSize,
     /// The cells, row by row; NaN for null.
     pub(crate) values: Vec<f64>,
     /// The time in seconds: as `t` or `time` gives it, or since the first time under another key.
@@ -147,11 +146,11 @@ impl FrameLineError {
 }
 
 impl FrameLine {
-    /// Prepares for the first line; `asked` are the rows and columns, if the caller gives them.
-    pub(crate) fn new(asked: Option<(u16, u16)>) -> Self {
+    /// `asked` is the size of a frame, if it is known beforehand.
+    pub(crate) fn new(asked: Option<FrameSize>) -> Self {
         Self {
             asked,
-            shape: (0, 0),
+            size: FrameSize::SMALLEST,
             values: Vec::new(),
             time: None,
             label: None,
@@ -163,7 +162,7 @@ impl FrameLine {
     pub(crate) fn channel_info(&self) -> ChannelInfo {
         ChannelInfo {
             name: self.channel.clone(),
-            shape: Some(self.shape),
+            size: Some(self.size),
             ..ChannelInfo::default()
         }
     }
@@ -194,33 +193,35 @@ impl FrameLine {
         let values = self.values.len();
         let wrong = |message: String| Err(FrameLineError::Json(1, message));
         if let Some(columns) = values.checked_div(rows) {
-            let Some(shape) = shape(rows, columns) else {
+            let Some(size) = frame_size(columns, rows) else {
                 let rows = counted(rows as u64, "row");
                 return wrong(format!("{rows} of {columns}, expected 1 to 512 of each"));
             };
-            if let Some((asked_rows, asked_columns)) = self.asked.filter(|asked| *asked != shape) {
-                let rows = counted(rows as u64, "row");
+            if let Some(asked) = self.asked.filter(|asked| *asked != size) {
                 return wrong(format!(
-                    "{rows} of {columns}, and {asked_rows} of {asked_columns} were named"
+                    "{}, and {} of {} were named",
+                    size.in_words(),
+                    asked.rows(),
+                    asked.columns()
                 ));
             }
-            self.shape = shape;
+            self.size = size;
             return Ok(());
         }
         if values == 0 {
             return wrong("\"frame\" is empty, expected rows of values".to_owned());
         }
-        let Some((rows, columns)) = self.asked else {
+        let Some(size) = self.asked else {
             return Err(FrameLineError::Shape(values as u64));
         };
-        if values != usize::from(rows) * usize::from(columns) {
+        if values != size.cells() {
             return wrong(format!(
                 "found {}, expected {}",
                 counted(values as u64, "value"),
-                u32::from(rows) * u32::from(columns)
+                size.cells()
             ));
         }
-        self.shape = (rows, columns);
+        self.size = size;
         Ok(())
     }
 }

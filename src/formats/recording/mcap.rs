@@ -30,7 +30,7 @@ use crate::formats::recording::ros_message::{
     ImageFrame, MessageKind, header, image, matrix_shape, multi_array,
 };
 use crate::formats::recording::side::{arranged, changed};
-use crate::frame::{Frame, LARGEST_VALUE};
+use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
 use crate::index::wide;
 use crate::parameter::number::counted;
 use crate::quote::shortened_message;
@@ -73,8 +73,8 @@ const DATA_END: u8 = 15;
 struct GivenChannel {
     /// The topic, with the sensor of a tactile state after `#`.
     name: String,
-    /// The rows and columns of its frames, if they are known.
-    shape: Option<(u16, u16)>,
+    /// The size of its frames, if it is known.
+    size: Option<FrameSize>,
     /// The number of its frames so far.
     frames: u64,
 }
@@ -121,7 +121,7 @@ pub(super) fn read(
         start: None,
         time: 0,
         values: Vec::new(),
-        frame: Frame::new(1, 1),
+        frame: Frame::default(),
         record: Vec::new(),
         sink,
     };
@@ -489,11 +489,11 @@ impl McapState<'_, '_> {
             MessageKind::Array(kind, size) => {
                 let sizes = multi_array(&mut cdr, kind, size, &mut self.values)?;
                 let stated = matrix_shape(&sizes);
-                let shape = arranged(self.values.len(), stated, self.options.shape);
-                Some(self.give(topic, shape))
+                let size = arranged(self.values.len(), stated, self.options.size);
+                Some(self.give(topic, size))
             }
             MessageKind::Image => match image(&mut cdr, &mut self.values)? {
-                ImageFrame::Values(rows, columns) => Some(self.give(topic, Some((rows, columns)))),
+                ImageFrame::Values(size) => Some(self.give(topic, Some(size))),
                 ImageFrame::OfCamera => Some(Ok(false)),
             },
             MessageKind::TactileState => {
@@ -517,12 +517,11 @@ impl McapState<'_, '_> {
     /// # Errors
     /// Returns an error if there are too many channels, if a message has another number of values than its layout or
     /// another size than earlier ones of its channel, or if a value is infinite.
-    fn give(&mut self, name: &str, shape: Option<(u16, u16)>) -> Result<bool, RecordingError> {
+    fn give(&mut self, name: &str, size: Option<FrameSize>) -> Result<bool, RecordingError> {
         let found = self.values.len();
-        let cells = |(rows, columns): (u16, u16)| usize::from(rows) * usize::from(columns);
         // Rows and columns that are given for one channel need not fit the others.
-        let named = self.options.shape.filter(|&asked| cells(asked) == found);
-        let shape = shape.or(named);
+        let named = self.options.size.filter(|asked| asked.cells() == found);
+        let size = size.or(named);
         let channel = match self.given.iter().position(|own| own.name == name) {
             Some(channel) => channel,
             None if self.given.len() == MOST_CHANNELS => {
@@ -533,13 +532,13 @@ impl McapState<'_, '_> {
                 check_name(name)?;
                 let info = ChannelInfo {
                     name: Some(name.to_owned()),
-                    shape,
+                    size,
                     values: Some(found as u64),
                     ..ChannelInfo::default()
                 };
                 self.given.push(GivenChannel {
                     name: name.to_owned(),
-                    shape,
+                    size,
                     frames: 0,
                 });
                 if (self.sink)(RecordingEvent::Channel(&info)).is_break() {
@@ -554,7 +553,7 @@ impl McapState<'_, '_> {
         self.frame.time = Some(seconds);
         self.frame.channel = channel;
         self.frame.number = self.given[channel].frames;
-        self.fill(name, shape, self.given[channel].shape)?;
+        self.fill(name, size, self.given[channel].size)?;
         let mut values = self.values.iter();
         if let Some(value) = values.find(|value| value.abs() > LARGEST_VALUE) {
             let message = format!("{name}: a value is {}", too_large(*value));
@@ -571,30 +570,29 @@ impl McapState<'_, '_> {
     fn fill(
         &mut self,
         name: &str,
-        shape: Option<(u16, u16)>,
-        before: Option<(u16, u16)>,
+        size: Option<FrameSize>,
+        before: Option<FrameSize>,
     ) -> Result<(), RecordingError> {
         let found = self.values.len();
-        let cells = |(rows, columns): (u16, u16)| usize::from(rows) * usize::from(columns);
-        match shape {
-            Some(shape) if cells(shape) == found => {
-                if let Some(before) = before.filter(|&before| before != shape) {
-                    let message = format!("{name}: {}", changed(shape, before));
+        match size {
+            Some(size) if size.cells() == found => {
+                if let Some(before) = before.filter(|&before| before != size) {
+                    let message = format!("{name}: {}", changed(size, before));
                     return Err(RecordingError::damaged(message));
                 }
-                self.frame.reset(shape.1, shape.0);
+                self.frame.reset(size);
                 self.frame.values_mut().copy_from_slice(&self.values);
             }
-            Some(shape) => {
+            Some(size) => {
                 let message = format!(
                     "{name}: found {}, expected {}",
                     counted(found as u64, "value"),
-                    cells(shape)
+                    size.cells()
                 );
                 return Err(RecordingError::damaged(message));
             }
             // The values can only be counted: rows and columns must be given.
-            None => self.frame.reset(1, 1),
+            None => self.frame.reset(FrameSize::SMALLEST),
         }
         Ok(())
     }

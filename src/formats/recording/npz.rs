@@ -103,7 +103,7 @@ pub(super) fn read(
     for (array, layout) in &channels {
         let info = ChannelInfo {
             name: Some(array.name.clone()),
-            shape: Some(layout.shape()),
+            size: Some(layout.size()),
             ..ChannelInfo::default()
         };
         if sink(RecordingEvent::Channel(&info)).is_break() {
@@ -185,7 +185,7 @@ fn with_layouts(
     for array in arrays {
         // Rows and columns that are meant for one of several arrays need not fit the others.
         let layout = match ArrayLayout::of(&array.header, options) {
-            Err(_) if !alone && options.shape.is_some() => {
+            Err(_) if !alone && options.size.is_some() => {
                 ArrayLayout::of(&array.header, ReadOptions::default())
             }
             layout => layout,

@@ -23,9 +23,9 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
     ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
-use crate::formats::recording::side::shape;
+use crate::formats::recording::side::frame_size;
 use crate::formats::seconds::since;
-use crate::frame::{Frame, LARGEST_VALUE};
+use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
 use crate::parameter::number::counted;
 use crate::quote::shortened;
 use crate::sensor::MAX_SIDE;
@@ -75,10 +75,8 @@ pub(super) struct ArrayLayout {
     number: NumberType,
     /// The number of frames according to the header.
     frames: u64,
-    /// The number of rows in a frame.
-    rows: u16,
-    /// The number of columns in a frame.
-    columns: u16,
+    /// The size of a frame.
+    size: FrameSize,
     /// Whether the first axis varies fastest, as in Fortran.
     fortran: bool,
     /// Whether the rows and columns of a frame form a single axis.
@@ -102,19 +100,19 @@ impl ArrayLayout {
             let found = shortened(&header.code);
             RecordingError::damaged(format!("numbers of type {found:?}, expected real ones"))
         })?;
-        let (frames, rows, columns) = axes_shape(&header.shape, options)?;
+        let (frames, size) = frames_of_axes(&header.shape, options)?;
+        let (rows, columns) = (size.rows(), size.columns());
         // Few sensors are that large, so a row may well be a frame.
         let is_large = rows.max(columns) > MAX_SIDE.into();
-        let is_assumed = header.shape.len() == 2 && options.shape.is_none();
+        let is_assumed = header.shape.len() == 2 && options.size.is_none();
         let note = (is_assumed && is_large).then_some(RecordingNote::Flat { rows, columns });
         Ok(Self {
             note,
             number,
             frames,
-            rows,
-            columns,
+            size,
             fortran: header.fortran_order && header.shape.len() > 1,
-            is_flat: matches!(header.shape[..], [_, cells] if cells == u64::from(rows) * u64::from(columns)),
+            is_flat: matches!(header.shape[..], [_, cells] if cells == size.cells() as u64),
             record: None,
         })
     }
@@ -134,8 +132,7 @@ impl ArrayLayout {
             number: record.number,
             // A recording that was cut off may have more frames than its header counts.
             frames: u64::MAX,
-            rows: record.rows,
-            columns: record.columns,
+            size: record.frame,
             fortran: false,
             is_flat: false,
             record: Some(record),
@@ -153,9 +150,9 @@ impl ArrayLayout {
         self.frames
     }
 
-    /// Returns the rows and columns of a frame.
-    pub(super) fn shape(&self) -> (u16, u16) {
-        (self.rows, self.columns)
+    /// The size of a frame.
+    pub(super) fn size(&self) -> FrameSize {
+        self.size
     }
 }
 
@@ -164,30 +161,30 @@ impl ArrayLayout {
 /// # Errors
 /// Returns [`RecordingError::Shape`] if rows and columns must be given, and a damage error if the shape contradicts
 /// the given ones.
-fn axes_shape(axes: &[u64], options: ReadOptions) -> Result<(u64, u16, u16), RecordingError> {
-    let asked = options.shape;
-    let cells = asked.map(|(rows, columns)| u64::from(rows) * u64::from(columns));
+fn frames_of_axes(axes: &[u64], options: ReadOptions) -> Result<(u64, FrameSize), RecordingError> {
+    let asked = options.size;
+    let cells = asked.map(|size| size.cells() as u64);
     let found = match *axes {
         // An axis of one channel, as frameworks for images and machine learning have it.
         [frames, rows, columns] | [frames, rows, columns, 1] | [frames, 1, rows, columns] => {
-            shape(rows, columns).map(|(r, c)| (frames, r, c))
+            frame_size(columns, rows).map(|size| (frames, size))
         }
-        [rows, columns] => match (asked, shape(rows, columns)) {
-            (Some(asked), Some(own)) if asked == own => Some((1, own.0, own.1)),
-            (Some((r, c)), _) if cells == Some(columns) => Some((rows, r, c)),
-            (None, Some((r, c))) => Some((1, r, c)),
+        [rows, columns] => match (asked, frame_size(columns, rows)) {
+            (Some(asked), Some(own)) if asked == own => Some((1, own)),
+            (Some(asked), _) if cells == Some(columns) => Some((rows, asked)),
+            (None, Some(own)) => Some((1, own)),
             (None, None) => return Err(RecordingError::Shape { values: columns }),
             _ => None,
         },
-        [length] if cells == Some(length) => asked.map(|(r, c)| (1, r, c)),
+        [length] if cells == Some(length) => asked.map(|asked| (1, asked)),
         [length] if cells.is_none() => return Err(RecordingError::Shape { values: length }),
         _ => None,
     };
-    let found = found.filter(|&(_, rows, columns)| asked.is_none_or(|own| own == (rows, columns)));
+    let found = found.filter(|&(_, size)| asked.is_none_or(|asked| asked == size));
     found.ok_or_else(|| {
         let axes: Vec<String> = axes.iter().take(8).map(ToString::to_string).collect();
-        let asked = asked.map_or(String::new(), |(rows, columns)| {
-            format!(", and {} of {columns} were named", counted(rows, "row"))
+        let asked = asked.map_or(String::new(), |asked| {
+            format!(", and {} were named", asked.in_words())
         });
         RecordingError::damaged(format!(
             "an array of shape ({}), expected frames, rows and columns, at most 512 rows and columns{asked}",
@@ -211,10 +208,8 @@ struct RecordLayout {
     values: usize,
     /// The type of the values.
     number: NumberType,
-    /// The number of rows in a frame.
-    rows: u16,
-    /// The number of columns in a frame.
-    columns: u16,
+    /// The size of a frame.
+    frame: FrameSize,
 }
 
 impl RecordLayout {
@@ -259,15 +254,15 @@ impl RecordLayout {
             rest = after.strip_prefix(',').unwrap_or(after).trim_start();
         }
         let (values, number, rows, columns) = values?;
-        (rest.is_empty() && shape(rows, columns).is_some() && size < 1 << 24).then_some(Self {
+        let frame = frame_size(columns, rows)?;
+        (rest.is_empty() && size < 1 << 24).then_some(Self {
             counted: 0,
             size,
             time,
             label,
             values,
             number,
-            rows,
-            columns,
+            frame,
         })
     }
 }
@@ -283,7 +278,7 @@ pub(super) fn read(
 ) -> Result<(), RecordingError> {
     let layout = ArrayLayout::of(&header(input)?, options)?;
     let info = ChannelInfo {
-        shape: Some(layout.shape()),
+        size: Some(layout.size()),
         ..ChannelInfo::default()
     };
     if sink(RecordingEvent::Channel(&info)).is_break() {
@@ -323,12 +318,12 @@ pub(super) fn frames(
     times: &[f64],
     sink: &mut Sink<'_>,
 ) -> Result<bool, RecordingError> {
-    let mut frame = Frame::new(layout.columns, layout.rows);
+    let mut frame = Frame::new(layout.size);
     frame.channel = channel;
     if layout.fortran {
         return fortran(input, layout, frame, times, sink);
     }
-    let cells = usize::from(layout.rows) * usize::from(layout.columns) * layout.number.size();
+    let cells = layout.size.cells() * layout.number.size();
     let size = layout.record.as_ref().map_or(cells, |record| record.size);
     let mut bytes = vec![0; size];
     let mut start = None;
@@ -435,9 +430,9 @@ fn fortran(
     times: &[f64],
     sink: &mut Sink<'_>,
 ) -> Result<bool, RecordingError> {
-    let (rows, columns) = (u64::from(layout.rows), u64::from(layout.columns));
-    let size = layout.number.size() as u64;
-    let expected = (rows * columns * size).checked_mul(layout.frames);
+    let size = layout.number.size();
+    let frame_bytes = layout.size.cells() * size;
+    let expected = (frame_bytes as u64).checked_mul(layout.frames);
     let Some(expected) = expected.filter(|&bytes| bytes <= LARGEST_FORTRAN) else {
         return Err(RecordingError::damaged(
             "an array of more than 256 MiB in Fortran order: save numpy.ascontiguousarray of it",
@@ -448,9 +443,8 @@ fn fortran(
     if (bytes.len() as u64) < expected {
         return Err(short(0, layout.frames));
     }
-    let size = layout.number.size();
-    let (rows, columns) = (usize::from(layout.rows), usize::from(layout.columns));
-    let frames = bytes.len() / (rows * columns * size);
+    let [rows, columns] = [layout.size.rows(), layout.size.columns()].map(usize::from);
+    let frames = bytes.len() / frame_bytes;
     for number in 0..frames {
         for row in 0..rows {
             for column in 0..columns {

@@ -19,7 +19,7 @@ use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink};
 use crate::formats::recording::json_lines::CellsSeed;
 use crate::formats::recording::side::side;
-use crate::frame::{Frame, MAX_FRAME_SIDE};
+use crate::frame::{Frame, FrameSize, MAX_FRAME_SIDE};
 use crate::parameter::number::counted;
 
 /// The message of the serde error that stops the parser when the sink wants no more.
@@ -108,7 +108,7 @@ impl PopuState<'_, '_> {
                 name: name.to_owned(),
                 rows: None,
                 columns: None,
-                frame: Frame::new(1, 1),
+                frame: Frame::default(),
             });
         }
         let index = known.unwrap_or(self.sheets.len() - 1);
@@ -130,14 +130,14 @@ impl PopuState<'_, '_> {
         let is_only = self.sheets.len() == 1;
         let mut sheets = std::mem::take(&mut self.sheets);
         for (channel, sheet) in sheets.iter_mut().enumerate() {
-            let Some((rows, columns)) = sheet.rows.zip(sheet.columns) else {
+            let Some(size) = FrameSize::of_sides(sheet.columns, sheet.rows) else {
                 return Err(E::custom("snapshots before their rows and columns"));
             };
-            sheet.frame = Frame::new(columns, rows);
+            sheet.frame = Frame::new(size);
             sheet.frame.channel = channel;
             let info = ChannelInfo {
                 name: (!is_only).then(|| sheet.name.clone()),
-                shape: Some((rows, columns)),
+                size: Some(size),
                 ..ChannelInfo::default()
             };
             self.report(RecordingEvent::Channel(&info))?;
@@ -151,7 +151,7 @@ impl PopuState<'_, '_> {
 
     /// Reports the values as a frame of the sheet with that index.
     fn give<E: Error>(&mut self, sheet: usize) -> Result<(), E> {
-        let mut frame = std::mem::replace(&mut self.sheets[sheet].frame, Frame::new(1, 1));
+        let mut frame = std::mem::take(&mut self.sheets[sheet].frame);
         let (found, expected) = (self.values.len(), frame.values().len());
         if found != expected {
             let found = counted(found as u64, "value");

@@ -10,7 +10,8 @@
 
 use crate::formats::npy::NumberType;
 use crate::formats::recording::cdr::CdrReader;
-use crate::formats::recording::side::shape;
+use crate::formats::recording::side::frame_size;
+use crate::frame::FrameSize;
 
 /// A kind of message that has frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,9 +73,9 @@ pub(super) fn multi_array(
 }
 
 /// Returns the rows and columns of an array with these sizes, if they are those of a matrix.
-pub(super) fn matrix_shape(sizes: &[u32]) -> Option<(u16, u16)> {
+pub(super) fn matrix_shape(sizes: &[u32]) -> Option<FrameSize> {
     match *sizes {
-        [rows, columns] | [rows, columns, 1] => shape(rows, columns),
+        [rows, columns] | [rows, columns, 1] => frame_size(columns, rows),
         _ => None,
     }
 }
@@ -88,8 +89,8 @@ pub(super) fn header(cdr: &mut CdrReader<'_>) -> Option<()> {
 
 /// The content of an image.
 pub(super) enum ImageFrame {
-    /// A frame with that many rows and columns.
-    Values(u16, u16),
+    /// A frame of that size.
+    Values(FrameSize),
     /// Not a frame: an encoding with other than one value per pixel, or an image that is too large.
     OfCamera,
 }
@@ -111,18 +112,18 @@ pub(super) fn image(cdr: &mut CdrReader<'_>, values: &mut Vec<f64>) -> Option<Im
     let big_endian = cdr.byte()? != 0;
     let step = usize::try_from(cdr.word()?).ok()?;
     let data = cdr.bytes()?;
-    let Some((rows, columns)) = shape(height, width) else {
+    let Some(frame) = frame_size(width, height) else {
         return Some(ImageFrame::OfCamera);
     };
-    let line = usize::from(columns) * size;
+    let line = usize::from(frame.columns()) * size;
     values.clear();
-    for row in 0..usize::from(rows) {
+    for row in 0..usize::from(frame.rows()) {
         let start = row.checked_mul(step)?;
         let bytes = data.get(start..start.checked_add(line)?)?;
         let number = NumberType::new(kind, size, big_endian);
         values.extend(bytes.chunks(size).map(|bytes| number.value(bytes)));
     }
-    Some(ImageFrame::Values(rows, columns))
+    Some(ImageFrame::Values(frame))
 }
 
 #[cfg(test)]
@@ -152,7 +153,7 @@ mod tests {
         message.extend(data);
         let mut values = Vec::new();
         let found = image(&mut CdrReader::new(&message)?, &mut values)?;
-        matches!(found, ImageFrame::Values(1, 2)).then_some(values)
+        matches!(found, ImageFrame::Values(size) if size == FrameSize::of(2, 1)).then_some(values)
     }
 
     #[test]

@@ -23,9 +23,9 @@ use std::io::BufRead;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::lines::TextLines;
-use crate::formats::recording::side::{arranged, changed, shape};
+use crate::formats::recording::side::{arranged, changed, frame_size};
 use crate::formats::recording::text_row::{self, Field};
-use crate::frame::Frame;
+use crate::frame::{Frame, FrameSize};
 
 /// The values of a message, and the sizes of its layout, in memory that is reused.
 #[derive(Debug, Default)]
@@ -203,13 +203,13 @@ impl RosMessage {
     }
 
     /// Returns the rows and columns of the layout, if it has these two dimensions.
-    pub(crate) fn shape(&self) -> Option<(u16, u16)> {
+    pub(crate) fn size(&self) -> Option<FrameSize> {
         let &[rows, columns, ref rest @ ..] = &self.sizes[..] else {
             return None;
         };
         rest.iter()
             .all(|&size| size == 1)
-            .then(|| shape(rows, columns))?
+            .then(|| frame_size(columns, rows))?
     }
 }
 
@@ -313,19 +313,18 @@ fn is_number(field: &[u8]) -> bool {
 /// Returns an error if rows and columns are neither in the message nor given, or if it has another number of values.
 fn size(
     message: &RosMessage,
-    named: Option<(u16, u16)>,
+    named: Option<FrameSize>,
     line: u64,
-) -> Result<(u16, u16), RecordingError> {
+) -> Result<FrameSize, RecordingError> {
     let values = message.cells().len();
-    let shape = arranged(values, message.shape(), named).or(named);
-    let (rows, columns) = shape.ok_or(RecordingError::Shape {
+    let size = arranged(values, message.size(), named).or(named);
+    let size = size.ok_or(RecordingError::Shape {
         values: values as u64,
     })?;
-    let expected = usize::from(rows) * usize::from(columns);
-    if values != expected {
-        return Err(text_row::count(line, values, expected));
+    if values != size.cells() {
+        return Err(text_row::count(line, values, size.cells()));
     }
-    Ok((rows, columns))
+    Ok(size)
 }
 
 /// Reads a recording.
@@ -336,7 +335,7 @@ pub(super) fn read(
 ) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(input);
     let mut message = RosMessage::default();
-    let mut frame = Frame::new(1, 1);
+    let mut frame = Frame::default();
     let mut first = None;
     loop {
         let ended = !lines.advance()?;
@@ -363,23 +362,23 @@ pub(super) fn read(
                 return Err(RecordingError::in_field(number, column, text));
             }
         }
-        let (rows, columns) = size(&message, options.shape, number)?;
+        let size = size(&message, options.size, number)?;
         if frame.number == 0 {
             let info = ChannelInfo {
-                shape: Some((rows, columns)),
+                size: Some(size),
                 ..ChannelInfo::default()
             };
             if sink(RecordingEvent::Channel(&info)).is_break() {
                 return Ok(());
             }
         }
-        if let Some(first) = first.replace((rows, columns))
-            && first != (rows, columns)
+        if let Some(first) = first.replace(size)
+            && first != size
         {
-            let message = changed((rows, columns), first);
+            let message = changed(size, first);
             return Err(RecordingError::in_line(number, message));
         }
-        frame.reset(columns, rows);
+        frame.reset(size);
         frame.values_mut().copy_from_slice(message.cells());
         message.clear();
         if sink(RecordingEvent::Frame(&frame)).is_break() || ended {

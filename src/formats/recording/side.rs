@@ -1,8 +1,7 @@
 //! Numbers of rows and columns as files give them: 1 to [`MAX_FRAME_SIDE`] each.
 
 use crate::formats::recording::error::RecordingError;
-use crate::frame::MAX_FRAME_SIDE;
-use crate::parameter::number::counted;
+use crate::frame::{FrameSize, MAX_FRAME_SIDE};
 use crate::quote::shortened;
 
 /// Returns a number of rows or columns; None if it is 0 or larger than a frame can be.
@@ -11,28 +10,29 @@ pub(crate) fn side(length: impl TryInto<u16>) -> Option<u16> {
     length.filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
 }
 
-/// Returns rows and columns; None if either is 0 or exceeds the largest side of a frame.
-pub(crate) fn shape<T: TryInto<u16>>(rows: T, columns: T) -> Option<(u16, u16)> {
-    side(rows).zip(side(columns))
+/// The size of a frame; None if a side is one that no frame has.
+pub(crate) fn frame_size<T: TryInto<u16>>(columns: T, rows: T) -> Option<FrameSize> {
+    FrameSize::of_sides(side(columns), side(rows))
 }
 
 /// Returns the rows and columns of a message with this number of values: the `named` ones if they have that many
 /// cells, otherwise those that the message states. Many programs publish a layout of one row, or none.
 pub(crate) fn arranged(
     values: usize,
-    stated: Option<(u16, u16)>,
-    named: Option<(u16, u16)>,
-) -> Option<(u16, u16)> {
-    let cells = |(rows, columns): (u16, u16)| usize::from(rows) * usize::from(columns);
-    let fits = named.filter(|&named| cells(named) == values);
-    fits.or(stated)
+    stated: Option<FrameSize>,
+    named: Option<FrameSize>,
+) -> Option<FrameSize> {
+    named.filter(|named| named.cells() == values).or(stated)
 }
 
 /// Returns the message for a frame with other rows and columns than those before it.
-pub(super) fn changed((rows, columns): (u16, u16), before: (u16, u16)) -> String {
-    let found = counted(rows, "row");
-    let (before_rows, before_columns) = before;
-    format!("found {found} of {columns}, expected {before_rows} of {before_columns} as before")
+pub(super) fn changed(size: FrameSize, before: FrameSize) -> String {
+    format!(
+        "found {}, expected {} of {} as before",
+        size.in_words(),
+        before.rows(),
+        before.columns()
+    )
 }
 
 /// Reads the number of rows or columns that a line states for a key, as `ROWS 28` does; `mark` is the character

@@ -22,7 +22,7 @@ use crate::formats::recording::separator::{Separator, is_comment, is_none};
 use crate::formats::recording::side::side;
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::recording::unnamed_fields::unnamed_fields;
-use crate::frame::MAX_FRAME_SIDE;
+use crate::frame::{FrameSize, MAX_FRAME_SIDE};
 use crate::parameter::number::{counted, grouped};
 
 /// The most cells of a frame.
@@ -36,8 +36,8 @@ const MOST_BESIDE: usize = 16;
 pub(super) struct TableLayout {
     /// The separator between fields, in all lines.
     pub(super) separator: Separator,
-    /// The rows and columns of a frame.
-    pub(super) shape: (u16, u16),
+    /// The size of a frame.
+    pub(super) size: FrameSize,
     /// The content of a line.
     pub(super) lines: LineLayout,
     /// The assumption that was made, if any.
@@ -105,9 +105,7 @@ pub(super) fn layout(
         .iter()
         .any(|name| !separator.is_numeric(name.as_bytes()));
     // In ROS echo output, a line of small values can begin like this, too, after its offset.
-    let cells = options
-        .shape
-        .map(|(rows, columns)| usize::from(rows) * usize::from(columns));
+    let cells = options.size.map(FrameSize::cells);
     let counted =
         count_from_0(&names).filter(|counted| cells.is_none_or(|cells| cells == *counted));
     let is_header = if has_words {
@@ -247,29 +245,29 @@ fn of_numbers(
         Some((_, row)) => side(separator.fields(row).count()),
         None => side(values).filter(|_| values == fields.len()),
     };
-    let enough = lines_needed(options.shape, width, values);
+    let enough = lines_needed(options.size, width, values);
     let mut compared: Vec<Vec<f64>> = read.iter().map(|line| numbers(line)).collect();
     let (block, parted) = first_block(lines, (read.len(), enough), |line| {
         compared.push(numbers(line));
     })?;
-    let (shape, lines) = match (options.shape, width) {
-        (Some(shape), Some(width)) if width == shape.1 && shape.0 > 1 => {
-            (shape, LineLayout::Row { parted })
+    let own = width.filter(|_| parted && block > 1);
+    let own = FrameSize::of_sides(own, Some(block));
+    let (size, lines) = match (options.size, own) {
+        (Some(size), _) if width == Some(size.columns()) && size.rows() > 1 => {
+            (size, LineLayout::Row { parted })
         }
-        (Some(shape), _) => {
+        (Some(size), _) => {
             // Numbers before a timestamp are not cells.
             let moment = (0..fields.len()).find(|&field| moment::read(fields[field]).is_some());
             let before = |&&field: &&usize| moment.is_some_and(|moment| field < moment);
             let before = numeric.iter().filter(before).count();
-            let found = FrameFields::unnamed(shape, number, (&compared, before))?;
+            let found = FrameFields::unnamed(size, number, (&compared, before))?;
             let found = found.among(&numeric, &fields, number)?;
-            (
-                shape,
-                LineLayout::Frame(found.with_moment(separator, &fields)),
-            )
+            let found = found.with_moment(separator, &fields);
+            (size, LineLayout::Frame(found))
         }
-        (None, Some(width)) if parted && block > 1 => ((block, width), LineLayout::Row { parted }),
-        (None, _) => {
+        (None, Some(own)) => (own, LineLayout::Row { parted }),
+        (None, None) => {
             let numbers = values as u64;
             return Err(RecordingError::Columns { numbers });
         }
@@ -280,7 +278,7 @@ fn of_numbers(
     };
     Ok(TableLayout {
         separator,
-        shape,
+        size,
         start,
         lines,
         note: None,
@@ -312,17 +310,16 @@ fn first_block(
     Ok((block, false))
 }
 
-/// Returns the number of lines that decide how a table without names is arranged, given its rows and columns, the
-/// width of a row and the count of numbers in its first line. A growing file is read no further than that.
-fn lines_needed(shape: Option<(u16, u16)>, width: Option<u16>, values: usize) -> u16 {
-    let cells = |(rows, columns)| usize::from(rows) * usize::from(columns);
-    match (shape, width) {
-        (Some((rows, columns)), Some(width)) if width == columns && rows > 1 => rows + 1,
-        (Some(shape), _) => match values.checked_sub(cells(shape)) {
+/// How many lines are needed to decide how a table without names is arranged, given the size of a frame, the width of a row
+/// and the numbers in its first line. A growing file is read no further than that.
+fn lines_needed(size: Option<FrameSize>, width: Option<u16>, values: usize) -> u16 {
+    match size {
+        Some(size) if width == Some(size.columns()) && size.rows() > 1 => size.rows() + 1,
+        Some(size) => match values.checked_sub(size.cells()) {
             Some(1 | 2) => COMPARED,
             _ => 2,
         },
-        (None, _) => MAX_FRAME_SIDE + 1,
+        None => MAX_FRAME_SIDE + 1,
     }
 }
 
@@ -345,11 +342,11 @@ impl FrameFields {
     /// # Errors
     /// Returns an error if the lines do not show which fields are cells.
     fn unnamed(
-        (rows, columns): (u16, u16),
+        size: FrameSize,
         number: u64,
         (lines, before): (&[Vec<f64>], usize),
     ) -> Result<Self, RecordingError> {
-        let cells = usize::from(rows) * usize::from(columns);
+        let cells = size.cells();
         let found = unnamed_fields((cells, before), number, lines)?;
         Ok(Self {
             count: lines[0].len(),
@@ -421,8 +418,8 @@ fn with_header(
 ) -> Result<TableLayout, RecordingError> {
     let TableHeader { names, number, .. } = header;
     let roles = roles(names);
-    let (shape, cells, note) = named_cells(names, &roles, number, options)?;
-    let expected = usize::from(shape.0) * usize::from(shape.1);
+    let (size, cells, note) = named_cells(names, &roles, number, options)?;
+    let expected = size.cells();
     if cells.len() != expected {
         return Err(text_row::count(number, cells.len(), expected));
     }
@@ -450,7 +447,7 @@ fn with_header(
     let lines = LineLayout::Frame(found.with_moment(separator, &fields));
     Ok(TableLayout {
         separator,
-        shape,
+        size,
         note,
         unit,
         start: lines.start(&fields),
@@ -458,8 +455,8 @@ fn with_header(
     })
 }
 
-/// The rows and columns, the field of each cell, and the assumption that was made.
-type CellFields = ((u16, u16), Vec<usize>, Option<RecordingNote>);
+/// The size of a frame, the field of each cell, and what was assumed to find them.
+type CellFields = (FrameSize, Vec<usize>, Option<RecordingNote>);
 
 /// Returns the cells that names describe.
 ///
@@ -473,29 +470,29 @@ fn named_cells(
     options: ReadOptions,
 ) -> Result<CellFields, RecordingError> {
     match cells(names) {
-        Some(NamedCells::Grid(rows, columns, fields)) => match options.shape {
-            Some((asked_rows, asked_columns)) if (asked_rows, asked_columns) != (rows, columns) => {
-                let rows = counted(rows, "row");
-                let message = format!(
-                    "the header names {rows} of {columns} cells, not {asked_rows} of {asked_columns}"
-                );
+        Some(NamedCells::Grid(size, fields)) => match options.size {
+            Some(asked) if asked != size => {
+                let (rows, columns) = (asked.rows(), asked.columns());
+                let named = size.in_words();
+                let message = format!("the header names {named} cells, not {rows} of {columns}");
                 Err(RecordingError::in_line(number, message))
             }
-            _ => Ok(((rows, columns), fields, None)),
+            _ => Ok((size, fields, None)),
         },
         Some(NamedCells::Counted(start, length)) => {
             let fields = (start..start + length).collect();
-            if let Some(shape) = options.shape {
-                return Ok((shape, fields, None));
+            if let Some(size) = options.size {
+                return Ok((size, fields, None));
             }
             let side = (1..=MAX_FRAME_SIDE).find(|side| usize::from(*side).pow(2) == length);
             let values = length as u64;
-            let side = side.ok_or(RecordingError::Shape { values })?;
-            Ok(((side, side), fields, Some(RecordingNote::Square { side })))
+            let size = FrameSize::of_sides(side, side).ok_or(RecordingError::Shape { values })?;
+            let side = size.rows();
+            Ok((size, fields, Some(RecordingNote::Square { side })))
         }
-        Some(NamedCells::Incomplete(rows, columns, found)) => {
-            let (found, rows) = (counted(found as u64, "cell"), counted(rows, "row"));
-            let message = format!("the header names {found} of {rows} of {columns}");
+        Some(NamedCells::Incomplete(size, found)) => {
+            let found = counted(found as u64, "cell");
+            let message = format!("the header names {found} of {}", size.in_words());
             Err(RecordingError::in_line(number, message))
         }
         None => {
@@ -503,8 +500,8 @@ fn named_cells(
             let trailing = roles.iter().rev().take_while(|role| role.is_some()).count();
             let end = names.len().saturating_sub(trailing).max(leading);
             let values = (end - leading) as u64;
-            let shape = options.shape.ok_or(RecordingError::Shape { values })?;
-            Ok((shape, (leading..end).collect(), None))
+            let size = options.size.ok_or(RecordingError::Shape { values })?;
+            Ok((size, (leading..end).collect(), None))
         }
     }
 }

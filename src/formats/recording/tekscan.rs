@@ -33,7 +33,7 @@ use crate::formats::recording::separator::Separator;
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::seconds::to_nanoseconds;
-use crate::frame::Frame;
+use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::{counted, to_decimals};
 use crate::quote::shortened;
 
@@ -133,14 +133,14 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
         }
         header.line(line, lines.number())?;
     }
-    let (Some(rows), Some(columns)) = (header.rows, header.columns) else {
+    let Some(size) = FrameSize::of_sides(header.columns, header.rows) else {
         return Err(RecordingError::in_line(
             lines.number(),
             "the header has no ROWS or no COLS",
         ));
     };
     let mut info = header.info;
-    info.shape = Some((rows, columns));
+    info.size = Some(size);
     info.pitch_mm = header
         .column_spacing
         .zip(header.row_spacing)
@@ -148,7 +148,7 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
     if sink(RecordingEvent::Channel(&info)).is_break() {
         return Ok(());
     }
-    frames(&mut lines, (rows, columns), &info, sink)
+    frames(&mut lines, size, &info, sink)
 }
 
 /// Reads the frames below the header, up to `@@`.
@@ -158,11 +158,11 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
 /// `@@`.
 fn frames(
     lines: &mut TextLines<impl BufRead>,
-    (rows, columns): (u16, u16),
+    size: FrameSize,
     info: &ChannelInfo,
     sink: &mut Sink<'_>,
 ) -> Result<(), RecordingError> {
-    let mut frame = Frame::new(columns, rows);
+    let mut frame = Frame::new(size);
     let is_raw = |unit: &String| unit.eq_ignore_ascii_case("raw");
     let is_raw = info.unit.as_ref().is_some_and(is_raw);
     for number in 0_u32.. {
@@ -174,7 +174,7 @@ fn frames(
             break;
         }
         let title = title(lines.line(), lines.number())?;
-        frame.reset(columns, rows);
+        frame.reset(size);
         frame.number = number.into();
         frame.label = Some(title.label);
         let by_number = info

@@ -35,7 +35,7 @@ use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::recording::unnamed_fields::whole;
 use crate::formats::seconds::since;
-use crate::frame::Frame;
+use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::{counted, to_decimals};
 
 /// The most sensors in a file; each has a name of its own.
@@ -101,7 +101,7 @@ struct XsensorState {
 pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(input);
     let mut state = XsensorState::default();
-    let mut frame = Frame::new(1, 1);
+    let mut frame = Frame::default();
     while lines.advance_to_content()? {
         let (key, value) = pair(lines.line());
         match key.as_str() {
@@ -203,6 +203,11 @@ impl XsensorState {
         Ok(())
     }
 
+    /// The size of this sensor's frames, once both lines have come.
+    fn size(&self) -> Option<FrameSize> {
+        FrameSize::of_sides(self.columns, self.rows)
+    }
+
     /// Reads the rows below `SENSELS`.
     ///
     /// # Errors
@@ -213,14 +218,15 @@ impl XsensorState {
         lines: &mut TextLines<impl BufRead>,
         frame: &mut Frame,
     ) -> Result<(), RecordingError> {
-        let (Some(rows), Some(columns)) = (self.rows, self.columns) else {
+        let Some(size) = self.size() else {
             let message = "SENSELS of a sensor without Rows and Columns";
             return Err(RecordingError::in_line(lines.number(), message));
         };
-        frame.reset(columns, rows);
-        for row in frame.values_mut().chunks_mut(columns.into()) {
+        frame.reset(size);
+        for row in frame.values_mut().chunks_mut(size.columns().into()) {
             if !lines.advance_to_content()? {
-                let message = format!("ends inside a frame, expected {}", counted(rows, "row"));
+                let rows = counted(size.rows(), "row");
+                let message = format!("ends inside a frame, expected {rows}");
                 return Err(RecordingError::in_line(lines.number() + 1, message));
             }
             let fields = Separator::Byte(b',').split(lines.line());
@@ -254,7 +260,7 @@ impl XsensorState {
             None => {
                 let info = ChannelInfo {
                     name: name.clone(),
-                    shape: self.rows.zip(self.columns),
+                    size: self.size(),
                     values: None,
                     unit: self.unit.clone(),
                     start: self.beginning(),

@@ -31,7 +31,7 @@ use crate::formats::recording::separator::Separator;
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text_row::{self, Field};
 use crate::formats::seconds::to_nanoseconds;
-use crate::frame::Frame;
+use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::counted;
 
 /// The header above the values.
@@ -109,7 +109,7 @@ impl ZebrisHeader {
     fn info(&self) -> ChannelInfo {
         let distances = self.column_distance.zip(self.row_distance);
         ChannelInfo {
-            shape: self.rows.zip(self.columns),
+            size: FrameSize::of_sides(self.columns, self.rows),
             unit: self.unit.clone(),
             start: match (&self.date, &self.time) {
                 (Some(date), Some(time)) => Some(format!("{date} {time}")),
@@ -175,19 +175,19 @@ pub(super) fn read(input: impl BufRead, sink: &mut Sink<'_>) -> Result<(), Recor
         }
         header.line(&line, lines.number())?;
     };
-    let Some((rows, columns)) = header.rows.zip(header.columns) else {
+    let info = header.info();
+    let Some(size) = info.size else {
         let message = "no SensCountX or no SensCountY before the values";
         return Err(RecordingError::in_line(lines.number(), message));
     };
-    let info = header.info();
     if sink(RecordingEvent::Channel(&info)).is_break() {
         return Ok(());
     }
-    let mut frame = Frame::new(columns, rows);
+    let mut frame = Frame::new(size);
     let mut first = None;
     loop {
         values(&mut lines, &mut frame)?;
-        let next = next_section(&mut lines, rows);
+        let next = next_section(&mut lines, size.rows());
         let is_only = frame.number == 0 && !matches!(next, Ok(Some(_)));
         #[expect(clippy::cast_precision_loss, reason = "fewer than 2^52 pictures")]
         let given = match section {

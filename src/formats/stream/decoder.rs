@@ -134,18 +134,18 @@ impl StreamDecoder {
 
     /// Starts the decoder of a format. `from_start` says whether the next byte begins a frame.
     fn begin(&mut self, format: StreamFormat, from_start: bool) {
-        let (shape, clock) = (self.options.shape, self.clock);
-        self.state = match (format, shape) {
-            (StreamFormat::Lines, _) => State::Lines(LinesDecoder::new(shape, from_start, clock)),
+        let (size, clock) = (self.options.size, self.clock);
+        self.state = match (format, size) {
+            (StreamFormat::Lines, _) => State::Lines(LinesDecoder::new(size, from_start, clock)),
             (StreamFormat::JsonLines, _) => {
-                State::Json(JsonDecoder::new(shape, take(&mut self.channels), clock))
+                State::Json(JsonDecoder::new(size, take(&mut self.channels), clock))
             }
-            (StreamFormat::Ros2, _) => State::Ros(RosDecoder::new(shape, from_start)),
-            (StreamFormat::Flexitac, Some(shape)) => {
-                State::Flexitac(FlexitacDecoder::new(shape, from_start))
+            (StreamFormat::Ros2, _) => State::Ros(RosDecoder::new(size, from_start)),
+            (StreamFormat::Flexitac, Some(size)) => {
+                State::Flexitac(FlexitacDecoder::new(size, from_start))
             }
-            (StreamFormat::Matsense, Some(shape)) => {
-                State::Matsense(MatsenseDecoder::new(shape, from_start))
+            (StreamFormat::Matsense, Some(size)) => {
+                State::Matsense(MatsenseDecoder::new(size, from_start))
             }
             (StreamFormat::Flexitac | StreamFormat::Matsense, None) => {
                 self.counts.unshaped = self.counts.unshaped.or(Some(0));
@@ -250,7 +250,7 @@ impl StreamDecoder {
         let State::Looking(search) = &mut self.state else {
             return;
         };
-        let Some(format) = search.format(&self.bytes, self.options.shape, ended) else {
+        let Some(format) = search.format(&self.bytes, self.options.size, ended) else {
             return;
         };
         let mut lines = self.bytes.split(|&byte| byte == b'\n');
@@ -268,6 +268,7 @@ impl StreamDecoder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::FrameSize;
 
     #[test]
     fn large_frames_after_markers_are_found_wherever_the_stream_is_joined() {
@@ -277,7 +278,7 @@ mod tests {
         let stream = frame.repeat(6);
         for piece in [1 << 12, stream.len()] {
             for joined in [0, 1, cells / 2, cells] {
-                let options = StreamOptions::default().with_shape(side, side);
+                let options = StreamOptions::default().with_size(FrameSize::of(side, side));
                 let mut decoder = StreamDecoder::new(options);
                 let mut sink = |_: crate::formats::stream::StreamEvent<'_>| {};
                 for bytes in stream[joined..].chunks(piece) {
@@ -303,7 +304,7 @@ mod tests {
                 let mut options = StreamOptions::default().from_start();
                 options.format = format.filter(|_| text.starts_with('{'));
                 if text.starts_with('d') {
-                    options = options.with_shape(1, 2);
+                    options = options.with_size(FrameSize::of(2, 1));
                 }
                 let mut decoder = StreamDecoder::new(options);
                 let mut sink = |_: crate::formats::stream::StreamEvent<'_>| {};

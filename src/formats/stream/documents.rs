@@ -9,9 +9,9 @@ use crate::formats::recording::json_time::JsonClock;
 use crate::formats::recording::ros_text::{self, RosLine, RosMessage};
 use crate::formats::recording::side::arranged;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
-use crate::formats::stream::size::FrameSize;
+use crate::formats::stream::size::StreamSize;
 use crate::formats::stream::source_clock::SourceClock;
-use crate::frame::Frame;
+use crate::frame::{Frame, FrameSize};
 
 /// The channels of a stream of JSON lines. After a gap they pass to the next decoder.
 #[derive(Debug, Default)]
@@ -29,7 +29,7 @@ struct JsonChannel {
     /// The channel as its first frame described it.
     info: ChannelInfo,
     /// The rows and columns of its frames.
-    size: FrameSize,
+    size: StreamSize,
     /// The number of its frames.
     frames: u64,
 }
@@ -39,7 +39,7 @@ impl JsonChannels {
     fn of(
         &mut self,
         line: &FrameLine,
-        shape: Option<(u16, u16)>,
+        named: Option<FrameSize>,
         sink: &mut StreamSink<'_>,
     ) -> Option<usize> {
         let mut channels = self.channels.iter();
@@ -52,7 +52,7 @@ impl JsonChannels {
         }
         self.channels.push(JsonChannel {
             info: line.channel_info(),
-            size: FrameSize::new(shape),
+            size: StreamSize::new(named),
             frames: 0,
         });
         let index = self.channels.len() - 1;
@@ -72,8 +72,8 @@ impl JsonChannels {
 pub(super) struct JsonDecoder {
     /// The line that was read last.
     line: FrameLine,
-    /// The given rows and columns of all frames, if any.
-    shape: Option<(u16, u16)>,
+    /// The size of all frames, if it was named.
+    named: Option<FrameSize>,
     /// The channels so far.
     pub(super) channels: JsonChannels,
     /// The clock that turns times into seconds since the first frame.
@@ -85,20 +85,20 @@ pub(super) struct JsonDecoder {
 impl JsonDecoder {
     /// Prepares for a stream; `shape` is for lists of cells without rows.
     pub(super) fn new(
-        shape: Option<(u16, u16)>,
+        named: Option<FrameSize>,
         mut channels: JsonChannels,
         clock: SourceClock,
     ) -> Self {
         // The sensors may have been reconfigured.
         for channel in &mut channels.channels {
-            channel.size = FrameSize::new(shape);
+            channel.size = StreamSize::new(named);
         }
         Self {
-            line: FrameLine::new(shape),
-            shape,
+            line: FrameLine::new(named),
+            named,
             channels,
             clock,
-            frame: Frame::new(1, 1),
+            frame: Frame::default(),
         }
     }
 
@@ -121,18 +121,17 @@ impl JsonDecoder {
             counts.reason = error.reason();
             return;
         }
-        let Some(index) = self.channels.of(&self.line, self.shape, sink) else {
+        let Some(index) = self.channels.of(&self.line, self.named, sink) else {
             counts.drop_frames(1, line);
             counts.reason = Some(format!("more than {MOST_CHANNELS} channels"));
             return;
         };
         let channel = &mut self.channels.channels[index];
-        if !channel.size.admits(self.line.shape) {
+        if !channel.size.admits(self.line.size) {
             counts.drop_frames(1, line);
             return;
         }
-        let (rows, columns) = self.line.shape;
-        self.frame.reset(columns, rows);
+        self.frame.reset(self.line.size);
         self.frame.values_mut().copy_from_slice(&self.line.values);
         self.frame.channel = index;
         self.frame.number = channel.frames;
@@ -149,9 +148,9 @@ impl JsonDecoder {
 #[derive(Debug)]
 pub(super) struct RosDecoder {
     /// The given rows and columns, for messages that do not have them.
-    shape: Option<(u16, u16)>,
+    named: Option<FrameSize>,
     /// The rows and columns of all frames.
-    size: FrameSize,
+    size: StreamSize,
     /// The message so far.
     message: RosMessage,
     /// Whether the start of the message was seen; a stream may be joined in the middle of one.
@@ -165,16 +164,16 @@ pub(super) struct RosDecoder {
 }
 
 impl RosDecoder {
-    pub(super) fn new(shape: Option<(u16, u16)>, from_start: bool) -> Self {
+    pub(super) fn new(named: Option<FrameSize>, from_start: bool) -> Self {
         Self {
-            shape,
+            named,
             // Messages that give their size may have another one than the given size.
-            size: FrameSize::new(None),
+            size: StreamSize::new(None),
             message: RosMessage::default(),
             begun: from_start,
             broken: false,
             cut: false,
-            frame: Frame::new(1, 1),
+            frame: Frame::default(),
         }
     }
 
@@ -209,21 +208,19 @@ impl RosDecoder {
     /// Ends a message: reports it as a frame, or drops it.
     fn end(&mut self, line: &[u8], counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let values = self.message.cells().len();
-        let shape = arranged(values, self.message.shape(), self.shape).or(self.shape);
+        let size = arranged(values, self.message.size(), self.named).or(self.named);
         let begun = std::mem::replace(&mut self.begun, true);
         if std::mem::take(&mut self.cut) {
             counts.cut |= begun && !self.broken;
             self.broken = true;
         }
-        let fits =
-            |(rows, columns): &(u16, u16)| usize::from(*rows) * usize::from(*columns) == values;
-        match shape.filter(fits) {
+        match size.filter(|size| size.cells() == values) {
             _ if !begun => {}
-            Some(shape) if !self.broken && !self.size.admits(shape) => {
+            Some(size) if !self.broken && !self.size.admits(size) => {
                 counts.drop_frames(1, line);
             }
-            Some((rows, columns)) if !self.broken => {
-                self.frame.reset(columns, rows);
+            Some(size) if !self.broken => {
+                self.frame.reset(size);
                 self.frame
                     .values_mut()
                     .copy_from_slice(self.message.cells());
@@ -233,7 +230,7 @@ impl RosDecoder {
             }
             _ => {
                 self.size.pass_torn();
-                if shape.is_none() && !self.broken {
+                if size.is_none() && !self.broken {
                     counts.unshaped = Some(values as u64);
                 }
                 counts.drop_frames(1, line);

@@ -2,7 +2,7 @@
 
 use crate::formats::recording::{ChannelInfo, RecordingError};
 use crate::formats::value::grouped;
-use crate::frame::Frame;
+use crate::frame::{Frame, FrameSize};
 use crate::parameter::named;
 
 /// A format of streams.
@@ -58,7 +58,7 @@ pub struct StreamOptions {
     /// The format; detected from the bytes if it is None.
     pub format: Option<StreamFormat>,
     /// The rows and columns of a frame; bytes, and frames of one line each, do not give them.
-    pub shape: Option<(u16, u16)>,
+    pub size: Option<FrameSize>,
     /// Whether the first byte begins a frame: true for a file, false for a serial line that was joined somewhere.
     pub from_start: bool,
 }
@@ -73,8 +73,8 @@ impl StreamOptions {
 
     /// Sets the rows and columns of a frame.
     #[must_use]
-    pub fn with_shape(mut self, rows: u16, columns: u16) -> Self {
-        self.shape = Some((rows, columns));
+    pub fn with_size(mut self, size: FrameSize) -> Self {
+        self.size = Some(size);
         self
     }
 

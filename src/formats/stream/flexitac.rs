@@ -12,7 +12,7 @@
 //! bytes after it.
 
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
-use crate::frame::Frame;
+use crate::frame::{Frame, FrameSize};
 
 /// The bytes before each frame.
 pub(super) const MARKER: [u8; 2] = [0xaa, 0x55];
@@ -21,9 +21,7 @@ pub(super) const MARKER: [u8; 2] = [0xaa, 0x55];
 #[derive(Debug)]
 pub(super) struct FlexitacDecoder {
     /// The number of rows in a frame.
-    rows: u16,
-    /// The number of columns in a frame.
-    columns: u16,
+    size: FrameSize,
     /// The bytes that are not decoded yet: at most a few frames.
     bytes: Vec<u8>,
     /// The place in the stream where these bytes begin.
@@ -47,24 +45,23 @@ enum Start {
 }
 
 impl FlexitacDecoder {
-    /// Prepares for frames of these rows and columns. `from_start` says whether the first byte begins a frame.
-    pub(super) fn new((rows, columns): (u16, u16), from_start: bool) -> Self {
+    /// For frames of this size. `from_start`: whether the first byte begins a frame.
+    pub(super) fn new(size: FrameSize, from_start: bool) -> Self {
         Self {
-            rows,
-            columns,
+            size,
             bytes: Vec::new(),
             start: if from_start {
                 Start::Stream
             } else {
                 Start::Anywhere
             },
-            frame: Frame::new(columns, rows),
+            frame: Frame::new(size),
         }
     }
 
     /// Returns the number of bytes from one marker to the next.
     fn period(&self) -> usize {
-        MARKER.len() + usize::from(self.rows) * usize::from(self.columns)
+        MARKER.len() + self.size.cells()
     }
 
     /// Returns true if there is a marker at this position.

@@ -16,6 +16,7 @@ use crate::formats::stream::event::{StreamCounts, StreamFormat};
 use crate::formats::stream::flexitac::MARKER;
 use crate::formats::stream::matsense::MatsenseDecoder;
 use crate::formats::stream::numbers;
+use crate::frame::FrameSize;
 
 /// The number of bytes of text within which a line must end; otherwise it is not a known stream.
 const LOOKED_AT: usize = 1 << 16;
@@ -51,7 +52,7 @@ impl FormatSearch {
     pub(super) fn format(
         &mut self,
         bytes: &[u8],
-        shape: Option<(u16, u16)>,
+        size: Option<FrameSize>,
         ended: bool,
     ) -> Option<StreamFormat> {
         if bytes.len() < MARK.len() && MARK.starts_with(bytes) && !ended {
@@ -62,16 +63,16 @@ impl FormatSearch {
         }
         while self.seen < bytes.len() {
             self.seen += 1;
-            let found = self.after_byte(&bytes[..self.seen], shape);
+            let found = self.after_byte(&bytes[..self.seen], size);
             if found.is_some() {
                 return found;
             }
         }
-        ended.then(|| self.at_end(bytes, shape))
+        ended.then(|| self.at_end(bytes, size))
     }
 
     /// Returns the format once the last of these bytes is known.
-    fn after_byte(&mut self, bytes: &[u8], shape: Option<(u16, u16)>) -> Option<StreamFormat> {
+    fn after_byte(&mut self, bytes: &[u8], size: Option<FrameSize>) -> Option<StreamFormat> {
         let &byte = bytes.last()?;
         let was_text = self.text_from == 0;
         if !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | b' '..=b'~') {
@@ -87,7 +88,7 @@ impl FormatSearch {
             } else {
                 &bytes[bytes.len() - 1..]
             };
-            if let Some(format) = self.in_bytes(bytes, new, shape) {
+            if let Some(format) = self.in_bytes(bytes, new, size) {
                 return Some(format);
             }
         }
@@ -121,14 +122,14 @@ impl FormatSearch {
         &mut self,
         bytes: &[u8],
         new: &[u8],
-        shape: Option<(u16, u16)>,
+        size: Option<FrameSize>,
     ) -> Option<StreamFormat> {
-        let enough = shape.map_or(0, bytes_enough);
-        match shape {
+        let enough = size.map_or(0, bytes_enough);
+        match size {
             None if bytes == MARKER => return Some(StreamFormat::Flexitac),
             None => {}
-            Some(shape) => {
-                let before = bytes.len().checked_sub(period(shape));
+            Some(size) => {
+                let before = bytes.len().checked_sub(period(size));
                 if bytes.ends_with(&MARKER)
                     && before.is_some_and(|end| bytes[..end].ends_with(&MARKER))
                 {
@@ -136,7 +137,7 @@ impl FormatSearch {
                 }
                 let trial = self
                     .trial
-                    .get_or_insert_with(|| MatsenseDecoder::new(shape, false));
+                    .get_or_insert_with(|| MatsenseDecoder::new(size, false));
                 trial.push(new, &mut StreamCounts::default(), &mut |_| ());
                 // With fewer bytes, markers could still show another format.
                 if bytes.len() >= enough && trial.is_sure() {
@@ -154,12 +155,12 @@ impl FormatSearch {
     }
 
     /// Returns the format of an input that has ended.
-    fn at_end(&self, bytes: &[u8], shape: Option<(u16, u16)>) -> StreamFormat {
+    fn at_end(&self, bytes: &[u8], size: Option<FrameSize>) -> StreamFormat {
         let text = self.of_open_line(bytes).or(self.shown);
         if self.text_from == 0 {
             return text.unwrap_or(StreamFormat::Lines);
         }
-        let is_short = shape.is_some_and(|shape| bytes.len() < bytes_enough(shape));
+        let is_short = size.is_some_and(|size| bytes.len() < bytes_enough(size));
         if is_short && bytes.starts_with(&MARKER) {
             return StreamFormat::Flexitac;
         }
@@ -170,13 +171,13 @@ impl FormatSearch {
 }
 
 /// Returns the number of bytes from one marker to the next.
-fn period((rows, columns): (u16, u16)) -> usize {
-    MARKER.len() + usize::from(rows) * usize::from(columns)
+fn period(size: FrameSize) -> usize {
+    MARKER.len() + size.cells()
 }
 
 /// Returns the number of bytes within which a marker and the next one would have been found: three frames.
-fn bytes_enough(shape: (u16, u16)) -> usize {
-    (3 * period(shape) + 3).min(MARKERS_IN)
+fn bytes_enough(size: FrameSize) -> usize {
+    (3 * period(size) + 3).min(MARKERS_IN)
 }
 
 /// Returns the format of text with such a line; None if other formats may have it, too.
@@ -202,8 +203,8 @@ mod tests {
     use super::*;
 
     /// Returns the format of a whole input.
-    fn found(bytes: &[u8], shape: Option<(u16, u16)>) -> Option<StreamFormat> {
-        FormatSearch::default().format(bytes, shape, true)
+    fn found(bytes: &[u8], size: Option<FrameSize>) -> Option<StreamFormat> {
+        FormatSearch::default().format(bytes, size, true)
     }
 
     #[test]
@@ -220,13 +221,13 @@ mod tests {
                 ("{\"frame\":[[1,2]]}\n", StreamFormat::JsonLines),
                 ("---\ndata: [1, 2]\n---\n", StreamFormat::Ros2),
             ] {
-                for shape in [None, Some((2, 2))] {
+                for size in [None, Some(FrameSize::of(2, 2))] {
                     let stream = [noise, b"\n", text.repeat(40).as_bytes()].concat();
                     let mut search = FormatSearch::default();
-                    assert_eq!(search.format(&stream, shape, false), Some(format), "{text}");
+                    assert_eq!(search.format(&stream, size, false), Some(format), "{text}");
                     // A few lines are enough at the end of the input.
                     let stream = [noise, b"\n", text.as_bytes()].concat();
-                    assert_eq!(found(&stream, shape), Some(format), "{text}");
+                    assert_eq!(found(&stream, size), Some(format), "{text}");
                 }
             }
         }
@@ -248,7 +249,7 @@ mod tests {
 
     #[test]
     fn bytes_have_a_format_once_their_frames_are_found() {
-        let shape = Some((2, 2));
+        let size = Some(FrameSize::of(2, 2));
         let flexitac = b"\xaa\x55\x01\x02\x03\x04".repeat(9);
         let matsense = b"\x01\x02\x03\x04\xff".repeat(9);
         // Cells that look like numbers in lines.
@@ -260,7 +261,7 @@ mod tests {
         ] {
             for noise in [&b""[..], b"\xf8 boot\r\n", "Größe 2×2\r\n".as_bytes()] {
                 let stream = [noise, &stream].concat();
-                let found = FormatSearch::default().format(&stream, shape, false);
+                let found = FormatSearch::default().format(&stream, size, false);
                 assert_eq!(found, Some(format), "{stream:?}");
             }
         }
@@ -273,11 +274,11 @@ mod tests {
 
     #[test]
     fn bytes_without_a_marker_are_matsense_after_enough_of_them() {
-        let shape = Some((512, 512));
+        let size = Some(FrameSize::of(512, 512));
         let bytes = vec![7; MARKERS_IN];
         let mut search = FormatSearch::default();
-        assert_eq!(search.format(&bytes[1..], shape, false), None);
-        let found = search.format(&bytes, shape, false);
+        assert_eq!(search.format(&bytes[1..], size, false), None);
+        let found = search.format(&bytes, size, false);
         assert_eq!(found, Some(StreamFormat::Matsense));
     }
 
@@ -298,18 +299,18 @@ mod tests {
             &markers,
         ];
         for stream in streams {
-            for shape in [None, Some((2, 3))] {
+            for size in [None, Some(FrameSize::of(3, 2))] {
                 let mut search = FormatSearch::default();
                 for end in 0..=stream.len() {
-                    let found = search.format(&stream[..end], shape, false);
-                    let anew = |ended| FormatSearch::default().format(&stream[..end], shape, ended);
+                    let found = search.format(&stream[..end], size, false);
+                    let anew = |ended| FormatSearch::default().format(&stream[..end], size, ended);
                     assert_eq!(found, anew(false), "{end} of {stream:?}");
                     if found.is_some() {
                         assert_eq!(found, anew(true), "{end} of {stream:?}");
                         break;
                     }
                     // The input may end here.
-                    let found = search.clone().format(&stream[..end], shape, true);
+                    let found = search.clone().format(&stream[..end], size, true);
                     assert_eq!(found, anew(true), "{end} of {stream:?}");
                 }
             }

@@ -19,11 +19,12 @@
 
 use crate::formats::recording::moment;
 use crate::formats::recording::separator::is_comment;
+use crate::formats::recording::side::frame_size;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
-use crate::formats::stream::size::FrameSize;
+use crate::formats::stream::size::StreamSize;
 use crate::formats::stream::source_clock::SourceClock;
-use crate::frame::{Frame, MAX_FRAME_SIDE};
+use crate::frame::{Frame, FrameSize, MAX_FRAME_SIDE};
 use crate::parameter::number::counted;
 
 /// The most values of a frame.
@@ -42,7 +43,7 @@ enum LineKind {
 #[derive(Debug)]
 pub(super) struct LinesDecoder {
     /// The rows and columns of frames.
-    size: FrameSize,
+    size: StreamSize,
     /// Whether a boundary was seen, so that a frame may begin.
     begun: bool,
     /// The values of the current frame so far.
@@ -74,7 +75,7 @@ pub(super) struct LinesDecoder {
 #[derive(Debug)]
 struct HeldBlock {
     /// The rows and columns.
-    size: (u16, u16),
+    size: FrameSize,
     /// The values, row by row.
     values: Vec<f64>,
     /// The timestamp of the block, in seconds.
@@ -85,15 +86,17 @@ struct HeldBlock {
 
 /// Returns true if the first of two blocks may be the end of one like the second: its last rows, or the end of its
 /// last row.
-fn may_be_end((rows, columns): (u16, u16), next: (u16, u16)) -> bool {
-    rows < next.0 && (columns == next.1 || rows == 1 && columns < next.1)
+fn may_be_end(own: FrameSize, next: FrameSize) -> bool {
+    let (columns, next_columns) = (own.columns(), next.columns());
+    own.rows() < next.rows()
+        && (columns == next_columns || own.rows() == 1 && columns < next_columns)
 }
 
 impl LinesDecoder {
     /// Prepares for a stream. If it is joined in the middle, everything before the first boundary is ignored.
-    pub(super) fn new(shape: Option<(u16, u16)>, from_start: bool, clock: SourceClock) -> Self {
+    pub(super) fn new(named: Option<FrameSize>, from_start: bool, clock: SourceClock) -> Self {
         Self {
-            size: FrameSize::new(shape),
+            size: StreamSize::new(named),
             begun: from_start,
             values: Vec::new(),
             rows: 0,
@@ -103,12 +106,12 @@ impl LinesDecoder {
             broken_row: Vec::new(),
             broken_count: None,
             parted: false,
-            kind: match shape {
-                Some((1, _)) => LineKind::Frame,
+            kind: match named {
+                Some(size) if size.rows() == 1 => LineKind::Frame,
                 _ => LineKind::Row,
             },
-            held: (from_start && shape.is_none()).then(Vec::new),
-            frame: Frame::new(1, 1),
+            held: (from_start && named.is_none()).then(Vec::new),
+            frame: Frame::default(),
         }
     }
 
@@ -148,12 +151,10 @@ impl LinesDecoder {
         let count = self.values.len() - before;
         // A line with all cells is a boundary itself. Frames of one row must be given as such: otherwise a line
         // before the frames, such as the numbers of their columns, would make each of their rows a frame.
-        let is_frame = |(rows, columns): (u16, u16)| {
-            rows > 1 && count == usize::from(rows) * usize::from(columns)
-        };
+        let is_frame = |size: FrameSize| size.rows() > 1 && count == size.cells();
+        let is_row = |size: FrameSize| size.rows() == 1 && count == size.cells();
         if read.is_some()
-            && (self.size.present().is_some_and(is_frame)
-                || self.size.named() == Some((1, width(count))))
+            && (self.size.present().is_some_and(is_frame) || self.size.named().is_some_and(is_row))
         {
             self.values.drain(..before);
             self.time = moment;
@@ -171,7 +172,7 @@ impl LinesDecoder {
             return;
         }
         let expected = match self.size.named() {
-            Some((_, columns)) => usize::from(columns),
+            Some(size) => usize::from(size.columns()),
             _ if self.rows > 0 => before / usize::from(self.rows),
             _ => count,
         };
@@ -212,7 +213,7 @@ impl LinesDecoder {
 
     /// Returns true if a line with that many numbers may begin a frame of several rows, which an empty line ends.
     fn may_be_row(&self, count: Option<usize>) -> bool {
-        let columns = self.size.present().map(|(_, columns)| columns.into());
+        let columns = self.size.present().map(|size| size.columns().into());
         self.parted && count.is_some() && count == columns
     }
 
@@ -228,13 +229,14 @@ impl LinesDecoder {
     fn lose(&self, frames: u64, sample: &[u8], counts: &mut StreamCounts) {
         counts.drop_frames(frames, sample);
         let named = self.size.named().zip(self.broken_count);
-        counts.reason = named.map(|((rows, columns), found)| {
+        counts.reason = named.map(|(size, found)| {
             let found = counted(found as u64, "number");
-            let cells = u32::from(rows) * u32::from(columns);
-            match rows {
+            let (columns, cells) = (size.columns(), size.cells());
+            match size.rows() {
                 1 => format!("{found}, expected {cells}"),
                 _ => format!(
-                    "{found}, expected {cells} for a frame of {rows} x {columns}, or {columns} for a row"
+                    "{found}, expected {cells} for a frame of {}, or {columns} for a row",
+                    size.in_words()
                 ),
             }
         });
@@ -242,7 +244,7 @@ impl LinesDecoder {
 
     /// Counts an invalid line at once if, as far as is known, no empty line separates frames.
     fn give_up(&mut self, line: &[u8], counts: &mut StreamCounts) {
-        let is_full = |(rows, _)| self.rows > rows;
+        let is_full = |size: FrameSize| self.rows > size.rows();
         if self.size.named().is_some_and(is_full) || self.rows > MAX_FRAME_SIDE {
             if self.begun {
                 self.lose(1, line, counts);
@@ -259,22 +261,21 @@ impl LinesDecoder {
             self.clear();
             return;
         }
-        let columns = width(self.values.len() / usize::from(self.rows.max(1)));
-        let own = (self.rows, columns);
-        let fits = !self.broken && (1..=MAX_FRAME_SIDE).contains(&columns);
-        if fits && self.held.is_some() {
-            self.hold(own, counts, sink);
-        } else if fits {
-            self.block(own, counts, sink);
-        } else {
-            self.size.pass_torn();
-            self.lose(1, &self.broken_row, counts);
+        let columns = self.values.len() / usize::from(self.rows.max(1));
+        let own = frame_size(columns, self.rows.into()).filter(|_| !self.broken);
+        match own {
+            Some(own) if self.held.is_some() => self.hold(own, counts, sink),
+            Some(own) => self.block(own, counts, sink),
+            None => {
+                self.size.pass_torn();
+                self.lose(1, &self.broken_row, counts);
+            }
         }
         self.clear();
     }
 
     /// Takes a block of rows that is whole.
-    fn block(&mut self, own: (u16, u16), counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+    fn block(&mut self, own: FrameSize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         if self.size.admits(own) {
             if self.rows > 1 {
                 self.kind = LineKind::Row;
@@ -287,7 +288,7 @@ impl LinesDecoder {
 
     /// Holds a block until it is known whether the first one is a frame. It is, if the second is not larger, or if
     /// the third differs from the second, which may be two frames that lost the empty line between them.
-    fn hold(&mut self, own: (u16, u16), counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+    fn hold(&mut self, own: FrameSize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let held = self.held.get_or_insert_default();
         held.push(HeldBlock {
             size: own,
@@ -295,7 +296,7 @@ impl LinesDecoder {
             time: self.time,
             sample: self.broken_row.clone(),
         });
-        let sizes: Vec<(u16, u16)> = held.iter().map(|block| block.size).collect();
+        let sizes: Vec<FrameSize> = held.iter().map(|block| block.size).collect();
         match sizes[..] {
             [first] => {
                 self.fill(first, counts);
@@ -308,7 +309,7 @@ impl LinesDecoder {
     }
 
     /// Takes the held blocks; those of the given size are frames.
-    fn release(&mut self, size: (u16, u16), counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+    fn release(&mut self, size: FrameSize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         let Some(held) = self.held.take() else {
             return;
         };
@@ -317,7 +318,7 @@ impl LinesDecoder {
             sink(StreamEvent::Withdrawn);
         }
         for block in held {
-            self.rows = block.size.0;
+            self.rows = block.size.rows();
             self.values = block.values;
             self.time = block.time;
             self.broken_row = block.sample;
@@ -336,8 +337,8 @@ impl LinesDecoder {
     }
 
     /// Copies the values into the frame, which gets that size.
-    fn fill(&mut self, (rows, columns): (u16, u16), counts: &StreamCounts) {
-        self.frame.reset(columns, rows);
+    fn fill(&mut self, size: FrameSize, counts: &StreamCounts) {
+        self.frame.reset(size);
         self.frame.number = counts.frames;
         let time = self.time;
         self.frame.time = time.map(|time| self.clock.since_first(time));
@@ -378,19 +379,14 @@ impl LinesDecoder {
     }
 }
 
-/// Returns a number of columns; one too many for any frame if the count does not fit.
-fn width(count: usize) -> u16 {
-    // A frame with more columns is refused.
-    u16::try_from(count).unwrap_or(MAX_FRAME_SIDE + 1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     /// Returns the frames in lines, as rows, columns and first value, and the number of dropped frames.
-    fn decoded(text: &str, shape: Option<(u16, u16)>) -> (Vec<(u16, u16, f64)>, u64) {
-        let mut decoder = LinesDecoder::new(shape, true, SourceClock::default());
+    fn decoded(text: &str, named: Option<(u16, u16)>) -> (Vec<(u16, u16, f64)>, u64) {
+        let named = named.map(|(rows, columns)| FrameSize::of(columns, rows));
+        let mut decoder = LinesDecoder::new(named, true, SourceClock::default());
         let (mut frames, mut counts) = (Vec::new(), StreamCounts::default());
         let mut sink = |event: StreamEvent<'_>| {
             if let StreamEvent::Frame(frame) = event {
@@ -495,14 +491,14 @@ mod tests {
         };
         let lines = "2024-05-01 23:59:59.75,1,2,3,4\n5,6,7,8\n2024-05-02T00:00:00.5,9,1,1,1\n";
         let found = vec![(Some(0.0), 1.0), (None, 5.0), (Some(0.75), 9.0)];
-        assert_eq!(times(lines, Some((2, 2))), (found, 0));
+        assert_eq!(times(lines, Some(FrameSize::of(2, 2))), (found, 0));
         // Rows with a timestamp each: the first one counts. Midnight passes.
         let rows = "23:59:59 1 2\n23:59:59.1 3 4\n\n00:00:00 5 6\n00:00:00.1 7 8\n\n";
         let found = vec![(Some(0.0), 1.0), (Some(1.0), 5.0)];
         assert_eq!(times(rows, None), (found, 0));
         // The comma may be a decimal sign.
         let unclear = "12:00:00,125 1 2 3 4\n";
-        assert_eq!(times(unclear, Some((2, 2))), (Vec::new(), 1));
+        assert_eq!(times(unclear, Some(FrameSize::of(2, 2))), (Vec::new(), 1));
     }
 
     #[test]
@@ -529,12 +525,18 @@ mod tests {
             counts.reason
         };
         let timed = "50,1,2,3,1\n100,1,2,3,2\n150,1,2,3,3\n";
-        let expected = "5 numbers, expected 4 for a frame of 2 x 2, or 2 for a row";
-        assert_eq!(reason(timed, Some((2, 2))).as_deref(), Some(expected));
+        let expected = "5 numbers, expected 4 for a frame of 2 rows of 2, or 2 for a row";
+        assert_eq!(
+            reason(timed, Some(FrameSize::of(2, 2))).as_deref(),
+            Some(expected)
+        );
         let expected = "5 numbers, expected 4";
-        assert_eq!(reason(timed, Some((1, 4))).as_deref(), Some(expected));
+        assert_eq!(
+            reason(timed, Some(FrameSize::of(4, 1))).as_deref(),
+            Some(expected)
+        );
         assert_eq!(reason("1 2\n1\n\n", None), None);
-        assert_eq!(reason("1 x\n1 2\n\n", Some((2, 2))), None);
+        assert_eq!(reason("1 x\n1 2\n\n", Some(FrameSize::of(2, 2))), None);
     }
 
     #[test]

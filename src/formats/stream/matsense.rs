@@ -9,7 +9,7 @@
 //! ```
 
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
-use crate::frame::Frame;
+use crate::frame::{Frame, FrameSize};
 
 /// The byte that ends a frame of the first kind, in which no cell has this value.
 const END: u8 = 0xff;
@@ -167,13 +167,12 @@ pub(super) struct MatsenseDecoder {
 
 impl MatsenseDecoder {
     /// Prepares for frames of either kind.
-    pub(super) fn new((rows, columns): (u16, u16), from_start: bool) -> Self {
-        let cells = usize::from(rows) * usize::from(columns);
-        let of = |framing| (Parts::new(framing, cells, from_start), Vec::new());
+    pub(super) fn new(size: FrameSize, from_start: bool) -> Self {
+        let of = |framing| (Parts::new(framing, size.cells(), from_start), Vec::new());
         Self {
             candidates: vec![of(Framing::Ended), of(Framing::Bracketed)],
             doubted: false,
-            frame: Frame::new(columns, rows),
+            frame: Frame::new(size),
         }
     }
 
@@ -278,8 +277,8 @@ mod tests {
     use super::*;
 
     /// Returns the frames in some bytes, and the number of dropped ones.
-    fn decoded(bytes: &[u8], shape: (u16, u16), from_start: bool) -> (Vec<Vec<f64>>, u64) {
-        let mut decoder = MatsenseDecoder::new(shape, from_start);
+    fn decoded(bytes: &[u8], size: FrameSize, from_start: bool) -> (Vec<Vec<f64>>, u64) {
+        let mut decoder = MatsenseDecoder::new(size, from_start);
         let (mut frames, mut counts) = (Vec::new(), StreamCounts::default());
         let mut sink = |event: StreamEvent<'_>| {
             if let StreamEvent::Frame(frame) = event {
@@ -304,7 +303,7 @@ mod tests {
             let wanted = wanted.map(f64::from).to_vec();
             let stream = frame.repeat(20);
             for joined in 0..frame.len() {
-                let (frames, _) = decoded(&stream[joined..], (3, 3), joined == 0);
+                let (frames, _) = decoded(&stream[joined..], FrameSize::of(3, 3), joined == 0);
                 let whole = 20 - usize::from(joined > 0);
                 assert_eq!(frames, vec![wanted.clone(); whole], "{joined}");
             }
@@ -315,17 +314,17 @@ mod tests {
     fn in_frames_that_end_in_ff_brackets_are_cells() {
         // In all frames, and in one frame only.
         let always = b"\x01\x5d\x5b\x04\xff".repeat(9);
-        assert_eq!(decoded(&always, (2, 2), true).0.len(), 9);
+        assert_eq!(decoded(&always, FrameSize::of(2, 2), true).0.len(), 9);
         let once = b"\x01\x5b\x03\x04\xff\x01\x5d\x03\x04\xff";
-        assert_eq!(decoded(once, (2, 2), true).0.len(), 2);
+        assert_eq!(decoded(once, FrameSize::of(2, 2), true).0.len(), 2);
         let one = b"\x01\x5b\x03\x04\xff\x01\x5d";
         let wanted = vec![vec![1.0, 91.0, 3.0, 4.0]];
-        assert_eq!(decoded(one, (2, 2), true), (wanted, 1));
+        assert_eq!(decoded(one, FrameSize::of(2, 2), true), (wanted, 1));
         // A damaged frame among them is dropped, wherever it is.
         for at in 0..9 {
             let mut stream = always.clone();
             stream.remove(at * 5);
-            let (frames, _) = decoded(&stream, (2, 2), true);
+            let (frames, _) = decoded(&stream, FrameSize::of(2, 2), true);
             assert_eq!(frames.len(), 8, "{at}");
         }
     }
@@ -335,6 +334,6 @@ mod tests {
         let (whole, damaged) = (b"\x5b\x01\x02\x03\x04\x5d", b"\x5b\x01\x02\x03\x04\x5c\x5d");
         let stream = [&whole[..], damaged, whole, whole, whole].concat();
         let wanted = vec![vec![1.0, 2.0, 3.0, 4.0]; 4];
-        assert_eq!(decoded(&stream, (2, 2), true), (wanted, 1));
+        assert_eq!(decoded(&stream, FrameSize::of(2, 2), true), (wanted, 1));
     }
 }

@@ -4,24 +4,26 @@
 //! else, such as a version number, or the sensor may have been reconfigured: if no size was given, a size that
 //! arrives three times in succession becomes the size.
 
+use crate::frame::FrameSize;
+
 /// The number of successive frames after which another size becomes the size, if none was given.
 const AGAIN: u8 = 3;
 
 /// The size of the frames of a stream.
 #[derive(Clone, Debug)]
-pub(super) struct FrameSize {
+pub(super) struct StreamSize {
     /// The current rows and columns: the given ones, otherwise those of the first whole frame, until others arrive
     /// repeatedly.
-    present: Option<(u16, u16)>,
+    present: Option<FrameSize>,
     /// Whether rows and columns were given.
     is_named: bool,
     /// Another size, and the number of successive frames that have had it.
-    other: Option<((u16, u16), u8)>,
+    other: Option<(FrameSize, u8)>,
 }
 
-impl FrameSize {
+impl StreamSize {
     /// Starts with the given rows and columns, if any.
-    pub(super) fn new(named: Option<(u16, u16)>) -> Self {
+    pub(super) fn new(named: Option<FrameSize>) -> Self {
         Self {
             present: named,
             is_named: named.is_some(),
@@ -30,22 +32,22 @@ impl FrameSize {
     }
 
     /// Sets the rows and columns, if none are known yet.
-    pub(super) fn begin(&mut self, own: (u16, u16)) {
+    pub(super) fn begin(&mut self, own: FrameSize) {
         self.present.get_or_insert(own);
     }
 
     /// Returns the current rows and columns; None before the first frame if none were given.
-    pub(super) fn present(&self) -> Option<(u16, u16)> {
+    pub(super) fn present(&self) -> Option<FrameSize> {
         self.present
     }
 
     /// Returns the rows and columns if they were given.
-    pub(super) fn named(&self) -> Option<(u16, u16)> {
+    pub(super) fn named(&self) -> Option<FrameSize> {
         self.present.filter(|_| self.is_named)
     }
 
     /// Notes a whole frame of these rows and columns, and returns true if they are those of the stream.
-    pub(super) fn admits(&mut self, own: (u16, u16)) -> bool {
+    pub(super) fn admits(&mut self, own: FrameSize) -> bool {
         let size = *self.present.get_or_insert(own);
         if own == size || self.is_named {
             self.other = None;

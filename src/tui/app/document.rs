@@ -33,7 +33,7 @@ pub struct Document {
 impl Document {
     /// Returns the document of an empty matrix.
     pub fn empty(sensor: Sensor) -> Self {
-        Self::drawn(sensor, Imprint::empty(sensor.columns(), sensor.rows()))
+        Self::drawn(sensor, Imprint::empty(sensor.size()))
     }
 
     /// Returns the document of a matrix touched by a figure or a picture.
@@ -93,14 +93,13 @@ impl Document {
                 .filter_map(|&p| Some((p, source.get(p)?)));
             values.all(|(parameter, value)| sensor.check(parameter, value).is_ok())
         };
-        let (columns, rows) = (sensor.columns(), sensor.rows());
         match &self.source {
             Some(source) if allowed(source) => Self {
                 sensor,
                 source: Some(source.clone()),
-                edits: self.edits.resized(columns, rows),
+                edits: self.edits.resized(sensor.size()),
             },
-            _ => Self::drawn(sensor, Reading::of(self).imprint.resized(columns, rows)),
+            _ => Self::drawn(sensor, Reading::of(self).imprint.resized(sensor.size())),
         }
     }
 }

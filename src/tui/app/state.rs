@@ -427,8 +427,7 @@ impl App {
     /// the shape or the imprint changed otherwise, or if a page opened beside the matrix. Otherwise nothing changes.
     pub(in crate::tui) fn follow(&mut self, before: &Attention) {
         let now = self.attention();
-        let sides = |imprint: &Imprint| (imprint.columns(), imprint.rows());
-        let same_sensor = sides(&now.imprint) == sides(&before.imprint);
+        let same_sensor = now.imprint.size() == before.imprint.size();
         let mut changed = now.imprint.differing(&before.imprint);
         changed.set(now.cursor.0, now.cursor.1, false);
         let elsewhere = !same_sensor

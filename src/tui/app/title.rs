@@ -16,7 +16,7 @@ pub fn title(app: &App) -> String {
     let pitch = sensor.pitch_mm();
     let is_set = pitch != sensor.default_value(Parameter::Pitch);
     let parts = [
-        Some(format!("{} × {}", sensor.columns(), sensor.rows())),
+        Some(sensor.size().to_string()),
         Some(format!("threshold {}", threshold(sensor))),
         is_set.then(|| format!("pitch {pitch} mm")),
         name(app),

@@ -85,9 +85,8 @@ impl Comparison {
     /// Compares two imprints, given with their names. If one has fewer columns or rows, the missing taxels count as
     /// inactive.
     pub fn new(first: (String, &Imprint), second: (String, &Imprint)) -> Self {
-        let columns = first.1.columns().max(second.1.columns());
-        let rows = first.1.rows().max(second.1.rows());
-        let imprints = [first.1, second.1].map(|imprint| imprint.resized(columns, rows));
+        let size = first.1.size().union(second.1.size());
+        let imprints = [first.1, second.1].map(|imprint| imprint.resized(size));
         let table = table(&imprints);
         Self {
             imprints: Box::new(imprints),

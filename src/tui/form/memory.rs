@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use crate::figure::{Figure, FigureKind};
 use crate::parameter::Parameter;
 use crate::pose::{Anchor, Axis, DecimalRange};
-use crate::sensor::Sensor;
+use crate::sensor::{MatrixSize, Sensor};
 
 /// The word before a figure.
 const FIGURE: &str = "figure";
@@ -40,7 +40,7 @@ struct RememberedFigure {
     /// The kind of the figure.
     kind: FigureKind,
     /// Columns and rows of its sensor.
-    sides: (u8, u8),
+    size: MatrixSize,
     /// The values of its parameters.
     values: Vec<(Parameter, f64)>,
 }
@@ -51,7 +51,7 @@ pub struct RememberedRanges {
     /// The name of the kind of shape.
     pub of: String,
     /// Columns and rows of the sensor.
-    pub sides: (u8, u8),
+    pub size: MatrixSize,
     /// The point of the shape that x0 and y0 place.
     pub anchor: Anchor,
     /// The ranges that were typed, in the order of their fields.
@@ -63,7 +63,7 @@ impl RememberedRanges {
     /// not fit.
     pub fn get(&self, of: &str, sensor: &Sensor, axis: Axis) -> Option<DecimalRange> {
         let place = matches!(axis, Axis::X0 | Axis::Y0);
-        let suits = of == self.of && self.sides == sides(sensor);
+        let suits = of == self.of && self.size == sensor.size();
         let mut known = self.ranges.iter().filter(|(own, _)| *own == axis);
         known
             .next()
@@ -99,7 +99,7 @@ impl FormMemory {
     /// Returns the remembered values as lines.
     pub fn lines(&self) -> Vec<String> {
         let figure = |figure: &RememberedFigure| {
-            let mut line = format!("{FIGURE} {}", figure.kind.name()) + &on(figure.sides);
+            let mut line = format!("{FIGURE} {}", figure.kind.name()) + &on(figure.size);
             for (parameter, value) in &figure.values {
                 line += &format!(" {} {value}", parameter.row().key);
             }
@@ -107,7 +107,7 @@ impl FormMemory {
         };
         let ranges = |known: &RememberedRanges| {
             let mut line = format!("{RANGES} {} {}", known.of, known.anchor.name());
-            line += &on(known.sides);
+            line += &on(known.size);
             for (axis, range) in &known.ranges {
                 line += &format!(" {} {range}", axis.name());
             }
@@ -123,7 +123,7 @@ impl FormMemory {
         let values = parameters.filter_map(|&own| Some((own, figure.get(own)?)));
         self.add(RememberedFigure {
             kind: figure.kind(),
-            sides: sides(sensor),
+            size: sensor.size(),
             values: values.collect(),
         });
     }
@@ -143,7 +143,7 @@ impl FormMemory {
     /// Returns the last figure of a kind; None if there is none, or if it was placed on a sensor of another size.
     pub fn figure(&self, kind: FigureKind, sensor: &Sensor) -> Option<Figure> {
         let mut own = self.figures.iter().filter(|figure| figure.kind == kind);
-        let own = own.find(|figure| figure.sides == sides(sensor))?;
+        let own = own.find(|figure| figure.size == sensor.size())?;
         let value = |parameter: Parameter| {
             let mut values = own.values.iter();
             let known = values.find(|(own, _)| *own == parameter);
@@ -166,26 +166,22 @@ impl FormMemory {
     }
 }
 
-/// Returns columns and rows of a sensor.
-fn sides(sensor: &Sensor) -> (u8, u8) {
-    (sensor.columns(), sensor.rows())
-}
-
-/// Returns columns and rows as part of a line.
-fn on((columns, rows): (u8, u8)) -> String {
+/// The size of a sensor in a line.
+fn on(size: MatrixSize) -> String {
+    let (columns, rows) = (size.columns(), size.rows());
     let [across, down] = SIDES.map(|side| side.row().key);
     format!(" {across} {columns} {down} {rows}")
 }
 
-/// Reads columns and rows from a line; None if they are missing or malformed.
-fn sides_of(pairs: &[&str]) -> Option<(u8, u8)> {
+/// What a line says of it.
+fn size_of(pairs: &[&str]) -> Option<MatrixSize> {
     let side = |parameter: Parameter| {
         let mut pairs = pairs.chunks_exact(2);
         let pair = pairs.find(|pair| pair[0] == parameter.row().key)?;
         pair[1].parse().ok()
     };
     let [columns, rows] = SIDES;
-    Some((side(columns)?, side(rows)?))
+    MatrixSize::new(side(columns)?, side(rows)?).ok()
 }
 
 /// Reads a figure from a line; None if the line is malformed.
@@ -203,7 +199,7 @@ fn figure_of(kind: &str, pairs: &[&str]) -> Option<RememberedFigure> {
     let values = parameters.filter_map(|&own| Some((own, *known.get(own.row().key)?)));
     Some(RememberedFigure {
         kind,
-        sides: sides_of(pairs)?,
+        size: size_of(pairs)?,
         values: values.collect(),
     })
 }
@@ -220,7 +216,7 @@ fn ranges_of(of: &str, anchor: &str, pairs: &[&str]) -> Option<RememberedRanges>
     let ranges: Option<Vec<_>> = axes.map(range).collect();
     Some(RememberedRanges {
         of: of.to_owned(),
-        sides: sides_of(pairs)?,
+        size: size_of(pairs)?,
         anchor,
         ranges: ranges?,
     })
@@ -243,7 +239,7 @@ mod tests {
         let range = |text: &str| text.parse::<DecimalRange>().expect("a range");
         memory.note_ranges(RememberedRanges {
             of: "ellipse".to_owned(),
-            sides: (16, 16),
+            size: sensor.size(),
             anchor: Anchor::Centre,
             ranges: vec![
                 (Axis::X0, range("5:5.9:0.1")),

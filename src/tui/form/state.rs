@@ -150,9 +150,8 @@ impl FormDialog {
 
     /// Returns a warning if active taxels would be lost.
     pub fn warning(&self) -> Option<String> {
-        let (columns, rows) = (self.shown.sensor.columns(), self.shown.sensor.rows());
         let all = self.before_imprint;
-        let lost = all.count() - all.resized(columns, rows).count();
+        let lost = all.count() - all.resized(self.shown.sensor.size()).count();
         let taxels = counted(lost, "active taxel");
         (lost > 0).then(|| format!("{taxels} will be cut"))
     }

@@ -20,8 +20,7 @@ pub(in crate::tui) fn bytes_of(frame: &Frame) -> usize {
 /// Returns true if two frames are the same one: a confirmed frame has the values that it had before it was confirmed.
 pub(super) fn is_same(one: &Frame, other: &Frame) -> bool {
     let values = one.values().iter().zip(other.values());
-    let size = |frame: &Frame| (frame.columns(), frame.rows());
-    (one.number, size(one)) == (other.number, size(other))
+    (one.number, one.size()) == (other.number, other.size())
         && values
             .into_iter()
             .all(|(one, other)| one.to_bits() == other.to_bits())
@@ -109,15 +108,16 @@ impl FrameHistory {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::FrameSize;
 
     #[test]
     fn the_oldest_frames_are_dropped_when_memory_is_full() {
         let mut history = FrameHistory::new(HISTORY_BYTES);
         assert_eq!((history.oldest(), history.newest()), (None, None));
-        let each = bytes_of(&Frame::new(512, 512));
+        let each = bytes_of(&Frame::new(FrameSize::of(512, 512)));
         let most = HISTORY_BYTES / each;
         for number in 0..2 * most as u64 {
-            let mut frame = Frame::new(512, 512);
+            let mut frame = Frame::new(FrameSize::of(512, 512));
             frame.number = number;
             history.push(Arc::new(frame));
             assert!(history.bytes <= HISTORY_BYTES);
@@ -135,7 +135,7 @@ mod tests {
     fn the_rate_follows_the_last_times() {
         let mut history = FrameHistory::new(HISTORY_BYTES);
         let mut push = |time| {
-            let mut frame = Frame::new(2, 2);
+            let mut frame = Frame::new(FrameSize::of(2, 2));
             frame.time = time;
             history.push(Arc::new(frame));
             history.rate()

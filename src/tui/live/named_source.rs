@@ -8,7 +8,7 @@
 use std::fmt;
 
 use crate::formats::stream::StreamFormat;
-use crate::frame::{FrameError, Rule, RuleOrigin, SetRule};
+use crate::frame::{FrameError, FrameSize, Rule, RuleOrigin, SetRule};
 use crate::parameter::{UnknownName, number};
 use crate::quote::shortened;
 use crate::tui::live::request::WatchRequest;
@@ -116,7 +116,7 @@ impl NamedSource {
     pub fn request(&self, settings: &WatchRequest) -> WatchRequest {
         let mut request = settings.for_source(&self.name);
         let options = &mut request.options;
-        options.shape = self.rows.zip(self.columns).or(options.shape);
+        options.size = FrameSize::of_sides(self.columns, self.rows).or(options.size);
         options.format = self.format.or(options.format);
         options.baud = self.baud.unwrap_or(options.baud);
         options.channel = self.channel.clone().or(options.channel.take());
@@ -149,7 +149,10 @@ mod tests {
         let whole = whole.expect("flags");
         assert_eq!(whole.source, "my run.csv");
         let options = &whole.options;
-        assert_eq!((options.shape, options.baud), (Some((4, 5)), 9600));
+        assert_eq!(
+            (options.size, options.baud),
+            (Some(FrameSize::of(5, 4)), 9600)
+        );
         assert_eq!(
             (options.channel.as_deref(), options.speed),
             (Some("left"), 0.5)

@@ -128,6 +128,7 @@ pub(super) fn next_choice<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sensor::MatrixSize;
 
     #[test]
     fn one_imprint_is_asked_for_at_a_time_and_none_twice() {
@@ -137,7 +138,7 @@ mod tests {
             noise: None,
         });
         let [one, other]: [Imprint; 2] = ["##", "#."].map(|text| text.parse().expect("rows"));
-        assert!(!naming.ask(&Imprint::empty(2, 1)));
+        assert!(!naming.ask(&Imprint::empty(MatrixSize::of(2, 1))));
         assert!(naming.ask(&one));
         assert!(!naming.ask(&other));
         naming.take(NamedImprint {

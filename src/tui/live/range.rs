@@ -84,12 +84,14 @@ impl ShadeRange {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sensor::MatrixSize;
 
     #[test]
     fn the_top_follows_the_values_even_if_they_are_small() {
         let mut range = ShadeRange::default();
         let mut top = |value: f64| {
-            let [raw, tared] = [10.0 * value, value].map(|value| Matrix::filled(2, 1, value));
+            let [raw, tared] =
+                [10.0 * value, value].map(|value| Matrix::filled(MatrixSize::of(2, 1), value));
             range.add([&raw, &tared]);
             range.tared_top()
         };

@@ -83,7 +83,7 @@ impl LiveReading {
         let imprint = processed.imprint;
         let found = imprint.as_ref().map_or_else(Vec::new, regions);
         let main = main_region(&found).and_then(|main| found.get(main));
-        let empty = || Imprint::empty(values.columns(), values.rows());
+        let empty = || Imprint::empty(values.size());
         Ok(Self {
             max: largest(values),
             tared_max: largest(processed.tared).map(|(largest, _)| largest),
@@ -115,7 +115,7 @@ fn largest(values: &Matrix<f64>) -> Option<(f64, (u8, u8))> {
 
 /// Raises the values of a frame to those of another one that are larger. Takes the other frame if its size differs.
 pub(super) fn hold(held: &mut Frame, frame: &Frame) {
-    if (held.columns(), held.rows()) == (frame.columns(), frame.rows()) {
+    if held.size() == frame.size() {
         for (own, &other) in held.values_mut().iter_mut().zip(frame.values()) {
             *own = own.max(other);
         }

@@ -82,7 +82,7 @@ impl LiveTare {
         let Some(mut first) = self.first.take() else {
             return;
         };
-        let mut seen = Matrix::filled(1, 1, f64::NAN);
+        let mut seen = Matrix::default();
         let added = processing.view.of(frame, &mut seen);
         let added = added.and_then(|()| first.add(&seen));
         let ended = added.and_then(|()| {
@@ -117,7 +117,7 @@ impl LiveTare {
             return Ok(());
         };
         let mut tare = TareFrames::new(frames.len() as u64);
-        let mut seen = Matrix::filled(1, 1, f64::NAN);
+        let mut seen = Matrix::default();
         for frame in frames.iter().rev() {
             processing.view.of(frame, &mut seen)?;
             tare.add(&seen)?;
@@ -174,13 +174,14 @@ pub(super) fn progress_text((taken, wanted): (u64, u64)) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::FrameSize;
 
     #[test]
     fn a_tare_that_lacked_frames_is_made_when_the_source_is_watched_again() {
         let mut request = WatchRequest::new("none");
         request.tare = 2;
         let (mut tare, mut processing) = (LiveTare::new(&request), Processing::default());
-        let frame = Frame::new(2, 2);
+        let frame = Frame::new(FrameSize::of(2, 2));
         tare.add(&frame, &mut processing);
         assert!(tare.end_of_source() && tare.error().is_some());
         tare.restart();

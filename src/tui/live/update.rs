@@ -135,7 +135,7 @@ pub(in crate::tui) fn in_live(
 /// taxels only.
 fn document(page: &Live) -> Option<Document> {
     let imprint = page.reading()?.imprint?;
-    let sensor = Sensor::new(imprint.columns(), imprint.rows()).ok()?;
+    let sensor = Sensor::of_size(imprint.size());
     let channel = page.status().channel.as_deref();
     let pitch = channel.and_then(ChannelInfo::square_pitch_mm);
     let scaled = pitch.and_then(|pitch| sensor.with(Parameter::Pitch, pitch).ok());
@@ -385,6 +385,7 @@ pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
 mod tests {
     use super::*;
     use crate::frame::Frame;
+    use crate::frame::FrameSize;
     use crate::tui::live::message::FrameBatch;
 
     #[test]
@@ -392,7 +393,7 @@ mod tests {
         let mut request = WatchRequest::new("none");
         request.processing.least = 4;
         let mut page = Live::new(Arc::new(request), 7);
-        let mut frame = Frame::new(8, 8);
+        let mut frame = Frame::new(FrameSize::of(8, 8));
         frame.values_mut()[9] = 30.0;
         page.take(&FrameBatch {
             frames: vec![Arc::new(frame)],

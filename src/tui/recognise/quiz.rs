@@ -135,13 +135,13 @@ impl Quiz {
 pub(super) fn onto(imprint: &Imprint, sensor: Sensor, own: Sensor) -> (Sensor, Imprint) {
     let moved = |sensor: Sensor| Some((sensor, moved_onto(imprint, &sensor)?));
     let moved = moved(sensor).or_else(|| moved(own));
-    moved.unwrap_or((sensor, Imprint::empty(sensor.columns(), sensor.rows())))
+    moved.unwrap_or((sensor, Imprint::empty(sensor.size())))
 }
 
 /// Moves an imprint onto a sensor: as near to its own place as possible, off the rim if there is room. None if it
 /// does not fit.
 fn moved_onto(imprint: &Imprint, sensor: &Sensor) -> Option<Imprint> {
-    let mut moved = Imprint::empty(sensor.columns(), sensor.rows());
+    let mut moved = Imprint::empty(sensor.size());
     let Some(bounds) = imprint.bounds() else {
         return Some(moved);
     };

@@ -8,6 +8,7 @@ use rand_pcg::Pcg64;
 use crate::formats::Name;
 use crate::imprint::Imprint;
 use crate::recognition::{Answer, Evidence};
+use crate::sensor::MatrixSize;
 use crate::storage::ModelChoice;
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::recognise::message::{Look, PoseSearch, Prepared};
@@ -136,7 +137,7 @@ impl Recognition {
             stored: Vec::new(),
             state: ModelState::Missing,
             kept: Vec::new(),
-            present: Imprint::empty(1, 1),
+            present: Imprint::empty(MatrixSize::SMALLEST),
             present_kept: false,
             answer: None,
             searched: None,

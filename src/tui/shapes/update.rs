@@ -306,17 +306,16 @@ fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
 /// otherwise its imprint alone, if all active taxels fit. Returns an error if they do not.
 fn put_on_matrix(app: &mut App, loaded: &LoadedShape) -> Result<(), String> {
     let (shape, sensor) = (&loaded.shape, app.history.present().sensor);
-    let own = (shape.sensor.columns(), shape.sensor.rows());
-    let here = (sensor.columns(), sensor.rows());
+    let (own, here) = (shape.sensor.size(), sensor.size());
     let document = if own == here {
         Document::of_shape(shape)
     } else {
-        let imprint = shape.imprint.resized(here.0, here.1);
+        let imprint = shape.imprint.resized(here);
         if imprint.count() < shape.imprint.count() {
             let change = app.key_of(&action::SENSOR);
             return Err(format!(
-                "{} is {} × {} and does not fit on {} × {} taxels; {change} changes the sensor",
-                shape.name, own.0, own.1, here.0, here.1
+                "{} is {own} and does not fit on {here} taxels; {change} changes the sensor",
+                shape.name
             ));
         }
         Document::drawn(sensor, imprint)

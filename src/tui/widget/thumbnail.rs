@@ -49,10 +49,11 @@ pub fn draw(theme: &Theme, imprint: &Imprint, buffer: &mut Buffer, area: Rect) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sensor::MatrixSize;
 
     #[test]
     fn the_last_of_an_odd_number_of_rows_is_drawn() {
-        let mut imprint = Imprint::empty(3, 63);
+        let mut imprint = Imprint::empty(MatrixSize::of(3, 63));
         imprint.set(1, 62, true);
         for (ascii, height) in [(false, 22), (true, 22)] {
             let area = Rect::new(0, 0, 3, height);

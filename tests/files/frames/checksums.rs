@@ -3,7 +3,7 @@
 use taxel::frame::Frame;
 
 use super::samples::sample;
-use super::{Recorded, recorded};
+use super::{Recorded, channel_shape, recorded};
 
 /// Reads `bytes` after the byte at `index` was changed.
 fn with_another_byte(bytes: &[u8], index: usize) -> Recorded {
@@ -159,7 +159,7 @@ fn given_rows_and_columns_replace_a_layout_with_the_same_number_of_cells() {
     ] {
         let read = recorded(&bytes, named);
         assert_eq!((read.frames.len(), error(&read)), (2, None));
-        assert_eq!(read.channels[0].shape, Some(found));
+        assert_eq!(channel_shape(&read.channels[0]), Some(found));
         let sizes = (read.frames[1].rows(), read.frames[1].columns());
         assert_eq!(sizes, found);
     }

@@ -1,6 +1,6 @@
 //! Lines that `ros2 topic echo` prints between messages, and layouts with an offset.
 
-use super::recorded;
+use super::{channel_shape, recorded};
 
 const NOTICE: &str = "A message was lost!!!\n\ttotal count change:1\n\ttotal count: 1---\n";
 
@@ -47,7 +47,12 @@ fn given_rows_and_columns_replace_a_layout_with_the_same_number_of_cells() {
         (Some((2, 3)), (1, 4)),
     ] {
         let read = recorded(text, named);
-        assert_eq!(read.channels[0].shape, Some(found), "{:?}", read.error);
+        assert_eq!(
+            channel_shape(&read.channels[0]),
+            Some(found),
+            "{:?}",
+            read.error
+        );
     }
 }
 

@@ -20,7 +20,7 @@ use std::ops::ControlFlow;
 use taxel::formats::recording::{
     ChannelInfo, ReadOptions, RecordingError, RecordingEvent, RecordingNote, read,
 };
-use taxel::frame::Frame;
+use taxel::frame::{Frame, FrameSize};
 
 /// Everything that was read from a recording.
 #[derive(Debug, Default)]
@@ -32,11 +32,21 @@ pub(crate) struct Recorded {
     pub(crate) error: Option<RecordingError>,
 }
 
+/// The size of a frame, given as recordings name it: rows first.
+pub(crate) fn frame_size(rows: u16, columns: u16) -> FrameSize {
+    FrameSize::new(columns, rows).expect("1 to 512")
+}
+
+/// Rows and columns of a channel's frames.
+pub(crate) fn channel_shape(info: &ChannelInfo) -> Option<(u16, u16)> {
+    info.size.map(|size| (size.rows(), size.columns()))
+}
+
 /// Reads a whole recording, or the part of a damaged one before the damage.
 pub(crate) fn recorded(bytes: &[u8], shape: Option<(u16, u16)>) -> Recorded {
     let mut options = ReadOptions::default();
     if let Some((rows, columns)) = shape {
-        options = options.with_shape(rows, columns);
+        options = options.with_size(frame_size(rows, columns));
     }
     let mut found = Recorded::default();
     let read = read(Cursor::new(bytes), options, &mut |event| {

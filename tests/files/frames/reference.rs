@@ -7,10 +7,10 @@ use std::path::PathBuf;
 use serde_json::Value;
 use taxel::formats::DescribedImprint;
 use taxel::formats::recording::RecordingNote;
-use taxel::frame::{Crop, FrameError, Peak, Processing, Rule, TareFrames};
+use taxel::frame::{Crop, FirstCell, FrameError, Peak, Processing, Rule, TareFrames};
 use taxel::matrix::Matrix;
 
-use super::{Recorded, recorded};
+use super::{Recorded, channel_shape, recorded};
 use crate::skip::skipped;
 
 /// Returns the folder of these files; reports the test as skipped if it is missing.
@@ -66,7 +66,7 @@ fn every_reference_frame_has_the_same_answer() {
         if tare > 0 {
             let mut frames = TareFrames::new(tare);
             for frame in &found.frames {
-                let mut seen = Matrix::filled(1, 1, 0.0);
+                let mut seen = Matrix::default();
                 processing.view.of(frame, &mut seen).expect("it fits");
                 frames.add(&seen).expect("it fits");
             }
@@ -215,7 +215,16 @@ fn the_forces_that_emed_states_are_right() {
     assert_eq!((found.frames.len(), &found.notes[..]), (3, &[][..]));
     let frame = &found.frames[2];
     assert_eq!((frame.rows(), frame.columns()), (54, 22));
-    assert_eq!((frame.first, frame.label), (Some((30, 26)), Some(3)));
+    assert_eq!(
+        (frame.first, frame.label),
+        (
+            Some(FirstCell {
+                row: 30,
+                column: 26
+            }),
+            Some(3)
+        )
+    );
     assert_eq!(frame.time, Some(0.02));
     assert_eq!(found.channels[0].pitch_mm, Some([5.0, 5.0]));
 }
@@ -226,7 +235,7 @@ fn the_lines_of_zebris_are_read_as_x() {
         return;
     };
     let info = &found.channels[0];
-    assert_eq!(info.shape, Some((32, 15)));
+    assert_eq!(channel_shape(info), Some((32, 15)));
     assert_eq!(info.unit.as_deref(), Some("N/cm2"));
     assert_eq!(info.pitch_mm, Some([8.46591, 8.46591]));
 }

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use taxel::frame::{Frame, Processing, Rule};
+use taxel::frame::{FirstCell, Frame, Processing, Rule};
 
 use crate::array::array;
 
-use super::{Recorded, recorded};
+use super::{Recorded, channel_shape, recorded};
 
 /// The imprints at a threshold of 9.
 const IMPRINTS: [&str; 3] = [
@@ -93,7 +93,7 @@ fn sensors_of_xsensor_are_channels_but_groups_are_not() {
 #[test]
 fn the_first_rows_are_used_and_comments_are_not_frames() {
     let found = recorded(&sample("tekscan.asf"), None);
-    assert_eq!(found.channels[0].shape, Some((4, 5)));
+    assert_eq!(channel_shape(&found.channels[0]), Some((4, 5)));
     assert_eq!(found.channels[0].pitch_mm, Some([2.5, 2.5]));
     assert_eq!(found.frames.len(), 3);
     assert_eq!(found.frames[0].cells(), 18);
@@ -102,7 +102,10 @@ fn the_first_rows_are_used_and_comments_are_not_frames() {
 #[test]
 fn a_window_of_emed_has_its_position() {
     let found = recorded(&sample("emed.lst"), None);
-    assert_eq!(found.frames[2].first, Some((12, 7)));
+    assert_eq!(
+        found.frames[2].first,
+        Some(FirstCell { row: 12, column: 7 })
+    );
     // The summary page is not a frame.
     assert_eq!(found.frames.len(), 3);
 }
@@ -329,7 +332,7 @@ fn a_header_that_only_counts_values_is_reported() {
     let header: Vec<String> = (0..9).map(|number| number.to_string()).collect();
     let text = format!("{}\n1,2,3,4,5,6,7,8,9\n", header.join(","));
     let found = recorded(text.as_bytes(), None);
-    assert_eq!(found.channels[0].shape, Some((3, 3)));
+    assert_eq!(channel_shape(&found.channels[0]), Some((3, 3)));
     let note = found.notes[0].to_string();
     assert_eq!(
         note,
@@ -376,7 +379,7 @@ fn topics_and_their_sensors_are_channels() {
     }
     // Three values do not show how they are arranged.
     assert_eq!(
-        (found.channels[2].shape, found.channels[2].values),
+        (channel_shape(&found.channels[2]), found.channels[2].values),
         (None, Some(3))
     );
     let last = found.frames.last().expect("frames");
@@ -431,7 +434,7 @@ fn an_axis_for_a_single_channel_is_not_the_axis_of_frames() {
     let cells: Vec<f64> = (0..12).map(f64::from).collect();
     for shape in ["(2, 2, 3)", "(2, 2, 3, 1)", "(2, 1, 2, 3)"] {
         let found = recorded(&array(shape, false, &cells), None);
-        assert_eq!(found.channels[0].shape, Some((2, 3)), "{shape}");
+        assert_eq!(channel_shape(&found.channels[0]), Some((2, 3)), "{shape}");
         assert_eq!(found.frames[1].values(), &cells[6..], "{shape}");
     }
     let fortran = recorded(&array("(2, 1, 2, 3)", true, &cells), None);

@@ -7,8 +7,8 @@ use taxel::formats::stream::{
 
 use taxel::frame::Frame;
 
-use super::recorded;
 use super::samples::sample;
+use super::{frame_size, recorded};
 use crate::common::Random;
 
 /// Returns the values of all frames, decoded in pieces of random sizes; without provisional frames.
@@ -40,7 +40,9 @@ fn decoded(
 
 fn options(shape: Option<(u16, u16)>) -> StreamOptions {
     let options = StreamOptions::default().from_start();
-    shape.map_or(options, |(rows, columns)| options.with_shape(rows, columns))
+    shape.map_or(options, |(rows, columns)| {
+        options.with_size(frame_size(rows, columns))
+    })
 }
 
 fn text(frame: &[f64], columns: usize, separator: &str) -> String {

@@ -2,7 +2,7 @@
 
 use taxel::frame::Frame;
 
-use super::{Recorded, recorded};
+use super::{Recorded, channel_shape, recorded};
 
 /// Returns the label, time and values of each frame of a table.
 fn frames(text: &str, shape: Option<(u16, u16)>) -> Vec<(Option<i64>, Option<f64>, Vec<f64>)> {
@@ -209,7 +209,7 @@ fn a_first_line_of_consecutive_numbers_may_be_values() {
     ] {
         let found = recorded(text.as_bytes(), None);
         assert!(found.error.is_none(), "{text}: {:?}", found.error);
-        assert_eq!(found.channels[0].shape, Some((rows, 4)), "{text}");
+        assert_eq!(channel_shape(&found.channels[0]), Some((rows, 4)), "{text}");
         assert_eq!(found.frames.len(), count, "{text}");
         assert_eq!(found.frames[0].values()[..4], [0.0, 1.0, 2.0, 3.0]);
     }
@@ -392,7 +392,7 @@ fn a_block_of_rows_may_begin_with_a_date_and_time() {
 fn letters_in_names_show_which_number_is_the_column() {
     let text = "c0r0,c1r0,c2r0,c0r1,c1r1,c2r1\n1,2,3,4,5,6\n";
     let found = recorded(text.as_bytes(), None);
-    assert_eq!(found.channels[0].shape, Some((2, 3)));
+    assert_eq!(channel_shape(&found.channels[0]), Some((2, 3)));
     assert_eq!(found.frames[0].values(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
 }
 

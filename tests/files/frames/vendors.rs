@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use taxel::frame::Frame;
+use taxel::frame::{FirstCell, Frame};
 
 use super::samples::sample;
-use super::{Recorded, recorded};
+use super::{Recorded, channel_shape, recorded};
 
 fn error(found: &Recorded) -> Option<String> {
     found.error.as_ref().map(ToString::to_string)
@@ -71,7 +71,7 @@ fn the_last_unit_of_tekscan_is_used_and_metres_are_converted() {
     let info = &found.channels[0];
     assert_eq!(info.unit.as_deref(), Some("raw"));
     assert_eq!(
-        (info.pitch_mm, info.shape),
+        (info.pitch_mm, channel_shape(info)),
         (Some([1.27, 1.27]), Some((1, 2)))
     );
 }
@@ -119,12 +119,15 @@ fn the_pages_of_a_picture_of_emed_are_one_frame() {
     ] {
         let found = recorded(text.as_bytes(), None);
         assert_eq!((error(&found), notes(&found).len()), (None, 0), "{text}");
-        assert_eq!(found.channels[0].shape, Some((2, 3)));
+        assert_eq!(channel_shape(&found.channels[0]), Some((2, 3)));
         let [first, second] = &found.frames[..] else {
             panic!("{} frames: {text}", found.frames.len());
         };
         assert_eq!(first.values(), [0.0, 20.0, 10.0, 30.0, 0.0, 0.0]);
-        assert_eq!((first.first, first.label), (Some((4, 7)), Some(1)));
+        assert_eq!(
+            (first.first, first.label),
+            (Some(FirstCell { row: 4, column: 7 }), Some(1))
+        );
         assert_eq!((second.label, second.time), (Some(2), Some(0.02)));
         // A picture is incomplete if its second page is damaged.
         let torn = text.rfind("Page").expect("a page") + 150;
@@ -347,7 +350,7 @@ fn both_sheets_of_popu_are_channels() {
     assert_eq!(error(&found), None);
     let channels = found.channels.iter();
     let channels: Vec<_> = channels
-        .map(|info| (info.name.as_deref(), info.shape))
+        .map(|info| (info.name.as_deref(), channel_shape(info)))
         .collect();
     assert_eq!(
         channels,

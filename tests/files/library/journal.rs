@@ -140,7 +140,7 @@ fn a_figure_with_an_empty_imprint_is_also_offered() {
     let sensor = Sensor::default();
     let dot = Figure::rectangle(0.5, 0.5).on(&sensor).expect("in range");
     let name = Name::new("dot").expect("a name");
-    let nothing = Imprint::empty(16, 16);
+    let nothing = Imprint::empty(Sensor::default().size());
     let of = |source| StoredShape::new(name.clone(), sensor, nothing, source);
     left(&scratch, &of(None).expect("16 x 16 both"));
     assert_eq!(offered(&scratch), []);

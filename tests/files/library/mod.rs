@@ -93,7 +93,7 @@ fn files(folder: &Path) -> Vec<String> {
 
 /// Returns a shape that encodes a number below 65,536.
 fn shape(name: &str, number: usize) -> StoredShape {
-    let mut imprint = Imprint::empty(16, 16);
+    let mut imprint = Imprint::empty(Sensor::default().size());
     imprint.set_word(0, u64::try_from(number).expect("small"));
     let name = Name::new(name).expect("a name");
     StoredShape::new(name, Sensor::default(), imprint, None).expect("16 x 16 both")

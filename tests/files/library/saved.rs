@@ -12,10 +12,11 @@ use taxel::source::Source;
 use taxel::storage::{Expected, ShapeOrigin};
 
 use super::Scratch;
+use crate::common::size;
 
 fn imprints() -> impl Strategy<Value = Imprint> {
     (1..=64_u8, 1..=64_u8, vec(any::<u64>(), 64)).prop_map(|(columns, rows, words)| {
-        let mut imprint = Imprint::empty(columns, rows);
+        let mut imprint = Imprint::empty(size(columns, rows));
         for (row, word) in words.into_iter().enumerate() {
             imprint.set_word(row, word);
         }

@@ -87,7 +87,7 @@ fn each_shipped_shape_equals_the_output_of_its_command() {
 
 /// Returns an imprint moved by whole cells; nothing may leave the sensor.
 fn shifted(imprint: &Imprint, right: i16, down: i16) -> Imprint {
-    let mut shifted = Imprint::empty(imprint.columns(), imprint.rows());
+    let mut shifted = Imprint::empty(imprint.size());
     for (column, row) in imprint.active() {
         let to = |from: u8, by: i16| u8::try_from(i16::from(from) + by).expect("inside");
         shifted.set(to(column, right), to(row, down), true);

@@ -7,6 +7,8 @@ use taxel::imprint::Imprint;
 use taxel::parameter::Parameter;
 use taxel::sensor::{MAX_SIDE, Sensor};
 
+use crate::common::size;
+
 pub(crate) fn hundredths(value: i32) -> f64 {
     f64::from(value) / 100.0
 }
@@ -48,7 +50,7 @@ pub(crate) fn imprints(
 ) -> impl Strategy<Value = Imprint> {
     let words = proptest::collection::vec(any::<u64>(), usize::from(MAX_SIDE));
     (columns, rows, words).prop_map(|(columns, rows, words)| {
-        let mut imprint = Imprint::empty(columns, rows);
+        let mut imprint = Imprint::empty(size(columns, rows));
         for (row, word) in words.into_iter().enumerate() {
             imprint.set_word(row, word);
         }
@@ -58,7 +60,7 @@ pub(crate) fn imprints(
 
 /// Returns the imprint with every active taxel moved by `to`; taxels that leave the matrix are dropped.
 pub(crate) fn moved(imprint: &Imprint, to: impl Fn(i32, i32) -> (i32, i32)) -> Imprint {
-    let mut result = Imprint::empty(imprint.columns(), imprint.rows());
+    let mut result = Imprint::empty(imprint.size());
     for (column, row) in imprint.active() {
         let (column, row) = to(i32::from(column), i32::from(row));
         if let (Ok(column), Ok(row)) = (u8::try_from(column), u8::try_from(row)) {

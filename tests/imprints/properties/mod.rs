@@ -6,7 +6,7 @@
 mod drawn;
 
 use self::drawn::{angle, area, drawn, figure, hundredths, imprints, kind, moved, polygon, star};
-use crate::common::sensor;
+use crate::common::{sensor, size};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use taxel::figure::{Figure, FigureKind};
@@ -156,7 +156,7 @@ proptest! {
 
     #[test]
     fn a_picture_moved_by_whole_cells_is_shifted(imprint in imprints(1..=20, 1..=20), by in (-15..=15, -15..=15)) {
-        let imprint = imprint.resized(20, 20);
+        let imprint = imprint.resized(size(20, 20));
         let mut picture = Picture::at_home(imprint);
         for (parameter, by) in [(Parameter::X0, by.0), (Parameter::Y0, by.1)] {
             let at = picture.get(parameter).expect("a parameter of pictures") + f64::from(by);
@@ -169,7 +169,7 @@ proptest! {
 
     #[test]
     fn four_quarter_turns_of_a_square_picture_change_nothing(imprint in imprints(1..=24, 1..=24), side in 1..=24_u8) {
-        let mut first = imprint.resized(side, side);
+        let mut first = imprint.resized(size(side, side));
         // Two taxels at opposite corners make the bounding rectangle the whole matrix.
         first.set(0, 0, true);
         first.set(side - 1, side - 1, true);

@@ -19,7 +19,7 @@ const OPENING: &str = "?openat";
 /// Makes a library with one shape of seven taxels, `stripe`.
 fn library() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut imprint = Imprint::empty(16, 16);
+    let mut imprint = Imprint::empty(Sensor::default().size());
     for column in 0..7 {
         imprint.set(column, 3, true);
     }

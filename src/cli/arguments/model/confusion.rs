@@ -29,6 +29,7 @@ use crate::pose::{DecimalRange, RangeError};
 use crate::recognition::{
     Classifier, ClassifierSettings, GivenDescriptors, GivenError, Noise, Rounding,
 };
+use crate::sensor::MatrixSize;
 use crate::storage::Existing;
 
 /// The model to evaluate, the question about it, and how the answer is shown.
@@ -87,7 +88,7 @@ pub(crate) struct NoiseArguments {
     /// The seed for drawing poses, flips and dead taxels.
     pub(crate) seed: u64,
     /// Columns and rows of the matrix; None for those of the model's sensor.
-    pub(crate) size: Option<(u8, u8)>,
+    pub(crate) size: Option<MatrixSize>,
 }
 
 /// Defines `taxel model confusion`.
@@ -221,14 +222,11 @@ fn parse_noise_range(text: &str) -> Result<DecimalRange, String> {
 }
 
 /// Parses columns and rows, such as `16x16`.
-fn parse_matrix(text: &str) -> Result<(u8, u8), &'static str> {
+fn parse_matrix(text: &str) -> Result<MatrixSize, &'static str> {
     let expected = "expected columns and rows from 1 to 64, such as 16x16";
     let (columns, rows) = text.split_once('x').ok_or(expected)?;
-    let side = |text: &str| {
-        let side = text.trim().parse::<u8>().ok();
-        side.filter(|side| (1..=64).contains(side)).ok_or(expected)
-    };
-    Ok((side(columns)?, side(rows)?))
+    let side = |text: &str| text.trim().parse().map_err(|_| expected);
+    MatrixSize::new(side(columns)?, side(rows)?).map_err(|_| expected)
 }
 
 /// Parses a list of descriptors, such as `na,p`.

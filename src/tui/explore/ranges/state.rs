@@ -209,7 +209,7 @@ impl RangesForm {
         let ranges = own.filter_map(|field| Some((field.axis, field.text().parse().ok()?)));
         RememberedRanges {
             of: self.source.kind_name().to_owned(),
-            sides: (self.sensor.columns(), self.sensor.rows()),
+            size: self.sensor.size(),
             anchor: self.anchor,
             ranges: ranges.collect(),
         }

@@ -8,7 +8,7 @@ use std::fmt;
 
 use crate::formats::{Name, StoredShape};
 use crate::imprint::Imprint;
-use crate::sensor::Sensor;
+use crate::sensor::{MatrixSize, Sensor};
 use crate::storage::{LibraryEntry, LoadedShape, ShapeOrigin};
 use crate::tui::app::library::LibraryEvent;
 
@@ -64,8 +64,8 @@ impl ShapeLog {
                 self.logged.insert(entry.name.clone(), None);
                 sink(StoredShape {
                     name,
-                    sensor: Sensor::clamped(1, 1),
-                    imprint: Imprint::empty(1, 1),
+                    sensor: Sensor::of_size(MatrixSize::SMALLEST),
+                    imprint: Imprint::empty(MatrixSize::SMALLEST),
                     source: None,
                 });
             }

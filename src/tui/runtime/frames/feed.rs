@@ -358,6 +358,7 @@ impl Pending {
 mod tests {
     use super::*;
     use crate::formats::stream::StreamCounts;
+    use crate::frame::FrameSize;
     use crate::tui::live::state::Live;
 
     /// Returns the number of the frame that a page shows after an event of its source.
@@ -394,7 +395,7 @@ mod tests {
     fn a_provisional_frame_is_shown_until_it_is_withdrawn() {
         let feed = FrameFeed::default();
         let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
-        let mut frame = Frame::new(2, 2);
+        let mut frame = Frame::new(FrameSize::of(2, 2));
         let mut counts = StreamCounts::default();
         let shown = after(&mut page, &feed, AcquireEvent::Provisional(&frame));
         assert_eq!(shown, Some(0));
@@ -433,7 +434,10 @@ mod tests {
         let feed = FrameFeed::default();
         let request = WatchRequest::new("none");
         let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
-        let [first, mut second] = [Frame::new(2, 2), Frame::new(2, 2)];
+        let [first, mut second] = [
+            Frame::new(FrameSize::of(2, 2)),
+            Frame::new(FrameSize::of(2, 2)),
+        ];
         second.values_mut()[0] = 9.0;
         let whole = AcquireEvent::Frame {
             frame: &second,
@@ -458,7 +462,10 @@ mod tests {
     fn a_held_peak_does_not_begin_with_a_frame_that_may_be_withdrawn() {
         let feed = FrameFeed::default();
         let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
-        let [mut first, mut garbled] = [Frame::new(2, 2), Frame::new(2, 2)];
+        let [mut first, mut garbled] = [
+            Frame::new(FrameSize::of(2, 2)),
+            Frame::new(FrameSize::of(2, 2)),
+        ];
         first.values_mut().fill(1.0);
         garbled.values_mut()[0] = 9.0;
         let whole = AcquireEvent::Frame {
@@ -479,7 +486,7 @@ mod tests {
     fn the_gap_of_a_lost_connection_is_reported_with_the_first_frame_after_it() {
         let feed = FrameFeed::default();
         let mut page = Live::new(Arc::new(WatchRequest::new("none")), 7);
-        let (frame, gap) = (Frame::new(2, 2), Duration::from_secs(2));
+        let (frame, gap) = (Frame::new(FrameSize::of(2, 2)), Duration::from_secs(2));
         let at = |time| AcquireEvent::Frame {
             frame: &frame,
             time: Some(time),
@@ -536,7 +543,7 @@ mod tests {
                 ..ChannelInfo::default()
             };
             feed.take_in(AcquireEvent::Channel(&info), &request);
-            let mut frame = Frame::new(2, 2);
+            let mut frame = Frame::new(FrameSize::of(2, 2));
             frame.channel = index;
             let (frame, time) = (&frame, None);
             feed.take_in(AcquireEvent::Frame { frame, time }, &request);

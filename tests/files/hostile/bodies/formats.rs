@@ -26,7 +26,7 @@ pub(crate) fn shape(bytes: &[u8]) -> bool {
 /// Reads a line of `taxel batch`.
 pub(crate) fn job(bytes: &[u8]) -> bool {
     let lookup = |name: &str| match name {
-        "washer" => Ok(Imprint::empty(16, 16)),
+        "washer" => Ok(Imprint::empty(Sensor::default().size())),
         _ => Err("no shape is called so".to_owned()),
     };
     match Job::read(bytes, Sensor::default(), &lookup) {

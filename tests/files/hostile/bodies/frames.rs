@@ -5,15 +5,16 @@ use std::ops::ControlFlow;
 
 use taxel::formats::recording::{ReadOptions, RecordingEvent, RecordingMetadata, read};
 use taxel::formats::stream::{StreamDecoder, StreamEvent, StreamOptions};
-use taxel::frame::{Processing, Rule};
+use taxel::frame::{FrameSize, Processing, Rule};
 
 use super::{is_short, refused};
 
 /// Reads a recording in any format, without and with rows and columns that may fit.
 pub(crate) fn recording(bytes: &[u8]) -> bool {
-    let with_shape = ReadOptions::default().with_shape(4, 5);
+    let size = FrameSize::new(5, 4).expect("1 to 512");
+    let with_size = ReadOptions::default().with_size(size);
     let mut is_read = false;
-    for options in [ReadOptions::default(), with_shape] {
+    for options in [ReadOptions::default(), with_size] {
         let mut processing = Processing::default();
         processing.rule = Rule::percent(50.0).ok();
         let mut channels = 0;
@@ -63,7 +64,7 @@ pub(crate) fn stream(bytes: &[u8]) -> bool {
     };
     let mut options = StreamOptions::default();
     options.from_start = first & 1 == 0;
-    options.shape = (first & 2 != 0).then_some((4, 5));
+    options.size = FrameSize::new(5, 4).ok().filter(|_| first & 2 != 0);
     let decoded = |pieces: &[&[u8]]| {
         let mut decoder = StreamDecoder::new(options);
         let mut frames = Vec::new();

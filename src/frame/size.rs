@@ -1,0 +1,118 @@
+//! The size of a frame.
+
+use std::fmt;
+
+#[cfg(feature = "frames")]
+use crate::parameter::number::counted;
+use crate::sensor::MatrixSize;
+
+/// The largest number of columns, and of rows, of a frame before it is cropped.
+pub const MAX_FRAME_SIDE: u16 = 512;
+
+/// Columns and rows of a frame before it is cropped, each 1 to [`MAX_FRAME_SIDE`].
+///
+/// ```
+/// use taxel::frame::FrameSize;
+/// let size = FrameSize::new(28, 64)?;
+/// assert_eq!((size.columns(), size.rows(), size.cells()), (28, 64, 1792));
+/// assert_eq!(size.to_string(), "28 × 64");
+/// assert_eq!(FrameSize::new(28, 0).unwrap_err().to_string(), "a frame of 28 × 0, expected 1 to 512 columns and rows");
+/// # Ok::<(), taxel::frame::FrameSizeError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FrameSize {
+    columns: u16,
+    rows: u16,
+}
+
+impl FrameSize {
+    /// One cell.
+    pub(crate) const SMALLEST: Self = Self {
+        columns: 1,
+        rows: 1,
+    };
+
+    /// The size of a frame with that many columns and rows.
+    ///
+    /// # Errors
+    /// If one is not 1 to [`MAX_FRAME_SIDE`].
+    pub fn new(columns: u16, rows: u16) -> Result<Self, FrameSizeError> {
+        let sides = 1..=MAX_FRAME_SIDE;
+        if sides.contains(&columns) && sides.contains(&rows) {
+            Ok(Self { columns, rows })
+        } else {
+            Err(FrameSizeError { columns, rows })
+        }
+    }
+
+    /// The size of a frame of which both are known and allowed.
+    #[cfg(feature = "frames")]
+    pub(crate) fn of_sides(columns: Option<u16>, rows: Option<u16>) -> Option<Self> {
+        Self::new(columns?, rows?).ok()
+    }
+
+    /// Number of columns.
+    pub fn columns(self) -> u16 {
+        self.columns
+    }
+
+    /// Number of rows.
+    pub fn rows(self) -> u16 {
+        self.rows
+    }
+
+    /// Number of cells.
+    pub fn cells(self) -> usize {
+        usize::from(self.columns) * usize::from(self.rows)
+    }
+
+    /// Rows and columns in words: `4 rows of 5`.
+    #[cfg(feature = "frames")]
+    pub(crate) fn in_words(self) -> String {
+        format!("{} of {}", counted(self.rows, "row"), self.columns)
+    }
+
+    /// A size that a test knows to be one.
+    #[cfg(test)]
+    pub(crate) fn of(columns: u16, rows: u16) -> Self {
+        Self::new(columns, rows).expect("1 to 512")
+    }
+}
+
+impl From<MatrixSize> for FrameSize {
+    fn from(size: MatrixSize) -> Self {
+        Self {
+            columns: size.columns().into(),
+            rows: size.rows().into(),
+        }
+    }
+}
+
+impl fmt::Display for FrameSize {
+    /// `28 × 64`, columns first.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} × {}", self.columns, self.rows)
+    }
+}
+
+/// The error for a size that no frame has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct FrameSizeError {
+    /// Number of columns.
+    pub columns: u16,
+    /// Number of rows.
+    pub rows: u16,
+}
+
+impl fmt::Display for FrameSizeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { columns, rows } = self;
+        write!(
+            f,
+            "a frame of {columns} × {rows}, expected 1 to {MAX_FRAME_SIDE} columns and rows"
+        )
+    }
+}
+
+impl std::error::Error for FrameSizeError {}
