@@ -52,7 +52,7 @@ pub(crate) fn report() -> String {
     };
     let mut plane = Plane::new(Sensor::default());
     let imprint = plane.touch(&plate);
-    let covered: f64 = plane.coverages().iter().sum();
+    let covered: f64 = plane.coverages().values().iter().sum();
 
     let mut text = format!("{imprint}\n\n");
     let regions = regions(&imprint);

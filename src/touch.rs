@@ -23,6 +23,7 @@ use crate::geometry::{
 };
 use crate::imprint::Imprint;
 use crate::index::from_first;
+use crate::matrix::Matrix;
 use crate::sensor::Sensor;
 
 /// Coverages this near to the threshold are computed again with more digits; a share of a cell. It holds for every
@@ -42,7 +43,7 @@ const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 /// let rectangle = Figure::rectangle(6.0, 3.0).at(4.0, 4.0).on(plane.sensor())?;
 /// let imprint = plane.touch(&rectangle);
 /// assert_eq!(imprint.count(), 6 * 3);
-/// assert_eq!(plane.coverage(4, 4), 1.0);
+/// assert_eq!(plane.coverages().get(4, 4), Some(1.0));
 /// # Ok::<(), ParameterError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -195,22 +196,10 @@ impl Plane {
         active
     }
 
-    /// Returns how much of a taxel's cell the shape of the last touch covers, 0 to 1; 0 for a taxel beyond the
-    /// sensor.
-    ///
-    /// Takes as long as [`Self::coverages`], which returns the coverages of all taxels.
-    pub fn coverage(&self, column: u8, row: u8) -> f64 {
-        let width = self.sensor.columns();
-        if column >= width || row >= self.sensor.rows() {
-            return 0.0;
-        }
-        self.coverages()[usize::from(row) * usize::from(width) + usize::from(column)]
-    }
-
-    /// Returns all coverages of the last touch in reading order, each 0 to 1.
-    pub fn coverages(&self) -> Vec<f64> {
+    /// How much of each taxel's cell the shape of the last touch covers, 0 to 1.
+    pub fn coverages(&self) -> Matrix<f64> {
         let width = usize::from(self.sensor.columns());
-        let mut all = vec![0.0; width * usize::from(self.sensor.rows())];
+        let mut all = Matrix::filled(self.sensor.size(), 0.0);
         let mut areas = self.areas.clone();
         self.ellipses.draw(&mut areas);
         let areas = areas.grid();
@@ -220,7 +209,7 @@ impl Plane {
             return all;
         }
         for row in areas.rows() {
-            let cells = &mut all[row * width..][columns.clone()];
+            let cells = &mut all.values_mut()[row * width..][columns.clone()];
             for (cell, area) in cells.iter_mut().zip(areas.row(row, &columns)) {
                 *cell = share(area);
             }

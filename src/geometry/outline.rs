@@ -165,7 +165,7 @@ impl<T: Real, P: Pen<T>> Pen<T> for Moving<'_, T, P> {
 /// let mut plane = Plane::new(Sensor::default());
 /// let imprint = plane.touch(&Flange { left: 2.0, top: 2.0, side: 6.0, bore: 1.5 });
 /// assert_eq!(imprint.count(), 6 * 6 - 4);
-/// let covered: f64 = plane.coverages().iter().sum();
+/// let covered: f64 = plane.coverages().values().iter().sum();
 /// assert!((covered - (36.0 - std::f64::consts::PI * 1.5 * 1.5)).abs() < 1e-9);
 /// ```
 ///
@@ -217,7 +217,7 @@ impl<S: Solid> Solid for &S {
 /// let mut plane = Plane::new(Sensor::default());
 /// let imprint = plane.touch(&kite);
 /// assert!(imprint.get(2, 4) && !imprint.get(1, 1));
-/// let covered: f64 = plane.coverages().iter().sum();
+/// let covered: f64 = plane.coverages().values().iter().sum();
 /// assert!((covered - 16.0).abs() < 1e-9);
 /// ```
 #[derive(Clone, Debug, PartialEq)]

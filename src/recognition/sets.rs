@@ -202,7 +202,7 @@ mod tests {
             let grid = &grid.grids()[0];
             let mut plane = crate::touch::Plane::new(*grid.sensor());
             plane.touch(&grid.placed(grid.pose(0)));
-            let area: f64 = plane.coverages().iter().sum();
+            let area: f64 = plane.coverages().values().iter().sum();
             assert!((area - 30.0).abs() < 0.2, "{}: {area}", shape.name);
         }
     }

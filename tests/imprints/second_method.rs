@@ -288,7 +288,7 @@ fn compare(plane: &mut Plane, solid: &(impl Solid + ToString), slow: &[f64]) -> 
     let coverages = plane.coverages();
     let mut ties = 0;
     let cells = (0..imprint.rows()).flat_map(|j| (0..imprint.columns()).map(move |i| (i, j)));
-    for (((column, row), &fast), &slow) in cells.zip(&coverages).zip(slow) {
+    for (((column, row), &fast), &slow) in cells.zip(coverages.values()).zip(slow) {
         let place = || {
             let (text, sensor) = (solid.to_string(), plane.sensor());
             format!("{text}, taxel {column}, {row}: {fast} and {slow}, {sensor:?}")

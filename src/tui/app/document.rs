@@ -15,6 +15,7 @@
 use crate::description::{Description, Region, main_region, regions};
 use crate::formats::{Name, StoredShape};
 use crate::imprint::Imprint;
+use crate::matrix::Matrix;
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::touch::{Plane, reaches_beyond};
@@ -110,8 +111,8 @@ impl Document {
 pub struct Reading {
     /// The active taxels.
     pub imprint: Imprint,
-    /// The covered fraction of each cell, in reading order; None for a matrix that is only drawn on.
-    pub coverages: Option<Vec<f64>>,
+    /// How much of each cell is covered; none of a matrix that is only drawn on.
+    pub coverages: Option<Matrix<f64>>,
     /// The regions: pieces and holes.
     pub regions: Vec<Region<'static>>,
     /// The index of the region that is described unless another one was chosen.
@@ -148,8 +149,7 @@ impl Reading {
 
     /// Returns the covered fraction of a cell; None on a matrix that is only drawn on.
     pub fn coverage(&self, column: u8, row: u8) -> Option<f64> {
-        let index = usize::from(row) * usize::from(self.imprint.columns()) + usize::from(column);
-        self.coverages.as_ref()?.get(index).copied()
+        self.coverages.as_ref()?.get(column, row)
     }
 
     /// Returns a region with its index: the chosen one if it exists, else the main one.
