@@ -25,12 +25,42 @@ pub struct AcquireOptions {
     pub baud: u32,
     /// Whether a connection or a serial line that cannot be opened yet is tried again each second.
     pub waits: bool,
-    /// Whether to read to the end as fast as possible, and then stop.
-    pub once: bool,
-    /// Whether to begin a recording again at its end.
-    pub repeat: bool,
-    /// The speed at which a recording is played, relative to its own; 1 if it is not above 0.
-    pub speed: f64,
+    /// How fast it is read, and what happens at its end.
+    pub playback: Playback,
+}
+
+/// How fast a source is read, and what happens at its end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum Playback {
+    /// As it comes. A recording is played at its own rate, and followed if it grows meanwhile.
+    #[default]
+    Live,
+    /// To the end as fast as possible, then stop.
+    Once,
+    /// A recording at another speed, or again and again; a stream as it comes.
+    Paced {
+        /// The speed relative to its own; 1 if it is not above 0.
+        speed: f64,
+        /// Whether it begins again at its end.
+        repeat: bool,
+    },
+}
+
+impl Playback {
+    /// A recording at that speed, again and again if it repeats; [`Self::Live`] for the speed 1 without repetition.
+    pub fn paced(speed: f64, repeat: bool) -> Self {
+        if repeat || speed != 1.0 {
+            Self::Paced { speed, repeat }
+        } else {
+            Self::Live
+        }
+    }
+
+    /// Whether a recording begins again at its end.
+    pub fn repeats(self) -> bool {
+        matches!(self, Self::Paced { repeat: true, .. })
+    }
 }
 
 impl Default for AcquireOptions {
@@ -42,9 +72,7 @@ impl Default for AcquireOptions {
             channel: None,
             baud: 115_200,
             waits: false,
-            once: false,
-            repeat: false,
-            speed: 1.0,
+            playback: Playback::Live,
         }
     }
 }

@@ -33,7 +33,7 @@ mod run;
 
 mod recorder;
 
-pub use event::{AcquireError, AcquireEvent, AcquireOptions};
+pub use event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
 #[cfg(feature = "tui")]
 pub(crate) use frame_rate::FrameRate;
 pub use growing_file::ReadAnew;

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::acquire::arrival_clock::ArrivalClock;
-use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
+use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
 use crate::acquire::followed_file::{self, FollowEnd, FollowedFile, Growth};
 use crate::acquire::recorder::description_beside;
 use crate::acquire::stream::Consumer;
@@ -58,11 +58,14 @@ struct Pace<'a> {
 
 impl Pace<'_> {
     fn new(options: &AcquireOptions) -> Self {
-        let is_speed = options.speed > 0.0;
+        let speed = match options.playback {
+            Playback::Paced { speed, .. } if speed > 0.0 => speed,
+            _ => 1.0,
+        };
         Self {
             begun: Instant::now(),
             step: STEP,
-            speed: if is_speed { options.speed } else { 1.0 },
+            speed,
             frames: 0,
             span: None,
             channel: ChannelChoice::new(options.channel.as_deref()),
@@ -160,8 +163,7 @@ pub(super) fn run(
     };
     let file = File::open(path).map_err(AcquireError::opening)?;
     let format = format_of(file, ReadOptions::default())?;
-    let is_paced = options.repeat || options.speed != AcquireOptions::default().speed;
-    if options.once || is_paced || !format.is_appended_to() {
+    if options.playback != Playback::Live || !format.is_appended_to() {
         player.play(path, format)
     } else {
         player.follow(path, format)
@@ -247,10 +249,11 @@ impl Player<'_, '_> {
     fn play(&self, path: &Path, format: RecordingFormat) -> Result<(), AcquireError> {
         let mut file = File::open(path).map_err(AcquireError::opening)?;
         let mut round = Round::default();
+        let repeats = self.options.playback.repeats();
         loop {
             let (pace, read) = self.round(format, &mut file, &mut round);
             // A recording without frames is not repeated: it would be read again and again without a pause.
-            let ends = read?.is_break() || !self.options.repeat || pace.frames == 0;
+            let ends = read?.is_break() || !repeats || pace.frames == 0;
             let consumer = &mut **self.consumer.borrow_mut();
             if ends
                 || pace.last_frame(self.stop, consumer).is_break()
@@ -336,8 +339,8 @@ impl Player<'_, '_> {
                 }
                 RecordingEvent::Frame(frame) if pace.has_no_shape(frame) => ControlFlow::Break(()),
                 RecordingEvent::Frame(mut frame) => {
-                    let given_up =
-                        !self.options.once && pace.wait(frame, self.stop, consumer).is_break();
+                    let given_up = self.options.playback != Playback::Once
+                        && pace.wait(frame, self.stop, consumer).is_break();
                     // The present content of a file has arrived at some other time.
                     let arrives = round.growth.is_some_and(Growth::has_caught_up);
                     let time = round.times.time(frame.time, arrives);
@@ -392,7 +395,10 @@ mod tests {
         let mut pace = Pace::new(&AcquireOptions {
             channel: Some("right".to_owned()),
             // A speed of 0 counts as 1.
-            speed: 0.0,
+            playback: Playback::Paced {
+                speed: 0.0,
+                repeat: false,
+            },
             ..AcquireOptions::default()
         });
         pace.step = 10_000.0;
@@ -571,8 +577,10 @@ mod tests {
         let path = folder.path().join("two.jsonl");
         std::fs::write(&path, "{\"frame\":[[1,2]]}\n{\"frame\":[[3,4]]}\n").expect("written");
         let options = AcquireOptions {
-            repeat: true,
-            speed: 1e9,
+            playback: Playback::Paced {
+                speed: 1e9,
+                repeat: true,
+            },
             ..AcquireOptions::default()
         };
         let mut numbers = Vec::new();

@@ -14,7 +14,7 @@ use crate::acquire::{playback, stream};
 /// use std::ops::ControlFlow;
 /// use std::sync::atomic::AtomicBool;
 ///
-/// use taxel::acquire::{AcquireEvent, AcquireOptions, FrameSource, acquire};
+/// use taxel::acquire::{AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
 /// use taxel::frame::{Processing, Rule};
 ///
 /// # let folder = tempfile::tempdir()?;
@@ -24,7 +24,7 @@ use crate::acquire::{playback, stream};
 /// let source = FrameSource::new(path.as_os_str());
 /// let mut options = AcquireOptions::default();
 /// // As fast as possible, then stop; without this a recording is played at its own rate.
-/// options.once = true;
+/// options.playback = Playback::Once;
 /// let mut processing = Processing::default();
 /// processing.rule = Some(Rule::at_least(5.0)?);
 /// let mut imprints = Vec::new();

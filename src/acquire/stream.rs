@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::acquire::arrival_clock::ArrivalClock;
 use crate::acquire::byte_input::{ByteInput, ReadOutcome};
-use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions};
+use crate::acquire::event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
 use crate::acquire::source::FrameSource;
 use crate::formats::stream::{StreamDecoder, StreamEvent, StreamOptions, StreamSink};
 
@@ -44,9 +44,9 @@ impl StreamClock {
     fn new(source: &FrameSource, options: &AcquireOptions) -> Self {
         let now = Instant::now();
         Self {
-            is_live: !options.once,
+            is_live: options.playback != Playback::Once,
             // The present content of a file has arrived at some other time.
-            timed: !options.once && !matches!(source, FrameSource::File(_)),
+            timed: options.playback != Playback::Once && !matches!(source, FrameSource::File(_)),
             last_frame: now,
             last_tick: now,
             frame_came: false,
@@ -72,7 +72,8 @@ pub(super) fn run(
         from_start: !source.comes_back(),
     };
     let mut decoder = StreamDecoder::new(stream);
-    let open: &Open<'_> = &|waiting| ByteInput::open(source, options.baud, options.once, waiting);
+    let once = options.playback == Playback::Once;
+    let open: &Open<'_> = &|waiting| ByteInput::open(source, options.baud, once, waiting);
     let opened = first_input(source, options, open, stop, &decoder, consumer)?;
     let Some(mut input) = opened else {
         return Ok(());
@@ -97,11 +98,11 @@ pub(super) fn run(
                 clock.times.rejoin();
                 continue;
             }
-            Ok(ReadOutcome::End) if source.comes_back() && !options.once => {
+            Ok(ReadOutcome::End) if source.comes_back() && !once => {
                 io::Error::new(io::ErrorKind::UnexpectedEof, "the other end has closed it")
             }
             Ok(ReadOutcome::End) => break,
-            Err(error) if source.comes_back() && !options.once => error,
+            Err(error) if source.comes_back() && !once => error,
             Err(error) => return Err(broken(&mut decoder, &mut clock, consumer, error)),
         };
         // The next bytes may begin inside a frame.

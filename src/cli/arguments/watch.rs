@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Command};
 
-use crate::acquire::AcquireOptions;
+use crate::acquire::{AcquireOptions, Playback};
 use crate::cli::arguments::flags::{self, option, switch, whole};
 use crate::cli::arguments::frames::{self, ProcessingArguments};
 use crate::cli::arguments::help::WATCH_EXAMPLES;
@@ -103,6 +103,15 @@ fn parse_speed(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "expected a number above 0, up to 1000000".to_owned())
 }
 
+/// How the source is played.
+fn playback(matches: &ArgMatches) -> Playback {
+    if matches.get_flag("once") {
+        return Playback::Once;
+    }
+    let speed = matches.get_one("speed").copied().unwrap_or(1.0);
+    Playback::paced(speed, matches.get_flag("loop"))
+}
+
 impl WatchArguments {
     /// Reads the arguments of [`command`].
     ///
@@ -123,9 +132,7 @@ impl WatchArguments {
         options.size = processing.size;
         options.channel.clone_from(&processing.channel);
         options.baud = matches.get_one("baud").copied().unwrap_or(options.baud);
-        options.once = matches.get_flag("once");
-        options.repeat = matches.get_flag("loop");
-        options.speed = matches.get_one("speed").copied().unwrap_or(options.speed);
+        options.playback = playback(matches);
         Ok(Self {
             source,
             options,

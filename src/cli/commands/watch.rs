@@ -19,9 +19,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use crate::acquire::{
-    AcquireError, AcquireEvent, AcquireOptions, FrameRecorder, FrameSource, acquire,
-};
+use crate::acquire::{AcquireError, AcquireEvent, FrameRecorder, FrameSource, Playback, acquire};
 use crate::cli::arguments::watch::WatchArguments;
 use crate::cli::commands::model;
 use crate::cli::commands::naming::FrameNamer;
@@ -136,7 +134,7 @@ pub(crate) fn watch(
         size: None,
         answered: 0,
         unfit: 0,
-        live: !asked.options.once && !matches!(source, FrameSource::File(_)),
+        live: asked.options.playback != Playback::Once && !matches!(source, FrameSource::File(_)),
         dropped: 0,
         reported: None,
         note,
@@ -157,7 +155,6 @@ pub(crate) fn watch(
 /// Refuses flags that have no effect for a source: those of serial lines for others, those of playing for a stream,
 /// and a channel that a recording does not have.
 fn check(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
-    let usual = AcquireOptions::default();
     // A serial line that is not plugged in may have any name.
     let is_missing = matches!(source, FrameSource::File(path) if !path.exists());
     if asked.baud_named && !is_missing && !matches!(source, FrameSource::Serial(_)) {
@@ -168,16 +165,12 @@ fn check(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
         return Err(CliError::Unused { flag, reason });
     }
     // A source that cannot be read is reported when it is watched.
-    if matches!(source.recording(&asked.options), Ok(None)) {
-        for (flag, is_given) in [
-            ("loop", asked.options.repeat),
-            ("speed", asked.options.speed != usual.speed),
-        ] {
-            if is_given {
-                let reason = "on a stream: it is for recordings".to_owned();
-                return Err(CliError::Unused { flag, reason });
-            }
-        }
+    if let Playback::Paced { repeat, .. } = asked.options.playback
+        && matches!(source.recording(&asked.options), Ok(None))
+    {
+        let flag = if repeat { "loop" } else { "speed" };
+        let reason = "on a stream: it is for recordings".to_owned();
+        return Err(CliError::Unused { flag, reason });
     }
     check_channel(source, asked)
 }

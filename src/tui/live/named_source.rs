@@ -7,6 +7,7 @@
 
 use std::fmt;
 
+use crate::acquire::Playback;
 use crate::formats::stream::StreamFormat;
 use crate::frame::{FrameError, FrameSize, Rule, RuleOrigin, SetRule};
 use crate::parameter::{UnknownName, number};
@@ -120,7 +121,9 @@ impl NamedSource {
         options.format = self.format.or(options.format);
         options.baud = self.baud.unwrap_or(options.baud);
         options.channel = self.channel.clone().or(options.channel.take());
-        options.speed = self.speed.unwrap_or(options.speed);
+        if let Some(speed) = self.speed {
+            options.playback = Playback::paced(speed, options.playback.repeats());
+        }
         if let Some(rule) = self.rule {
             let least = request.rule.as_ref().map_or(0, |set| set.least);
             let from = RuleOrigin::Flag;
@@ -154,8 +157,14 @@ mod tests {
             (Some(FrameSize::of(5, 4)), 9600)
         );
         assert_eq!(
-            (options.channel.as_deref(), options.speed),
-            (Some("left"), 0.5)
+            (options.channel.as_deref(), options.playback),
+            (
+                Some("left"),
+                Playback::Paced {
+                    speed: 0.5,
+                    repeat: false
+                }
+            )
         );
         let rule = whole.rule.expect("a rule");
         assert_eq!(rule.rule, Rule::at_least(10.0).expect("in range"));

@@ -12,7 +12,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use crate::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, acquire};
+use crate::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
 use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
 use crate::formats::stream::StreamCounts;
 use crate::formats::value::decimal;
@@ -150,7 +150,7 @@ impl FrameFeed {
         let mut consumer = |event: AcquireEvent<'_>| {
             let is_time = matches!(event, AcquireEvent::Tick(_) | AcquireEvent::Silent { .. });
             // A script has no clock: the time between its frames is its own, not a silence of the source.
-            if is_time && options.once {
+            if is_time && options.playback == Playback::Once {
                 return ControlFlow::Continue(());
             }
             if self.take_in(event, request) {

@@ -14,7 +14,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
-use crate::acquire::FrameSource;
+use crate::acquire::{FrameSource, Playback};
 use crate::tui::live::message::FrameBatch;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::frames::feed::FrameFeed;
@@ -43,7 +43,7 @@ impl ScriptSource {
         take: &mut dyn FnMut(FrameBatch) -> ControlFlow<()>,
     ) {
         let mut options = self.request.options.clone();
-        (options.once, options.repeat) = (true, false);
+        options.playback = Playback::Once;
         // The skipped frames were recorded before.
         let record_from = |seen: usize| {
             if seen == self.skipped {
