@@ -39,6 +39,6 @@ pub(crate) use frame_rate::FrameRate;
 pub use growing_file::ReadAnew;
 #[cfg(feature = "tui")]
 pub(crate) use recorder::name_description;
-pub use recorder::{FrameRecorder, RecorderError, description_beside};
+pub use recorder::{DescriptionError, FrameRecorder, RecorderError, description_beside};
 pub use run::acquire;
 pub use source::FrameSource;

@@ -377,7 +377,8 @@ fn description_of(
 ) -> ControlFlow<(), Option<RecordingMetadata>> {
     match description_beside(path).transpose() {
         Ok(description) => ControlFlow::Continue(description),
-        Err(complaint) => {
+        Err(error) => {
+            let complaint = error.to_string();
             let note = RecordingNote::Description { complaint };
             consumer(AcquireEvent::Note(&note))?;
             ControlFlow::Continue(None)

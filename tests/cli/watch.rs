@@ -475,7 +475,10 @@ fn the_description_of_a_recording_is_read_with_it() {
             "{\"format\":\"taxel-touch/1\",\"rule\":{\"percent\":0}}",
             "touch.json: rule: ",
         ),
-        ("{\"format\":\"taxel-touch/1\",\"ru", "touch.json: the end "),
+        (
+            "{\"format\":\"taxel-touch/1\",\"ru",
+            "touch.json: line 1, column 29: the end ",
+        ),
         ("{\"format\":1}", ""),
     ] {
         fs::write(file.with_extension("json"), text).expect("written");

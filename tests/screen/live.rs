@@ -713,7 +713,7 @@ fn a_broken_description_beside_a_recording_is_reported() {
     page.frames(1);
     shows(
         &page,
-        &["frame 0", "a.json: found the number 3, expected a string"],
+        &["frame 0", "a.json: line 1, column 34: found the number 3"],
     );
 }
 

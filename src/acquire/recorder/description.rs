@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use crate::acquire::recorder::error::{RecorderError, refused};
+use crate::acquire::recorder::error::{DescriptionError, RecorderError, refused};
 use crate::formats::recording::RecordingMetadata;
 use crate::storage::{Existing, FinishedFile};
 
@@ -90,25 +90,27 @@ pub(super) fn is_array(path: &Path) -> bool {
 /// something else.
 ///
 /// # Errors
-/// Returns a message, headed by the path, if the description is invalid or cannot be read.
-pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, String>> {
+/// What is wrong with it, or why it cannot be read.
+pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, DescriptionError>> {
     if !is_array(path) {
         return None;
     }
-    let beside = path.with_extension("json");
+    let path = path.with_extension("json");
     let content = || {
         let mut bytes = Vec::new();
         // Opening a pipe would wait for its writer.
-        if beside.metadata()?.is_file() {
-            let file = File::open(&beside)?;
+        if path.metadata()?.is_file() {
+            let file = File::open(&path)?;
             file.take(LARGEST_DESCRIPTION).read_to_end(&mut bytes)?;
         }
         Ok::<_, io::Error>(bytes)
     };
-    let read = match content() {
-        Ok(bytes) => RecordingMetadata::read(&bytes)?,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
-        Err(error) => Err(format!("cannot read: {error}")),
-    };
-    Some(read.map_err(|error| format!("{}: {error}", beside.display())))
+    match content() {
+        Ok(bytes) => {
+            let read = RecordingMetadata::read(&bytes)?;
+            Some(read.map_err(|error| DescriptionError::Broken { path, error }))
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        Err(error) => Some(Err(DescriptionError::Io { path, error })),
+    }
 }

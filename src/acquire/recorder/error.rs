@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use crate::formats::recording::MetadataError;
 use crate::storage::FileError;
 
 /// The error for frames that cannot be recorded.
@@ -40,6 +41,28 @@ pub enum RecorderError {
     IsSource {
         /// The file.
         path: PathBuf,
+    },
+}
+
+/// Why the description beside an array cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DescriptionError {
+    /// The system refuses.
+    #[error("{}: cannot read: {error}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system reports.
+        error: io::Error,
+    },
+    /// It is damaged, or was changed.
+    #[error("{}: {error}", path.display())]
+    Broken {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        error: MetadataError,
     },
 }
 

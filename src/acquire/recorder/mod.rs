@@ -24,7 +24,7 @@ use record_array::{RecordArray, empty};
 
 pub use description::description_beside;
 pub(crate) use description::name_description;
-pub use error::RecorderError;
+pub use error::{DescriptionError, RecorderError};
 
 use crate::acquire::frame_rate::FrameRate;
 #[cfg(feature = "tui")]

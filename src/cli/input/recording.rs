@@ -62,7 +62,7 @@ impl RecordingFile {
                 let complaint = unended(path, &description);
                 (Some(description), complaint)
             }
-            Some(Err(complaint)) => (None, Some(complaint)),
+            Some(Err(error)) => (None, Some(error.to_string())),
             None => (None, None),
         };
         match opened() {

@@ -119,13 +119,55 @@ fn rule_or_null<S: Serializer>(
     }
 }
 
+/// Why a description is refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MetadataError {
+    /// Not JSON, or a key with something other than its value.
+    #[error("line {line}, column {column}: {message}")]
+    Json {
+        /// Counted from 1.
+        line: usize,
+        /// Counted from 1.
+        column: usize,
+        /// What is wrong.
+        message: String,
+    },
+    /// A rule or a tare that cannot be one.
+    #[error("{key}: {message}")]
+    Value {
+        /// Its key.
+        key: &'static str,
+        /// What is wrong.
+        message: String,
+    },
+}
+
+impl MetadataError {
+    fn json(error: &serde_json::Error) -> Self {
+        Self::Json {
+            line: error.line().max(1),
+            column: error.column().max(1),
+            message: json::message(error),
+        }
+    }
+
+    /// The same of the value of a key.
+    fn of_key<E: ToString>(key: &'static str) -> impl FnOnce(E) -> Self {
+        move |error| Self::Value {
+            key,
+            message: error.to_string(),
+        }
+    }
+}
+
 impl RecordingMetadata {
     /// Reads a description. Returns None if the bytes are something else, which may well be the case beside an array;
     /// a torn description is recognised by the name of its format.
     ///
     /// # Errors
-    /// Returns a message of one sentence if the description is invalid.
-    pub fn read(bytes: &[u8]) -> Option<Result<Self, String>> {
+    /// What is wrong with it, and where.
+    pub fn read(bytes: &[u8]) -> Option<Result<Self, MetadataError>> {
         #[derive(Deserialize)]
         struct Format {
             format: String,
@@ -139,22 +181,22 @@ impl RecordingMetadata {
         is_own.then(|| {
             let described = serde_json::from_slice::<Described>(bytes);
             described
-                .map_err(|error| json::message(&error))
+                .map_err(|error| MetadataError::json(&error))
                 .and_then(Self::of)
         })
     }
 
-    fn of(described: Described) -> Result<Self, String> {
+    fn of(described: Described) -> Result<Self, MetadataError> {
         let rule = match described.rule {
             None => None,
             Some(DescribedRule::Set(rule)) => Some(rule),
             Some(DescribedRule::Noise { noise, least }) => Some(SetRule {
-                rule: Rule::noise(noise).map_err(|error| format!("rule: {error}"))?,
+                rule: Rule::noise(noise).map_err(MetadataError::of_key("rule"))?,
                 least,
                 from: RuleOrigin::File,
             }),
             Some(DescribedRule::Other(record)) => Some(SetRule {
-                rule: record.rule().map_err(|error| format!("rule: {error}"))?,
+                rule: record.rule().map_err(MetadataError::of_key("rule"))?,
                 least: record.least.unwrap_or_default(),
                 from: RuleOrigin::File,
             }),
@@ -162,13 +204,13 @@ impl RecordingMetadata {
         let positive = |value: &f64| *value > 0.0 && *value <= LARGEST_VALUE;
         let tare = match (described.tare, described.tare_frames) {
             (Some(rows), Some(frames)) if frames > 0 => {
-                let baseline = matrix(&rows).map_err(|error| format!("tare: {error}"))?;
+                let baseline = matrix(&rows).map_err(MetadataError::of_key("tare"))?;
                 let spread = described.tare_spread.as_ref();
                 let spread = spread.map(|rows| matrix(rows)).transpose();
-                let spread = spread.map_err(|error| format!("tare_spread: {error}"))?;
+                let spread = spread.map_err(MetadataError::of_key("tare_spread"))?;
                 let step = described.tare_step.filter(positive);
                 let tare = Tare::from_parts(baseline, spread, step, frames);
-                Some(tare.map_err(|error| format!("tare: {error}"))?)
+                Some(tare.map_err(MetadataError::of_key("tare"))?)
             }
             _ => None,
         };
@@ -289,7 +331,8 @@ mod tests {
         let wrong = |rest: &str| {
             let text = format!("{{\"format\":\"{FORMAT}\",{rest}}}");
             let read = RecordingMetadata::read(text.as_bytes()).expect("a description");
-            read.err().map_or(String::from("right"), |error| error)
+            read.err()
+                .map_or(String::from("right"), |error| error.to_string())
         };
         assert_eq!(wrong("\"marks\":[]"), "right");
         assert!(wrong("\"rule\":{\"percent\":0}").contains("above 0"));
@@ -297,6 +340,7 @@ mod tests {
             wrong("\"tare_frames\":1,\"tare\":[[1],[2,3]]").contains("tare: row 2 has 2 values")
         );
         let unit = wrong("\"unit\":3");
-        assert_eq!(unit, "found the number 3, expected a string");
+        let expected = "line 1, column 34: found the number 3, expected a string";
+        assert_eq!(unit, expected);
     }
 }

@@ -93,7 +93,7 @@ pub use answer::FrameAnswer;
 pub use channel_choice::ChannelChoice;
 #[cfg(feature = "cli")]
 pub(crate) use delimited::read_rows;
-pub use description::{FrameMark, RecordedView, RecordingMetadata};
+pub use description::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
 #[cfg(feature = "tui")]
 pub(crate) use detect::may_be_recording;
 #[cfg(all(feature = "acquire", unix))]

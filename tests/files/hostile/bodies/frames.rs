@@ -51,7 +51,7 @@ pub(crate) fn description(bytes: &[u8]) -> bool {
             assert_eq!(again.expect("it is written"), text);
             true
         }
-        Some(Err(error)) => refused(&error),
+        Some(Err(error)) => refused(&error.to_string()),
         None => false,
     }
 }
