@@ -10,7 +10,8 @@ use crate::acquire::RecorderError;
 use crate::cli::input::content::InputError;
 use crate::cli::output::charset::Charset;
 use crate::formats::Name;
-use crate::formats::recording::RecordingError;
+use crate::formats::recording::{RecordingError, RecordingNote};
+use crate::formats::stream::StreamRefusal;
 use crate::parameter::ParameterError;
 use crate::parameter::number::short;
 use crate::pose::GridError;
@@ -82,7 +83,7 @@ pub(crate) enum CliError {
     #[error("cannot write to standard output: {0}")]
     Write(io::Error),
     /// An operation of the library failed: no such shape, no folder, a damaged file.
-    #[error("{}", shortened_message(&.0.to_string()))]
+    #[error("{}{}", shortened_message(&.0.to_string()), place_advice(.0))]
     Library(#[from] LibraryError),
     /// An argument is neither the name of a shape nor a file.
     #[error("no stored shape and no file is called {name:?}{near}")]
@@ -278,7 +279,7 @@ pub(crate) enum CliError {
     #[error("{}", with_flag(.0))]
     Grid(#[from] GridError),
     /// A recording is damaged, or the file is not a recording.
-    #[error("{name}: {}", shortened_message(&.error.to_string()))]
+    #[error("{name}: {}{}", shortened_message(&.error.to_string()), size_advice(.error))]
     Recording {
         /// The recording's name.
         name: String,
@@ -366,6 +367,41 @@ fn advice(error: &RecorderError) -> &'static str {
     }
 }
 
+/// What helps where there is no place for the library, as the end of a message.
+fn place_advice(error: &LibraryError) -> &'static str {
+    match error {
+        LibraryError::NoPlace => "; name a folder with --library DIR or TAXEL_LIBRARY",
+        _ => "",
+    }
+}
+
+/// What helps where a recording does not say how its values are arranged, as the end of a message.
+fn size_advice(error: &RecordingError) -> &'static str {
+    if error.is_of_size() {
+        "; give --rows and --columns"
+    } else {
+        ""
+    }
+}
+
+/// What helps where a stream cannot be decoded as it comes, as the end of a message.
+pub(crate) fn stream_advice(refusal: StreamRefusal) -> &'static str {
+    match refusal {
+        StreamRefusal::Unknown => "; --format names one",
+        StreamRefusal::Size => "; give --rows and --columns, and --format if it is text",
+        StreamRefusal::Shape { .. } => "; give --rows and --columns",
+        StreamRefusal::Cut => "",
+    }
+}
+
+/// What helps where something odd in a recording may be a mistake, as the end of a message.
+pub(crate) fn note_advice(note: &RecordingNote) -> &'static str {
+    match note {
+        RecordingNote::Flat { .. } => "; if so, give --rows and --columns",
+        _ => "",
+    }
+}
+
 /// Returns the message about ranges. A number out of range is named by its flag, as in [`CliError::Range`].
 fn with_flag(error: &GridError) -> String {
     match error {
@@ -413,5 +449,26 @@ impl CliError {
             Self::Usage(error) => Some(charset.lines(&error.render().to_string())),
             _ => Some(format!("error: {}\n", charset.line(&self.to_string()))),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags_follow_what_the_library_says() {
+        let recording = |error| {
+            let name = "a.csv".to_owned();
+            CliError::Recording { name, error }.to_string()
+        };
+        let advice = "; give --rows and --columns";
+        let expected = format!("a.csv: 1 value a frame, but no rows and columns{advice}");
+        assert_eq!(recording(RecordingError::Shape { values: 1 }), expected);
+        let columns = recording(RecordingError::Columns { numbers: 2 });
+        assert!(columns.ends_with(advice), "{columns}");
+        assert!(!recording(RecordingError::Unknown).contains("--"));
+        let place = CliError::Library(LibraryError::NoPlace).to_string();
+        assert!(place.ends_with("--library DIR or TAXEL_LIBRARY"), "{place}");
     }
 }

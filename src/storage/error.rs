@@ -155,6 +155,6 @@ pub enum LibraryError {
     #[error(transparent)]
     System(#[from] FileError),
     /// No folder was named, and the system does not say where a user's data belong.
-    #[error("no home folder: name a folder for the library with --library DIR or TAXEL_LIBRARY")]
+    #[error("no home folder to keep the library in")]
     NoPlace,
 }

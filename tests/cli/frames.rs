@@ -947,3 +947,17 @@ fn only_the_first_twenty_warnings_are_shown() {
     assert_eq!(some[..20], all[..]);
     assert_eq!(some[20..], ["warning: standard input: 2 more of these"]);
 }
+
+#[test]
+fn an_array_that_may_be_many_frames_is_noted_with_the_flags_that_say_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("flat.npy");
+    std::fs::write(&path, array("(100, 16)", false, &[0.0; 1600])).expect("written");
+    let path = path.to_str().expect("UTF-8");
+    let expected = "taken as one frame, though each of its 100 rows may be a frame of 16 values; if so, give --rows and \
+                    --columns\n";
+    for line in ["frames", "watch --once --at-least 1"] {
+        let run = taxel(&format!("{line} {path}"), "");
+        assert!(run.stderr.contains(expected), "{line}: {}", run.stderr);
+    }
+}

@@ -7,7 +7,7 @@
 use std::ops::ControlFlow;
 
 use crate::cli::commands::watch::no_channel;
-use crate::cli::error::CliError;
+use crate::cli::error::{CliError, note_advice};
 use crate::cli::input::recording::RecordingFile;
 use crate::cli::output::recording_list::ListedChannel;
 use crate::formats::recording::{RecordingError, RecordingEvent, RecordingFormat, RecordingNote};
@@ -82,7 +82,8 @@ impl Scan {
 
     /// Returns the oddities of the recording, for standard error.
     pub(super) fn warnings(&self, name: &str) -> Vec<String> {
-        let lines = self.notes.iter().map(|note| format!("{name}: {note}"));
+        let line = |note| format!("{name}: {note}{}", note_advice(note));
+        let lines = self.notes.iter().map(line);
         let mut lines: Vec<String> = lines.collect();
         if self.more_notes > 0 {
             lines.push(format!("{name}: {} more of these", self.more_notes));

@@ -23,7 +23,7 @@ use crate::acquire::{AcquireError, AcquireEvent, FrameRecorder, FrameSource, Pla
 use crate::cli::arguments::watch::WatchArguments;
 use crate::cli::commands::model;
 use crate::cli::commands::naming::FrameNamer;
-use crate::cli::error::CliError;
+use crate::cli::error::{CliError, note_advice, stream_advice};
 use crate::cli::input::processing;
 use crate::cli::input::recording::RecordingFile;
 use crate::cli::input::shapes::Shelf;
@@ -319,7 +319,7 @@ impl Watcher<'_> {
                 Ok(())
             }
             AcquireEvent::Note(note) => {
-                self.say(&format!("warning: {note}"));
+                self.say(&format!("warning: {note}{}", note_advice(note)));
                 Ok(())
             }
             AcquireEvent::Anew(how) => {
@@ -551,10 +551,10 @@ impl Watcher<'_> {
     fn shaped(&self, counts: &StreamCounts) -> Result<(), CliError> {
         match counts.refusal() {
             // An echo that leaves out values of some messages is refused too, since the others are not all frames.
-            None if counts.cut => Err(self.refused(&StreamRefusal::Cut.to_string())),
+            None if counts.cut => Err(self.undecoded(StreamRefusal::Cut)),
             None => Ok(()),
             Some(StreamRefusal::Unknown) => Err(self.unknown()),
-            Some(refusal) => Err(self.refused(&refusal.to_string())),
+            Some(refusal) => Err(self.undecoded(refusal)),
         }
     }
 
@@ -565,7 +565,12 @@ impl Watcher<'_> {
             let error = RecordingError::Unknown;
             return CliError::Recording { name, error };
         }
-        self.refused(&StreamRefusal::Unknown.to_string())
+        self.undecoded(StreamRefusal::Unknown)
+    }
+
+    /// That the stream cannot be decoded as it comes, and what helps.
+    fn undecoded(&self, refusal: StreamRefusal) -> CliError {
+        self.refused(&format!("{refusal}{}", stream_advice(refusal)))
     }
 
     /// Reports the number of dropped frames if it has grown, with the bytes of the last one.

@@ -31,9 +31,9 @@ pub enum RecordingError {
         /// What was found and what was expected.
         message: String,
     },
-    /// A file that does not say how its values are arranged: it has a list of cells, without rows. The rows and
-    /// columns can be given with [`ReadOptions`](super::ReadOptions).
-    #[error("{} a frame, but no rows and columns; give --rows and --columns", counted(*values, "value"))]
+    /// The file does not say how its values are arranged: a list of cells, without rows. Their size can be named with
+    /// [`ReadOptions`](super::ReadOptions).
+    #[error("{} a frame, but no rows and columns", counted(*values, "value"))]
     Shape {
         /// The number of values of a frame.
         values: u64,
@@ -41,7 +41,7 @@ pub enum RecordingError {
     /// A table without a header, which does not say how its values are arranged: not all numbers of a line need be
     /// values.
     #[error(
-        "{} a line, but no rows and columns; give --rows and --columns (a frame number and a time may be among the numbers)",
+        "{} a line, but no rows and columns (a frame number and a time may be among the numbers)",
         counted(*numbers, "number")
     )]
     Columns {

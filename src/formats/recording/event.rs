@@ -277,8 +277,7 @@ impl fmt::Display for RecordingNote {
             ),
             Self::Flat { rows, columns } => write!(
                 f,
-                "an array of {rows} × {columns}, taken as one frame; if each of its {rows} rows is a frame of {columns} values, \
-                 give --rows and --columns"
+                "an array of {rows} × {columns}, taken as one frame, though each of its {rows} rows may be a frame of {columns} values"
             ),
             Self::TimeUnit { unit } => {
                 write!(

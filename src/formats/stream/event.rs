@@ -186,14 +186,11 @@ impl StreamCounts {
 pub enum StreamRefusal {
     /// Text without a line of numbers.
     #[error(
-        "not a stream of a known format: expected lines of numbers, JSON lines, ros2 topic echo, FlexiTac or MatSense; --format \
-         names one"
+        "not a stream of a known format: expected lines of numbers, JSON lines, ros2 topic echo, FlexiTac or MatSense"
     )]
     Unknown,
     /// Bytes that may be values, in frames of any size.
-    #[error(
-        "the stream does not state the size of a frame; give --rows and --columns, and --format if it is text"
-    )]
+    #[error("the stream does not state the rows and columns of a frame")]
     Size,
     /// Lists of values, in rows of any length.
     #[error("{}", RecordingError::Shape { values: *values })]

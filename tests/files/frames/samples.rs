@@ -69,7 +69,7 @@ fn every_format_gives_the_same_imprints() {
         assert_eq!(second.expect(name).time, time, "{name}");
         if named {
             let error = recorded(&bytes, None).error.expect(name).to_string();
-            assert!(error.contains("--rows and --columns"), "{name}: {error}");
+            assert!(error.contains("no rows and columns"), "{name}: {error}");
         }
     }
 }
@@ -453,8 +453,7 @@ fn an_array_of_two_axes_that_is_larger_than_any_frame_has_a_note() {
         let notes: Vec<String> = found.notes.iter().map(ToString::to_string).collect();
         (found.frames.len(), notes)
     };
-    let note = "an array of 300 × 256, taken as one frame; if each of its 300 rows is a frame of 256 values, give --rows \
-                and --columns";
+    let note = "an array of 300 × 256, taken as one frame, though each of its 300 rows may be a frame of 256 values";
     assert_eq!(
         notes("(300, 256)", 300 * 256, None),
         (1, vec![note.to_owned()])

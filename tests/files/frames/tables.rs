@@ -609,7 +609,11 @@ fn the_time_of_a_line_of_json_may_come_after_many_other_keys() {
 #[test]
 fn single_rows_between_empty_lines_need_given_rows_and_columns() {
     let found = recorded(b"1,2\n\n3,4\n\n5,6\n\n", None);
-    assert!(error(&found).contains("--rows"), "{}", error(&found));
+    assert!(
+        error(&found).contains("no rows and columns"),
+        "{}",
+        error(&found)
+    );
     assert_eq!(values("1,2\n\n3,4\n\n5,6\n\n", Some((1, 2))).len(), 3);
 }
 

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use crate::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
 use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
-use crate::formats::stream::StreamCounts;
+use crate::formats::stream::{StreamCounts, StreamRefusal};
 use crate::formats::value::decimal;
 use crate::frame::Frame;
 use crate::storage::Existing;
@@ -287,12 +287,16 @@ fn reason(error: &AcquireError) -> String {
 /// sends nothing.
 fn silence(counts: &StreamCounts, bytes_per_second: f64) -> String {
     let hint = match counts.refusal() {
+        Some(StreamRefusal::Unknown) => FORMAT_HINT,
         Some(refusal) if refusal.is_of_size() => SIZE_HINT,
         _ => "",
     };
     let what = counts.silence(bytes_per_second);
     format!("no frame for more than 2 s: {what}{hint}")
 }
+
+/// Where the format is given.
+const FORMAT_HINT: &str = "; after Esc, add one to :watch, as in --format lines";
 
 /// The hint where to give rows and columns.
 const SIZE_HINT: &str = "; after Esc, add them to :watch, as in --rows R --columns C";
