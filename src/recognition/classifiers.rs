@@ -9,6 +9,8 @@
 //!
 //! Source: R. O. Duda, P. E. Hart and D. G. Stork, *Pattern Classification*, 2001, chapters 2 to 4.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
@@ -21,7 +23,7 @@ use crate::parameter::number::share;
 use crate::recognition::confusion::ConfusionMatrix;
 use crate::recognition::evaluation::Evaluation;
 use crate::recognition::given::{GivenTable, ShapeDescriptor};
-use crate::recognition::model::Model;
+use crate::recognition::model::{Model, float};
 use crate::recognition::simulation::Draw;
 use crate::recognition::templates::Templates;
 
@@ -187,7 +189,7 @@ impl Classifier {
             evaluation,
             features,
             dropped,
-            sample: (self == Self::Knn).then_some(PoseSample {
+            sample: (self == Self::Knn && is_drawn(model, settings)).then_some(PoseSample {
                 per_shape: settings.sample,
                 seed: settings.seed,
             }),
@@ -497,28 +499,46 @@ fn moments(model: &Model, column: &[f64]) -> (f64, f64) {
     (mean, mean_of(&|value| (value - mean) * (value - mean)))
 }
 
-/// Touches drawn at random.
+/// Whether fewer poses are drawn than each shape has.
+fn is_drawn(model: &Model, settings: &ClassifierSettings) -> bool {
+    (settings.sample as u64) < model.poses()
+}
+
+/// Touches that vote: some drawn at random, or all.
 struct Sample {
-    /// The number of the key and the number of the shape of each touch.
-    touches: Vec<(usize, usize)>,
+    /// The number of a key, a shape that leaves it, and in how many of the touches.
+    touches: Vec<(usize, usize, u64)>,
     shapes: usize,
 }
 
 impl Sample {
     fn new(model: &Model, settings: &ClassifierSettings) -> Self {
         let shapes = model.shapes().len();
+        let touches = if is_drawn(model, settings) {
+            Self::drawn(model, settings)
+        } else {
+            let own = |key| {
+                let counts = model.counts(key).iter();
+                counts.map(move |count| (key, usize::from(count.shape), count.poses))
+            };
+            (0..model.keys().len()).flat_map(own).collect()
+        };
+        Self { touches, shapes }
+    }
+
+    /// Touches that are drawn, those with the same key side by side.
+    fn drawn(model: &Model, settings: &ClassifierSettings) -> Vec<(usize, usize, u64)> {
         let mut random = Pcg64::seed_from_u64(settings.seed);
-        let mut sample = Vec::new();
+        let mut votes = BTreeMap::new();
         for (shape, draw) in Draw::all(model, |_| 1).iter().enumerate() {
-            let keys = (0..settings.sample).filter_map(|_| draw.key(&mut random));
-            sample.extend(keys.map(|key| (key, shape)));
+            for key in (0..settings.sample).filter_map(|_| draw.key(&mut random)) {
+                *votes.entry((key, shape)).or_insert(0) += 1;
+            }
         }
-        // Touches with the same key stand side by side, so that their distance is computed once.
-        sample.sort_unstable();
-        Self {
-            touches: sample,
-            shapes,
-        }
+        let votes = votes.into_iter();
+        votes
+            .map(|((key, shape), votes)| (key, shape, votes))
+            .collect()
     }
 
     /// Returns minus the votes of each shape. All touches as near as the last neighbour vote too, since many touches
@@ -526,8 +546,8 @@ impl Sample {
     fn scores(&self, table: &FeatureTable, neighbours: usize, key: usize) -> Scores {
         let row = table.row(key);
         let mut last = (usize::MAX, 0.0);
-        let mut distances: Vec<(f64, usize)> = Vec::with_capacity(self.touches.len());
-        for &(other, shape) in &self.touches {
+        let mut distances: Vec<(f64, usize, u64)> = Vec::with_capacity(self.touches.len());
+        for &(other, shape, votes) in &self.touches {
             if other != last.0 {
                 let parts = row.iter().zip(table.row(other));
                 last = (
@@ -535,19 +555,24 @@ impl Sample {
                     parts.map(|(one, two)| (one - two) * (one - two)).sum(),
                 );
             }
-            distances.push((last.1, shape));
+            distances.push((last.1, shape, votes));
         }
         let mut scores = vec![0.0; self.shapes];
         let Some(rank) = neighbours.min(distances.len()).checked_sub(1) else {
             return scores;
         };
-        let order = |one: &(f64, usize), other: &(f64, usize)| one.0.total_cmp(&other.0);
-        let farthest = distances.select_nth_unstable_by(rank, order).1.0;
-        for (_, shape) in distances
-            .iter()
-            .filter(|(distance, _)| *distance <= farthest)
-        {
-            scores[*shape] -= 1.0;
+        let order = |one: &(f64, usize, u64), other: &(f64, usize, u64)| one.0.total_cmp(&other.0);
+        // Each has a vote at least, so the last neighbour is among as many of them.
+        distances.select_nth_unstable_by(rank, order);
+        distances[..=rank].sort_unstable_by(order);
+        let mut nearer = 0;
+        let last = distances[..=rank].iter().find(|(_, _, votes)| {
+            nearer += u128::from(*votes);
+            nearer >= neighbours as u128
+        });
+        let farthest = last.unwrap_or(&distances[rank]).0;
+        for (_, shape, votes) in distances.iter().filter(|own| own.0 <= farthest) {
+            scores[*shape] -= float(*votes);
         }
         scores
     }
@@ -561,6 +586,33 @@ mod tests {
     use crate::recognition::sets::GridSteps;
     use crate::recognition::training::Training;
     use crate::sensor::Sensor;
+
+    #[test]
+    fn a_sample_of_more_poses_than_a_shape_has_is_all_of_them() {
+        let sensor = Sensor::default();
+        let shapes = [
+            ("square", Figure::rectangle(3.0, 3.0).on(&sensor)),
+            ("bar", Figure::rectangle(6.0, 3.0).on(&sensor)),
+        ];
+        let shapes = shapes.map(|(name, figure)| NamedShape::new(name, figure.expect("in range")));
+        let steps = GridSteps::new(10, 45).expect("divisors");
+        let training = Training::fitting(shapes.to_vec(), steps).expect("they fit");
+        let model = training.run().expect("not stopped");
+        let reached = |sample, seed| {
+            let settings = ClassifierSettings {
+                sample,
+                seed,
+                neighbours: 3,
+                ..ClassifierSettings::default()
+            };
+            Classifier::Knn.evaluate(&model, &settings)
+        };
+        let all = reached(usize::MAX, 0);
+        assert_eq!((&all, all.sample), (&reached(usize::MAX, 1), None));
+        let some = reached(5, 0);
+        assert_eq!(some.sample.map(|sample| sample.per_shape), Some(5));
+        assert_ne!(some.evaluation, all.evaluation);
+    }
 
     #[test]
     fn ties_go_to_the_first() {
