@@ -135,6 +135,7 @@ impl StoredShape {
     }
 }
 
+/// Only written: [`StoredShape::read`] reads it.
 impl Serialize for StoredShape {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;

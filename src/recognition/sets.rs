@@ -160,7 +160,11 @@ impl Training<'_> {
     ///
     /// # Errors
     /// Returns [`TrainingError::Large`] if no sensor is large enough, or the errors of [`Training::new`].
-    pub fn fitting(shapes: Vec<NamedShape>, steps: GridSteps) -> Result<Self, TrainingError> {
+    pub fn fitting(
+        shapes: impl IntoIterator<Item = NamedShape>,
+        steps: GridSteps,
+    ) -> Result<Self, TrainingError> {
+        let shapes: Vec<NamedShape> = shapes.into_iter().collect();
         let mut given = GivenRanges::default();
         given[Axis::Angle] = Some(steps.angles());
         let sources: Vec<&Source> = shapes.iter().map(|shape| &shape.source).collect();

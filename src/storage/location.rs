@@ -25,7 +25,8 @@ pub fn folder(asked: Option<PathBuf>, variable: Option<OsString>) -> Result<Path
 }
 
 /// Replaces `~/` at the start of a path by the user's home folder; None if that is not known.
-pub fn below_home(path: &str) -> Option<PathBuf> {
+#[cfg(feature = "tui")]
+pub(crate) fn below_home(path: &str) -> Option<PathBuf> {
     match path.strip_prefix("~/") {
         Some(rest) => directories::BaseDirs::new().map(|own| own.home_dir().join(rest)),
         None => Some(PathBuf::from(path)),

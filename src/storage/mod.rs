@@ -50,7 +50,7 @@ mod library;
 #[cfg(feature = "library")]
 mod journal;
 
-#[cfg(feature = "library")]
+#[cfg(feature = "tui")]
 mod remembered;
 
 #[cfg(feature = "sweep")]
@@ -75,8 +75,8 @@ pub(crate) use temporary::ScratchFolder;
 #[cfg(feature = "library")]
 pub use error::LibraryError;
 
-#[cfg(feature = "library")]
-pub use remembered::RememberedFile;
+#[cfg(feature = "tui")]
+pub(crate) use remembered::RememberedFile;
 
 #[cfg(feature = "library")]
 pub use journal::{Journal, Orphan, UNNAMED};

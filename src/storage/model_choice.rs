@@ -45,7 +45,8 @@ impl ModelChoice {
     }
 
     /// Reads the text after `:recognise`: the name of a set or model, otherwise the path of a file.
-    pub fn from_text(text: &str) -> Self {
+    #[cfg(feature = "tui")]
+    pub(crate) fn from_text(text: &str) -> Self {
         Name::new(text).map_or_else(|_| Self::File(text.into()), Self::from_name)
     }
 

@@ -13,7 +13,7 @@ const MOST_BYTES: u64 = 1 << 17;
 
 /// A file of lines that the screen remembers.
 #[derive(Clone, Debug)]
-pub struct RememberedFile {
+pub(crate) struct RememberedFile {
     path: PathBuf,
     /// The largest number of lines that the file keeps.
     most: usize,
@@ -21,17 +21,17 @@ pub struct RememberedFile {
 
 impl RememberedFile {
     /// Returns the file with the commands that were typed.
-    pub fn commands(library: &Library) -> Self {
+    pub(crate) fn commands(library: &Library) -> Self {
         Self::of(library, COMMANDS, 100)
     }
 
     /// Returns the file with the name of the set of shapes that was recognised last.
-    pub fn recognised_set(library: &Library) -> Self {
+    pub(crate) fn recognised_set(library: &Library) -> Self {
         Self::of(library, RECOGNISED_SET, 1)
     }
 
     /// Returns the file with the values that forms were accepted with.
-    pub fn forms(library: &Library) -> Self {
+    pub(crate) fn forms(library: &Library) -> Self {
         Self::of(library, FORMS, 20)
     }
 
@@ -45,7 +45,7 @@ impl RememberedFile {
 
     /// Returns the lines, the newest last, without empty lines and lines with control characters; empty if there is
     /// no such file.
-    pub fn read(&self) -> Vec<String> {
+    pub(crate) fn read(&self) -> Vec<String> {
         let small = fs::symlink_metadata(&self.path)
             .is_ok_and(|found| found.is_file() && found.len() <= MOST_BYTES);
         let text = small.then(|| fs::read_to_string(&self.path));
@@ -60,7 +60,7 @@ impl RememberedFile {
 
     /// Replaces the lines of the file, and keeps only the last ones if there are too many. Makes the folder if there
     /// is none.
-    pub fn write(&self, lines: &[String]) {
+    pub(crate) fn write(&self, lines: &[String]) {
         if let Some(folder) = self.path.parent() {
             // Without the folder nothing can be written, which does no harm.
             let _ = fs::create_dir_all(folder);
