@@ -21,9 +21,12 @@ use crate::formats::npz::{
 };
 use crate::formats::record::{Record, Values};
 use crate::imprint::Imprint;
+use crate::index::index;
 use crate::pose::Axis;
 use crate::quote::shortened;
-use crate::recognition::{Model, ModelParts, NamedShape, ShapeCount};
+use crate::recognition::{
+    ImprintKey, KeyTable, Model, ModelError, ModelParts, NamedShape, ShapeCount,
+};
 use crate::sensor::{MatrixSize, Sensor};
 
 /// The required value of the header's key `format`.
@@ -188,16 +191,16 @@ pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
     let part = (header.shard.parse()?, header.poses);
     let mut parts = ModelParts::new(shapes, sensor, poses, part);
     parts.cut = header.shapes.iter().map(|shape| shape.cut).collect();
-    parts.keys = keys(&mut archive)?;
+    let keys = keys(&mut archive)?;
+    let counts = counts(&mut archive, keys.len())?;
     archive.finish()?;
-    Ok(Model::from_parts(parts)?)
+    let counts_of = |key: usize| counts[key].iter().copied();
+    Ok(Model::of_table(parts, &keys, counts_of)?)
 }
 
-/// The keys in the order of the file, each with the shapes that leave it; None is the empty imprint.
-type Keys = Vec<(Option<Imprint>, Vec<ShapeCount>)>;
-
-/// Reads the keys with their counts.
-fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<Keys, ArchiveError> {
+/// The keys in the order of the file. One that is there twice is refused at once, so the table never takes much more memory
+/// than the file.
+fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<KeyTable, ArchiveError> {
     let heights = archive.bytes("height", Dtype::U8)?;
     let widths = archive.bytes("width", Dtype::U8)?;
     let highest = usize::from(largest(&heights));
@@ -207,32 +210,45 @@ fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<Keys, ArchiveErr
     if heights.len() != widths.len() || rows.len() != heights.len() * stride {
         return Err(ArchiveError::Array("rows"));
     }
-    let mut keys: Keys = Vec::with_capacity(heights.len());
+    let mut keys = KeyTable::default();
+    let empty = Imprint::empty(MatrixSize::SMALLEST);
+    let mut key = ImprintKey::of(&empty);
     for (index, (&height, &width)) in heights.iter().zip(&widths).enumerate() {
         let rows = &rows[index * stride..][..stride];
-        let imprint = if (width, height) == (0, 0) && rows.iter().all(|&byte| byte == 0) {
-            None
+        if (width, height) == (0, 0) && rows.iter().all(|&byte| byte == 0) {
+            key.set(&empty);
         } else {
             let imprint = imprint(rows, kind, (width, height));
-            Some(imprint.ok_or(ArchiveError::Array("rows"))?)
-        };
-        keys.push((imprint, Vec::new()));
+            key.set(&imprint.ok_or(ArchiveError::Array("rows"))?);
+        }
+        if !keys.add(&key) {
+            return Err(ModelError::TWICE.into());
+        }
     }
+    Ok(keys)
+}
+
+/// The shapes that leave each key, with their poses.
+fn counts<R: Read + Seek>(
+    archive: &mut ArrayReader<R>,
+    keys: usize,
+) -> Result<Vec<Vec<ShapeCount>>, ArchiveError> {
     let (numbers, counts) = (archive.words("key")?, archive.words("count")?);
     let shapes = archive.bytes("shape", Dtype::U16)?;
     if numbers.len() != counts.len() || shapes.len() != 2 * counts.len() {
         return Err(ArchiveError::Array("count"));
     }
     let shapes = shapes.chunks_exact(2);
+    let mut of_keys = vec![Vec::new(); keys];
     for ((number, poses), shape) in numbers.into_iter().zip(counts).zip(shapes) {
-        let key = keys.get_mut(crate::index::index(number));
-        let (_, counts) = key.ok_or(ArchiveError::Array("key"))?;
-        counts.push(ShapeCount::new(
+        let own = of_keys.get_mut(index(number));
+        let own = own.ok_or(ArchiveError::Array("key"))?;
+        own.push(ShapeCount::new(
             u16::from_le_bytes([shape[0], shape[1]]),
             poses,
         ));
     }
-    Ok(keys)
+    Ok(of_keys)
 }
 
 /// Returns the imprint of a key that has taxels; None if it is not cut to its box.

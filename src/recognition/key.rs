@@ -43,7 +43,7 @@ impl ImprintKey {
     }
 
     /// Makes this the key of another imprint.
-    pub(super) fn set(&mut self, imprint: &Imprint) {
+    pub(crate) fn set(&mut self, imprint: &Imprint) {
         self.bits.clear();
         let Some(bounds) = imprint.bounds() else {
             (self.height, self.width) = (0, 0);
@@ -184,6 +184,12 @@ impl KeyTable {
         let hash = self.hash(key);
         let same = |&index: &u32| self.get(index as usize) == key;
         self.index.find(hash, same).map(|&index| index as usize)
+    }
+
+    /// Adds a key; false if it is there already.
+    pub(crate) fn add(&mut self, key: &ImprintKey) -> bool {
+        let next = self.len();
+        self.intern(key.borrowed()) == next
     }
 
     /// Adds a key unless the table has it; returns its number.

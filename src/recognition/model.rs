@@ -201,6 +201,11 @@ pub enum ModelError {
     },
 }
 
+impl ModelError {
+    /// Keys of which two are equal.
+    pub(crate) const TWICE: Self = Self::Parts("a key is there twice");
+}
+
 /// Checks the names and weights of a set.
 ///
 /// # Errors
@@ -247,8 +252,8 @@ impl Model {
         let mut key = ImprintKey::of(&Imprint::empty(MatrixSize::SMALLEST));
         for (imprint, counts) in &keys {
             key.set(&imprint.unwrap_or(Imprint::empty(MatrixSize::SMALLEST)));
-            if table.intern(key.borrowed()) != counted.len() {
-                return Err(ModelError::Parts("a key is there twice"));
+            if !table.add(&key) {
+                return Err(ModelError::TWICE);
             }
             counted.push(counts.as_slice());
         }
@@ -256,7 +261,7 @@ impl Model {
     }
 
     /// Builds a model from the keys of a table, in any order, and the counts of each key, by shape.
-    pub(super) fn of_table<I: IntoIterator<Item = ShapeCount>>(
+    pub(crate) fn of_table<I: IntoIterator<Item = ShapeCount>>(
         head: ModelParts,
         table: &KeyTable,
         counts_of: impl Fn(usize) -> I,

@@ -15,20 +15,23 @@ const SOUND: [&[u8]; 2] = [
 
 /// Returns both, with one array replaced.
 fn with(name: &str, packing: Packing, content: &[u8], claimed: u64) -> [Zip; 2] {
-    SOUND.map(|sound| {
-        let mut archive = ZipArchive::new(Cursor::new(sound)).expect("a sound archive");
-        let mut zip = Zip::default().with(name, packing, content, claimed);
-        for index in 0..archive.len() {
-            let mut file = archive.by_index(index).expect("an array");
-            let own = file.name().expect("UTF-8").into_owned();
-            if own != name {
-                let mut array = Vec::new();
-                file.read_to_end(&mut array).expect("sound");
-                zip = zip.with(&own, Packing::Stored, &array, array.len() as u64);
-            }
+    let first = || Zip::default().with(name, packing, content, claimed);
+    SOUND.map(|sound| completed(first(), &[name], sound))
+}
+
+/// Arrays of these names, then the others of a sound archive.
+fn completed(mut zip: Zip, names: &[&str], sound: &[u8]) -> Zip {
+    let mut archive = ZipArchive::new(Cursor::new(sound)).expect("a sound archive");
+    for index in 0..archive.len() {
+        let mut file = archive.by_index(index).expect("an array");
+        let own = file.name().expect("UTF-8").into_owned();
+        if !names.contains(&own.as_str()) {
+            let mut array = Vec::new();
+            file.read_to_end(&mut array).expect("sound");
+            zip = zip.with(&own, Packing::Stored, &array, array.len() as u64);
         }
-        zip
-    })
+    }
+    zip
 }
 
 /// Returns a numpy array with this header.
@@ -60,6 +63,20 @@ fn unpacking(name: &str, start: &[u8]) -> [Zip; 2] {
     with(name, Packing::Deflated, &content, 1 << 26)
 }
 
+/// Keys of one taxel, as many as fit.
+fn equal_keys() -> [Zip; 2] {
+    let names = ["height.npy", "width.npy", "rows.npy"];
+    let keys = (SIZE - 20_000) / names.len();
+    SOUND.map(|sound| {
+        let mut zip = Zip::default();
+        for (name, shape) in names.into_iter().zip(["", "", "1"]) {
+            let array = [array("|u1", &format!("({keys}, {shape})")), vec![1; keys]].concat();
+            zip = zip.with(name, Packing::Stored, &array, array.len() as u64);
+        }
+        completed(zip, &names, sound)
+    })
+}
+
 /// Malicious inputs for both, with a description each.
 macro_rules! both {
     ($($what:literal => $zips:expr;)+) => {
@@ -88,6 +105,7 @@ both! {
     };
     "rows that unpack to much" => unpacking("rows.npy", &array("<u8", "(20000000,)"));
     "rows that unpack to another array" => unpacking("rows.npy", b"no array");
+    "keys that are all the same" => equal_keys();
     "a header that unpacks to much" => unpacking("header.npy", &array("|u1", "(160000000,)"));
     "another array that unpacks to much" => unpacking("other.npy", b"\x93NUMPY");
     "arrays that share their bytes" => {
