@@ -22,6 +22,10 @@ const PAUSE: Duration = Duration::from_millis(20);
 /// values.
 const BYTES_BESIDE: u64 = 500;
 
+/// No work may use more than half of a program's addresses. In 32 bits that is 2 GiB: no table can be longer, and many systems
+/// leave a program little more.
+const ADDRESSABLE: MemorySize = MemorySize((usize::MAX / 2) as u64);
+
 /// An amount of memory in bytes, written as `2G`, `500M` or `1.5G`. K is 1024 bytes, M is 1024 K, G is 1024 M, T is
 /// 1024 G.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -96,9 +100,10 @@ pub(crate) struct MemoryGuard {
 impl MemoryGuard {
     /// Creates a guard with this limit, or if None, with all memory that is free and within the system's limits.
     pub(crate) fn new(allowed: Option<MemorySize>, advice: &'static str) -> Self {
+        let allowed = allowed.or_else(free);
         Self {
             advice,
-            allowed: allowed.or_else(free),
+            allowed: allowed.map(|allowed| allowed.min(ADDRESSABLE)),
             due: Mutex::new(Instant::now()),
             exceeded: AtomicBool::new(false),
         }
@@ -318,6 +323,14 @@ mod tests {
         for text in ["", "G", "-1G", "0", "2GB", "1e30", "NaN", "two"] {
             assert!(text.parse::<MemorySize>().is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn no_bound_is_beyond_what_a_program_can_address() {
+        let bound = |bytes| MemoryGuard::new(Some(MemorySize(bytes)), "").allowed;
+        assert_eq!(bound(u64::MAX), Some(ADDRESSABLE));
+        assert_eq!(bound(1 << 20), Some(MemorySize(1 << 20)));
+        assert!(ADDRESSABLE >= MemorySize((1 << 31) - 1));
     }
 
     #[test]

@@ -11,6 +11,7 @@ use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 use crate::formats::npy;
 use crate::formats::npy::Dtype;
 use crate::formats::record::RecordError;
+use crate::formats::value::{counted, grouped};
 use crate::pose::{GridError, RangeError};
 use crate::quote::shortened;
 use crate::sweep::{PartsError, Shard, ShardError};
@@ -23,6 +24,10 @@ const MAX_HEADER: u64 = 1 << 26;
 
 /// The size limit of an array in bytes; a larger one is not read.
 const MAX_BYTES: u64 = 1 << 34;
+
+/// No longer archive is read, since what is made of it takes up to four times as many addresses: 1 GiB in 32 bits, in 64 bits
+/// longer than any file.
+const LONGEST: u64 = (usize::MAX / 4) as u64;
 
 /// The output of an archive. Writing to a reference to this trait compiles the code of zip, which is large, once
 /// instead of once for each kind of output.
@@ -77,6 +82,7 @@ pub(crate) struct ArrayReader<R> {
 impl<R: Read + Seek> ArrayReader<R> {
     pub(crate) fn new(mut input: R) -> Result<Self, ArchiveError> {
         let length = input.seek(SeekFrom::End(0))?;
+        check_length(length, LONGEST)?;
         Ok(Self {
             length,
             archive: ZipArchive::new(input).map_err(zip_error)?,
@@ -157,6 +163,14 @@ impl<R: Read + Seek> ArrayReader<R> {
     }
 }
 
+/// Holds that an archive is not longer than what can be read.
+fn check_length(length: u64, longest: u64) -> Result<(), ArchiveError> {
+    if length > longest {
+        return Err(ArchiveError::Long { length, longest });
+    }
+    Ok(())
+}
+
 /// Checks that an array is not compressed: decompressed, a short file could fill all memory.
 fn is_stored(file: &ZipFile<'_, impl Read>, name: &str) -> Result<(), ArchiveError> {
     if file.compression() == CompressionMethod::Stored {
@@ -167,7 +181,7 @@ fn is_stored(file: &ZipFile<'_, impl Read>, name: &str) -> Result<(), ArchiveErr
 
 /// Returns the error for an array that cannot be read to its end: the system's reason, or a wrong checksum.
 fn damaged(name: &str, error: io::Error) -> ArchiveError {
-    if error.raw_os_error().is_some() {
+    if error.raw_os_error().is_some() || error.kind() == io::ErrorKind::OutOfMemory {
         return error.into();
     }
     ArchiveError::Damaged(shortened(name))
@@ -251,6 +265,14 @@ pub enum ArchiveError {
     /// Not a zip, or a broken one.
     #[error("no archive of arrays: {0}")]
     Zip(String),
+    /// An archive that is longer than what this program can address.
+    #[error("an archive of {}; this {}-bit program reads at most {}", counted(*length, "byte"), usize::BITS, grouped(*longest))]
+    Long {
+        /// Its length in bytes.
+        length: u64,
+        /// The longest that is read.
+        longest: u64,
+    },
     /// An array whose bytes have changed since they were written.
     #[error("array {0:?} is damaged")]
     Damaged(String),
@@ -318,6 +340,27 @@ mod tests {
             "no archive of arrays: cut short, damaged, or a file of another kind"
         );
         assert!(broken.source().is_none());
+    }
+
+    #[test]
+    fn what_memory_cannot_hold_is_not_called_damaged() {
+        let error = damaged("rows", io::ErrorKind::OutOfMemory.into());
+        assert!(matches!(error, ArchiveError::Io(_)), "{error}");
+        let error = damaged("rows", io::ErrorKind::UnexpectedEof.into());
+        assert_eq!(error.to_string(), "array \"rows\" is damaged");
+    }
+
+    #[test]
+    fn an_archive_beyond_the_addresses_of_a_program_is_refused() {
+        assert!(check_length(1 << 30, 1 << 30).is_ok());
+        let error = check_length(3_000_000_000, 1 << 30).expect_err("too long");
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "an archive of 3,000,000,000 bytes; this {}-bit program reads at most 1,073,741,824",
+                usize::BITS
+            )
+        );
     }
 
     #[cfg(feature = "recognition")]
