@@ -314,10 +314,10 @@ impl Model {
             (0..draws.len()).flat_map(|shape| (0..chunks).map(move |chunk| (shape, chunk)));
         let stopped = AtomicBool::new(false);
         let rate = |(shape, chunk): (usize, u64)| {
-            let number = crate::index::index(chunk) * draws.len() + shape;
-            let mut random = generator(touches.seed, number as u64);
+            let number = chunk * draws.len() as u64 + shape as u64;
+            let mut random = generator(touches.seed, number);
             // Tasks are numbered from the last one down: independent of all touches, and the same for any noise.
-            let mut random_of_dead = generator(touches.seed, !(number as u64));
+            let mut random_of_dead = generator(touches.seed, !number);
             let mut rate = ShapeRate::default();
             for _ in 0..CHUNK.min(per_shape - chunk * CHUNK) {
                 if stopped.load(Ordering::Relaxed) {
