@@ -35,7 +35,9 @@ pub use filter::{AtlasFilter, FilterError};
 pub use histogram::Histogram;
 pub use order::{SortKey, sorted};
 pub(crate) use packing::Layout;
+#[cfg(feature = "tui")]
+pub(crate) use statistics::mean_direction;
+pub(crate) use statistics::statistics;
 pub use statistics::{STATISTIC_COLUMNS, Statistic, StatisticColumn};
-pub(crate) use statistics::{mean_direction, statistics};
 pub(crate) use values::Table;
 pub(crate) use variance::{OrientationSums, VarianceParts};

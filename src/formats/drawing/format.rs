@@ -1,5 +1,6 @@
 //! The file formats of drawings, and the methods that write every drawing.
 
+#[cfg(feature = "tui")]
 use std::path::Path;
 
 use crate::parameter::named;
@@ -39,6 +40,7 @@ impl DrawingFormat {
     }
 
     /// The format that the ending of a file's name asks for; None where no drawing has it.
+    #[cfg(feature = "tui")]
     pub(crate) fn of_path(path: impl AsRef<Path>) -> Option<Self> {
         Self::of_ending(path.as_ref().extension()?.to_str()?)
     }

@@ -254,7 +254,7 @@ fn on_worker(app: &mut App, event: WorkerEvent) {
             explore::work::on_angles(app, &findings, place, curve);
         }
         WorkerEvent::Written(number, name) => explore::work::on_written(app, number, &name),
-        WorkerEvent::Exists(number, name) => explore::work::on_existing(app, number, name),
+        WorkerEvent::Exists(number, name) => explore::work::on_existing(app, number, &name),
         WorkerEvent::Failed(number, reason) => {
             if !explore::work::on_failure(app, number, &reason) {
                 recognise::update::on_failure(app, number, &reason);

@@ -3,7 +3,6 @@
 //! A page has no state of its own: [`Results`] holds the chosen descriptor, row and pose, so that all pages agree on
 //! them.
 
-use std::io;
 use std::path::Path;
 
 use ratatui::buffer::Buffer;
@@ -17,6 +16,9 @@ use crate::tui::keys::binding::Context;
 use crate::tui::widget::rows::moved;
 use crate::tui::widget::theme::Theme;
 
+/// Draws a page as the content of a file; None where there is nothing to draw.
+type PageDrawing = fn(&Results, DrawingFormat) -> Option<Result<Vec<u8>, String>>;
+
 /// A page of the results: what [`crate::tui::explore::pages`] lists. The functions get the area of the page.
 #[derive(Debug)]
 pub struct ResultsPage {
@@ -26,8 +28,8 @@ pub struct ResultsPage {
     pub context: Context,
     /// Whether it shows only the imprints that the filter keeps.
     pub sifted: bool,
-    /// Its drawing as the content of a file: None for a page that is a table, and where there is nothing to draw.
-    pub drawing: Option<fn(&Results, DrawingFormat) -> Option<io::Result<Vec<u8>>>>,
+    /// The same for a file: None for a page that is a table.
+    pub drawing: Option<PageDrawing>,
     /// Its numbers for a CSV file: None for the list of imprints, whose file has all of them, and for drawings.
     pub table: Option<fn(&Results, Rect) -> String>,
     /// The effect of the mouse wheel.

@@ -10,8 +10,6 @@
 //! Up and down choose the vertical descriptor, which is the one of the other pages too; left and right choose the
 //! horizontal one. A click selects the nearest imprint.
 
-use std::io;
-
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
@@ -165,7 +163,7 @@ fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
 }
 
 /// The same for a file.
-fn drawing(results: &Results, format: DrawingFormat) -> Option<io::Result<Vec<u8>>> {
+fn drawing(results: &Results, format: DrawingFormat) -> Option<Result<Vec<u8>, String>> {
     let points: Vec<(f64, f64)> = points(results).into_iter().map(|(_, at)| at).collect();
     if points.is_empty() {
         return None;
@@ -180,5 +178,5 @@ fn drawing(results: &Results, format: DrawingFormat) -> Option<io::Result<Vec<u8
     if let Some((x, y)) = selected.and_then(|(_, entry)| point(results, &entry)) {
         plot = plot.with_chosen(x, y);
     }
-    Some(plot.content(format))
+    Some(plot.content(format).map_err(|error| error.to_string()))
 }

@@ -46,7 +46,7 @@ pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
                 Some(Ok(content)) => {
                     return Some(Effect::File(FileRequest::Write(name, content, existing)));
                 }
-                Some(Err(error)) => error.to_string(),
+                Some(Err(reason)) => reason,
                 None => "there is nothing to draw".to_owned(),
             };
             refuse(app, reason);
@@ -256,10 +256,11 @@ pub(in crate::tui) fn on_written(app: &mut App, number: u64, name: &str) {
 }
 
 /// Asks whether an existing file is to be replaced.
-pub(in crate::tui) fn on_existing(app: &mut App, number: u64, name: String) {
+pub(in crate::tui) fn on_existing(app: &mut App, number: u64, name: &str) {
     if let Some(place) = finish(app, number) {
-        let yes = Message::Explore(ExploreMessage::Write(name.clone(), Existing::Replaced));
-        ask(app, place, Dialog::Question(Question::replaces(&name, yes)));
+        let yes = ExploreMessage::Write(name.to_owned(), Existing::Replaced);
+        let question = Question::replaces(name, Message::Explore(yes));
+        ask(app, place, Dialog::Question(question));
     }
 }
 

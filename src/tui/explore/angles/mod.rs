@@ -11,8 +11,6 @@
 
 pub mod curve;
 
-use std::io;
-
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
@@ -213,7 +211,7 @@ fn detail(at: &AngleSpread) -> String {
 }
 
 /// The same for a file.
-fn drawing(results: &Results, format: DrawingFormat) -> Option<io::Result<Vec<u8>>> {
+fn drawing(results: &Results, format: DrawingFormat) -> Option<Result<Vec<u8>, String>> {
     let spread = spread(results);
     if spread.is_empty() {
         return None;
@@ -231,5 +229,5 @@ fn drawing(results: &Results, format: DrawingFormat) -> Option<io::Result<Vec<u8
             plot = plot.with_curve(name, &points, dashed);
         }
     }
-    Some(plot.content(format))
+    Some(plot.content(format).map_err(|error| error.to_string()))
 }

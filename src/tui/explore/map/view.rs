@@ -13,7 +13,6 @@
 //! If a map does not fit in letters, it is a picture first: with colours, each half of a character shows one imprint;
 //! without colours, each character has a shade. Six colours and five shades seldom have to repeat side by side.
 
-use std::io;
 use std::sync::Arc;
 
 use ratatui::buffer::Buffer;
@@ -85,7 +84,7 @@ pub(in crate::tui) fn draw(
 pub(in crate::tui) fn drawing(
     results: &Results,
     format: DrawingFormat,
-) -> Option<io::Result<Vec<u8>>> {
+) -> Option<Result<Vec<u8>, String>> {
     let grid = &results.sweep().grid;
     let [width, height, ..] = grid.counts().into_array();
     let stride = width.max(height).div_ceil(DRAWN).max(1);
@@ -98,7 +97,8 @@ pub(in crate::tui) fn drawing(
     let (x0, y0) = (ends(Axis::X0, across), ends(Axis::Y0, down));
     let map = PoseMap::new(x0, y0, usize::try_from(across).ok()?, &ids)?;
     let title = format!("{}; {}", results.summary(false), heading(results));
-    Some(map.with_title(&title).content(format))
+    let content = map.with_title(&title).content(format);
+    Some(content.map_err(|error| error.to_string()))
 }
 
 /// Returns the angle and the zooms, each with its number and how many there are.

@@ -3,7 +3,7 @@
 
 use std::fs::{self, File};
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::formats::recording::may_be_recording;
 use crate::formats::{Content, imprint_file, read_content};
@@ -27,7 +27,7 @@ pub(in crate::tui) fn perform(request: FileRequest, access: &WriteAccess) -> Fil
             Err(reason) => FileEvent::Failed(format!("{name}: {reason}")),
         },
         FileRequest::Write(name, content, existing) => match access.path(&name, existing) {
-            Ok(path) => write(path, name, content, existing),
+            Ok(path) => write(&path, name, content, existing),
             Err(refused) => FileEvent::Failed(refused),
         },
         FileRequest::Source(request) => match source::readable(&request.source, access) {
@@ -62,10 +62,10 @@ fn open(name: &str) -> Result<OpenedFile, String> {
 }
 
 /// Writes a file as a whole or not at all.
-fn write(path: PathBuf, name: String, content: Vec<u8>, existing: Existing) -> FileEvent {
-    let written = FinishedFile::new(&path, &content, existing).and_then(FinishedFile::persist);
+fn write(path: &Path, name: String, content: Vec<u8>, existing: Existing) -> FileEvent {
+    let written = FinishedFile::new(path, &content, existing).and_then(FinishedFile::persist);
     match written {
-        Ok(()) => FileEvent::Written(absolute(&path)),
+        Ok(()) => FileEvent::Written(absolute(path)),
         Err(error) if error.exists() && existing == Existing::Kept => {
             FileEvent::Exists(name, content)
         }
