@@ -60,13 +60,7 @@ pub(in crate::tui) fn act(app: &mut App, asked: RecogniseMessage) -> Option<Effe
             None
         }
         RecogniseMessage::Confusion => {
-            match state(app)?.trained() {
-                Some(trained) => {
-                    let page = Confusion::new(Arc::clone(trained));
-                    app.dialogs.push(Dialog::Confusion(Box::new(page)));
-                }
-                None => not_trained(app),
-            }
+            open_confusion(app);
             None
         }
         RecogniseMessage::Separate(flags) => {
@@ -107,6 +101,18 @@ fn open(app: &mut App, choice: Option<ModelChoice>) -> Option<Effect> {
     let number = app.works;
     state(app)?.prepare(choice.clone(), number, opened);
     Some(Effect::Work(Work::Prepare(number, choice)))
+}
+
+/// Opens the confusion matrix of the model; without a model, it says that there is none.
+fn open_confusion(app: &mut App) {
+    let Some(page) = state(app) else { return };
+    match page.trained() {
+        Some(trained) => {
+            let page = Confusion::new(Arc::clone(trained));
+            app.dialogs.push(Dialog::Confusion(Box::new(page)));
+        }
+        None => not_trained(app),
+    }
 }
 
 /// Shows that the confusion matrix, the sizes or a quiz needs a model.
