@@ -25,7 +25,7 @@ pub struct Imprint {
 }
 
 impl Imprint {
-    /// An imprint without active taxels.
+    /// Creates an imprint without active taxels.
     pub fn empty(size: MatrixSize) -> Self {
         Self {
             size,
@@ -33,7 +33,7 @@ impl Imprint {
         }
     }
 
-    /// Its columns and rows.
+    /// Returns the number of columns and rows.
     pub fn size(&self) -> MatrixSize {
         self.size
     }

@@ -24,7 +24,7 @@ pub struct Matrix<T> {
 }
 
 impl<T: Copy + Default> Default for Matrix<T> {
-    /// One cell: memory for what a [`View`](crate::frame::View) shows.
+    /// Creates a matrix of one cell, whose memory a [`View`](crate::frame::View) can reuse.
     fn default() -> Self {
         Self::filled(MatrixSize::SMALLEST, T::default())
     }
@@ -53,7 +53,7 @@ impl<T: Copy> Matrix<T> {
     /// ```
     ///
     /// # Errors
-    /// If the number of values is not that of the cells.
+    /// Returns an error if the number of values is not the number of cells.
     pub fn from_values(size: MatrixSize, values: Vec<T>) -> Result<Self, MatrixError> {
         let found = values.len();
         if found == size.cells() {
@@ -71,7 +71,7 @@ impl<T: Copy> Matrix<T> {
         self.values.resize(size.cells(), value);
     }
 
-    /// Its columns and rows.
+    /// Returns the number of columns and rows.
     pub fn size(&self) -> MatrixSize {
         self.size
     }
@@ -127,7 +127,7 @@ impl<T: Copy> Matrix<T> {
 pub struct MatrixError {
     /// The size of the matrix.
     pub size: MatrixSize,
-    /// Number of values.
+    /// The number of values.
     pub found: usize,
 }
 

@@ -12,7 +12,7 @@ use crate::quote::shortened;
 /// The largest number of columns, and of rows.
 pub const MAX_SIDE: u8 = 64;
 
-/// Columns and rows of a sensor, and so of its imprints and its matrices of values, each 1 to [`MAX_SIDE`].
+/// The columns and rows of a sensor, its imprints and its matrices of values: each from 1 to [`MAX_SIDE`].
 ///
 /// ```
 /// use taxel::prelude::*;
@@ -29,22 +29,22 @@ pub struct MatrixSize {
 }
 
 impl MatrixSize {
-    /// One cell.
+    /// The smallest size: one cell.
     pub(crate) const SMALLEST: Self = Self {
         columns: 1,
         rows: 1,
     };
 
-    /// [`MAX_SIDE`] columns and rows.
+    /// The largest size: [`MAX_SIDE`] columns and rows.
     pub const LARGEST: Self = Self {
         columns: MAX_SIDE,
         rows: MAX_SIDE,
     };
 
-    /// The size of a matrix with that many columns and rows.
+    /// Creates the size of a matrix from its columns and rows.
     ///
     /// # Errors
-    /// If a number is not 1 to [`MAX_SIDE`].
+    /// Returns an error if a number is not from 1 to [`MAX_SIDE`].
     pub fn new(columns: u8, rows: u8) -> Result<Self, ParameterError> {
         let largest = Sensor::LARGEST;
         largest.check(Parameter::Columns, columns.into())?;
@@ -52,22 +52,22 @@ impl MatrixSize {
         Ok(Self { columns, rows })
     }
 
-    /// Number of columns.
+    /// Returns the number of columns.
     pub fn columns(self) -> u8 {
         self.columns
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn rows(self) -> u8 {
         self.rows
     }
 
-    /// Number of cells.
+    /// Returns the number of cells.
     pub fn cells(self) -> usize {
         usize::from(self.columns) * usize::from(self.rows)
     }
 
-    /// The smallest size that holds both.
+    /// Returns the smallest size that contains both sizes.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self {
@@ -76,7 +76,7 @@ impl MatrixSize {
         }
     }
 
-    /// With so many more columns and rows, but at most [`MAX_SIDE`].
+    /// Returns the size with `by` more columns and rows, but at most [`MAX_SIDE`] of each.
     #[cfg(feature = "recognition")]
     pub(crate) fn enlarged(self, by: u8) -> Self {
         let side = |side: u8| side.saturating_add(by).min(MAX_SIDE);
@@ -86,7 +86,7 @@ impl MatrixSize {
         }
     }
 
-    /// Its columns as rows, and its rows as columns.
+    /// Returns the size with columns and rows swapped.
     pub(crate) fn transposed(self) -> Self {
         Self {
             columns: self.rows,
@@ -94,7 +94,7 @@ impl MatrixSize {
         }
     }
 
-    /// A size that a test knows to be one.
+    /// Returns a size for a test. Panics if it is not allowed.
     #[cfg(test)]
     pub(crate) fn of(columns: u8, rows: u8) -> Self {
         Self::new(columns, rows).expect("1 to 64")
@@ -102,7 +102,7 @@ impl MatrixSize {
 }
 
 impl fmt::Display for MatrixSize {
-    /// `12 × 8`, columns first.
+    /// Writes the size, columns first: `12 × 8`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} × {}", self.columns, self.rows)
     }
@@ -171,8 +171,8 @@ impl Sensor {
         MatrixSize::new(columns, rows).map(Self::of_size)
     }
 
-    /// Creates a sensor of that size, with the threshold and pitch of the default one. So every imprint is the whole
-    /// matrix of some sensor.
+    /// Creates a sensor of this size, with the default threshold and pitch. It cannot fail, so every imprint can be the
+    /// whole matrix of a sensor.
     pub const fn of_size(size: MatrixSize) -> Self {
         Self {
             size,
@@ -243,7 +243,7 @@ impl Sensor {
         }
     }
 
-    /// Its columns and rows.
+    /// Returns the number of columns and rows.
     pub fn size(&self) -> MatrixSize {
         self.size
     }

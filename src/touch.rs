@@ -196,7 +196,7 @@ impl Plane {
         active
     }
 
-    /// How much of each taxel's cell the shape of the last touch covers, 0 to 1.
+    /// Returns the share of each taxel's cell that the shape of the last touch covers, 0 to 1.
     pub fn coverages(&self) -> Matrix<f64> {
         let width = usize::from(self.sensor.columns());
         let mut all = Matrix::filled(self.sensor.size(), 0.0);

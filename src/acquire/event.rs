@@ -25,30 +25,30 @@ pub struct AcquireOptions {
     pub baud: u32,
     /// Whether a connection or a serial line that cannot be opened yet is tried again each second.
     pub waits: bool,
-    /// How fast it is read, and what happens at its end.
+    /// The speed at which the source is read, and what happens at its end.
     pub playback: Playback,
 }
 
-/// How fast a source is read, and what happens at its end.
+/// The speed at which a source is read, and what happens at its end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Playback {
-    /// As it comes. A recording is played at its own rate, and followed if it grows meanwhile.
+    /// The source is read as it comes. A recording is played at its own rate, and followed if it grows meanwhile.
     #[default]
     Live,
-    /// To the end as fast as possible, then stop.
+    /// The source is read to its end as fast as possible.
     Once,
-    /// A recording at another speed, or again and again; a stream as it comes.
+    /// A recording is played at another speed, or repeated without end. A stream is read as it comes.
     Paced {
-        /// The speed relative to its own; 1 if it is not above 0.
+        /// The speed, relative to the rate of the recording. A speed that is not above 0 counts as 1.
         speed: f64,
-        /// Whether it begins again at its end.
+        /// Whether the recording begins again at its end.
         repeat: bool,
     },
 }
 
 impl Playback {
-    /// A recording at that speed, again and again if it repeats; [`Self::Live`] for the speed 1 without repetition.
+    /// Returns [`Self::Paced`] with this speed and repetition, or [`Self::Live`] for the speed 1 without repetition.
     pub fn paced(speed: f64, repeat: bool) -> Self {
         if repeat || speed != 1.0 {
             Self::Paced { speed, repeat }
@@ -57,7 +57,7 @@ impl Playback {
         }
     }
 
-    /// Whether a recording begins again at its end.
+    /// Returns true if a recording begins again at its end.
     pub fn repeats(self) -> bool {
         matches!(self, Self::Paced { repeat: true, .. })
     }

@@ -1,8 +1,8 @@
 //! Measures how often frames come, from their times.
 //!
-//! Frames often come several at once: a read brings what has gathered in a pipe, or a program sends in bursts. The times
-//! between such frames say nothing about the rate, so frames within a tenth of a second count as one burst, and a burst
-//! lasts until the next one begins:
+//! Often several frames come at once: a read returns everything that is in a pipe, or a program sends in bursts. The
+//! times between such frames say nothing about the rate, so frames within a tenth of a second count as one burst, and
+//! a burst lasts until the next one begins:
 //! ```text
 //! times   0  0  0            0.5  0.5  0.5            1.0
 //! bursts  3 frames in 0.5 s  3 frames in 0.5 s        open      6 frames in 1 s

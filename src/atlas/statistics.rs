@@ -196,8 +196,8 @@ impl Total {
     }
 }
 
-/// The circular mean of directions in degrees, given the mean of their unit vectors. Vectors that cancel up to the rounding of
-/// their parts point nowhere: None.
+/// Returns the circular mean of directions in degrees, given the mean of their unit vectors. None if the vectors
+/// cancel, up to the rounding of their parts.
 pub(crate) fn mean_direction(x: f64, y: f64) -> Option<f64> {
     (libm::hypot(x, y) >= 1e-11).then(|| libm::atan2(y, x).to_degrees() + 0.0)
 }

@@ -13,10 +13,10 @@ use crate::sensor::MatrixSize;
 pub enum FrameError {
     /// More cells are left than an imprint can have.
     Large {
-        /// What is left.
+        /// The size of the visible part.
         size: FrameSize,
     },
-    /// A side of a frame that is not 1 to 512.
+    /// A side of a frame is not from 1 to 512.
     Sides(FrameSizeError),
     /// The number of values differs from the number of cells.
     Values {
@@ -34,9 +34,9 @@ pub enum FrameError {
     Size {
         /// "mask", "gain" or "tare".
         what: &'static str,
-        /// Its size.
+        /// The size of the mask, gain or tare.
         found: MatrixSize,
-        /// That of the frame.
+        /// The size of the visible part of the frame.
         expected: MatrixSize,
     },
     /// A threshold is not a number, or out of range.

@@ -9,9 +9,9 @@ pub const LARGEST_VALUE: f64 = 1e300;
 /// The cell of the whole sensor that is the first one of a frame, as the recording counts columns and rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FirstCell {
-    /// Its column.
+    /// The column.
     pub column: u32,
-    /// Its row.
+    /// The row.
     pub row: u32,
 }
 
@@ -35,7 +35,7 @@ pub struct Frame {
 }
 
 impl Default for Frame {
-    /// One cell without a value: memory for the frames of a reader.
+    /// Creates a frame of one cell without a value, whose memory a reader can reuse.
     fn default() -> Self {
         Self::new(FrameSize::SMALLEST)
     }
@@ -70,7 +70,7 @@ impl Frame {
     /// ```
     ///
     /// # Errors
-    /// If the number of values is not that of the cells.
+    /// Returns an error if the number of values is not the number of cells.
     pub fn from_values(size: FrameSize, values: &[f64]) -> Result<Self, FrameError> {
         let mut frame = Self::new(size);
         frame.set_values(values)?;
@@ -116,7 +116,7 @@ impl Frame {
         self.values.extend_from_slice(&other.values);
     }
 
-    /// Its columns and rows.
+    /// Returns the number of columns and rows.
     pub fn size(&self) -> FrameSize {
         self.size
     }

@@ -9,7 +9,7 @@ use crate::sensor::MatrixSize;
 /// The largest number of columns, and of rows, of a frame before it is cropped.
 pub const MAX_FRAME_SIDE: u16 = 512;
 
-/// Columns and rows of a frame before it is cropped, each 1 to [`MAX_FRAME_SIDE`].
+/// The columns and rows of a frame before it is cropped: each from 1 to [`MAX_FRAME_SIDE`].
 ///
 /// ```
 /// use taxel::frame::FrameSize;
@@ -32,10 +32,10 @@ impl FrameSize {
         rows: 1,
     };
 
-    /// The size of a frame with that many columns and rows.
+    /// Creates the size of a frame from its columns and rows.
     ///
     /// # Errors
-    /// If one is not 1 to [`MAX_FRAME_SIDE`].
+    /// Returns an error if a number is not from 1 to [`MAX_FRAME_SIDE`].
     pub fn new(columns: u16, rows: u16) -> Result<Self, FrameSizeError> {
         let sides = 1..=MAX_FRAME_SIDE;
         if sides.contains(&columns) && sides.contains(&rows) {
@@ -45,7 +45,7 @@ impl FrameSize {
         }
     }
 
-    /// The size of a frame of which both are known and allowed.
+    /// Returns the size of a frame; None if a side is unknown or not allowed.
     #[cfg(feature = "frames")]
     pub(crate) fn of_sides(columns: Option<u16>, rows: Option<u16>) -> Option<Self> {
         Self::new(columns?, rows?).ok()
@@ -66,13 +66,13 @@ impl FrameSize {
         usize::from(self.columns) * usize::from(self.rows)
     }
 
-    /// Rows and columns in words: `4 rows of 5`.
+    /// Returns the size in words: `4 rows of 5`.
     #[cfg(feature = "frames")]
     pub(crate) fn in_words(self) -> String {
         format!("{} of {}", counted(self.rows, "row"), self.columns)
     }
 
-    /// A size that a test knows to be one.
+    /// Returns a size for a test. Panics if it is not allowed.
     #[cfg(test)]
     pub(crate) fn of(columns: u16, rows: u16) -> Self {
         Self::new(columns, rows).expect("1 to 512")
@@ -89,13 +89,13 @@ impl From<MatrixSize> for FrameSize {
 }
 
 impl fmt::Display for FrameSize {
-    /// `28 × 64`, columns first.
+    /// Writes the size, columns first: `28 × 64`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} × {}", self.columns, self.rows)
     }
 }
 
-/// The error for a size that no frame has.
+/// The error for a size that no frame can have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct FrameSizeError {

@@ -56,10 +56,10 @@ impl View {
         self.hide(seen)
     }
 
-    /// The size of the visible part of a frame of that size; it may exceed that of a matrix.
+    /// Returns the size of the visible part of a frame of size `frame`. It may be larger than a matrix can be.
     ///
     /// # Errors
-    /// If the crop reaches beyond the frame.
+    /// Returns an error if the crop reaches beyond the frame.
     pub fn size(&self, frame: FrameSize) -> Result<FrameSize, FrameError> {
         let Crop { columns, rows, .. } = self.part(frame)?;
         if self.keeps_sides() {
@@ -69,12 +69,12 @@ impl View {
         }
     }
 
-    /// Whether columns stay columns when it is turned.
+    /// Returns true if columns stay columns when the frame is turned.
     fn keeps_sides(&self) -> bool {
         self.quarter_turns.is_multiple_of(2)
     }
 
-    /// The part of a frame that is kept, which has cells and lies in the frame.
+    /// Returns the part of a frame that is kept. Returns an error if it has no cells or reaches beyond the frame.
     fn part(&self, frame: FrameSize) -> Result<Crop, FrameError> {
         let whole = Crop {
             left: 0,
@@ -155,7 +155,7 @@ impl View {
     }
 }
 
-/// The size of what is left of a frame, as that of a matrix.
+/// Converts the size of the visible part of a frame to that of a matrix. Returns an error if it is too large.
 fn matrix_size(left: FrameSize) -> Result<MatrixSize, FrameError> {
     let side = |length: u16| u8::try_from(length).ok();
     side(left.columns())

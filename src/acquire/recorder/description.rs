@@ -86,11 +86,11 @@ pub(super) fn is_array(path: &Path) -> bool {
         .is_some_and(|ending| ending.eq_ignore_ascii_case("npy"))
 }
 
-/// Reads the description beside an array: `touch.json` for `touch.npy`. None if there is none, or if the file is
-/// something else.
+/// Reads the description beside an array: `touch.json` for `touch.npy`. Returns None if there is no such file, or if
+/// it is not a description.
 ///
 /// # Errors
-/// What is wrong with it, or why it cannot be read.
+/// Returns an error if the description is damaged or cannot be read.
 pub fn description_beside(path: &Path) -> Option<Result<RecordingMetadata, DescriptionError>> {
     if !is_array(path) {
         return None;

@@ -10,7 +10,7 @@ use crate::storage::FileError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecorderError {
-    /// The system refuses.
+    /// The system cannot write the file.
     #[error("{}: cannot record: {error}", path.display())]
     Io {
         /// The file.
@@ -18,7 +18,7 @@ pub enum RecorderError {
         /// The error that the system reports.
         error: io::Error,
     },
-    /// There is a file already.
+    /// The file exists already.
     #[error("{} already exists", path.display())]
     Exists {
         /// The file.
@@ -44,24 +44,24 @@ pub enum RecorderError {
     },
 }
 
-/// Why the description beside an array cannot be read.
+/// The error for a description beside an array that cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DescriptionError {
-    /// The system refuses.
+    /// The system cannot read the file.
     #[error("{}: cannot read: {error}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system reports.
+        /// The error that the system reports.
         error: io::Error,
     },
-    /// It is damaged, or was changed.
+    /// The description is damaged, or was changed.
     #[error("{}: {error}", path.display())]
     Broken {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The error in the description.
         error: MetadataError,
     },
 }

@@ -38,8 +38,8 @@ const MOST_BURSTS: usize = 4096;
 
 /// A recorder that writes frames to a file, until [`Self::finish`] ends the recording and reports errors.
 ///
-/// If it is dropped without that, it writes out the frames that wait, as far as the system lets it, and the
-/// description does not say that the recording was ended.
+/// If it is dropped before that, it writes out the waiting frames, as far as the system allows, and the description
+/// does not say that the recording was ended.
 ///
 /// ```
 /// use taxel::acquire::{FrameRecorder, description_beside};
@@ -78,11 +78,11 @@ pub struct FrameRecorder {
 /// The state of the names of array and description.
 #[derive(Debug)]
 enum Names {
-    /// They get their names with the first frame.
+    /// The files get their names with the first frame.
     Waiting(FinishedFile, FinishedFile),
-    /// They have their names.
+    /// The files have their names.
     Given,
-    /// They did not get their names. The files there are not of this recording, and stay as they are.
+    /// The files did not get their names. The files of these names belong to something else, and stay as they are.
     Refused,
 }
 
@@ -206,7 +206,7 @@ impl FrameRecorder {
         self.left_out
     }
 
-    /// The size of the frames that are recorded; None before the first one.
+    /// Returns the size of the recorded frames; None before the first one.
     pub fn size(&self) -> Option<FrameSize> {
         self.array.size()
     }

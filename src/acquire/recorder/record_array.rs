@@ -1,10 +1,10 @@
-//! An array of records that grows: a file that numpy and taxel can open at any moment, even after the program was killed.
+//! A growing array of records: a file that numpy and taxel can open at any moment, even after the program was killed.
 //!
-//! A record has a time in seconds (NaN where it is not known), a number, and values. The header has room to spare and
-//! counts the records that are in the file already: they are written first, the count after them, at least twice a second,
-//! so a killed program loses less than half a second. A thread syncs the file each second: a power cut loses hardly more.
-//! It may leave a count beyond the records; then taxel reads the whole records, and numpy refuses the file. Values are
-//! f64, as every format of frame is read: nothing is rounded.
+//! A record has a time in seconds (NaN if it is unknown), a number, and values. The header has room to spare and
+//! states the number of records in the file. Records are written first and their number after them, at least twice a
+//! second, so a killed program loses less than half a second. A thread syncs the file each second, so a power cut
+//! loses hardly more. It may leave a number larger than that of the records; then taxel reads the whole records, and
+//! numpy refuses the file. Values are f64, as every format of frames is read: nothing is rounded.
 
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -64,7 +64,7 @@ impl RecordArray {
         self.file = file;
     }
 
-    /// The size of the frames; None before the first one.
+    /// Returns the size of the frames; None before the first one.
     pub(super) fn size(&self) -> Option<FrameSize> {
         self.size
     }
