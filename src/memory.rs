@@ -87,7 +87,7 @@ impl fmt::Display for MemorySize {
 /// Keeps a piece of work within its memory.
 #[derive(Debug)]
 pub(crate) struct MemoryGuard {
-    /// What the user can do about too little memory; the end of each message.
+    /// The end of each message, which says what the user can do about too little memory.
     advice: &'static str,
     /// The allowed memory; None if the system does not tell how much is free.
     allowed: Option<MemorySize>,

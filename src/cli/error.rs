@@ -54,7 +54,7 @@ pub(crate) enum CliError {
     Input {
         /// The name of the file.
         name: String,
-        /// What is wrong with it.
+        /// The error in the file.
         error: InputError,
     },
     /// A source of frames without a byte.
@@ -294,7 +294,7 @@ pub(crate) enum CliError {
     Frames {
         /// The recording's name.
         name: String,
-        /// What is wrong, and what would be right.
+        /// A description of the error, and how to correct it.
         message: String,
     },
     /// `--resume` finds a file that is not the file of this shard.
@@ -304,7 +304,7 @@ pub(crate) enum CliError {
     NotResumed {
         /// The file's name.
         name: String,
-        /// What the file is: not whole, or of another study.
+        /// The state of the file: "not whole" or "of another study".
         what: &'static str,
         /// The reason.
         reason: String,
@@ -367,7 +367,7 @@ fn advice(error: &RecorderError) -> &'static str {
     }
 }
 
-/// What helps where there is no place for the library, as the end of a message.
+/// Returns the end of a message that says what to do if there is no place for the library; empty for other errors.
 fn place_advice(error: &LibraryError) -> &'static str {
     match error {
         LibraryError::NoPlace => "; name a folder with --library DIR or TAXEL_LIBRARY",
@@ -375,7 +375,8 @@ fn place_advice(error: &LibraryError) -> &'static str {
     }
 }
 
-/// What helps where a recording does not say how its values are arranged, as the end of a message.
+/// Returns the end of a message that says what to do if a recording does not state the size of its frames; empty for
+/// other errors.
 fn size_advice(error: &RecordingError) -> &'static str {
     if error.is_of_size() {
         "; give --rows and --columns"
@@ -384,7 +385,7 @@ fn size_advice(error: &RecordingError) -> &'static str {
     }
 }
 
-/// What helps where a stream cannot be decoded as it comes, as the end of a message.
+/// Returns the end of a message that says what to do if a stream cannot be decoded without more flags; may be empty.
 pub(crate) fn stream_advice(refusal: StreamRefusal) -> &'static str {
     match refusal {
         StreamRefusal::Unknown => "; --format names one",
@@ -394,7 +395,7 @@ pub(crate) fn stream_advice(refusal: StreamRefusal) -> &'static str {
     }
 }
 
-/// What helps where something odd in a recording may be a mistake, as the end of a message.
+/// Returns the end of a note that says what to do if something odd in a recording is a mistake; may be empty.
 pub(crate) fn note_advice(note: &RecordingNote) -> &'static str {
     match note {
         RecordingNote::Flat { .. } => "; if so, give --rows and --columns",

@@ -111,7 +111,7 @@ fn perform(arguments: Vec<OsString>, characters: &mut Charset) -> Result<u8, Cli
     Ok(status)
 }
 
-/// What every command may use.
+/// The settings and resources that every command may use.
 struct Surroundings {
     /// The settings in effect.
     settings: Effective,

@@ -44,7 +44,7 @@ pub enum ArrayError {
         /// The column, from 1.
         column: u8,
     },
-    /// The same value everywhere, which is not 0, 1 or 255.
+    /// All values are equal, and neither 0, 1 nor 255.
     Unclear,
 }
 

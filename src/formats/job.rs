@@ -39,7 +39,7 @@ pub enum JobError {
     Json {
         /// The column of the error, from 1.
         column: usize,
-        /// What is wrong, in words.
+        /// A description of the error.
         message: String,
     },
     /// A value without a meaning.

@@ -3,10 +3,10 @@
 //! Every reader is strict and total: it accepts any bytes, and returns either a value in range or one error that says
 //! what was found, where, and what was expected.
 //!
-//! JSON is written with serde: [`DescribedImprint`], `StoredShape`, `FrameAnswer`, `AtlasLine`, a `Sensor`, a `Source` and a
-//! `SetRule` implement `Serialize`. None of them implements `Deserialize`: which values are in range depends on other keys,
-//! such as the sensor, so files and lines are read as a whole, by `StoredShape::read`, `Job::read` and `named_shape`. Their
-//! errors name the line, the column or the key.
+//! JSON is written with serde: [`DescribedImprint`], `StoredShape`, `FrameAnswer`, `AtlasLine`, `Sensor`, `Source` and
+//! `SetRule` implement `Serialize`. None of them implements `Deserialize`: which values are in range depends on other
+//! keys, such as the sensor, so files and lines are read as a whole, by `StoredShape::read`, `Job::read` and
+//! `named_shape`. Their errors name the line, the column or the key.
 
 pub mod value;
 

@@ -34,7 +34,7 @@ pub enum NamedShapeError {
     Json {
         /// The column of the error, from 1.
         column: usize,
-        /// What is wrong, in words.
+        /// A description of the error.
         message: String,
     },
     /// No name.

@@ -76,7 +76,7 @@ pub enum PbmError {
         /// The column, from 1.
         column: u8,
     },
-    /// The same shade everywhere, neither black nor the brightest.
+    /// All shades are equal, and neither black nor the brightest.
     Unclear,
     /// More bytes after the image.
     Long {
@@ -203,7 +203,7 @@ impl Cursor<'_> {
         }
     }
 
-    /// Reads a side; `size` is that of a matrix which has it.
+    /// Reads a side; `size` makes the size of a matrix from it.
     fn side(
         &mut self,
         what: &'static str,

@@ -485,7 +485,7 @@ impl Visitor<'_> for NextRow<'_> {
     }
 }
 
-/// Only written: a source is read with its sensor, as a part of a stored shape or of a line of a batch.
+/// There is no `Deserialize`: a source is read with its sensor, as a part of a stored shape or of a line of a batch.
 impl Serialize for Source {
     /// Writes the object that reads back as the same source.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -503,7 +503,7 @@ impl Serialize for Source {
     }
 }
 
-/// Only written: a sensor is read as a part of a stored shape or of a line of a batch.
+/// There is no `Deserialize`: a sensor is read as a part of a stored shape or of a line of a batch.
 impl Serialize for Sensor {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(4))?;

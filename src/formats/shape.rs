@@ -47,7 +47,7 @@ pub enum ShapeError {
         line: usize,
         /// The column number, from 1.
         column: usize,
-        /// What is wrong, in words.
+        /// A description of the error.
         message: String,
     },
     /// A required key that is missing.
@@ -135,7 +135,7 @@ impl StoredShape {
     }
 }
 
-/// Only written: [`StoredShape::read`] reads it.
+/// There is no `Deserialize`: [`StoredShape::read`] reads a shape.
 impl Serialize for StoredShape {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;

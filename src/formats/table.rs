@@ -44,7 +44,7 @@ pub enum TableError {
         /// The number of active taxels.
         active: String,
     },
-    /// The same number everywhere, which is not 0, 1 or 255.
+    /// All numbers are equal, and neither 0, 1 nor 255.
     Unclear {
         /// The number.
         found: String,
@@ -290,7 +290,7 @@ impl<'a> Table<'a> {
         words || numbered
     }
 
-    /// Its size, which is that of an imprint, with the same number of columns in each row.
+    /// Returns the size of the table. Returns an error if no imprint has this size, or if rows differ in length.
     fn size(&self) -> Result<MatrixSize, TableError> {
         let most = usize::from(MAX_SIDE);
         let found = self.rows.len();

@@ -46,7 +46,7 @@ impl Default for Processing {
 pub struct Processed<'a> {
     /// The values after crop, flip, turn and mask, in the sensor's unit; NaN where there is no cell.
     pub raw: &'a Matrix<f64>,
-    /// The same values after tare and gain.
+    /// The values after tare and gain.
     pub tared: &'a Matrix<f64>,
     /// The sum of the raw values; 0 if there are none.
     pub sum: f64,

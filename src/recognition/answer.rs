@@ -98,8 +98,8 @@ pub struct Answer {
     pub tied: Vec<usize>,
     /// Whether an imprint reaches the rim of its matrix, so that it may be cut off. Such an answer is never certain.
     pub at_rim: bool,
-    /// Every shape with a positive probability, the likeliest first; equally likely ones in the order of the set. Under noise,
-    /// a shape may be missing whose probability is below 1e-9.
+    /// Every shape with a positive probability, the likeliest first; equally likely ones in the order of the set. Under
+    /// noise, a shape may be missing if its probability is below 1e-9.
     pub ranking: Vec<(usize, f64)>,
     /// The keys that were compared; for several touches, those of the touch that needed the most.
     pub method: Method,

@@ -113,8 +113,8 @@ impl Default for ClassifierSettings {
 pub struct ClassifierEvaluation {
     /// The classifier.
     pub classifier: Classifier,
-    /// The same counts as for the best classifier. `information_bits` is what the given name tells about the shape;
-    /// `certain` is 0, since these classifiers do not know when they are certain.
+    /// The counts, as for the best classifier. `information_bits` is the information that the given name has about the
+    /// shape; `certain` is 0, since these classifiers do not know when they are certain.
     pub evaluation: Evaluation,
     /// The features that the classifier used; empty for [`Classifier::Template`].
     pub features: Vec<String>,
@@ -499,14 +499,14 @@ fn moments(model: &Model, column: &[f64]) -> (f64, f64) {
     (mean, mean_of(&|value| (value - mean) * (value - mean)))
 }
 
-/// Whether fewer poses are drawn than each shape has.
+/// Returns true if a sample is drawn, because it has fewer poses than each shape.
 fn is_drawn(model: &Model, settings: &ClassifierSettings) -> bool {
     (settings.sample as u64) < model.poses()
 }
 
-/// Touches that vote: some drawn at random, or all.
+/// The touches that vote: a random sample, or all touches.
 struct Sample {
-    /// The number of a key, a shape that leaves it, and in how many of the touches.
+    /// The number of a key, a shape that leaves it, and the number of touches in which it does.
     touches: Vec<(usize, usize, u64)>,
     shapes: usize,
 }
@@ -526,7 +526,7 @@ impl Sample {
         Self { touches, shapes }
     }
 
-    /// Touches that are drawn, those with the same key side by side.
+    /// Draws touches. Returns them in the order of their keys.
     fn drawn(model: &Model, settings: &ClassifierSettings) -> Vec<(usize, usize, u64)> {
         let mut random = Pcg64::seed_from_u64(settings.seed);
         let mut votes = BTreeMap::new();
@@ -562,7 +562,7 @@ impl Sample {
             return scores;
         };
         let order = |one: &(f64, usize, u64), other: &(f64, usize, u64)| one.0.total_cmp(&other.0);
-        // Each has a vote at least, so the last neighbour is among as many of them.
+        // Each entry has at least one vote, so the first `neighbours` entries include the last neighbour.
         distances.select_nth_unstable_by(rank, order);
         distances[..=rank].sort_unstable_by(order);
         let mut nearer = 0;

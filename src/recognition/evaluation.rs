@@ -33,7 +33,7 @@ use crate::recognition::model::{Model, NamedShape, ShapeCount, first_of_most};
 pub struct Evaluation {
     /// The names of the shapes.
     pub labels: Vec<String>,
-    /// Number of touches.
+    /// The number of touches.
     pub touches: u128,
     /// Touches that are named right.
     pub right: u128,
@@ -48,9 +48,9 @@ pub struct Evaluation {
     pub information_bits: f64,
     /// The information needed to name the shape, in bits: H(S).
     pub prior_bits: f64,
-    /// Number of distinct keys, or of distinct values if descriptors are given instead of keys.
+    /// The number of distinct keys, or of distinct values if descriptors are given instead of keys.
     pub keys: usize,
-    /// Number of these that only one shape leaves.
+    /// The number of keys or values that only one shape leaves.
     pub keys_of_one_shape: usize,
     /// The confusion matrix: which shapes are named as which.
     pub confusion: ConfusionMatrix,

@@ -1,4 +1,4 @@
-//! What descriptors are worth: the limit of one touch if only some descriptors of the imprint are known.
+//! The value of descriptors: the limit of one touch if only some descriptors of the imprint are known.
 //!
 //! Two imprints count as the same if all given descriptors of their main regions agree. Descriptors are compared
 //! exactly ([`Descriptor::exact`]), or in steps of a [`Rounding`]. A missing value agrees only with a missing value.

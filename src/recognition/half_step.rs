@@ -15,7 +15,7 @@ use crate::sensor::MatrixSize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct HalfStep {
-    /// Number of touches.
+    /// The number of touches.
     pub touches: u128,
     /// Touches whose imprint the model holds.
     pub held: u128,

@@ -13,7 +13,7 @@ use crate::recognition::scan::Observed;
 pub struct Nearest {
     /// The number of the shape in the set that leaves the imprint most often.
     pub shape: usize,
-    /// Number of taxels that differ.
+    /// The number of taxels that differ.
     pub distance: u32,
     /// The imprint, on the matrix of the observed one.
     pub imprint: Imprint,

@@ -4,8 +4,8 @@
 //! P(imprint | s) = Σ over keys k and shifts of  n[s, k] · e^d (1 − e)^(cells − d)  / T[s]
 //! ```
 //! where d is the number of taxels in which the imprint and the shifted key differ, and `T[s]` the number of touches
-//! of `s`: its poses, times the shifts of the key on the matrix. So the prior is uniform over every pose in every place on
-//! the matrix. Taxels that are known to be dead are left out of d and of `cells`.
+//! of `s`: its poses, times the shifts of the key on the matrix. So the prior is uniform over every pose in every
+//! place on the matrix. Taxels that are known to be dead are left out of d and of `cells`.
 //!
 //! The sums are of integers: for each shape, how many touches lie at each distance. So one scan serves any e, and
 //! neither threads nor the order of keys matter. Only distances up to D are kept: D follows from e, the weights and the
@@ -47,9 +47,9 @@ pub struct NoiseError {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct UnexplainedDifference {
-    /// Number of taxels that differ from the nearest imprint.
+    /// The number of taxels that differ from the nearest imprint.
     pub found: u32,
-    /// Number of taxels that are expected to flip.
+    /// The number of taxels that are expected to flip.
     pub expected: f64,
 }
 
@@ -294,7 +294,7 @@ impl Model {
         own.map(bounds).collect()
     }
 
-    /// The first shape of the set that leaves nothing on a matrix of that size, since none of its imprints fits there.
+    /// Returns the index of the first shape of the set none of whose imprints fits on a matrix of this size.
     pub fn first_too_large(&self, size: MatrixSize) -> Option<usize> {
         self.touches_on(size)
             .iter()

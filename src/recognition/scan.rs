@@ -25,8 +25,8 @@ use crate::sensor::MatrixSize;
 /// The number of keys that are compared with all windows before the next ones, so that their counts stay in the cache.
 const BLOCK: usize = 64;
 
-/// The number of keys of one task. Fewer keys than this are compared on the calling thread. In tests few models have
-/// so many.
+/// The number of keys of one task. Fewer keys than this are compared on the calling thread. Tests use a smaller number,
+/// because their models have few keys.
 const TASK: usize = if cfg!(test) { 64 } else { 1 << 15 };
 
 /// All keys of a model, by box and number of taxels.

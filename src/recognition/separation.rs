@@ -100,13 +100,13 @@ pub struct SeparationPoint {
     pub threshold: f64,
     /// The side of the smallest square sensor, at least 16, that cuts nothing off.
     pub side: u8,
-    /// Number of touches.
+    /// The number of touches.
     pub touches: u128,
     /// Touches that are named right.
     pub right: u128,
     /// Touches that only one shape can leave.
     pub certain: u128,
-    /// Number of distinct keys.
+    /// The number of distinct keys.
     pub keys: usize,
 }
 

@@ -193,8 +193,8 @@ pub struct NoisyTouches {
 }
 
 impl NoisyTouches {
-    /// Draws `per_shape` touches of each shape on a matrix of that size. Taxels flip as `noise` says, and its dead taxels
-    /// always read as inactive.
+    /// Creates a simulation that draws `per_shape` touches of each shape on a matrix of this size. Taxels flip as
+    /// `noise` says, and its dead taxels always read as inactive.
     pub fn new(size: MatrixSize, noise: Noise, per_shape: u64, seed: u64) -> Self {
         Self {
             size,

@@ -71,8 +71,8 @@ pub enum TrainingError {
         /// The problem with its poses.
         error: GridError,
     },
-    /// Poses that the sensor cuts off, so that imprints depend on its rim. [`Training::fitting`] finds a sensor that cuts off
-    /// none, and [`Training::allow_cut`] takes them.
+    /// Poses that the sensor cuts off, so that imprints depend on its rim. [`Training::fitting`] finds a sensor that
+    /// cuts nothing off, and [`Training::allow_cut`] accepts such poses.
     #[error(
         "{name}: the {columns} × {rows} sensor cuts off {} of {} poses",
         grouped(*cut), grouped(*poses)

@@ -1,4 +1,5 @@
-//! What the screen remembers between runs, in small files in the library's folder: one entry per line, the newest last.
+//! The small files in the library's folder in which the screen keeps its memory between runs: one entry per line, the
+//! newest last.
 //!
 //! Errors are ignored: a file that cannot be read counts as empty, and lines that cannot be written are dropped.
 

@@ -24,7 +24,8 @@ const RANDOM: usize = 6;
 /// now.
 const FRESH: Duration = Duration::from_secs(60);
 
-/// The same age on a file system without locks, where nothing shows whether the writer still runs.
+/// The age at which a file is removed if the file system has no locks, so that nothing shows whether the writer still
+/// runs.
 const FRESH_WITHOUT_LOCKS: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// A file without its final name. If it is dropped, nothing is left of it.

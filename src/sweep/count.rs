@@ -10,7 +10,7 @@ use crate::sweep::run::Sweep;
 pub struct CountedImprints {
     layout: Layout,
     counter: ImprintCounter,
-    /// Number of poses.
+    /// The number of poses.
     pub poses: u64,
     /// The number of poses that reach beyond the sensor.
     pub partly_off: u64,

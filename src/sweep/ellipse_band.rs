@@ -28,7 +28,7 @@ pub(crate) struct EllipseBand {
     middle_x: f64,
     /// Half of the vertical section at distance d from the centre is this times the root of `reach_x`² − d².
     scale_y: f64,
-    /// The same factor for horizontal sections.
+    /// The corresponding factor for horizontal sections.
     scale_x: f64,
     /// The top of the band, relative to the centre.
     top: f64,

@@ -4,8 +4,8 @@
 //! added to the atlas one after the other, while the next portion is being swept. At the end the imprints are sorted by
 //! their first poses, so their numbers are the same for any number of threads.
 //!
-//! With [`Sweep::rows`], imprints are numbered as they are found. So tasks come in the order of their first orientations,
-//! mirror images are swept separately, and the rows of a group come together.
+//! With [`Sweep::rows`], imprints are numbered as they are found. So tasks come in the order of their first
+//! orientations, mirror images are swept separately, and the rows of a group come together.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};

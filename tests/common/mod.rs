@@ -7,7 +7,7 @@ use taxel::parameter::Parameter;
 use taxel::picture::Picture;
 use taxel::sensor::{MatrixSize, Sensor};
 
-/// The size of a matrix that a test knows to be one.
+/// Returns the size of a matrix. Panics if it is not allowed.
 pub(crate) fn size(columns: u8, rows: u8) -> MatrixSize {
     MatrixSize::new(columns, rows).expect("1 to 64")
 }

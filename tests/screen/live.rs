@@ -243,7 +243,7 @@ fn the_question_before_quitting_mentions_the_recording() {
     );
 }
 
-/// The same gain for every cell of a matrix.
+/// Returns a matrix with the same gain for every cell.
 fn gain_of(columns: u8, rows: u8, gain: f64) -> Matrix<f64> {
     Matrix::filled(MatrixSize::new(columns, rows).expect("1 to 64"), gain)
 }

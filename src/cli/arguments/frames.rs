@@ -40,7 +40,7 @@ pub(crate) enum FrameChoice {
 /// The processing that turns frames into imprints.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ProcessingArguments {
-    /// The size of a frame, of what does not say it.
+    /// The size of a frame, for recordings that do not state it.
     pub(crate) size: Option<FrameSize>,
     /// The channel of a recording that has several.
     pub(crate) channel: Option<String>,

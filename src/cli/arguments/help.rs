@@ -8,7 +8,7 @@
 //! surprise; they do not repeat the help of a flag. Commands are indented by two spaces, and long ones continue after
 //! a `\`.
 
-/// What the program is for: the first lines of `taxel --help`.
+/// The purpose of the program: the first lines of `taxel --help`.
 pub(crate) const ABOUT: &str = "\
 Which shapes can a robot recognise by touching them once?
 

@@ -199,7 +199,7 @@ impl Given {
     }
 }
 
-/// What to do if the file of a shard exists already.
+/// The action if the file of a shard exists already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ShardFile {
     /// Report an error: the default.

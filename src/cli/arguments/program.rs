@@ -33,7 +33,7 @@ pub(crate) struct Script {
     pub(crate) json: bool,
     /// The folder for drawings of screens, if given.
     pub(crate) drawings: Option<PathBuf>,
-    /// What to do about drawings that exist.
+    /// Whether drawings that exist are replaced.
     pub(crate) existing: Existing,
     /// Whether the script may use any library and write anywhere.
     pub(crate) allow_outside: bool,

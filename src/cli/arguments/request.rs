@@ -148,7 +148,7 @@ pub(crate) enum LibraryCommand {
     Check(bool),
 }
 
-/// What to keep of a touch, in addition to printing it.
+/// The places in which a touch is kept, in addition to printing it.
 #[derive(Clone, Debug)]
 pub(crate) struct Kept {
     /// The name to store the shape under: `--save`.

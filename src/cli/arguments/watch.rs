@@ -103,7 +103,7 @@ fn parse_speed(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "expected a number above 0, up to 1000000".to_owned())
 }
 
-/// How the source is played.
+/// Returns how the source is played.
 fn playback(matches: &ArgMatches) -> Playback {
     if matches.get_flag("once") {
         return Playback::Once;

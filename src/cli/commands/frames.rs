@@ -54,7 +54,7 @@ use crate::sensor::Sensor;
 pub(crate) struct FramesOutput<'a> {
     /// One line of JSON per frame, or a matrix and a table.
     pub(crate) form: Form,
-    /// What to keep besides the answer: `--save` and `--export`.
+    /// The places in which the imprint is kept, in addition to the answer: `--save` and `--export`.
     pub(crate) kept: Kept,
     /// The library in which imprints are saved.
     pub(crate) shelf: &'a Shelf,

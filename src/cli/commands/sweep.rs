@@ -39,7 +39,7 @@ pub(crate) struct Wanted {
     pub(crate) atlas: Option<AtlasFile>,
     /// `--poses`: the file of each pose's imprint.
     pub(crate) poses: Option<PathBuf>,
-    /// What to do about files that exist.
+    /// The action if a file exists already.
     pub(crate) there: ShardFile,
     /// Whether the summary is one line of JSON.
     pub(crate) json: bool,

@@ -568,7 +568,7 @@ impl Watcher<'_> {
         self.undecoded(StreamRefusal::Unknown)
     }
 
-    /// That the stream cannot be decoded as it comes, and what helps.
+    /// Returns the error for a stream that cannot be decoded without more flags; it says which flags help.
     fn undecoded(&self, refusal: StreamRefusal) -> CliError {
         self.refused(&format!("{refusal}{}", stream_advice(refusal)))
     }

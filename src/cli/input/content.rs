@@ -72,7 +72,7 @@ pub(crate) enum InputError {
     Elsewhere {
         /// The reason why it is not an imprint.
         error: Box<InputError>,
-        /// What it looks like.
+        /// The kind of input that it looks like.
         what: &'static str,
         /// The command that reads it.
         command: &'static str,

@@ -27,9 +27,9 @@ use crate::parameter::number::short;
 /// A channel of a recording.
 #[derive(Debug, Default)]
 pub(crate) struct ListedChannel {
-    /// What the recording states about the channel.
+    /// The properties of the channel that the recording states.
     pub(crate) info: ChannelInfo,
-    /// The size of what is seen of its frames, after the crop.
+    /// The size of the visible part of its frames, after the crop.
     seen: Option<FrameSize>,
     /// The number of frames.
     pub(crate) frames: u64,
@@ -39,7 +39,7 @@ pub(crate) struct ListedChannel {
     pub(crate) values: u64,
     /// The largest number of cells with a value in a frame.
     cells: usize,
-    /// The cell of the whole sensor that frames begin at.
+    /// The cell of the whole sensor at which frames begin, if the recording states it.
     first: Option<FirstCell>,
     /// The times of its frames; None if they have no times.
     times: Option<FrameTimes>,

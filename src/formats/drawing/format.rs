@@ -39,7 +39,7 @@ impl DrawingFormat {
         formats.find(|format| format.name().eq_ignore_ascii_case(ending))
     }
 
-    /// The format that the ending of a file's name asks for; None where no drawing has it.
+    /// Returns the format for the ending of a file name; None if no format has this ending.
     #[cfg(feature = "tui")]
     pub(crate) fn of_path(path: impl AsRef<Path>) -> Option<Self> {
         Self::of_ending(path.as_ref().extension()?.to_str()?)

@@ -44,7 +44,7 @@ impl<'a> FrameAnswer<'a> {
     }
 }
 
-/// Only written: it is an answer.
+/// There is no `Deserialize`: an answer is only written.
 impl Serialize for FrameAnswer<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
@@ -70,7 +70,7 @@ impl Serialize for FrameAnswer<'_> {
     }
 }
 
-/// Only written: a rule is read as a part of what lies beside a recording, or of a line of a batch.
+/// There is no `Deserialize`: a rule is read as a part of the description beside a recording, or of a line of a batch.
 impl Serialize for SetRule {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;

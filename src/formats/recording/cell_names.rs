@@ -22,7 +22,7 @@ pub(crate) enum NamedCells {
     Grid(FrameSize, Vec<usize>),
     /// Consecutive fields that count up: the first of them and their number.
     Counted(usize, usize),
-    /// Only this many of the cells of a frame of that size.
+    /// The size of a frame, and the number of its cells that the header names: not all of them.
     Incomplete(FrameSize, usize),
 }
 

@@ -221,7 +221,7 @@ struct RowBlock {
 }
 
 impl RowBlock {
-    /// Before the first row of frames of that size.
+    /// Creates an empty block for a frame of this size.
     fn new(separator: Separator, size: FrameSize, parted: bool) -> Self {
         Self {
             separator,

@@ -119,26 +119,26 @@ fn rule_or_null<S: Serializer>(
     }
 }
 
-/// Why a description is refused.
+/// The error for a description that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MetadataError {
-    /// Not JSON, or a key with something other than its value.
+    /// The description is not JSON, or the value of a key has the wrong type.
     #[error("line {line}, column {column}: {message}")]
     Json {
-        /// Counted from 1.
+        /// The line number, from 1.
         line: usize,
-        /// Counted from 1.
+        /// The column number, from 1.
         column: usize,
-        /// What is wrong.
+        /// A description of the error.
         message: String,
     },
-    /// A rule or a tare that cannot be one.
+    /// The description has a rule or a tare that is not valid.
     #[error("{key}: {message}")]
     Value {
-        /// Its key.
+        /// The key of the rule or the tare.
         key: &'static str,
-        /// What is wrong.
+        /// A description of the error.
         message: String,
     },
 }
@@ -152,7 +152,7 @@ impl MetadataError {
         }
     }
 
-    /// The same of the value of a key.
+    /// Returns a function that makes the error for the value of a key.
     fn of_key<E: ToString>(key: &'static str) -> impl FnOnce(E) -> Self {
         move |error| Self::Value {
             key,
@@ -162,11 +162,11 @@ impl MetadataError {
 }
 
 impl RecordingMetadata {
-    /// Reads a description. Returns None if the bytes are something else, which may well be the case beside an array;
-    /// a torn description is recognised by the name of its format.
+    /// Reads a description. Returns None if the bytes are something else, as any file beside an array may be. A torn
+    /// description is recognised by the name of its format.
     ///
     /// # Errors
-    /// What is wrong with it, and where.
+    /// Returns an error if the description is damaged; it names the line and column, or the key.
     pub fn read(bytes: &[u8]) -> Option<Result<Self, MetadataError>> {
         #[derive(Deserialize)]
         struct Format {

@@ -28,11 +28,11 @@ pub enum RecordingError {
         line: Option<u64>,
         /// The field in the line, if a single field is wrong.
         column: Option<u64>,
-        /// What was found and what was expected.
+        /// The message, which says what was found and what was expected.
         message: String,
     },
-    /// The file does not say how its values are arranged: a list of cells, without rows. Their size can be named with
-    /// [`ReadOptions`](super::ReadOptions).
+    /// The file does not say how its values are arranged: it has a list of cells, without rows. Their size can be given
+    /// in [`ReadOptions`](super::ReadOptions).
     #[error("{} a frame, but no rows and columns", counted(*values, "value"))]
     Shape {
         /// The number of values of a frame.

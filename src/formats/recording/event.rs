@@ -92,12 +92,12 @@ named!(RecordingFormat, "format", &RecordingFormat::ALL);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// The size of a frame, for files that do not say it.
+    /// The size of a frame, for files that do not state it.
     pub size: Option<FrameSize>,
 }
 
 impl ReadOptions {
-    /// Sets the rows and columns of a frame, for files that do not give them.
+    /// Sets the size of a frame, for files that do not state it.
     #[must_use]
     pub fn with_size(mut self, size: FrameSize) -> Self {
         self.size = Some(size);
@@ -116,7 +116,7 @@ pub struct ChannelInfo {
     pub name: Option<String>,
     /// The size of its frames.
     pub size: Option<FrameSize>,
-    /// How many values a frame has, where its size is not known.
+    /// The number of values of a frame, if its size is not known.
     pub values: Option<u64>,
     /// The unit of the values.
     pub unit: Option<String>,
@@ -249,7 +249,7 @@ pub enum RecordingNote {
     Maximum,
     /// A description beside the recording that is ignored, because it is broken or cannot be read.
     Description {
-        /// What is wrong with it, after its path.
+        /// The path of the description, and the error in it.
         complaint: String,
     },
 }

@@ -96,9 +96,9 @@ pub(super) fn read(
 /// The content of a line, in memory that is reused.
 #[derive(Debug)]
 pub(crate) struct FrameLine {
-    /// The size of a frame, for lists of cells without rows.
+    /// The size of a frame, for lists of cells without rows, if it is known beforehand.
     asked: Option<FrameSize>,
-    /// The size of the frame; of one cell before the first.
+    /// The size of the frame; one cell before the first frame.
     pub(crate) size: FrameSize,
     /// The cells, row by row; NaN for null.
     pub(crate) values: Vec<f64>,
@@ -146,7 +146,7 @@ impl FrameLineError {
 }
 
 impl FrameLine {
-    /// `asked` is the size of a frame, if it is known beforehand.
+    /// Creates a line without a frame. `asked` is the size of a frame, if it is known beforehand.
     pub(crate) fn new(asked: Option<FrameSize>) -> Self {
         Self {
             asked,

@@ -150,7 +150,7 @@ impl ArrayLayout {
         self.frames
     }
 
-    /// The size of a frame.
+    /// Returns the size of a frame.
     pub(super) fn size(&self) -> FrameSize {
         self.size
     }

@@ -89,7 +89,7 @@ pub(super) fn header(cdr: &mut CdrReader<'_>) -> Option<()> {
 
 /// The content of an image.
 pub(super) enum ImageFrame {
-    /// A frame of that size.
+    /// A frame, with its size.
     Values(FrameSize),
     /// Not a frame: an encoding with other than one value per pixel, or an image that is too large.
     OfCamera,

@@ -10,7 +10,7 @@ pub(crate) fn side(length: impl TryInto<u16>) -> Option<u16> {
     length.filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
 }
 
-/// The size of a frame; None if a side is one that no frame has.
+/// Returns the size of a frame; None if a side is out of range.
 pub(crate) fn frame_size<T: TryInto<u16>>(columns: T, rows: T) -> Option<FrameSize> {
     FrameSize::of_sides(side(columns), side(rows))
 }

@@ -310,8 +310,9 @@ fn first_block(
     Ok((block, false))
 }
 
-/// How many lines are needed to decide how a table without names is arranged, given the size of a frame, the width of a row
-/// and the numbers in its first line. A growing file is read no further than that.
+/// Returns the number of lines that are needed to decide how a table without names is arranged. `size` is the size of
+/// a frame, `width` the width of a row, `values` the number of values in the first line. A growing file is read no
+/// further than these lines.
 fn lines_needed(size: Option<FrameSize>, width: Option<u16>, values: usize) -> u16 {
     match size {
         Some(size) if width == Some(size.columns()) && size.rows() > 1 => size.rows() + 1,
@@ -455,7 +456,7 @@ fn with_header(
     })
 }
 
-/// The size of a frame, the field of each cell, and what was assumed to find them.
+/// The size of a frame, the field of each cell, and a note if something was assumed.
 type CellFields = (FrameSize, Vec<usize>, Option<RecordingNote>);
 
 /// Returns the cells that names describe.

@@ -203,7 +203,7 @@ impl XsensorState {
         Ok(())
     }
 
-    /// The size of this sensor's frames, once both lines have come.
+    /// Returns the size of this sensor's frames; None before both its lines were read.
     fn size(&self) -> Option<FrameSize> {
         FrameSize::of_sides(self.columns, self.rows)
     }

@@ -72,7 +72,7 @@ impl JsonChannels {
 pub(super) struct JsonDecoder {
     /// The line that was read last.
     line: FrameLine,
-    /// The size of all frames, if it was named.
+    /// The size of all frames, if it was given.
     named: Option<FrameSize>,
     /// The channels so far.
     pub(super) channels: JsonChannels,

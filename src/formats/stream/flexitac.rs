@@ -45,7 +45,7 @@ enum Start {
 }
 
 impl FlexitacDecoder {
-    /// For frames of this size. `from_start`: whether the first byte begins a frame.
+    /// Creates a decoder for frames of this size. If `from_start` is true, the first byte begins a frame.
     pub(super) fn new(size: FrameSize, from_start: bool) -> Self {
         Self {
             size,

@@ -110,8 +110,8 @@ impl Dialog {
     }
 }
 
-/// Finds the topmost page of a kind among the pages of the program, to look at it or to change it:
-/// `topmost!(&app.dialogs, Live)`, `topmost!(&mut app.dialogs, Live)`. None if there is none.
+/// Finds the topmost page of a kind among the pages of the program, for reading or for changing it:
+/// `topmost!(&app.dialogs, Live)`, `topmost!(&mut app.dialogs, Live)`. None if there is no such page.
 macro_rules! topmost {
     ($dialogs:expr, $kind:ident) => {
         $dialogs.into_iter().rev().find_map(|dialog| match dialog {
@@ -150,7 +150,7 @@ impl Question {
         }
     }
 
-    /// The question whether a file that exists is to be replaced, which yes does.
+    /// Creates the question whether to replace a file that exists; the answer yes sends the message `yes`.
     pub fn replaces(file: &str, yes: Message) -> Self {
         Self::new(format!("{file} already exists. Replace it?"), yes)
     }

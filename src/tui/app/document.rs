@@ -111,7 +111,7 @@ impl Document {
 pub struct Reading {
     /// The active taxels.
     pub imprint: Imprint,
-    /// How much of each cell is covered; none of a matrix that is only drawn on.
+    /// The covered share of each cell; None for a matrix without a shape, on which taxels are only drawn.
     pub coverages: Option<Matrix<f64>>,
     /// The regions: pieces and holes.
     pub regions: Vec<Region<'static>>,

@@ -6,13 +6,13 @@ use crate::storage::{Expected, LibraryEntry, LoadedShape};
 /// The purpose for which a shape is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// To put it onto the matrix.
+    /// The shape is put onto the matrix.
     Load,
-    /// To delete it.
+    /// The shape is deleted.
     Delete,
-    /// To place it as a picture.
+    /// The shape is placed as a picture.
     Picture,
-    /// To compare it with the matrix.
+    /// The shape is compared with the matrix.
     Compare,
 }
 
@@ -31,11 +31,11 @@ pub enum LibraryRequest {
     Named(Purpose, String),
     /// Save a shape, if its file holds what is expected.
     Store(Box<StoredShape>, Expected),
-    /// Check whether the shape of that name can be deleted.
+    /// Check whether the shape of this name can be deleted.
     Deletable(String),
     /// Delete a shape.
     Remove(String),
-    /// Restore the last deleted shape, of that name or of any.
+    /// Restore the shape that was deleted last: of this name, or of any name.
     Restore(Option<String>),
 }
 

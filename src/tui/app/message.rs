@@ -109,7 +109,7 @@ pub enum Message {
     ScrollScreen(i8),
     /// Go to the first or the last line of a list.
     ScrollTo(Endpoint),
-    /// Select the row of a list.
+    /// Select a row of a list, by its number from 0.
     Select(usize),
     /// Open the prompt that searches in help.
     Search,
@@ -190,13 +190,13 @@ impl Message {
 /// The answer to a request about files. Errors are sentences.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FileEvent {
-    /// The file of that name was opened.
+    /// The file of this name was opened.
     Opened(String, OpenedFile),
-    /// The file of that name was written.
+    /// The file of this name was written.
     Written(String),
-    /// The file was not written, because one of that name exists; with the content to write.
+    /// The file was not written, because one of this name exists; with the content to write.
     Exists(String, Vec<u8>),
-    /// The request failed, and why.
+    /// The reason why the request failed.
     Failed(String),
     /// The source of frames can be watched.
     Source(Arc<WatchRequest>),

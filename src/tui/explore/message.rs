@@ -115,7 +115,7 @@ pub enum ExploreMessage {
     Point(u64, u64),
     /// Choose the angle of the map this many further on; negative goes back.
     Angle(i16),
-    /// The poses this many further on along an axis; negative goes back.
+    /// Go to the pose this many steps further on along an axis; negative goes back.
     Along(Axis, i8),
     /// Ask for the name of a file to export to.
     Export,

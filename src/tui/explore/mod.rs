@@ -7,7 +7,7 @@
 //! results    the findings, and what is shown of them      column: the columns to sort the list by
 //! export  filter  mark       the prompts for a file name, a condition and a letter
 //! prompts    handles messages in filter and mark
-//! page       what the results know of a page of theirs    pages: the table of pages
+//! page       the type of a page of the results            pages: the table of pages
 //! imprints  statistics  histogram  map  scatter  angles   the pages
 //! work       from the form to the results                 update: what keys do over the results
 //! view       tabs, summary, and the page

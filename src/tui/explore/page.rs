@@ -30,7 +30,8 @@ pub struct ResultsPage {
     pub sifted: bool,
     /// The same for a file: None for a page that is a table.
     pub drawing: Option<PageDrawing>,
-    /// Its numbers for a CSV file: None for the list of imprints, whose file has all of them, and for drawings.
+    /// Returns the numbers of the page for a CSV file. The field is None for pages with a drawing, and for the list of
+    /// imprints, whose file has all imprints.
     pub table: Option<fn(&Results, Rect) -> String>,
     /// The effect of the mouse wheel.
     pub wheel: Wheel,
@@ -43,7 +44,7 @@ pub struct ResultsPage {
 }
 
 impl ResultsPage {
-    /// Returns true if a file of that name holds what this page shows: a drawing on any page, which may be refused,
+    /// Returns true if a file of this name holds what this page shows: a drawing on any page, which may be refused,
     /// or its table.
     pub fn is_own_file(&self, name: &str) -> bool {
         DrawingFormat::of_path(name).is_some() || (self.table.is_some() && is_csv(name))

@@ -384,7 +384,7 @@ impl Results {
     /// Selects an imprint.
     ///
     /// # Errors
-    /// A sentence, where the filter hides it.
+    /// Returns a sentence if the filter hides the imprint.
     pub fn go_to_imprint(&mut self, id: u32) -> Result<(), String> {
         if self.find(id) {
             return Ok(());
@@ -395,7 +395,7 @@ impl Results {
     /// Selects the imprint of a pose.
     ///
     /// # Errors
-    /// A sentence, where the pose was not swept or the filter hides its imprint.
+    /// Returns a sentence if the pose was not swept or the filter hides its imprint.
     pub fn go_to_imprint_at(&mut self, pose: u64) -> Result<(), String> {
         let id = self.id_at(pose);
         self.go_to_imprint(id.ok_or("this pose was not swept: the sweep was stopped")?)

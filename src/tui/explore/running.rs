@@ -36,7 +36,7 @@ pub enum WorkKind {
 /// A sweep or an export in progress.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Running {
-    /// The number of the work.
+    /// The number of the piece of work.
     pub number: u64,
     /// The kind of work.
     pub job: WorkKind,

@@ -162,7 +162,7 @@ fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     )
 }
 
-/// The same for a file.
+/// Returns the drawing of the page for a file; None if there is nothing to draw.
 fn drawing(results: &Results, format: DrawingFormat) -> Option<Result<Vec<u8>, String>> {
     let points: Vec<(f64, f64)> = points(results).into_iter().map(|(_, at)| at).collect();
     if points.is_empty() {

@@ -166,14 +166,14 @@ impl FormMemory {
     }
 }
 
-/// The size of a sensor in a line.
+/// Returns the part of a line that states the size of a sensor.
 fn on(size: MatrixSize) -> String {
     let (columns, rows) = (size.columns(), size.rows());
     let [across, down] = SIDES.map(|side| side.row().key);
     format!(" {across} {columns} {down} {rows}")
 }
 
-/// What a line says of it.
+/// Reads the size of a sensor from the pairs of a line; None if it is missing or out of range.
 fn size_of(pairs: &[&str]) -> Option<MatrixSize> {
     let side = |parameter: Parameter| {
         let mut pairs = pairs.chunks_exact(2);

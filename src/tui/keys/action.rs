@@ -80,9 +80,9 @@ pub enum Arguments {
 /// The purpose for which a file is named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilePurpose {
-    /// To open it.
+    /// The file is opened.
     Open,
-    /// To write it.
+    /// The file is written.
     Write,
 }
 

@@ -167,7 +167,7 @@ pub struct Binding {
     pub keys: Cow<'static, [(Key, &'static Action)]>,
     /// A word or two for the line of hints; empty if there is no hint.
     pub hint: &'static str,
-    /// What the keys do, for help.
+    /// The effect of the keys, for help.
     pub help: &'static str,
 }
 

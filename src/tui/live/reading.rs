@@ -1,4 +1,4 @@
-//! What the live page computes from the shown frame: values, imprint, descriptors.
+//! The results that the live page computes from the shown frame: values, imprint, descriptors.
 
 use std::sync::Arc;
 

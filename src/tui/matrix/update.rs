@@ -38,9 +38,8 @@ use crate::tui::{explore, live, recognise};
 /// and show this notice if there is none.
 const NO_REGION: &str = "no region: the matrix is empty";
 
-/// Handles a message.
-/// A message that no arm knows is tried as a page, and then as an edit.
-/// Right after a shape was deleted, Undo brings that shape back, before any step of the drawing.
+/// Handles a message. A message without an arm here opens a page or edits the matrix. Right after a shape was deleted,
+/// Undo restores that shape, before any step of the drawing.
 pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
     let sensor = app.history.present().sensor;
     match message {

@@ -77,21 +77,21 @@ pub struct Prepared {
     pub trained: Result<Arc<TrainedModel>, String>,
 }
 
-/// What was found of one size.
+/// The result for one size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizeFound {
     /// The limit of one touch.
     pub point: SeparationPoint,
-    /// The shape that is taken most often for another one; None if none is.
+    /// The shape that is taken most often for another one, and that one; None if no shape is.
     pub worst: Option<ConfusedPair>,
 }
 
-/// Some sizes, or the end of the work.
+/// The results for some sizes, or the end of the work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizesFound {
-    /// The number of the work.
+    /// The number of the piece of work.
     pub number: u64,
-    /// Sizes, in their order.
+    /// The results, in the order of sizes.
     pub sizes: Vec<SizeFound>,
     /// At the end of the work: the smallest size that reaches the wanted error, or why the work ended too early.
     pub end: Option<Result<Option<SmallestSize>, String>>,

@@ -110,7 +110,7 @@ const SIGNALS: [&str; 5] = ["HUP", "INT", "QUIT", "TERM", "TSTP"];
 pub struct ScriptError {
     /// The line number, from 1; 0 for keys from the command line (`-k`).
     pub line: usize,
-    /// What is wrong, and what was expected.
+    /// The error, and what was expected instead.
     pub message: String,
 }
 

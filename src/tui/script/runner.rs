@@ -40,7 +40,7 @@ pub enum ScriptFailure {
     Expectation {
         /// The line number, from 1.
         line: usize,
-        /// What was expected, and what is there.
+        /// The message, which says what was expected and what is there.
         message: String,
         /// The text of the screen.
         screen: String,
@@ -189,7 +189,7 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
 /// Reads and draws the next frames.
 ///
 /// # Errors
-/// If there are fewer than `count`, returns how many there are and why.
+/// Returns a message if there are fewer than `count` frames; it says how many there are and why.
 fn take_frames(session: &mut Session, count: usize) -> Result<(), String> {
     let found = session.frames(count);
     if found == count {

@@ -45,12 +45,12 @@ use crate::tui::terminal::{job, session};
 /// The least time between two pictures of a source of frames (about 30 a second).
 const PICTURE: Duration = Duration::from_millis(34);
 
-/// Runs the program until it ends. The terminal is left as it was, after an error, a signal and a panic too, and
-/// unsaved work is in the journal wherever the program may not come back. `first` is sent to it at its start, and later what
-/// comes through the mailbox; `watch` is called with what is recorded.
+/// Runs the program until it ends. The terminal is restored, even after an error, a signal or a panic, and unsaved
+/// work is in the journal at every point from which the program may not come back. `first` is the first message to the
+/// program; later ones come through the mailbox. `watch` is called with each event that a record contains.
 ///
 /// # Errors
-/// Where there is no terminal, or it cannot be read or written.
+/// Returns an error if there is no terminal, or if it cannot be read or written.
 pub fn run(
     mut app: App,
     first: Option<Message>,

@@ -1,9 +1,9 @@
-//! Which row of a list is selected.
+//! The selected row of a list.
 
 use crate::tui::app::message::{Endpoint, Message};
 
-/// The row that a message selects, where `row` is selected now; None if it selects none. It may lie beyond the last row, whose
-/// number the list knows.
+/// Returns the row that a message selects if `row` is selected now; None if it selects no row. The result may lie
+/// beyond the last row, since only the list knows how many rows there are.
 pub fn moved(row: usize, message: &Message) -> Option<usize> {
     match *message {
         Message::Scroll(lines) => Some(row.saturating_add_signed(lines.into())),

@@ -154,7 +154,7 @@ const DARK_TINTS: [Tone; 6] = [
     (Color::Magenta, 176, [215, 135, 215]),
     (Color::Red, 203, [255, 95, 95]),
 ];
-/// The same colours on a light background.
+/// The colours of tints on a light background.
 const LIGHT_TINTS: [Tone; 6] = [
     (Color::Cyan, 31, [0, 135, 175]),
     (Color::Magenta, 130, [175, 95, 0]),
@@ -193,7 +193,7 @@ impl Theme {
         }
     }
 
-    /// A colour as the terminal has it; None if it has none.
+    /// Returns a colour as the terminal can show it; None without colours.
     pub(in crate::tui) fn color(self, (named, index, [red, green, blue]): Tone) -> Option<Color> {
         match self.depth {
             ColorDepth::Never => None,
@@ -203,7 +203,7 @@ impl Theme {
         }
     }
 
-    /// A style with a colour, as far as the terminal has colours.
+    /// Adds a colour to a style, if the terminal has colours.
     fn coloured(self, style: Style, tone: Tone) -> Style {
         self.color(tone).map_or(style, |color| style.fg(color))
     }

@@ -32,12 +32,12 @@ pub(crate) struct Recorded {
     pub(crate) error: Option<RecordingError>,
 }
 
-/// The size of a frame, given as recordings name it: rows first.
+/// Returns the size of a frame, with rows first, as recordings state it.
 pub(crate) fn frame_size(rows: u16, columns: u16) -> FrameSize {
     FrameSize::new(columns, rows).expect("1 to 512")
 }
 
-/// Rows and columns of a channel's frames.
+/// Returns the rows and columns of a channel's frames.
 pub(crate) fn channel_shape(info: &ChannelInfo) -> Option<(u16, u16)> {
     info.size.map(|size| (size.rows(), size.columns()))
 }

@@ -45,7 +45,7 @@ pub(crate) struct TrainArguments {
     pub(crate) allow_cut: bool,
     /// Where the model is written.
     pub(crate) to: ModelTarget,
-    /// What to do if a model of that name exists.
+    /// The action if a model of this name exists.
     pub(crate) there: ShardFile,
     /// Whether the answer is a line of JSON.
     pub(crate) json: bool,

@@ -93,7 +93,8 @@ impl AngleCurve {
         self.zooms == zooms_of(place)
     }
 
-    /// The values of a descriptor at each angle where they have a mean. `values` are those of the imprints, by number.
+    /// Returns the spread of a descriptor at each angle at which its values have a mean. `values` has the value of each
+    /// imprint, by number.
     pub fn spread(
         &self,
         sweep: &SweepResult,
@@ -129,14 +130,15 @@ impl AngleCurve {
     }
 }
 
-/// The mean of a function of values, given how often each value occurs; None if there are none.
+/// Returns the mean of a function of values, given how often each value occurs; None if there are no values.
 fn mean(known: &[(f64, f64)], of: fn(f64) -> f64) -> Option<f64> {
     let count: f64 = known.iter().map(|(_, count)| count).sum();
     let sum: f64 = known.iter().map(|(value, count)| of(*value) * count).sum();
     (count > 0.0).then(|| sum / count)
 }
 
-/// The circular mean of directions in degrees, given how often each occurs; None if there are none, or if they cancel.
+/// Returns the circular mean of directions in degrees, given how often each occurs. None if there are no directions,
+/// or if they cancel.
 fn circular_mean(known: &[(f64, f64)]) -> Option<f64> {
     let x = mean(known, |degrees| libm::cos(degrees.to_radians()))?;
     let y = mean(known, |degrees| libm::sin(degrees.to_radians()))?;

@@ -47,7 +47,7 @@ pub static PAGE: ResultsPage = ResultsPage {
     update: choose_descriptor,
 };
 
-/// What the page shows: the spread at each angle that has a mean; none before the angles were swept.
+/// Returns the spread at each angle that has a mean; empty before the angles were swept.
 fn spread(results: &Results) -> Vec<AngleSpread> {
     let curve = results.angle_curve();
     curve.map_or(Vec::new(), |curve| {
@@ -183,7 +183,7 @@ const CURVES: [(SpreadValue, bool); 3] = [
     (|at| Some(at.mean), false),
 ];
 
-/// The spread at the chosen angle, or at the nearest one that has a mean.
+/// Returns the spread at the angle with a mean that is nearest to the chosen angle.
 fn nearest(results: &Results, spread: &[AngleSpread]) -> Option<AngleSpread> {
     let now = results.pose_index()[Axis::Angle];
     spread
@@ -210,7 +210,7 @@ fn detail(at: &AngleSpread) -> String {
     )
 }
 
-/// The same for a file.
+/// Returns the drawing of the page for a file; None if there is nothing to draw.
 fn drawing(results: &Results, format: DrawingFormat) -> Option<Result<Vec<u8>, String>> {
     let spread = spread(results);
     if spread.is_empty() {

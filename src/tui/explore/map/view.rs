@@ -80,7 +80,7 @@ pub(in crate::tui) fn draw(
     cursor
 }
 
-/// The same for a file: the whole range at the present angle and zoom.
+/// Returns the drawing of the page for a file: the whole range at the present angle and zooms of the shape.
 pub(in crate::tui) fn drawing(
     results: &Results,
     format: DrawingFormat,

@@ -1,4 +1,5 @@
-//! Which sensor tells the shapes of a set apart: the limit of one touch against their size, as a curve and a table.
+//! The page that shows which sensor tells the shapes of a set apart: the limit of one touch against their size, as a
+//! curve and a table.
 //!
 //! ```text
 //! request   the set, the sizes and the steps to touch in, and what may follow `:separate`

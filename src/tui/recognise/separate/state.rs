@@ -19,7 +19,7 @@ const WANTED: [f64; 11] = [
 /// The work in progress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeWork {
-    /// The number of the work.
+    /// The number of the piece of work.
     pub number: u64,
     /// The number of touches that are done.
     pub done: u64,

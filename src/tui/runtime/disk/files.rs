@@ -73,7 +73,7 @@ fn write(path: &Path, name: String, content: Vec<u8>, existing: Existing) -> Fil
     }
 }
 
-/// The whole path of a file that was written; where it is not known, as it was given.
+/// Returns the absolute path of a written file; if it cannot be found, the path as it was given.
 pub(in crate::tui::runtime) fn absolute(path: &Path) -> String {
     let whole = std::path::absolute(path);
     let whole = whole.as_deref().unwrap_or(path);

@@ -295,7 +295,7 @@ fn silence(counts: &StreamCounts, bytes_per_second: f64) -> String {
     format!("no frame for more than 2 s: {what}{hint}")
 }
 
-/// Where the format is given.
+/// The end of the message that says where to give the format.
 const FORMAT_HINT: &str = "; after Esc, add one to :watch, as in --format lines";
 
 /// The hint where to give rows and columns.

@@ -185,8 +185,8 @@ impl Recording {
         })
     }
 
-    /// Ends the recording; the frames in the file stay. Returns their number, None if the recording was ended before.
-    /// If a recording has failed, its first error is reported, and not the result of this.
+    /// Ends the recording; the frames in the file stay. Returns their number; None if the recording was ended before.
+    /// After a failure, the caller reports that first error and drops this result.
     fn close(&self) -> Option<Result<u64, RecorderError>> {
         let before = std::mem::replace(&mut *locked(&self.recorder), RecorderState::Closed);
         let RecorderState::Open(recorder) = before else {

@@ -160,7 +160,7 @@ impl ModelReading {
 pub(in crate::tui::runtime) struct ModelWorker {
     /// The store of models.
     pub(in crate::tui::runtime) store: ModelStore,
-    /// The number of the work.
+    /// The number of the piece of work.
     number: u64,
     /// The reading from the disk in progress.
     reading: ModelReading,
@@ -171,7 +171,7 @@ pub(in crate::tui::runtime) struct ModelWorker {
 }
 
 impl ModelWorker {
-    /// Prepares a model on a thread of its own; or at once, and returns the event.
+    /// Prepares a model on a thread of its own. If work is done at once, returns the event instead.
     pub(in crate::tui::runtime) fn prepare(
         &mut self,
         number: u64,
