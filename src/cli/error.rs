@@ -458,7 +458,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn flags_follow_what_the_library_says() {
+    fn the_flags_that_help_follow_the_message_of_the_library() {
         let recording = |error| {
             let name = "a.csv".to_owned();
             CliError::Recording { name, error }.to_string()

@@ -199,7 +199,7 @@ mod tests {
     use super::*;
     use crate::sensor::MatrixSize;
 
-    /// Pseudo-random numbers, the same each time.
+    /// Returns the next pseudo-random number; the sequence is the same each time.
     fn next(state: &mut u64) -> u64 {
         *state ^= *state << 13;
         *state ^= *state >> 7;
@@ -289,7 +289,7 @@ mod tests {
         assert_eq!(report.mask().count(), 0);
     }
 
-    /// The report on these frames, each with the number of times it comes.
+    /// Returns the report on these frames, each with the number of times it comes.
     fn shown<const N: usize>(frames: [([&str; 3], usize); N]) -> FlipReport {
         let cells = Imprint::from_rows(["###"; 3].iter().copied()).expect("rows");
         let mut counter = FlipCounter::new(cells);

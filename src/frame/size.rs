@@ -51,17 +51,17 @@ impl FrameSize {
         Self::new(columns?, rows?).ok()
     }
 
-    /// Number of columns.
+    /// Returns the number of columns.
     pub fn columns(self) -> u16 {
         self.columns
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn rows(self) -> u16 {
         self.rows
     }
 
-    /// Number of cells.
+    /// Returns the number of cells.
     pub fn cells(self) -> usize {
         usize::from(self.columns) * usize::from(self.rows)
     }
@@ -99,9 +99,9 @@ impl fmt::Display for FrameSize {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct FrameSizeError {
-    /// Number of columns.
+    /// The number of columns.
     pub columns: u16,
-    /// Number of rows.
+    /// The number of rows.
     pub rows: u16,
 }
 

@@ -48,7 +48,7 @@ impl<T: Real> CellSums<T> {
 }
 
 impl<T: Real> CellGrid<T> {
-    /// An empty grid.
+    /// Creates an empty grid.
     pub(crate) fn new(columns: u8, rows: u8) -> Self {
         let stride = usize::from(columns) + 2;
         let mut grid = Self {

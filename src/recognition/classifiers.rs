@@ -95,7 +95,7 @@ pub struct ClassifierSettings {
 }
 
 impl Default for ClassifierSettings {
-    /// All descriptors, 1 neighbour of 2,000 poses with seed 0, 100 templates.
+    /// Returns the default settings: all descriptors, 1 neighbour of 2,000 poses with seed 0, 100 templates.
     fn default() -> Self {
         Self {
             descriptors: None,
@@ -588,7 +588,7 @@ mod tests {
     use crate::sensor::Sensor;
 
     #[test]
-    fn a_sample_of_more_poses_than_a_shape_has_is_all_of_them() {
+    fn a_sample_larger_than_the_poses_takes_each_pose_once() {
         let sensor = Sensor::default();
         let shapes = [
             ("square", Figure::rectangle(3.0, 3.0).on(&sensor)),

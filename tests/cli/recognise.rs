@@ -457,7 +457,7 @@ fn the_training_of_a_built_in_set_respects_the_memory_limit() {
     assert!(said.contains("taxel model train"), "{said}");
 }
 
-/// One of these frames has a square; with `--model`, and through a pipe.
+/// One of these frames has a square. The frames are named with `--model`, and through a pipe.
 #[test]
 fn frames_are_named_by_a_model() {
     let place = place();

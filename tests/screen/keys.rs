@@ -406,7 +406,7 @@ fn no_key_has_two_meanings_in_one_context() {
     }
 }
 
-/// However long the shape is held, and whatever is opened meanwhile.
+/// The shape may be held for any number of keys, and any page may be opened meanwhile.
 #[test]
 fn a_shape_that_is_put_back_leaves_no_step_to_undo() {
     for look in ["?<Esc>", "c", "+", ":coverage<Enter>", ""] {

@@ -132,7 +132,7 @@ impl Results {
         self.feature
     }
 
-    /// The chosen descriptor.
+    /// Returns the chosen descriptor.
     pub fn feature(&self) -> &'static Feature {
         &features()[self.feature]
     }

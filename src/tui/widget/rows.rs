@@ -19,7 +19,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn above_the_first_row_there_is_none() {
+    fn moving_up_stops_at_the_first_row() {
         let moved = |message| moved(3, &message);
         assert_eq!(moved(Message::Scroll(-10)), Some(0));
         assert_eq!(moved(Message::Scroll(10)), Some(13));

@@ -125,7 +125,7 @@ fn quitting_does_not_wait_for_a_running_sweep() {
     println!("ended within {:?}", took.min().expect("three times"));
 }
 
-/// With and without a signal from the system, and with any half-typed input.
+/// The program ends with and without a signal from the system, and with any half-typed input.
 #[test]
 fn a_lost_line_ends_the_program() {
     let ignoring = ["sh", "-c", "trap '' HUP; exec \"$0\"", TAXEL];

@@ -158,7 +158,7 @@ fn copied_text_goes_to_the_clipboard_of_the_terminal() {
     program.ends_well(0);
 }
 
-/// A terminal that would show the text is not sent it, and its user is told.
+/// A terminal that would show the text does not get it; a notice says so.
 #[test]
 fn nothing_is_copied_if_the_terminal_has_no_clipboard() {
     for term in ["dumb", "vt100", "linux"] {

@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn work_is_stopped_by_the_next_and_by_the_end() {
+    fn work_is_stopped_by_new_work_and_at_the_end() {
         let is_set = |stop: &AtomicBool| stop.load(Ordering::Relaxed);
         let mut flag = StopFlag::default();
         let first = flag.renew();
