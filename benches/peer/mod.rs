@@ -1,5 +1,5 @@
-//! What one would write today without taxel: coverage by `ab_glyph_rasterizer`, contours by `imageproc`, descriptors
-//! by hand. All buffers of this code are reused.
+//! The code that one would write today without taxel: coverage by `ab_glyph_rasterizer`, contours by `imageproc`,
+//! descriptors by hand. All buffers of this code are reused.
 //!
 //! It is correct for convex figures with at most one hole that lie on the sensor. The two crates have limits:
 //! coverages in `f32`, no clipping at the left and right rim, and `find_contours` does not see an exterior border that
@@ -110,7 +110,7 @@ pub fn ellipse(
     (smaller(0.0), wall.map(smaller))
 }
 
-/// The same descriptors of one region as taxel's.
+/// The descriptors of one region, the same as those of taxel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
     pub hole: bool,

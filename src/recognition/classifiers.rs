@@ -588,7 +588,7 @@ mod tests {
     use crate::sensor::Sensor;
 
     #[test]
-    fn a_sample_larger_than_the_poses_takes_each_pose_once() {
+    fn a_sample_larger_than_the_poses_takes_all_poses() {
         let sensor = Sensor::default();
         let shapes = [
             ("square", Figure::rectangle(3.0, 3.0).on(&sensor)),

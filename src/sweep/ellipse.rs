@@ -79,9 +79,9 @@ impl Elliptic {
 
 /// A span of activity, and the gap that the hole makes in it.
 struct Passages {
-    /// Where it begins: the column of the cell relative to the shape's anchor, in cell sides.
+    /// The beginning of the span: the column of the cell relative to the shape's anchor, in cell sides.
     from: f64,
-    /// Where it ends.
+    /// The end of the span.
     to: f64,
     /// The places between which the hole makes the taxel inactive.
     hole: Option<(f64, f64)>,

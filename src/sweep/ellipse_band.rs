@@ -46,9 +46,9 @@ pub(crate) struct EllipseBand {
 /// A closed form `W = area + linear·d + square·d² + round·Φ(d)` between two places, relative to the centre.
 #[derive(Clone, Copy, Debug, Default)]
 struct EllipseStretch {
-    /// Where it begins.
+    /// The position of its left end.
     left: f64,
-    /// Where it ends.
+    /// The position of its right end.
     right: f64,
     area: f64,
     linear: f64,

@@ -44,9 +44,9 @@ impl Edge {
 /// A part of an edge inside the band.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
-    /// Where it begins.
+    /// The position of its left end.
     left: f64,
-    /// Where it ends; `left` for an upright piece.
+    /// The position of its right end; `left` for an upright piece.
     right: f64,
     /// The height that it climbs, −1 to 1; positive where the material is on its right.
     rise: f64,
@@ -57,9 +57,9 @@ struct Piece {
 /// The section's height between two corners of `w`, and its integral.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
-    /// Where it begins.
+    /// The position of its left end.
     left: f64,
-    /// Where it ends.
+    /// The position of its right end.
     right: f64,
     /// `w` at the left end.
     from: f64,

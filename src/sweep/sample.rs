@@ -13,9 +13,9 @@ const POSES: u64 = 20_000;
 pub struct TimingSample {
     /// The part: neighbouring poses at one angle and one pair of zooms, from the middle of their ranges.
     pub grid: PoseGrid,
-    /// How many times as many poses as the part the whole grid has, counting only angles at which the shape looks
-    /// different. The time of the whole grid is less than that multiple of the part's: mirror images are swept
-    /// together, and known imprints are not described again.
+    /// The number of poses of the whole grid, as a multiple of those of the part. Only angles at which the shape looks
+    /// different count. The time of the whole grid is less than this multiple of the part's time: mirror images are
+    /// swept together, and known imprints are not described again.
     pub times: f64,
 }
 

@@ -58,13 +58,13 @@ pub(crate) fn standard() -> io::Result<io::Stdin> {
 /// The reason why input cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum InputError {
-    /// It cannot be opened or read.
+    /// The input cannot be opened or read.
     #[error("cannot read: {0}")]
     Read(#[from] io::Error),
-    /// It is larger than any imprint or shape.
+    /// The input is larger than any imprint or shape.
     #[error("larger than 1 MiB, the limit for an imprint or a shape")]
     Large,
-    /// It is neither an imprint nor a stored shape.
+    /// The input is neither an imprint nor a stored shape.
     #[error("{}", shortened_message(&.0.to_string()))]
     Content(#[from] ContentError),
     /// The input looks like something that another command reads.

@@ -34,11 +34,11 @@ pub(crate) struct Progress {
 
 /// The way progress is shown.
 enum Shown {
-    /// Not at all.
+    /// No progress is shown.
     Nothing,
-    /// As a bar on the terminal.
+    /// A bar on the terminal.
     Bar(ProgressBar),
-    /// In lines, with the times of the start and of the last line.
+    /// Lines of text, with the times of the start and of the last line.
     Lines(Instant, Mutex<Instant>),
 }
 

@@ -45,11 +45,11 @@ pub(crate) struct RosMessage {
 /// The state of a message after a line.
 #[derive(Debug, PartialEq)]
 pub(crate) enum RosLine {
-    /// It continues.
+    /// The message continues.
     More,
-    /// It is complete.
+    /// The message is complete.
     Whole,
-    /// It was shortened by `ros2 topic echo`.
+    /// The message was shortened by `ros2 topic echo`.
     Cut,
     /// The field with this number, from 1, is not a number.
     Wrong(usize),

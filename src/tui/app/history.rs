@@ -274,7 +274,7 @@ impl History {
         others.next().map(|state| &state.document)
     }
 
-    /// Returns the state after that many steps, None if there are fewer.
+    /// Returns the state after this many steps; None if there are fewer.
     pub fn after(&self, step: usize) -> Option<&Document> {
         let later = self.future.iter().rev();
         let mut states = self.past.iter().chain([&self.present]).chain(later);

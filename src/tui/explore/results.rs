@@ -127,7 +127,7 @@ impl Results {
         self.page = ExplorePage::ALL[next];
     }
 
-    /// The number of the chosen descriptor.
+    /// Returns the number of the chosen descriptor.
     pub fn feature_number(&self) -> usize {
         self.feature
     }

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! title                                       what is shown
-//! taxels               numbers                beside each other, or on a narrow screen one above the other, unless that
-//!                                             hides taxels
+//! taxels               numbers                beside each other, or on a narrow screen one above the other, unless
+//!                                             that hides taxels
 //! ```
 //! A taxel is two columns wide, or a multiple of that, if all fit; otherwise it is half a character, so that two
 //! stand above each other. If not all fit even then, a window follows the contact until keys move it. Numbers have

@@ -61,13 +61,13 @@ pub enum LiveEvent {
     Recording(String),
     /// The recording has ended; the file, and the number of frames in it.
     Recorded(String, u64),
-    /// The recording cannot be begun, and why.
+    /// The reason why the recording cannot be begun.
     NotRecorded(String),
-    /// The recording could not be finished, and why.
+    /// The reason why the recording could not be finished.
     NotFinished(String),
     /// The answer of a model about an imprint, with the number of the work that names imprints.
     Named(u64, Box<NamedImprint>),
-    /// There is no model, and why, with the number of the work that would name imprints.
+    /// The number of the work that would name imprints, and the reason why there is no model.
     NotNamed(u64, String),
 }
 

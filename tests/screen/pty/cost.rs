@@ -8,9 +8,9 @@ use super::screens::session;
 
 /// The highest number of bytes for a move of the cursor.
 const MOVE: usize = 60;
-/// The same for a toggle: fourteen descriptors change, whose new digits alone take 70 bytes.
+/// The highest number of bytes for a toggle: fourteen descriptors change, whose new digits alone take 70 bytes.
 const TOGGLE: usize = 158;
-/// The same for the first toggle on an empty matrix: all descriptors appear.
+/// The highest number of bytes for the first toggle on an empty matrix: all descriptors appear.
 const FIRST_TOGGLE: usize = 195;
 
 #[test]

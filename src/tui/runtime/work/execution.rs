@@ -9,9 +9,10 @@ use crate::tui::runtime::work::progress::{PoseLimit, WorkerEventSink};
 /// A way of doing work.
 #[derive(Clone)]
 pub(in crate::tui::runtime) enum Execution {
-    /// At once, before the next message, as a script wants it. Work with more poses than the limit is stopped.
+    /// Work is done at once, before the next message, as a script needs it. Work with more poses than the limit is
+    /// stopped.
     AtOnce(PoseLimit),
-    /// On threads of its own, which give their events to this sink.
+    /// Work is done on threads of its own, which give their events to this sink.
     OnThreads(WorkerEventSink),
 }
 
