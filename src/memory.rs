@@ -22,8 +22,8 @@ const PAUSE: Duration = Duration::from_millis(20);
 /// values.
 const BYTES_BESIDE: u64 = 500;
 
-/// No work may use more than half of a program's addresses. In 32 bits that is 2 GiB: no table can be longer, and many systems
-/// leave a program little more.
+/// The largest limit: half of the address space, 2 GiB in a 32-bit program. No table can be larger, and many systems give
+/// a program little more.
 const ADDRESSABLE: MemorySize = MemorySize((usize::MAX / 2) as u64);
 
 /// An amount of memory in bytes, written as `2G`, `500M` or `1.5G`. K is 1024 bytes, M is 1024 K, G is 1024 M, T is
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn no_bound_is_beyond_what_a_program_can_address() {
+    fn no_limit_is_above_half_of_the_address_space() {
         let bound = |bytes| MemoryGuard::new(Some(MemorySize(bytes)), "").allowed;
         assert_eq!(bound(u64::MAX), Some(ADDRESSABLE));
         assert_eq!(bound(1 << 20), Some(MemorySize(1 << 20)));

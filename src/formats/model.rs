@@ -198,8 +198,8 @@ pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
     Ok(Model::of_table(parts, &keys, counts_of)?)
 }
 
-/// The keys in the order of the file. One that is there twice is refused at once, so the table never takes much more memory
-/// than the file.
+/// Reads the keys in the order of the file. A duplicate is refused at once, so the table never takes much more memory than
+/// the file.
 fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<KeyTable, ArchiveError> {
     let heights = archive.bytes("height", Dtype::U8)?;
     let widths = archive.bytes("width", Dtype::U8)?;
@@ -228,7 +228,7 @@ fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<KeyTable, Archiv
     Ok(keys)
 }
 
-/// The shapes that leave each key, with their poses.
+/// Reads the shapes that leave each key, with their numbers of poses.
 fn counts<R: Read + Seek>(
     archive: &mut ArrayReader<R>,
     keys: usize,

@@ -25,8 +25,8 @@ const MAX_HEADER: u64 = 1 << 26;
 /// The size limit of an array in bytes; a larger one is not read.
 const MAX_BYTES: u64 = 1 << 34;
 
-/// No longer archive is read, since what is made of it takes up to four times as many addresses: 1 GiB in 32 bits, in 64 bits
-/// longer than any file.
+/// The length of the longest archive that is read: 1 GiB in a 32-bit program, no limit in practice in a 64-bit one. The
+/// values read from an archive may take four times its length.
 const LONGEST: u64 = (usize::MAX / 4) as u64;
 
 /// The output of an archive. Writing to a reference to this trait compiles the code of zip, which is large, once
@@ -163,7 +163,7 @@ impl<R: Read + Seek> ArrayReader<R> {
     }
 }
 
-/// Holds that an archive is not longer than what can be read.
+/// Returns an error if an archive is too long to be read.
 fn check_length(length: u64, longest: u64) -> Result<(), ArchiveError> {
     if length > longest {
         return Err(ArchiveError::Long { length, longest });
@@ -265,12 +265,12 @@ pub enum ArchiveError {
     /// Not a zip, or a broken one.
     #[error("no archive of arrays: {0}")]
     Zip(String),
-    /// An archive that is longer than what this program can address.
+    /// The archive is too long for the address space of this program.
     #[error("an archive of {}; this {}-bit program reads at most {}", counted(*length, "byte"), usize::BITS, grouped(*longest))]
     Long {
-        /// Its length in bytes.
+        /// The length in bytes.
         length: u64,
-        /// The longest that is read.
+        /// The length of the longest archive that is read, in bytes.
         longest: u64,
     },
     /// An array whose bytes have changed since they were written.
@@ -343,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn what_memory_cannot_hold_is_not_called_damaged() {
+    fn an_archive_that_does_not_fit_into_memory_is_not_called_damaged() {
         let error = damaged("rows", io::ErrorKind::OutOfMemory.into());
         assert!(matches!(error, ArchiveError::Io(_)), "{error}");
         let error = damaged("rows", io::ErrorKind::UnexpectedEof.into());
@@ -351,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn an_archive_beyond_the_addresses_of_a_program_is_refused() {
+    fn an_archive_that_is_too_long_is_refused() {
         assert!(check_length(1 << 30, 1 << 30).is_ok());
         let error = check_length(3_000_000_000, 1 << 30).expect_err("too long");
         assert_eq!(

@@ -186,7 +186,7 @@ impl KeyTable {
         self.index.find(hash, same).map(|&index| index as usize)
     }
 
-    /// Adds a key; false if it is there already.
+    /// Adds a key. Returns false if the table has it already.
     pub(crate) fn add(&mut self, key: &ImprintKey) -> bool {
         let next = self.len();
         self.intern(key.borrowed()) == next

@@ -202,7 +202,7 @@ pub enum ModelError {
 }
 
 impl ModelError {
-    /// Keys of which two are equal.
+    /// The error for two equal keys.
     pub(crate) const TWICE: Self = Self::Parts("a key is there twice");
 }
 
