@@ -1,6 +1,7 @@
-//! Two measures of the source: lines of documentation for each line of code, room by room, and the length of functions.
+//! Three measures of the source: lines of documentation for each line of code, room by room; the length of functions; and
+//! documentation that begins with a pronoun.
 //!
-//! Both are measured on the text. A line of documentation begins with `///` or `//!`; other comments and empty lines
+//! All are measured on the text. A line of documentation begins with `///` or `//!`; other comments and empty lines
 //! are not counted, and everything else is code. Unit tests at the end of a file are ignored. A function ends at the
 //! first line that closes it at its own indentation, which is where rustfmt puts it.
 
@@ -14,6 +15,9 @@ const LEAST_DOCS: usize = 20;
 
 /// The highest number of lines of a function, from `fn` to its closing brace. A longer function usually hides two.
 const LONGEST: usize = 60;
+
+/// Words that begin no paragraph of documentation: a sentence such as "Those of the writer." says nothing by itself.
+const PRONOUNS: [&str; 5] = ["That", "Those", "What", "Which", "Who"];
 
 /// Returns the lines of a file before its unit tests.
 fn shipped(text: &str) -> Vec<&str> {
@@ -37,6 +41,25 @@ fn counts(text: &str) -> (usize, usize) {
         }
     }
     (docs, code)
+}
+
+/// Returns the paragraphs of documentation that begin with a pronoun, by their line number. A question may.
+fn pronouns(text: &str) -> Vec<(usize, &str)> {
+    let mut found = Vec::new();
+    let mut is_start = true;
+    for (number, line) in (1..).zip(shipped(text)) {
+        let line = line.trim();
+        let docs = line
+            .strip_prefix("///")
+            .or_else(|| line.strip_prefix("//!"));
+        let docs = docs.map_or("", str::trim);
+        let first = docs.split(' ').next().unwrap_or_default();
+        if is_start && PRONOUNS.contains(&first) && !docs.ends_with('?') {
+            found.push((number, docs));
+        }
+        is_start = docs.is_empty() || docs.starts_with('#');
+    }
+    found
 }
 
 /// Returns the functions of a file that are too long, with their lengths.
@@ -116,6 +139,21 @@ fn no_function_is_longer_than_sixty_lines() {
         }
     }
     assert!(found.is_empty(), "expected {LONGEST} at most: {found:#?}");
+}
+
+#[test]
+fn no_documentation_begins_with_a_pronoun() {
+    let mut found = Vec::new();
+    for (name, text) in files() {
+        let own = pronouns(&text);
+        found.extend(
+            own.into_iter()
+                .map(|(line, docs)| format!("{name}:{line}: {docs}")),
+        );
+    }
+    assert!(found.is_empty(), "say what it is instead: {found:#?}");
+    let text = "//! Which shape is it?\n\n/// What is left.\nfn a() {}\n\n/// A line.\n/// Which\n///\n/// # Errors\n/// Those of b.\n";
+    assert_eq!(pronouns(text), [(3, "What is left."), (10, "Those of b.")]);
 }
 
 #[test]
