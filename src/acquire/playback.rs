@@ -441,7 +441,7 @@ mod tests {
     #[test]
     fn a_recording_that_plays_for_days_keeps_its_pace() {
         let mut pace = Pace::new(&AcquireOptions::default());
-        let begun = Instant::now().checked_sub(Duration::from_hours(48));
+        let begun = Instant::now().checked_sub(Duration::from_secs(48 * 3600));
         pace.begun = begun.expect("later");
         let waits = |seconds: f64| {
             let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
@@ -459,7 +459,7 @@ mod tests {
             let mut pace = Pace::new(&AcquireOptions::default());
             // All frames are due.
             pace.begun = Instant::now()
-                .checked_sub(Duration::from_hours(2))
+                .checked_sub(Duration::from_secs(2 * 3600))
                 .expect("later");
             pace.step = 4000.0;
             let stop = AtomicBool::new(false);

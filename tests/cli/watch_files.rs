@@ -281,7 +281,7 @@ fn a_file_that_no_longer_grows_ends_at_its_end() {
     let file = folder.path().join("old.txt");
     for (text, expected) in [("1 2\n3 4\n\n", ""), ("1 2\n3", "line 2: found 1 value")] {
         fs::write(&file, text).expect("written");
-        let earlier = std::time::SystemTime::now() - std::time::Duration::from_mins(1);
+        let earlier = std::time::SystemTime::now() - std::time::Duration::from_secs(60);
         let opened = fs::File::options().write(true).open(&file);
         opened.expect("opened").set_modified(earlier).expect("set");
         let begun = std::time::Instant::now();
