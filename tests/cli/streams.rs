@@ -5,7 +5,6 @@ use super::batch::POINT;
 use super::describe::SHAPE;
 use super::finish;
 use super::program;
-use super::refused;
 use super::run_in;
 use super::taxel;
 
@@ -124,7 +123,7 @@ fn a_full_disk_is_reported() {
             .expect("the program starts");
         let input = if line == "batch" { POINT } else { "#\n" };
         let run = finish(child, input.as_bytes());
-        refused(
+        super::refused(
             &run,
             1,
             "cannot write to standard output: No space left on device (os error 28)",

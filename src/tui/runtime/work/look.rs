@@ -77,7 +77,6 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
-    use crate::memory::MemorySize;
     use crate::storage::ModelChoice;
     use crate::tui::recognise::trained::TrainedModel;
     use crate::tui::runtime::work::progress::PoseLimit;
@@ -131,7 +130,7 @@ mod tests {
     #[cfg(target_os = "linux")]
     #[test]
     fn a_search_that_needs_too_much_memory_keeps_the_nearest_imprint_and_says_why() {
-        let small = MemoryGuard::new(Some(MemorySize(1)), "less");
+        let small = MemoryGuard::new(Some(crate::memory::MemorySize(1)), "less");
         let look = find(&search(), &small, &|_| true);
         assert!(look.pose.is_none() && look.nearest.is_some());
         assert!(look.refused.is_some_and(|why| why.contains("more memory")));
