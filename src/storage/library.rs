@@ -300,7 +300,7 @@ impl Library {
     /// Returns the name of a shape that can be deleted, spelled as in its file.
     ///
     /// # Errors
-    /// Returns an error if there is no shape of that name, it comes with the program, or the folder cannot be read.
+    /// Returns an error if no such shape is stored, if it comes with the program, or if the folder cannot be read.
     pub fn deletable(&self, name: &str) -> Result<String, LibraryError> {
         let name = Name::new(name)?;
         if self.folder.is_dir()
@@ -320,7 +320,7 @@ impl Library {
     /// Moves a shape into the trash without reading its file, and returns its name, spelled as in its file.
     ///
     /// # Errors
-    /// Returns an error if there is no shape of that name, it comes with the program, or the system refuses.
+    /// Returns an error if no such shape is stored, if it comes with the program, or if the system refuses.
     pub fn delete(&self, name: &str) -> Result<String, LibraryError> {
         // Checked before the lock is taken: the lock is a file in the folder, which may not exist.
         self.deletable(name)?;

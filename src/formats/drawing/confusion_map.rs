@@ -43,7 +43,7 @@ pub struct ConfusionMap {
 
 impl ConfusionMap {
     /// Makes the matrix of some shapes: `counts[i][j]` touches of shape i are named j; missing counts are 0. None if
-    /// there is no shape, or more than 64.
+    /// there are no shapes, or more than 64.
     pub fn new(labels: &[String], counts: impl IntoIterator<Item = Vec<u128>>) -> Option<Self> {
         if labels.is_empty() || labels.len() > MOST {
             return None;
