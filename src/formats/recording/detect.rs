@@ -9,14 +9,16 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use crate::formats::foreign;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
-use crate::formats::recording::lines::is_blank;
+use crate::formats::recording::json::{lines as json_lines, popu};
+use crate::formats::recording::numpy::{archive, array};
+use crate::formats::recording::ros::echo;
 #[cfg(feature = "mcap")]
-use crate::formats::recording::mcap;
-use crate::formats::recording::separator::{Separator, is_comment};
-use crate::formats::recording::text_row::is_parted_by_cr;
-use crate::formats::recording::{
-    delimited, emed, flexitac, json_lines, npz, numpy, popu, ros_text, tekscan, xsensor, zebris,
-};
+use crate::formats::recording::ros::mcap;
+use crate::formats::recording::table::delimited;
+use crate::formats::recording::text::lines::is_blank;
+use crate::formats::recording::text::row::is_parted_by_cr;
+use crate::formats::recording::text::separator::{Separator, is_comment};
+use crate::formats::recording::vendor::{emed, flexitac, tekscan, xsensor, zebris};
 
 /// The first bytes of an MCAP file.
 const MCAP: &[u8] = b"\x89MCAP0\r\n";
@@ -69,7 +71,7 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
         _ if xsensor::is_export(text) => RecordingFormat::Xsensor,
         _ if has(b"SensCountX=") => RecordingFormat::Zebris,
         _ if has(b"Pict-No.:") && has(b"Matrix:") => RecordingFormat::Emed,
-        _ if is_ros(ros_text::without_notices(trimmed)) => RecordingFormat::Ros2,
+        _ if is_ros(echo::without_notices(trimmed)) => RecordingFormat::Ros2,
         // For rows without keys, or all objects in one list, the reader of JSON lines says what it expected.
         _ if is_list_of(trimmed, b'[') || is_list_of(trimmed, b'{') => RecordingFormat::JsonLines,
         _ if is_table(row) || options.size.is_some() && is_number(row) => RecordingFormat::Csv,
@@ -156,7 +158,7 @@ fn is_list_of(text: &[u8], first: u8) -> bool {
 /// Returns true if a text is the output of `ros2 topic echo`.
 fn is_ros(text: &[u8]) -> bool {
     let first = text.split(|&byte| byte == b'\n').next().unwrap_or(b"");
-    ros_text::begins_message(first)
+    echo::begins_message(first)
         || first.starts_with(b"[") && text.windows(4).any(|word| word == b"\n---")
 }
 
@@ -250,11 +252,11 @@ pub(crate) fn read_as(
         RecordingFormat::Xsensor => xsensor::read(input, sink),
         RecordingFormat::Emed => emed::read(input, sink),
         RecordingFormat::Zebris => zebris::read(input, sink),
-        RecordingFormat::Npy => numpy::read(&mut input, options, sink),
-        RecordingFormat::Npz => npz::read(input, options, sink),
+        RecordingFormat::Npy => array::read(&mut input, options, sink),
+        RecordingFormat::Npz => archive::read(input, options, sink),
         RecordingFormat::JsonLines => json_lines::read(input, options, sink),
         RecordingFormat::Popu => popu::read(input, sink),
-        RecordingFormat::Ros2 => ros_text::read(input, options, sink),
+        RecordingFormat::Ros2 => echo::read(input, options, sink),
         RecordingFormat::Csv => delimited::read(input, options, sink),
         RecordingFormat::Flexitac => flexitac::read(&mut input, options, sink),
         #[cfg(feature = "mcap")]

@@ -21,78 +21,55 @@
 //! assert_eq!(sums, [(Some(0.0), 10.0), (Some(0.1), 26.0)]);
 //! # Ok::<(), taxel::formats::recording::RecordingError>(())
 //! ```
+//!
+//! ```text
+//! error            why a recording cannot be read, and where
+//! event            what a reader reports: channels, frames, notes
+//! description      the file beside a recording of taxel's own
+//! channel_choice   one channel of several, by its name
+//! answer           a frame as a line of JSON
+//! side             numbers of rows and columns
+//! text             lines, fields and numbers
+//! time             the times of frames
+//! table            numbers in rows and columns, with or without a header
+//! json             JSON lines, and the PoPu data set
+//! numpy            NPY and NPZ
+//! ros              MCAP, and ros2 topic echo
+//! vendor           Tekscan, XSENSOR, emed, zebris and FlexiTac
+//! detect           which of these a file is
+//! ```
+//! Each format uses the modules above it; formats do not use each other.
 
 mod error;
 
 mod event;
 
+mod description;
+
 mod channel_choice;
-
-pub(crate) mod number;
-
-mod lines;
-
-pub(crate) mod moment;
-
-pub(crate) mod side;
-
-pub(crate) mod text_row;
-
-mod tekscan;
-
-mod xsensor;
-
-mod emed;
-
-mod zebris;
-
-pub(crate) mod separator;
-
-mod frame_time;
-
-mod cell_names;
-
-mod unnamed_fields;
-
-mod header_line;
-
-mod table_layout;
-
-mod delimited;
-
-mod numpy;
-
-#[cfg(feature = "mcap")]
-mod cdr;
-
-#[cfg(feature = "mcap")]
-mod ros_message;
-
-#[cfg(feature = "mcap")]
-mod mcap;
-
-mod npz;
-
-pub(crate) mod json_time;
-
-pub(crate) mod json_lines;
-
-mod popu;
-
-pub(crate) mod ros_text;
-
-mod flexitac;
-
-mod detect;
 
 mod answer;
 
-mod description;
+pub(super) mod side;
+
+pub(super) mod text;
+
+pub(super) mod time;
+
+mod table;
+
+pub(super) mod json;
+
+mod numpy;
+
+pub(super) mod ros;
+
+mod vendor;
+
+mod detect;
 
 pub use answer::FrameAnswer;
 pub use channel_choice::ChannelChoice;
-#[cfg(feature = "cli")]
-pub(crate) use delimited::read_rows;
 pub use description::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
 #[cfg(feature = "tui")]
 pub(crate) use detect::may_be_recording;
@@ -103,3 +80,5 @@ pub use error::RecordingError;
 #[cfg(feature = "cli")]
 pub(crate) use event::UNNAMED;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};
+#[cfg(feature = "cli")]
+pub(crate) use table::delimited::read_rows;

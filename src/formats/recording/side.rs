@@ -48,3 +48,28 @@ pub(super) fn stated(key: &str, mark: char, value: &str, line: u64) -> Result<u1
         RecordingError::in_line(line, message)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_side_is_1_to_512() {
+        assert_eq!([0, 1, 512, 513].map(side), [None, Some(1), Some(512), None]);
+        assert_eq!(side(-1), None);
+        assert_eq!(frame_size(2, 513), None);
+        let error = stated("ROWS", ' ', "0", 3).expect_err("no row");
+        assert_eq!(error.to_string(), "line 3: ROWS 0: expected 1 to 512");
+    }
+
+    #[test]
+    fn a_given_size_that_fits_takes_precedence_over_the_stated_one() {
+        let (row, square) = (FrameSize::of(4, 1), FrameSize::of(2, 2));
+        assert_eq!(arranged(4, Some(row), Some(square)), Some(square));
+        assert_eq!(arranged(4, Some(row), Some(FrameSize::of(3, 2))), Some(row));
+        assert_eq!(
+            changed(row, square),
+            "found 1 row of 4, expected 2 of 2 as before"
+        );
+    }
+}

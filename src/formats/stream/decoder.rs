@@ -8,7 +8,7 @@
 
 use std::mem::take;
 
-use crate::formats::recording::text_row::is_parted_by_cr;
+use crate::formats::recording::text::row::is_parted_by_cr;
 use crate::formats::stream::documents::{JsonChannels, JsonDecoder, RosDecoder};
 use crate::formats::stream::event::{StreamCounts, StreamFormat, StreamOptions, StreamSink};
 use crate::formats::stream::flexitac::FlexitacDecoder;

@@ -4,9 +4,9 @@
 //! ones: it is dropped and counted.
 
 use crate::formats::recording::ChannelInfo;
-use crate::formats::recording::json_lines::{FrameLine, MOST_CHANNELS};
-use crate::formats::recording::json_time::JsonClock;
-use crate::formats::recording::ros_text::{self, RosLine, RosMessage};
+use crate::formats::recording::json::clock::JsonClock;
+use crate::formats::recording::json::lines::{FrameLine, MOST_CHANNELS};
+use crate::formats::recording::ros::echo::{self, RosLine, RosMessage};
 use crate::formats::recording::side::arranged;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::size::StreamSize;
@@ -187,15 +187,15 @@ impl RosDecoder {
         // A boundary, or a line with a whole array, begins a message.
         let trimmed = line.trim_ascii();
         let begins = trimmed.starts_with(b"array(")
-            || ros_text::is_csv(trimmed)
-            || ros_text::is_csv_without_dimensions(trimmed) && !self.message.is_open();
+            || echo::is_csv(trimmed)
+            || echo::is_csv_without_dimensions(trimmed) && !self.message.is_open();
         self.begun |= begins;
         match self.message.line(line) {
             RosLine::More => {}
             RosLine::Cut => {
                 self.cut = true;
                 // A message of a single line has no other end.
-                if ros_text::is_csv(trimmed) {
+                if echo::is_csv(trimmed) {
                     self.end(line, counts, sink);
                 }
             }

@@ -11,7 +11,8 @@
 //! A stream that shows none of this is taken for numbers if it is text, and otherwise for `MatSense`, whose decoder
 //! counts what it drops.
 
-use crate::formats::recording::{moment, ros_text};
+use crate::formats::recording::ros::echo;
+use crate::formats::recording::time::moment;
 use crate::formats::stream::event::{StreamCounts, StreamFormat};
 use crate::formats::stream::flexitac::MARKER;
 use crate::formats::stream::matsense::MatsenseDecoder;
@@ -185,7 +186,7 @@ fn form_of_line(line: &[u8], after_first: bool) -> Option<StreamFormat> {
     match line.trim_ascii() {
         // For rows without an object, the decoder of JSON lines says what is missing.
         [b'{', ..] | [b'[', b'[', ..] => Some(StreamFormat::JsonLines),
-        line if line == b"---" || ros_text::begins_message(line) => Some(StreamFormat::Ros2),
+        line if line == b"---" || echo::begins_message(line) => Some(StreamFormat::Ros2),
         line if after_first && is_numbers(line) => Some(StreamFormat::Lines),
         _ => None,
     }

@@ -17,9 +17,9 @@
 //! A frame with a row of another length is dropped as a whole, up to the next empty line: rows of two frames are
 //! never joined. If frames are known to be single lines, each line that is not a frame counts as a lost one.
 
-use crate::formats::recording::moment;
-use crate::formats::recording::separator::is_comment;
 use crate::formats::recording::side::frame_size;
+use crate::formats::recording::text::separator::is_comment;
+use crate::formats::recording::time::moment;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
 use crate::formats::stream::size::StreamSize;

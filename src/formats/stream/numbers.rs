@@ -1,7 +1,7 @@
 //! Reads the numbers of a line, fast enough for any sensor.
 
-use crate::formats::recording::separator::{Separator, unquoted};
-use crate::formats::recording::text_row::Field;
+use crate::formats::recording::text::row::Field;
+use crate::formats::recording::text::separator::{Separator, unquoted};
 
 /// The most digits of a number that is read here; longer ones are left to the general reader.
 const FAST_DIGITS: usize = 9;

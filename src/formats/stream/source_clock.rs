@@ -1,6 +1,6 @@
 //! The clock of a stream's source.
 
-use crate::formats::recording::moment::{Midnights, Moment};
+use crate::formats::recording::time::moment::{Midnights, Moment};
 use crate::formats::seconds::since;
 
 /// A clock that turns the times of frames into seconds since the first frame. After a gap it passes to the next

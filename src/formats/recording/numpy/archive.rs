@@ -1,0 +1,411 @@
+//! Frames as an archive of numpy arrays: each array of two or three axes is a channel, and an array of one axis named
+//! `t…` or `time…` gives the times of the channels with as many frames.
+//!
+//! Channels have the names of their arrays, without `.npy`. Times may be in s, ms, µs or ns, according to their name
+//! (`time_ms`), their type (datetime64 and timedelta64 of numpy) or their size ([`TimeUnit::by_size`]), and count
+//! from the first one. Whole nanoseconds since 1970 keep all their digits: the difference is taken before they become
+//! floats. Archives of `numpy.savez` and `numpy.savez_compressed` are read.
+//!
+//! The checksum of an array only says that some of its bytes are wrong, and only at its end. Its frames are reported
+//! as they are read, then the error: to check it first would take twice the time and lose all frames that are right.
+
+use std::io::{ErrorKind, Read, Seek};
+use std::ops::ControlFlow;
+
+use zip::ZipArchive;
+use zip::result::ZipError;
+
+use crate::formats::npy::{Header, NumberType};
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
+};
+use crate::formats::recording::numpy::array::{self, ArrayLayout};
+use crate::formats::recording::time::field_role::{FieldRole, role};
+use crate::formats::recording::time::unit::TimeUnit;
+use crate::formats::seconds::{since, to_nanoseconds};
+
+/// The most frames of which times are read: 128 MiB of them.
+const MOST_TIMES: u64 = 1 << 24;
+
+/// The most arrays in an archive.
+const MOST_ARRAYS: usize = 256;
+
+/// Returns the error for an archive, in words that require no knowledge of its layout.
+fn damaged(error: ZipError) -> RecordingError {
+    match error {
+        ZipError::Io(error) => RecordingError::Io(error),
+        ZipError::UnsupportedArchive(what) => {
+            RecordingError::damaged(format!("an archive: {what}"))
+        }
+        _ => RecordingError::damaged("an archive that is cut short or damaged"),
+    }
+}
+
+/// Returns the error for the array of that name: bytes that cannot be decompressed or that have a wrong checksum are
+/// damage to the array, not to the disk.
+fn in_array(name: &str, error: RecordingError) -> RecordingError {
+    let message = match error {
+        RecordingError::Damaged { message, .. } => message,
+        RecordingError::Io(error)
+            if matches!(
+                error.kind(),
+                ErrorKind::InvalidData | ErrorKind::InvalidInput | ErrorKind::UnexpectedEof
+            ) =>
+        {
+            "the array is damaged, so some of its values may be wrong".to_owned()
+        }
+        error => return error,
+    };
+    RecordingError::damaged(format!("{name}: {message}"))
+}
+
+/// An array of the archive.
+struct ArchiveArray {
+    /// The index in the archive.
+    index: usize,
+    /// The name without `.npy`.
+    name: String,
+    /// The type and the shape.
+    header: Header,
+}
+
+/// Reads a recording.
+///
+/// # Errors
+/// Returns an error if no array can be frames, and the errors of each array, with its name.
+pub(in crate::formats::recording) fn read(
+    input: impl Read + Seek,
+    options: ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), RecordingError> {
+    let mut archive = ZipArchive::new(input).map_err(damaged)?;
+    if is_office_document(&archive) {
+        return Err(RecordingError::Foreign {
+            kind: "a spreadsheet or another office document (save the sheet as CSV)",
+        });
+    }
+    let arrays = arrays(&mut archive)?;
+    let channels: Vec<&ArchiveArray> = arrays
+        .iter()
+        .filter(|array| {
+            let shape = &array.header.shape[..];
+            let is_frames = matches!(shape, [_, _] | [_, _, _] | [_, _, _, 1] | [_, 1, _, _]);
+            is_frames && !array.header.code.starts_with('[')
+        })
+        .collect();
+    if channels.is_empty() {
+        return Err(RecordingError::damaged(
+            "no array of two or three axes, expected frames, rows and columns",
+        ));
+    }
+    let channels = with_layouts(channels, options)?;
+    for (array, layout) in &channels {
+        let info = ChannelInfo {
+            name: Some(array.name.clone()),
+            size: Some(layout.size()),
+            ..ChannelInfo::default()
+        };
+        if sink(RecordingEvent::Channel(&info)).is_break() {
+            return Ok(());
+        }
+        if noted(layout.note(), sink).is_break() {
+            return Ok(());
+        }
+    }
+    let mut noted_unit = None;
+    for (channel, (array, layout)) in channels.iter().enumerate() {
+        let (times, assumed) = times(&mut archive, &arrays, layout.frames())?;
+        // Channels with as many frames have the same times.
+        let news = assumed.filter(|_| assumed != noted_unit);
+        noted_unit = news.or(noted_unit);
+        let note = news.map(|unit| RecordingNote::TimeUnit { unit: unit.name() });
+        if noted(note.as_ref(), sink).is_break() {
+            break;
+        }
+        let mut file = archive.by_index(array.index).map_err(damaged)?;
+        let named = |error| in_array(&array.name, error);
+        array::header(&mut file).map_err(named)?;
+        if array::frames(&mut file, layout, channel, &times, sink).map_err(named)? {
+            break;
+        }
+        array::end(&mut file, layout).map_err(named)?;
+    }
+    Ok(())
+}
+
+/// Returns true if the archive is an office document: a spreadsheet is a zip archive, too.
+fn is_office_document(archive: &ZipArchive<impl Read + Seek>) -> bool {
+    let is_office = |name: &str| matches!(name, "[Content_Types].xml" | "content.xml");
+    let mut names = archive.file_names();
+    names.any(|name| name.is_ok_and(|name| is_office(&name)))
+}
+
+/// Reports a note, if there is one.
+fn noted(note: Option<&RecordingNote>, sink: &mut Sink<'_>) -> ControlFlow<()> {
+    note.map_or(ControlFlow::Continue(()), |note| {
+        sink(RecordingEvent::Note(note))
+    })
+}
+
+/// Returns all arrays with their headers.
+fn arrays(archive: &mut ZipArchive<impl Read + Seek>) -> Result<Vec<ArchiveArray>, RecordingError> {
+    if archive.len() > MOST_ARRAYS {
+        let message = format!("more than {MOST_ARRAYS} files in the archive");
+        return Err(RecordingError::damaged(message));
+    }
+    let mut arrays = Vec::new();
+    for index in 0..archive.len() {
+        let mut file = archive.by_index(index).map_err(damaged)?;
+        let name = file.name().map_err(damaged)?.into_owned();
+        let Some(name) = name.strip_suffix(".npy").map(str::to_owned) else {
+            continue;
+        };
+        let header = array::header(&mut file).map_err(|error| in_array(&name, error))?;
+        arrays.push(ArchiveArray {
+            index,
+            name,
+            header,
+        });
+    }
+    Ok(arrays)
+}
+
+/// Returns the arrays whose numbers can be frames, with their layouts. Others, such as a list of poses, may lie
+/// beside them.
+///
+/// # Errors
+/// Returns the error of the first array, if no array can be frames.
+fn with_layouts(
+    arrays: Vec<&ArchiveArray>,
+    options: ReadOptions,
+) -> Result<Vec<(&ArchiveArray, ArrayLayout)>, RecordingError> {
+    let alone = arrays.len() == 1;
+    let (mut found, mut first_error) = (Vec::new(), None);
+    for array in arrays {
+        // Rows and columns that are meant for one of several arrays need not fit the others.
+        let layout = match ArrayLayout::of(&array.header, options) {
+            Err(_) if !alone && options.size.is_some() => {
+                ArrayLayout::of(&array.header, ReadOptions::default())
+            }
+            layout => layout,
+        };
+        match layout {
+            Ok(layout) => found.push((array, layout)),
+            Err(error) => {
+                first_error.get_or_insert(error);
+            }
+        }
+    }
+    match first_error {
+        Some(error) if found.is_empty() => Err(error),
+        _ => Ok(found),
+    }
+}
+
+/// An array of times.
+struct TimeArray<'a> {
+    array: &'a ArchiveArray,
+    /// The type of the times.
+    number: NumberType,
+    /// The unit, if the name or the type has one.
+    unit: Option<TimeUnit>,
+    /// Whether the smallest number means a missing time, as in numpy's own types for times.
+    has_none: bool,
+}
+
+impl<'a> TimeArray<'a> {
+    /// Makes the times of an array whose name may have a unit; None if its numbers cannot be times. A type such as
+    /// `<M8[ns]` or `<m8[ms]`, numpy's types for points in time and for durations, includes its unit.
+    fn new(array: &'a ArchiveArray, unit: Option<TimeUnit>) -> Option<Self> {
+        let code = &array.header.code;
+        let own = code.strip_suffix(']').and_then(|code| code.split_once('['));
+        let Some((kind, word)) = own else {
+            return NumberType::of(code).map(|number| Self {
+                array,
+                number,
+                unit,
+                has_none: false,
+            });
+        };
+        let unit = match word {
+            "ns" => TimeUnit::Nanoseconds,
+            "us" => TimeUnit::Microseconds,
+            "ms" => TimeUnit::Milliseconds,
+            "s" => TimeUnit::Seconds,
+            "m" => TimeUnit::Minutes,
+            _ => return None,
+        };
+        let order = kind
+            .strip_suffix("M8")
+            .or_else(|| kind.strip_suffix("m8"))?;
+        Some(Self {
+            array,
+            number: NumberType::of(&format!("{order}i8"))?,
+            unit: Some(unit),
+            has_none: true,
+        })
+    }
+
+    /// Returns the times for arrays with that many frames. An array whose name merely begins with `t` counts only if
+    /// no other is named as a time: `temperature` is not one.
+    fn of_frames(arrays: &'a [ArchiveArray], frames: u64) -> Option<Self> {
+        let mut fitting = arrays.iter().filter(|own| own.header.shape == [frames]);
+        let timed = |array: &'a ArchiveArray| match role(&array.name) {
+            Some(FieldRole::Time(unit)) => Self::new(array, unit),
+            _ => None,
+        };
+        let found = fitting.clone().find_map(timed);
+        let other = fitting.find(|array| array.name.starts_with(['t', 'T']));
+        found.or_else(|| Self::new(other?, None))
+    }
+
+    /// Returns the times in seconds since the first one, and their unit if it was derived from their size and is not
+    /// seconds.
+    ///
+    /// # Errors
+    /// Returns an error if the array is damaged.
+    fn seconds(
+        &self,
+        file: &mut impl Read,
+        frames: u64,
+    ) -> Result<(Vec<f64>, Option<TimeUnit>), RecordingError> {
+        array::header(file)?;
+        let mut bytes = [0; 8];
+        let bytes = &mut bytes[..self.number.size()];
+        let (mut times, mut unit) = (Vec::new(), self.unit);
+        let (mut first, mut first_whole) = (None, None);
+        for _ in 0..frames {
+            if array::fill(file, bytes)? < bytes.len() {
+                let message = format!("ends before its {frames} times");
+                return Err(RecordingError::damaged(message));
+            }
+            let value = self.number.value(bytes);
+            // Nanoseconds since 1970 have more digits than a float.
+            #[expect(
+                clippy::cast_precision_loss,
+                reason = "the nearest float of a difference"
+            )]
+            let time = match self.number.whole(bytes) {
+                Some(whole) if self.has_none && whole == i128::from(i64::MIN) => f64::NAN,
+                Some(whole) => (whole - *first_whole.get_or_insert(whole)) as f64,
+                None => since(*first.get_or_insert(value), value),
+            };
+            if !time.is_finite() {
+                return Ok((Vec::new(), None));
+            }
+            let unit = unit.get_or_insert_with(|| TimeUnit::by_size(value));
+            times.push(to_nanoseconds(unit.seconds(time)));
+        }
+        // Wrong times are worse than none, so read up to the end of the array, where its checksum is verified.
+        array::fill(file, &mut [0])?;
+        let assumed = unit.filter(|&unit| self.unit.is_none() && unit != TimeUnit::Seconds);
+        Ok((times, assumed))
+    }
+}
+
+/// Returns the times of all `frames`, in seconds since the first one; empty if there are none. Returns their unit,
+/// too, if it was derived from their size and is not seconds.
+///
+/// # Errors
+/// Returns an error if the array of times is damaged.
+fn times(
+    archive: &mut ZipArchive<impl Read + Seek>,
+    arrays: &[ArchiveArray],
+    frames: u64,
+) -> Result<(Vec<f64>, Option<TimeUnit>), RecordingError> {
+    let found = TimeArray::of_frames(arrays, frames);
+    let Some(found) = found.filter(|_| frames <= MOST_TIMES) else {
+        return Ok((Vec::new(), None));
+    };
+    let mut file = archive.by_index(found.array.index).map_err(damaged)?;
+    let named = |error| in_array(&found.array.name, error);
+    found.seconds(&mut file, frames).map_err(named)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Cursor, Write};
+
+    use zip::write::SimpleFileOptions;
+
+    use super::*;
+
+    /// Returns times and notes of two frames of two cells from each of two sensors, beside an array `time` of that
+    /// type with those numbers.
+    fn times_of(name: &str, code: &str, times: [i64; 2]) -> (Vec<Option<f64>>, Vec<String>) {
+        let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        let options = SimpleFileOptions::default();
+        let mut add = |name: &str, code: &str, shape: &str, numbers: &[u8]| {
+            let text =
+                format!("{{'descr': '{code}', 'fortran_order': False, 'shape': ({shape}), }}\n");
+            let length = u16::try_from(text.len()).expect("short");
+            archive
+                .start_file(format!("{name}.npy"), options)
+                .expect("begun");
+            for part in [
+                b"\x93NUMPY\x01\x00",
+                &length.to_le_bytes()[..],
+                text.as_bytes(),
+                numbers,
+            ] {
+                archive.write_all(part).expect("written");
+            }
+        };
+        for sensor in ["left", "right"] {
+            add(sensor, "|u1", "2, 1, 2", &[1, 2, 3, 4]);
+        }
+        add(name, code, "2,", &times.map(i64::to_le_bytes).concat());
+        let archive = archive.finish().expect("finished").into_inner();
+        let (mut found, mut notes) = (Vec::new(), Vec::new());
+        let read = read(Cursor::new(archive), ReadOptions::default(), &mut |event| {
+            match event {
+                RecordingEvent::Frame(frame) => found.push(frame.time),
+                RecordingEvent::Note(note) => notes.push(note.to_string()),
+                RecordingEvent::Channel(_) => {}
+            }
+            ControlFlow::Continue(())
+        });
+        assert!(read.is_ok(), "{read:?}");
+        let (left, right) = found.split_at(2);
+        assert_eq!(left, right);
+        (left.to_vec(), notes)
+    }
+
+    #[test]
+    fn times_have_the_unit_of_their_name_their_type_or_their_size() {
+        let since_1970 = [1_714_564_800_123_456_789, 1_714_564_800_124_456_790];
+        let both = |step| vec![Some(0.0), Some(step)];
+        for (name, code, times, step) in [
+            ("time_ns", "<i8", since_1970, 0.001_000_001),
+            ("time", "<M8[ns]", since_1970, 0.001_000_001),
+            ("time", "<m8[ms]", [5, 55], 0.05),
+            ("stamps", "<i8", [5, 55], f64::NAN),
+            ("t_ms", "<i8", [5, 55], 0.05),
+            ("time", "<i8", [5, 55], 50.0),
+        ] {
+            let expected = if step.is_nan() {
+                vec![None; 2]
+            } else {
+                both(step)
+            };
+            assert_eq!(
+                times_of(name, code, times),
+                (expected, vec![]),
+                "{name} {code}"
+            );
+        }
+        let noted =
+            vec!["the times have no unit and are taken as nanoseconds since 1970".to_owned()];
+        assert_eq!(
+            times_of("time", "<i8", since_1970),
+            (both(0.001_000_001), noted)
+        );
+        // NaT, numpy's missing time.
+        let without = (vec![None; 2], vec![]);
+        assert_eq!(
+            times_of("time", "<M8[ns]", [since_1970[0], i64::MIN]),
+            without
+        );
+    }
+}

@@ -1,0 +1,389 @@
+//! The output of `ros2 topic echo` for a message with an array: with `--csv`, as `array('H', [0, 1])`, or as YAML.
+//!
+//! Messages are separated by `---`. Without `--full-length`, an echo leaves out all elements beyond the first 128,
+//! and is refused.
+//! ```text
+//! ,2,4,,2,2,0,0,12,7,3                --csv: label, size and stride of each dimension, the offset, the values
+//!
+//! layout:
+//!   dim:
+//!   - label: ''
+//!     size: 2
+//! data:
+//! - 0
+//! - 12
+//! ---
+//! ```
+//! Notices of `ros2 topic echo` between messages, for example about a lost message, are skipped. Values before the
+//! offset of a layout (`data_offset`) are not cells. Rows and columns are the first two sizes of the layout, if all
+//! others are 1; otherwise they must be given. Source: the output of the program.
+
+use std::io::BufRead;
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
+use crate::formats::recording::side::{arranged, changed, frame_size};
+use crate::formats::recording::text::lines::TextLines;
+use crate::formats::recording::text::row::{self, Field};
+use crate::frame::{Frame, FrameSize};
+
+/// The values of a message, and the sizes of its layout, in memory that is reused.
+#[derive(Debug, Default)]
+pub(in crate::formats) struct RosMessage {
+    /// The size of each dimension of the layout.
+    pub(super) sizes: Vec<u32>,
+    /// The elements, at most [`MOST_VALUES`].
+    values: Vec<f64>,
+    /// The number of elements before the cells.
+    offset: usize,
+    /// Whether the last line was inside the list of a YAML text, or inside an array that continues in the next line.
+    open: bool,
+    /// Whether a line of the message has been read.
+    any: bool,
+}
+
+/// The state of a message after a line.
+#[derive(Debug, PartialEq)]
+pub(in crate::formats) enum RosLine {
+    /// The message continues.
+    More,
+    /// The message is complete.
+    Whole,
+    /// The message was shortened by `ros2 topic echo`.
+    Cut,
+    /// The field with this number, from 1, is not a number.
+    Wrong(usize),
+}
+
+/// The most values of a message that are kept, one more than any frame has.
+const MOST_VALUES: usize = 512 * 512 + 1;
+
+/// The most sizes of a layout that are kept: more than any message has, so that endless input does not fill the
+/// memory.
+const MOST_SIZES: usize = 64;
+
+impl RosMessage {
+    /// Prepares for the next message.
+    pub(in crate::formats) fn clear(&mut self) {
+        self.sizes.clear();
+        self.values.clear();
+        self.offset = 0;
+        (self.open, self.any) = (false, false);
+    }
+
+    /// Returns true if a line of this message has been read.
+    pub(in crate::formats) fn begun(&self) -> bool {
+        self.any
+    }
+
+    /// Returns the cells of the message.
+    pub(in crate::formats) fn cells(&self) -> &[f64] {
+        &self.values[self.offset.min(self.values.len())..]
+    }
+
+    /// Reads the offset of the layout; a field that is not a number is ignored.
+    fn offset_of(&mut self, field: &[u8]) {
+        let offset = str::from_utf8(field.trim_ascii()).ok();
+        if let Some(offset) = offset.and_then(|offset| offset.parse().ok()) {
+            self.offset = offset;
+        }
+    }
+
+    /// Returns true if the message ends inside an array.
+    pub(in crate::formats) fn is_open(&self) -> bool {
+        self.open && !self.values.is_empty()
+    }
+
+    /// Adds a value; returns false if the field is not a number. YAML writes `.nan`, arrays `nan`.
+    fn push(&mut self, field: &[u8]) -> bool {
+        let field = field.trim_ascii();
+        let value = match row::value(field) {
+            Field::Value(value) => value,
+            _ if field.eq_ignore_ascii_case(b"nan") || field.eq_ignore_ascii_case(b".nan") => {
+                f64::NAN
+            }
+            _ => return false,
+        };
+        if self.values.len() < MOST_VALUES {
+            self.values.push(value);
+        }
+        true
+    }
+
+    /// Reads the next line of a text.
+    pub(in crate::formats) fn line(&mut self, line: &[u8]) -> RosLine {
+        let line = line.trim_ascii();
+        if line.is_empty() || is_notice(line) {
+            return RosLine::More;
+        }
+        if line == b"---" {
+            return if self.any {
+                RosLine::Whole
+            } else {
+                RosLine::More
+            };
+        }
+        self.any = true;
+        if let Some(size) = line.strip_prefix(b"size:") {
+            if self.sizes.len() < MOST_SIZES {
+                self.sizes.extend(whole(size));
+            }
+            return RosLine::More;
+        }
+        if let Some(offset) = line.strip_prefix(b"data_offset:") {
+            self.offset_of(offset);
+            return RosLine::More;
+        }
+        if line == b"data:" {
+            self.open = true;
+            return RosLine::More;
+        }
+        if let Some(value) = line.strip_prefix(b"- ").filter(|_| self.open) {
+            return if self.push(value) {
+                RosLine::More
+            } else if is_cut(value) && !self.values.is_empty() {
+                RosLine::Cut
+            } else {
+                RosLine::Wrong(1)
+            };
+        }
+        let bracket = line.iter().position(|&byte| byte == b'[');
+        match bracket {
+            Some(start) => self.list(&line[start + 1..]),
+            None if self.open && line[0] != b'-' => self.list(line),
+            None if is_csv(line) || is_csv_without_dimensions(line) => self.csv(line),
+            None => RosLine::More,
+        }
+    }
+
+    /// Reads numbers up to a bracket.
+    fn list(&mut self, line: &[u8]) -> RosLine {
+        let end = line.iter().position(|&byte| byte == b']');
+        self.open = end.is_none();
+        let list = &line[..end.unwrap_or(line.len())];
+        let is_mark = |byte: &u8| *byte == b',' || byte.is_ascii_whitespace();
+        let fields = list.split(is_mark).filter(|field| !field.is_empty());
+        self.fields(fields.enumerate(), RosLine::More)
+    }
+
+    /// Adds the values of a list. Dots in place of values mean that it was shortened, but only if all other fields
+    /// are numbers: noise has dots, too.
+    fn fields<'a>(
+        &mut self,
+        fields: impl Iterator<Item = (usize, &'a [u8])>,
+        whole: RosLine,
+    ) -> RosLine {
+        let mut state = whole;
+        for (index, field) in fields {
+            if is_cut(field) && !self.values.is_empty() {
+                state = RosLine::Cut;
+            } else if !self.push(field) {
+                return RosLine::Wrong(index + 1);
+            }
+        }
+        state
+    }
+
+    /// Reads a line of `--csv`: label, size and stride of each dimension, the offset, the values. It is a whole
+    /// message.
+    fn csv(&mut self, line: &[u8]) -> RosLine {
+        let mut fields = line.split(|&byte| byte == b',').enumerate().peekable();
+        while fields.next_if(|(_, field)| is_label(field)).is_some() {
+            let size = fields.next().and_then(|(_, field)| whole(field));
+            let stride = fields.next().and_then(|(_, field)| whole(field));
+            let (Some(size), Some(_)) = (size, stride) else {
+                return RosLine::Wrong(1 + 3 * self.sizes.len());
+            };
+            self.sizes.push(size);
+        }
+        if let Some((_, offset)) = fields.next() {
+            self.offset_of(offset);
+        }
+        self.fields(fields, RosLine::Whole)
+    }
+
+    /// Returns the rows and columns of the layout, if it has these two dimensions.
+    pub(in crate::formats) fn size(&self) -> Option<FrameSize> {
+        let &[rows, columns, ref rest @ ..] = &self.sizes[..] else {
+            return None;
+        };
+        rest.iter()
+            .all(|&size| size == 1)
+            .then(|| frame_size(columns, rows))?
+    }
+}
+
+/// Returns true if a line is a notice of `ros2 topic echo` itself.
+fn is_notice(line: &[u8]) -> bool {
+    let notices = [&b"A message was lost"[..], b"total count", b"WARNING: "];
+    let line = line.trim_ascii_start();
+    notices.iter().any(|notice| line.starts_with(notice))
+}
+
+/// Removes the notices and empty lines before the first message of a text.
+pub(in crate::formats::recording) fn without_notices(mut text: &[u8]) -> &[u8] {
+    loop {
+        let end = text.iter().position(|&byte| byte == b'\n');
+        let (line, rest) = text.split_at(end.map_or(text.len(), |end| end + 1));
+        if line.is_empty() || !line.trim_ascii().is_empty() && !is_notice(line) {
+            return text;
+        }
+        text = rest;
+    }
+}
+
+/// Reads a whole number, 0 or more.
+fn whole(field: &[u8]) -> Option<u32> {
+    str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
+}
+
+/// Returns true if a field is the dots for values that an echo leaves out, with or without quotes.
+fn is_cut(field: &[u8]) -> bool {
+    let is_quote = |byte: &u8| matches!(byte, b'\'' | b'"');
+    let mut bytes = field.trim_ascii().iter().filter(|byte| !is_quote(byte));
+    bytes.by_ref().take(3).eq(b"...") && bytes.next().is_none()
+}
+
+/// Returns true if a field is the label of a dimension: anything that is not a number, even an empty field.
+fn is_label(field: &[u8]) -> bool {
+    matches!(row::value(field.trim_ascii()), Field::Wrong)
+}
+
+/// Returns true if a line begins with the layout of an array: for each dimension a label, a size and a stride.
+fn is_layout(line: &[u8]) -> bool {
+    let mut fields = line.split(|&byte| byte == b',');
+    let (mut strides, mut dimensions) = (Vec::new(), 0);
+    while dimensions < 8 {
+        let Some(label) = fields.next() else {
+            return false;
+        };
+        if !is_label(label) {
+            break;
+        }
+        let (Some(size), Some(stride)) =
+            (fields.next().and_then(whole), fields.next().and_then(whole))
+        else {
+            return false;
+        };
+        strides.push((size, stride));
+        dimensions += 1;
+    }
+    // A stride is the product of its own size and those after it.
+    let mut product = 1_u32;
+    let fits = strides.iter().rev().all(|&(size, stride)| {
+        product = product.saturating_mul(size);
+        size > 0 && stride == product
+    });
+    !strides.is_empty() && fits
+}
+
+/// Returns true if only `ros2 topic echo` prints such a first line of a message.
+pub(in crate::formats) fn begins_message(line: &[u8]) -> bool {
+    let starts = [&b"array("[..], b"layout:", b"data:"];
+    starts.iter().any(|start| line.starts_with(start)) || is_csv(line)
+}
+
+/// Returns true if only `--csv` prints such a line: it begins with a layout, or was shortened. A complete line
+/// without dimensions is a line of numbers like any other.
+pub(in crate::formats) fn is_csv(line: &[u8]) -> bool {
+    is_layout(line) || is_cut_csv(line)
+}
+
+/// Returns true if a line is an offset and values. Its layout has no dimensions, as with most publishers. Such a line
+/// is distinguished from other numbers only if the text is known to be an echo.
+pub(in crate::formats) fn is_csv_without_dimensions(line: &[u8]) -> bool {
+    line.contains(&b',') && line.split(|&byte| byte == b',').all(is_number)
+}
+
+/// Returns true if a line is an offset and values, of which the last ones are left out.
+fn is_cut_csv(line: &[u8]) -> bool {
+    let mut fields = line.rsplit(|&byte| byte == b',');
+    fields.next().is_some_and(is_cut) && fields.clone().count() > 1 && fields.all(is_number)
+}
+
+/// Returns true if a field is a value.
+fn is_number(field: &[u8]) -> bool {
+    let field = field.trim_ascii();
+    matches!(row::value(field), Field::Value(_)) || field.eq_ignore_ascii_case(b"nan")
+}
+
+/// Returns the rows and columns of a message that ends in this line.
+///
+/// # Errors
+/// Returns an error if rows and columns are neither in the message nor given, or if it has another number of values.
+fn size(
+    message: &RosMessage,
+    named: Option<FrameSize>,
+    line: u64,
+) -> Result<FrameSize, RecordingError> {
+    let values = message.cells().len();
+    let size = arranged(values, message.size(), named).or(named);
+    let size = size.ok_or(RecordingError::Shape {
+        values: values as u64,
+    })?;
+    if values != size.cells() {
+        return Err(row::count(line, values, size.cells()));
+    }
+    Ok(size)
+}
+
+/// Reads a recording.
+pub(in crate::formats::recording) fn read(
+    input: impl BufRead,
+    options: ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), RecordingError> {
+    let mut lines = TextLines::new(input);
+    let mut message = RosMessage::default();
+    let mut frame = Frame::default();
+    let mut first = None;
+    loop {
+        let ended = !lines.advance()?;
+        let number = lines.number();
+        let state = if ended {
+            RosLine::Whole
+        } else {
+            message.line(lines.line())
+        };
+        match state {
+            RosLine::More => continue,
+            RosLine::Whole if ended && !message.begun() => return Ok(()),
+            RosLine::Whole if message.is_open() && ended => {
+                let text = "ends inside a message, expected '---'";
+                return Err(RecordingError::in_line(number + 1, text));
+            }
+            RosLine::Whole => {}
+            RosLine::Cut => {
+                let text = "the echo leaves out values ('...'): record it with --full-length";
+                return Err(RecordingError::in_line(number, text));
+            }
+            RosLine::Wrong(column) => {
+                let text = "found something other than a number";
+                return Err(RecordingError::in_field(number, column, text));
+            }
+        }
+        let size = size(&message, options.size, number)?;
+        if frame.number == 0 {
+            let info = ChannelInfo {
+                size: Some(size),
+                ..ChannelInfo::default()
+            };
+            if sink(RecordingEvent::Channel(&info)).is_break() {
+                return Ok(());
+            }
+        }
+        if let Some(first) = first.replace(size)
+            && first != size
+        {
+            let message = changed(size, first);
+            return Err(RecordingError::in_line(number, message));
+        }
+        frame.reset(size);
+        frame.values_mut().copy_from_slice(message.cells());
+        message.clear();
+        if sink(RecordingEvent::Frame(&frame)).is_break() || ended {
+            return Ok(());
+        }
+        frame.number += 1;
+    }
+}

@@ -1,0 +1,19 @@
+//! Reads what ROS records: MCAP files, and the text of `ros2 topic echo`.
+//!
+//! ```text
+//! cdr       the encoding of messages
+//! message   the messages that have frames
+//! mcap      the records of a file
+//! echo      messages as text
+//! ```
+
+#[cfg(feature = "mcap")]
+mod cdr;
+
+#[cfg(feature = "mcap")]
+mod message;
+
+#[cfg(feature = "mcap")]
+pub(super) mod mcap;
+
+pub(in crate::formats) mod echo;

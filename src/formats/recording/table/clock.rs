@@ -1,0 +1,158 @@
+//! Reads the times of a table's frames, as seconds since the first one.
+
+use crate::formats::recording::text::row::Field;
+use crate::formats::recording::text::separator::Separator;
+use crate::formats::recording::time::exact::Time;
+use crate::formats::recording::time::moment::{self, Midnights};
+use crate::formats::recording::time::unit::TimeUnit;
+
+/// The fields of a line that hold its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TimeFields {
+    /// The field with the time, or with its whole seconds.
+    pub(super) field: usize,
+    /// The unit; None if nothing names it.
+    pub(super) unit: Option<TimeUnit>,
+    /// The field with the rest of the second, and its unit.
+    pub(super) rest: Option<(usize, TimeUnit)>,
+}
+
+impl TimeFields {
+    /// Makes the fields of a time in a single field.
+    pub(super) fn new(field: usize, unit: Option<TimeUnit>) -> Self {
+        Self {
+            field,
+            unit,
+            rest: None,
+        }
+    }
+}
+
+/// The text of a frame's time.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct TimeText<'a> {
+    /// The time, or its whole seconds.
+    pub(super) time: Option<&'a [u8]>,
+    /// The rest of the second.
+    pub(super) rest: Option<&'a [u8]>,
+}
+
+/// A clock that reads the times of a table.
+#[derive(Debug)]
+pub(super) struct TableClock {
+    /// The separator between fields, which decides about the decimal sign.
+    separator: Separator,
+    /// The unit; None if it is not named, until the size of the first time decides it.
+    unit: Option<TimeUnit>,
+    /// The unit of the rest of a second.
+    rest: Option<TimeUnit>,
+    /// The first time.
+    start: Option<Time>,
+    /// The count of midnights, for clocks without a date.
+    midnights: Midnights,
+}
+
+impl TableClock {
+    /// Makes the clock of a table with these time fields.
+    pub(super) fn new(separator: Separator, fields: Option<TimeFields>) -> Self {
+        Self {
+            separator,
+            unit: fields.and_then(|fields| fields.unit),
+            rest: fields.and_then(|fields| fields.rest).map(|(_, unit)| unit),
+            start: None,
+            midnights: Midnights::default(),
+        }
+    }
+
+    /// Returns the unit of times; None if no unit is named and there was no number yet.
+    pub(super) fn unit(&self) -> Option<TimeUnit> {
+        self.unit
+    }
+
+    /// Returns the seconds from the first time to this one; None if there is no time, or a text that cannot be read.
+    pub(super) fn seconds(&mut self, text: TimeText<'_>) -> Option<f64> {
+        let field = text.time?;
+        match self.separator.value(field) {
+            Field::Value(number) => {
+                let unit = *self.unit.get_or_insert_with(|| TimeUnit::by_size(number));
+                let time = Time::read(field, number, unit);
+                let time = match (self.rest, text.rest) {
+                    (Some(unit), Some(rest)) => match self.separator.value(rest) {
+                        Field::Value(number) => time.plus(Time::read(rest, number, unit)),
+                        _ => return None,
+                    },
+                    _ => time,
+                };
+                Some(self.since_first(time))
+            }
+            Field::Wrong => moment::read(field).map(|moment| self.moment(moment)),
+            Field::NoCell => None,
+        }
+    }
+
+    /// Returns the seconds from the first time to a timestamp.
+    pub(super) fn moment(&mut self, moment: moment::Moment) -> f64 {
+        let seconds = self.midnights.seconds(moment);
+        self.since_first(Time::Seconds(seconds))
+    }
+
+    fn since_first(&mut self, time: Time) -> f64 {
+        time.since(*self.start.get_or_insert(time))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_subtracted_as_they_are_written() {
+        let step = |unit, fields: [&[u8]; 2]| {
+            let fields_of_line = Some(TimeFields::new(0, unit));
+            let mut clock = TableClock::new(Separator::Byte(b';'), fields_of_line);
+            let seconds = fields.map(|time| {
+                let text = TimeText {
+                    time: Some(time),
+                    rest: None,
+                };
+                clock.seconds(text)
+            });
+            assert_eq!(seconds[0], Some(0.0));
+            seconds[1]
+        };
+        let nanoseconds = Some(TimeUnit::Nanoseconds);
+        for (unit, fields, expected) in [
+            (
+                nanoseconds,
+                [&b"1714564800123456789"[..], b"1714564800124456790"],
+                0.001_000_001,
+            ),
+            (
+                None,
+                [b"1714564800123456789", b"1714564800124456790"],
+                0.001_000_001,
+            ),
+            (None, [b"1714564800123456", b"1714564800124456"], 0.001),
+            (None, [b"1714564800123", b"1714564800124"], 0.001),
+            (
+                None,
+                [b"1714564800.123456789", b"1714564800,124456790"],
+                0.001_000_001,
+            ),
+            (None, [b"12345", b"12395"], 50.0),
+            (None, [b"2.2", b"2.3"], 0.1),
+            (None, [b"0.30000000000000004", b"0.1"], -0.2),
+            (Some(TimeUnit::Milliseconds), [b"-0.5", b"+.5"], 0.001),
+            (Some(TimeUnit::Minutes), [b"0.1", b"0.15"], 3.0),
+            (None, [b"1e3", b"1000.5"], 0.5),
+            (Some(TimeUnit::Seconds), [b"1e300", b"0"], -1e300),
+            (
+                None,
+                [b"0", b"123456789012345678901"],
+                123_456_789_012_345_680_000.0,
+            ),
+        ] {
+            assert_eq!(step(unit, fields), Some(expected), "{fields:?}");
+        }
+    }
+}

@@ -1,0 +1,325 @@
+//! Tables of numbers. Either a line is a frame, with or without a header and other columns, or a line is a row and an
+//! empty line separates frames.
+//! ```text
+//! frame,time,r0c0,r0c1,r1c0,r1c1          0 12  7
+//! 0,0.00,1,2,3,4                          3  9 NaN
+//! 1,0.05,1,,3,4
+//!                                         0 11  8      or 12:00:00.25 0 11 8
+//!                                         2  9  1
+//! ```
+//! Fields are separated by semicolons (then a comma is the decimal sign), commas, tabs or spaces; the first line
+//! decides. Quotes around a field do not count. An empty field, `NaN`, `-nan`, `null`, `none`, `NA`, `N/A`, `#N/A`
+//! and `<NA>` mean that there is no cell. Lines that begin with `#`, with `//`, or with `%` and a blank are skipped.
+//!
+//! A line below the names of cells may hold the unit of each field.
+//!
+//! The first lines decide how the fields are arranged, see [`layout`](super::layout); then the file is
+//! read from its beginning.
+//!
+//! A line of commas between two frames is a frame without cells, unless frames have a number or a time; elsewhere it
+//! is an empty line as spreadsheet programs write it.
+//!
+//! Errors, with line and field, are words in place of numbers, and lines or blocks of another length. Nothing is
+//! padded, since a missing value in the middle would shift all later ones.
+
+use std::io::{BufRead, Seek};
+use std::ops::ControlFlow;
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
+};
+#[cfg(feature = "cli")]
+use crate::formats::recording::side::side;
+use crate::formats::recording::table::clock::{TableClock, TimeText};
+use crate::formats::recording::table::layout::{FrameFields, LineLayout, TableLayout, layout};
+use crate::formats::recording::text::lines::{TextLines, is_blank};
+use crate::formats::recording::text::number::whole;
+use crate::formats::recording::text::row::{self, Field};
+use crate::formats::recording::text::separator::{Separator, is_comment};
+use crate::formats::recording::time::moment;
+use crate::formats::recording::time::unit::TimeUnit;
+use crate::frame::{Frame, FrameSize};
+use crate::parameter::number::counted;
+
+/// Reads a recording.
+pub(in crate::formats::recording) fn read(
+    mut input: impl BufRead + Seek,
+    options: ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), RecordingError> {
+    let layout = layout(&mut input, options)?;
+    input.rewind()?;
+    let info = ChannelInfo {
+        size: Some(layout.size),
+        unit: layout.unit.clone(),
+        start: layout.start.clone(),
+        ..ChannelInfo::default()
+    };
+    if sink(RecordingEvent::Channel(&info)).is_break() {
+        return Ok(());
+    }
+    if let Some(note) = &layout.note
+        && sink(RecordingEvent::Note(note)).is_break()
+    {
+        return Ok(());
+    }
+    let mut lines = TextLines::new(input);
+    match &layout.lines {
+        LineLayout::Row { parted } => {
+            RowBlock::new(layout.separator, layout.size, *parted).read(&mut lines, sink)
+        }
+        LineLayout::Frame(fields) => frames(&mut lines, &layout, fields, sink),
+    }
+}
+
+/// Reads a text that is known to be a single frame, one line per row, up to its end or an empty line. As a recording,
+/// a single row would be a frame of unknown shape, and a single column not even a table.
+///
+/// # Errors
+/// Returns [`RecordingError::Unknown`] if the text does not begin with a line of numbers or is larger than a frame,
+/// and an error if a row has another number of values than the first, or anything other than numbers.
+#[cfg(feature = "cli")]
+pub(crate) fn read_rows(text: &[u8], sink: &mut Sink<'_>) -> Result<(), RecordingError> {
+    let mut lines = TextLines::new(text);
+    while lines.advance_to_content()? && is_comment(lines.line()) {}
+    let first = lines.line();
+    let separator = Separator::of(first);
+    let is_row = !is_blank(first)
+        && separator
+            .fields(first)
+            .all(|field| separator.is_numeric(field));
+    let columns = side(separator.fields(first).count()).filter(|_| is_row);
+    let mut rows = 1_usize;
+    while lines.advance()? && !is_blank(lines.line()) {
+        rows += usize::from(!is_comment(lines.line()));
+    }
+    let size = FrameSize::of_sides(columns, side(rows)).ok_or(RecordingError::Unknown)?;
+    RowBlock::new(separator, size, false).read(&mut TextLines::new(text), sink)
+}
+
+/// Reads frames of one line each.
+fn frames(
+    lines: &mut TextLines<impl BufRead>,
+    layout: &TableLayout,
+    fields: &FrameFields,
+    sink: &mut Sink<'_>,
+) -> Result<(), RecordingError> {
+    // The index of the cell in each field; None if the field is not a cell.
+    let mut slots = vec![None; fields.count];
+    for (slot, &field) in fields.cells.iter().enumerate() {
+        slots[field] = Some(slot);
+    }
+    let mut frame = Frame::new(layout.size);
+    let mut clock = TableClock::new(layout.separator, fields.time);
+    // The number of lines of commas since the last frame.
+    let mut without_cells = 0_u64;
+    while lines.advance()? {
+        let (line, number) = (lines.line(), lines.number());
+        if is_blank(line) {
+            let is_frame = frame.number > 0 && fields.may_be_commas(line);
+            without_cells += u64::from(is_frame);
+            continue;
+        }
+        if fields.header.is_some_and(|last| number <= last) || is_comment(line) {
+            continue;
+        }
+        for _ in 0..std::mem::take(&mut without_cells) {
+            frame.values_mut().fill(f64::NAN);
+            if sink(RecordingEvent::Frame(&frame)).is_break() {
+                return Ok(());
+            }
+            frame.number += 1;
+        }
+        let time = fields.fill(&slots, &mut frame, layout.separator, (line, number))?;
+        let had_unit = clock.unit().is_some();
+        frame.time = clock.seconds(time);
+        if let Some(unit) = clock.unit().filter(|_| !had_unit)
+            && unit != TimeUnit::Seconds
+        {
+            let note = RecordingNote::TimeUnit { unit: unit.name() };
+            if sink(RecordingEvent::Note(&note)).is_break() {
+                break;
+            }
+        }
+        if sink(RecordingEvent::Frame(&frame)).is_break() {
+            break;
+        }
+        frame.number += 1;
+    }
+    Ok(())
+}
+
+impl FrameFields {
+    /// Returns true if a line of commas is a frame without cells, provided that another frame follows. Spreadsheet
+    /// programs write such lines instead of empty ones, but rarely between frames.
+    fn may_be_commas(&self, line: &[u8]) -> bool {
+        // As many commas as separate the fields, or one more at the end.
+        let fields = line.split(|&byte| byte == b',').count();
+        let is_frame = fields > 1 && (fields == self.count || fields == self.count + 1);
+        is_frame && self.label.is_none() && self.time.is_none()
+    }
+
+    /// Fills the values and the label of a frame from a line. Returns the text of its time.
+    ///
+    /// Text in a field that is neither cell nor label nor time is ignored.
+    ///
+    /// # Errors
+    /// Returns an error if the line has another number of fields, or if a cell is not a number.
+    fn fill<'a>(
+        &self,
+        slots: &[Option<usize>],
+        frame: &mut Frame,
+        separator: Separator,
+        (line, number): (&'a [u8], u64),
+    ) -> Result<TimeText<'a>, RecordingError> {
+        let (mut found, mut label, mut time) = (0, None, TimeText::default());
+        let own = self.time.map(|time| time.field);
+        let rest = self.time.and_then(|time| time.rest).map(|(rest, _)| rest);
+        let values = frame.values_mut();
+        for field in separator.fields_of(line, self.count) {
+            let index = found;
+            found += 1;
+            let Some(slot) = slots.get(index) else {
+                continue;
+            };
+            if let Some(slot) = slot {
+                values[*slot] = match separator.value(field) {
+                    Field::Value(value) => value,
+                    Field::NoCell => f64::NAN,
+                    Field::Wrong => return Err(row::wrong(number, found, field)),
+                };
+            } else if self.label == Some(index) {
+                if let Field::Value(value) = separator.value(field) {
+                    label = whole(value);
+                }
+            } else if own == Some(index) {
+                time.time = Some(field);
+            } else if rest == Some(index) {
+                time.rest = Some(field);
+            }
+        }
+        if found != self.count {
+            return Err(row::count(number, found, self.count));
+        }
+        frame.label = label;
+        Ok(time)
+    }
+}
+
+/// A frame of several lines, of which some may have been read.
+struct RowBlock {
+    /// The separator between fields.
+    separator: Separator,
+    /// The frame that is being read.
+    frame: Frame,
+    /// The number of rows read so far.
+    found: u16,
+    /// Whether an empty line ends a frame.
+    parted: bool,
+    /// The clock that reads the timestamp at the beginning of the first row.
+    clock: TableClock,
+}
+
+impl RowBlock {
+    /// Creates an empty block for a frame of this size.
+    fn new(separator: Separator, size: FrameSize, parted: bool) -> Self {
+        Self {
+            separator,
+            frame: Frame::new(size),
+            found: 0,
+            parted,
+            clock: TableClock::new(separator, None),
+        }
+    }
+
+    /// Reads all frames.
+    ///
+    /// # Errors
+    /// Returns an error if a row has another number of values, or a frame another number of rows.
+    fn read(
+        mut self,
+        lines: &mut TextLines<impl BufRead>,
+        sink: &mut Sink<'_>,
+    ) -> Result<(), RecordingError> {
+        loop {
+            let ended = !lines.advance()?;
+            let (line, number) = (lines.line(), lines.number());
+            let given = if ended || is_blank(line) {
+                self.end(number + u64::from(ended), sink)?
+            } else if is_comment(line) {
+                continue;
+            } else {
+                self.row(line, number)?;
+                // Without empty lines, frames are separated by their number of rows alone.
+                if self.parted {
+                    continue;
+                }
+                self.give(sink)
+            };
+            if ended || given.is_break() {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Ends the frame at an empty line or at the end of the file. There may be any number of empty lines between
+    /// frames.
+    fn end(&mut self, number: u64, sink: &mut Sink<'_>) -> Result<ControlFlow<()>, RecordingError> {
+        let given = self.give(sink);
+        if given.is_break() || self.found == 0 {
+            return Ok(given);
+        }
+        let (found, rows) = (self.found, self.frame.rows());
+        let found = counted(found, "row");
+        let message = format!("the frame ends after {found}, expected {rows}");
+        Err(RecordingError::in_line(number, message))
+    }
+
+    /// Reports the frame if all its rows have been read.
+    fn give(&mut self, sink: &mut Sink<'_>) -> ControlFlow<()> {
+        if self.found < self.frame.rows() {
+            return ControlFlow::Continue(());
+        }
+        sink(RecordingEvent::Frame(&self.frame))?;
+        self.frame.number += 1;
+        self.found = 0;
+        ControlFlow::Continue(())
+    }
+
+    /// Reads the next row.
+    fn row(&mut self, line: &[u8], number: u64) -> Result<(), RecordingError> {
+        let (rows, columns) = (self.frame.rows(), usize::from(self.frame.columns()));
+        if self.found == rows {
+            let message = format!("another row, expected an empty line after {rows} of them");
+            return Err(RecordingError::in_line(number, message));
+        }
+        // Each row may have its timestamp; that of the first row counts.
+        let (moment, line) = match moment::leading(line) {
+            Some((moment, row)) => (Some(moment), row),
+            None => (None, line),
+        };
+        if self.found == 0 {
+            self.frame.time = moment.map(|moment| self.clock.moment(moment));
+        }
+        let start = usize::from(self.found) * columns;
+        let slots = &mut self.frame.values_mut()[start..start + columns];
+        let mut count = 0;
+        for field in self.separator.fields_of(line, columns) {
+            count += 1;
+            let Some(slot) = slots.get_mut(count - 1) else {
+                continue;
+            };
+            *slot = match self.separator.value(field) {
+                Field::Value(value) => value,
+                Field::NoCell => f64::NAN,
+                Field::Wrong => return Err(row::wrong(number, count, field)),
+            };
+        }
+        if count != columns {
+            return Err(row::count(number, count, columns));
+        }
+        self.found += 1;
+        Ok(())
+    }
+}

@@ -1,0 +1,165 @@
+//! Decides whether the first line of a table holds names or values, and finds the lines that hold neither.
+
+use std::io::BufRead;
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::table::cell_names::{NamedCells, cells};
+use crate::formats::recording::text::lines::{TextLines, is_blank};
+use crate::formats::recording::text::separator::{Separator, is_comment};
+use crate::formats::recording::time::field_role::role;
+use crate::formats::recording::time::moment;
+
+/// The number of lines that are compared with the first one, or with each other if no header names the numbers beside
+/// the cells.
+pub(super) const COMPARED: u16 = 8;
+
+/// Returns the first line that is neither blank nor a comment.
+///
+/// # Errors
+/// Returns [`RecordingError::Unknown`] if there is no such line.
+pub(super) fn first_line(lines: &mut TextLines<impl BufRead>) -> Result<Vec<u8>, RecordingError> {
+    while lines.advance_to_content()? && is_comment(lines.line()) {}
+    let first = lines.line();
+    if is_blank(first) || is_comment(first) {
+        return Err(RecordingError::Unknown);
+    }
+    Ok(first.to_owned())
+}
+
+/// Splits a line into the text of the timestamp at its beginning and the numbers after it; None if anything else is
+/// there.
+pub(super) fn moment_of_row(separator: Separator, line: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (_, row) = moment::leading(line)?;
+    let moment = line[..line.len() - row.len()].trim_ascii();
+    let moment = moment.strip_suffix(b",").unwrap_or(moment);
+    let moment = moment.strip_suffix(b";").unwrap_or(moment);
+    let mut fields = separator.fields(row);
+    fields
+        .all(|field| separator.is_numeric(field))
+        .then_some((moment.trim_ascii(), row))
+}
+
+/// Returns true if a first line 0, 1, 2, … holds values, as of a test pattern, and not the names of cells. It does if
+/// the next line continues the count, if one of the next lines equals it, or if it begins the first of two blocks of
+/// equally many lines.
+pub(super) fn is_ramp(
+    lines: &mut TextLines<impl BufRead>,
+    separator: Separator,
+    first: &[u8],
+) -> Result<bool, RecordingError> {
+    let width = separator.fields(first).count();
+    let first = separator.numbers(first, width);
+    let count = first.last().map_or(0.0, |last| last + 1.0);
+    let next: Vec<f64> = first.iter().map(|value| value + count).collect();
+    let (mut heights, mut height, mut compared) = (Vec::new(), 1_u16, 0_u16);
+    while heights.len() < 2 && height < COMPARED {
+        let is_end = !lines.advance()?;
+        if is_end || is_blank(lines.line()) {
+            heights.extend((height > 0).then(|| std::mem::take(&mut height)));
+            if is_end {
+                break;
+            }
+        } else if !is_comment(lines.line()) {
+            let own = separator.numbers(lines.line(), width + 1);
+            if own == first || own == next && compared == 0 {
+                return Ok(true);
+            }
+            height += 1;
+            compared += 1;
+        }
+    }
+    Ok(matches!(heights[..], [first, second] if first == second && first > 1))
+}
+
+/// Returns the number of names if they are those of cells only, counted from 0; pandas writes an empty name before
+/// them, above its index.
+pub(super) fn count_from_0(names: &[&str]) -> Option<usize> {
+    let names = names.strip_prefix(&[""]).unwrap_or(names);
+    let all = matches!(cells(names), Some(NamedCells::Counted(0, length)) if length == names.len());
+    (names.first() == Some(&"0") && all).then_some(names.len())
+}
+
+/// Returns true if a line with words is a frame like the next line, with a date or a label beside its cells: words
+/// and numbers are in the same fields. Otherwise it holds the names of the fields, such as `label,0,1,2,3` above
+/// `cup,7,5,9,3`: its numbers count up, from 0 or beside a word that is a usual name.
+pub(super) fn is_like_next(names: &[&str], separator: Separator, next: &[u8]) -> bool {
+    let next = separator.fields_of(next, names.len());
+    let next: Vec<&[u8]> = next.take(names.len() + 1).collect();
+    let is_word = |field: &[u8]| !separator.is_numeric(field);
+    let mut pairs = names.iter().zip(&next);
+    let same = pairs.all(|(own, next)| is_word(own.as_bytes()) == is_word(next));
+    if next.len() != names.len() || !same {
+        return false;
+    }
+    let words = || {
+        let pairs = names.iter().zip(&next);
+        pairs.filter(|(_, next)| is_word(next))
+    };
+    let repeats = words().all(|(own, next)| own.as_bytes() == *next);
+    let is_name = |name: &str| name.starts_with(char::is_alphabetic) && role(name).is_some();
+    let is_named = words().any(|(own, _)| is_name(own));
+    let numbers = names.len() - words().count();
+    let counts = matches!(
+        cells(names),
+        Some(NamedCells::Counted(start, length)) if length == numbers && (names[start] == "0" || is_named)
+    );
+    repeats || !counts
+}
+
+/// Returns true if at least half of the fields of a line are numbers.
+pub(super) fn is_mostly_numeric(separator: Separator, line: &[u8]) -> bool {
+    let (mut all, mut numeric) = (0, 0);
+    for field in separator.fields(line) {
+        all += 1;
+        numeric += usize::from(separator.is_numeric(field));
+    }
+    numeric > 0 && 2 * numeric >= all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_ramp_above(text: &str) -> bool {
+        let mut lines = TextLines::new(text.as_bytes());
+        let first = first_line(&mut lines).expect("a line");
+        is_ramp(&mut lines, Separator::of(&first), &first).expect("short lines")
+    }
+
+    #[test]
+    fn a_first_line_that_counts_up_may_hold_values() {
+        for ramp in [
+            "0,1,2\n3,4,5\n",
+            "0,1,2\n7,7,7\n0,1,2\n",
+            "0 1\n5 7\n\n3 3\n2 1\n\n",
+        ] {
+            assert!(is_ramp_above(ramp), "{ramp}");
+        }
+        for names in ["0,1,2\n7,5,9\n", "# a comment\n0,1,2\n7,5,9\n8,5,9\n"] {
+            assert!(!is_ramp_above(names), "{names}");
+        }
+        let empty = first_line(&mut TextLines::new(&b"\n# no line\n"[..]));
+        assert!(matches!(empty, Err(RecordingError::Unknown)));
+    }
+
+    #[test]
+    fn words_above_equal_words_are_values() {
+        let is_frame = |names: &[&str], next: &str| {
+            is_like_next(names, Separator::Byte(b','), next.as_bytes())
+        };
+        assert!(is_frame(&["cup", "7", "5", "9"], "cup,7,4,9"));
+        assert!(!is_frame(&["label", "0", "1", "2"], "cup,7,5,9"));
+        assert!(!is_frame(&["a", "b", "c"], "1,2,3"));
+        assert_eq!(count_from_0(&["", "0", "1", "2"]), Some(3));
+        assert_eq!(count_from_0(&["1", "2", "3"]), None);
+    }
+
+    #[test]
+    fn a_timestamp_may_stand_before_numbers() {
+        let row = moment_of_row(Separator::Spaces, b"12:00:00.25 0 11 8");
+        assert_eq!(row, Some((&b"12:00:00.25"[..], &b"0 11 8"[..])));
+        assert_eq!(moment_of_row(Separator::Spaces, b"12:00:00.25 a b"), None);
+        assert!(is_mostly_numeric(Separator::Spaces, b"a 1"));
+        assert!(!is_mostly_numeric(Separator::Spaces, b"a b 1"));
+    }
+}

@@ -1,0 +1,509 @@
+//! Finds how a table of numbers is arranged: which fields are cells, and what the other fields are.
+//!
+//! A header names the cells, see [`cell_names`](super::cell_names). Without a header, the rows and columns must be
+//! given, unless the table consists of blocks with one row per line; numbers beside the cells are then recognised by
+//! how they grow from line to line, see [`unnamed_fields`](super::unnamed_fields). A timestamp is the time of its
+//! frame, unless a column of numbers gives the time; other texts are ignored.
+
+use std::io::{BufRead, Seek};
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{ReadOptions, RecordingNote};
+use crate::formats::recording::side::side;
+use crate::formats::recording::table::cell_names::{NamedCells, cells};
+use crate::formats::recording::table::clock::TimeFields;
+use crate::formats::recording::table::header::{
+    COMPARED, count_from_0, first_line, is_like_next, is_mostly_numeric, is_ramp, moment_of_row,
+};
+use crate::formats::recording::table::unnamed_fields::unnamed_fields;
+use crate::formats::recording::text::lines::{TextLines, is_blank, text};
+use crate::formats::recording::text::row::{self, Field};
+use crate::formats::recording::text::separator::{Separator, is_comment, is_none};
+use crate::formats::recording::time::field_role::{
+    FieldRole, is_named_time, rest_of_second, role, roles, time_unit,
+};
+use crate::formats::recording::time::moment;
+use crate::frame::{FrameSize, MAX_FRAME_SIDE};
+use crate::parameter::number::{counted, grouped};
+
+/// The most cells of a frame.
+const MOST_CELLS: usize = MAX_FRAME_SIDE as usize * MAX_FRAME_SIDE as usize;
+
+/// The most fields beside the cells. A line with more is refused before its fields take memory.
+const MOST_BESIDE: usize = 16;
+
+/// The arrangement of a table.
+#[derive(Debug)]
+pub(super) struct TableLayout {
+    /// The separator between fields, in all lines.
+    pub(super) separator: Separator,
+    /// The size of a frame.
+    pub(super) size: FrameSize,
+    /// The content of a line.
+    pub(super) lines: LineLayout,
+    /// The assumption that was made, if any.
+    pub(super) note: Option<RecordingNote>,
+    /// The unit of the cells, if a line below their names gives it.
+    pub(super) unit: Option<String>,
+    /// The timestamp of the first frame as it is written, if lines have a timestamp.
+    pub(super) start: Option<String>,
+}
+
+/// The content of a line of a table.
+#[derive(Debug)]
+pub(super) enum LineLayout {
+    /// A frame.
+    Frame(FrameFields),
+    /// A row of a frame.
+    Row {
+        /// Whether an empty line ends a frame; if not, the next frame begins after the number of rows in a frame.
+        parted: bool,
+    },
+}
+
+/// The fields of a line that is a frame.
+#[derive(Debug)]
+pub(super) struct FrameFields {
+    /// The number of fields in a line.
+    pub(super) count: usize,
+    /// The last line of the header, if there is one.
+    pub(super) header: Option<u64>,
+    /// The field of each cell, row by row.
+    pub(super) cells: Vec<usize>,
+    /// The field with the frame's label.
+    pub(super) label: Option<usize>,
+    /// The fields with the time.
+    pub(super) time: Option<TimeFields>,
+}
+
+/// Finds the arrangement of a table from its first lines.
+///
+/// # Errors
+/// Returns [`RecordingError::Unknown`] if it is not a table, and [`RecordingError::Shape`] or
+/// [`RecordingError::Columns`] if rows and columns must be given.
+pub(super) fn layout(
+    input: &mut (impl BufRead + Seek),
+    options: ReadOptions,
+) -> Result<TableLayout, RecordingError> {
+    let mut lines = TextLines::new(&mut *input);
+    let first = first_line(&mut lines)?;
+    let separator = Separator::of(&first);
+    let number = lines.number();
+    if separator
+        .fields(&first)
+        .nth(MOST_CELLS + MOST_BESIDE)
+        .is_some()
+    {
+        let message = format!(
+            "more than {} fields, expected at most {MAX_FRAME_SIDE} × {MAX_FRAME_SIDE} cells and {MOST_BESIDE} beside them",
+            grouped((MOST_CELLS + MOST_BESIDE) as u64)
+        );
+        return Err(RecordingError::in_line(number, message));
+    }
+    let names: Vec<String> = separator.fields(&first).map(text).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let has_words = names
+        .iter()
+        .any(|name| !separator.is_numeric(name.as_bytes()));
+    // In ROS echo output, a line of small values can begin like this, too, after its offset.
+    let cells = options.size.map(FrameSize::cells);
+    let counted =
+        count_from_0(&names).filter(|counted| cells.is_none_or(|cells| cells == *counted));
+    let is_header = if has_words {
+        moment_of_row(separator, &first).is_none()
+    } else {
+        counted.is_some() && !is_ramp(&mut lines, separator, &first)?
+    };
+    // The test for a ramp has read beyond the first line.
+    if counted.is_some() {
+        input.rewind()?;
+        lines = TextLines::new(input);
+        first_line(&mut lines)?;
+    }
+    if !is_header {
+        return of_numbers(&mut lines, separator, (number, &[&first]), options);
+    }
+    let units = units_below(&mut lines, &names, separator)?;
+    // If words stand below words, it is not a table.
+    if !is_mostly_numeric(separator, lines.line()) {
+        return Err(RecordingError::Unknown);
+    }
+    if has_words && units.is_none() && is_like_next(&names, separator, lines.line()) {
+        let next = lines.line().to_owned();
+        return of_numbers(&mut lines, separator, (number, &[&first, &next]), options);
+    }
+    let header = TableHeader {
+        names: &names,
+        number,
+        units: units.as_ref(),
+    };
+    with_header(header, separator, lines.line(), options)
+}
+
+/// The header of a table: the lines above its values.
+#[derive(Clone, Copy)]
+struct TableHeader<'a> {
+    /// The names of the fields.
+    names: &'a [&'a str],
+    /// The line number of the names.
+    number: u64,
+    /// The line number of the units, and the unit of each field.
+    units: Option<&'a (u64, Vec<String>)>,
+}
+
+impl TableHeader<'_> {
+    /// Returns the unit of a field; None if it has none.
+    fn unit(&self, field: usize) -> Option<&str> {
+        let unit = self.units?.1.get(field)?;
+        let inner = unit.trim_matches(['[', ']', '(', ')']).trim();
+        // A dash means that there is no unit, as do the words for a missing value.
+        let is_none = inner == "-" || is_none(inner.as_bytes());
+        (!is_none).then_some(inner)
+    }
+
+    /// Returns the unit of these fields; None if they do not all have the same.
+    fn unit_of_all(&self, fields: &[usize]) -> Option<&str> {
+        let units = fields.iter().map(|&field| self.unit(field));
+        let same = units.reduce(|one, other| one.filter(|_| one == other));
+        same.flatten()
+    }
+
+    /// Returns the first of these fields that is a time, together with its other field if the time is split into two.
+    fn time<'r>(
+        &self,
+        fields: impl Iterator<Item = (usize, &'r Option<FieldRole>)>,
+    ) -> Option<TimeFields> {
+        let times = fields.filter_map(|(field, role)| match role {
+            Some(FieldRole::Time(unit)) => {
+                let below = || self.unit(field).and_then(time_unit);
+                Some(TimeFields {
+                    field,
+                    unit: unit.or_else(below),
+                    rest: rest_of_second(self.names, field),
+                })
+            }
+            _ => None,
+        });
+        // More fields than these are hardly times, and each is compared with all names.
+        let times: Vec<TimeFields> = times.take(MOST_BESIDE).collect();
+        // A field that has only the unit of a time may be a duration, such as `latency_ms`.
+        let is_named = |time: &&TimeFields| is_named_time(self.names[time.field]);
+        let first = times.iter().find(is_named).or(times.first())?;
+        let has_first = |time: &&TimeFields| time.rest.is_some_and(|(rest, _)| rest == first.field);
+        Some(*times.iter().find(has_first).unwrap_or(first))
+    }
+}
+
+/// Reads up to the first line of values below the names of cells. If the line between them holds words, one field for
+/// each name, they are units: returns the line's number and its fields.
+fn units_below(
+    lines: &mut TextLines<impl BufRead>,
+    names: &[&str],
+    separator: Separator,
+) -> Result<Option<(u64, Vec<String>)>, RecordingError> {
+    while lines.advance_to_content()? && is_comment(lines.line()) {}
+    let fields = separator.fields_of(lines.line(), names.len());
+    let fields: Vec<String> = fields.take(names.len() + 1).map(text).collect();
+    // A line of values may contain a timestamp or a label of letters, and all its values may be missing.
+    let is_value = |field: &String| {
+        matches!(separator.value(field.as_bytes()), Field::Value(_))
+            || moment::read(field.as_bytes()).is_some()
+    };
+    let is_word = |(field, name): (&String, &&str)| {
+        !separator.is_numeric(field.as_bytes()) && role(name) != Some(FieldRole::Label)
+    };
+    let are_units = fields.iter().zip(names).any(is_word) && !fields.iter().any(is_value);
+    if fields.len() != names.len() || !are_units || cells(names).is_none() {
+        return Ok(None);
+    }
+    let units = (lines.number(), fields);
+    while lines.advance_to_content()? && is_comment(lines.line()) {}
+    Ok(Some(units))
+}
+
+/// Finds the arrangement of a table without names. Its first lines are in `read`, which begins in line `number` of
+/// the file.
+///
+/// A line is a row if it has as many fields as a frame has columns; or, if no shape is given, if an empty line ends
+/// the first block. Otherwise, or if it contains texts, it is a frame.
+fn of_numbers(
+    lines: &mut TextLines<impl BufRead>,
+    separator: Separator,
+    (number, read): (u64, &[&[u8]]),
+    options: ReadOptions,
+) -> Result<TableLayout, RecordingError> {
+    let fields: Vec<&[u8]> = separator.fields(read[0]).collect();
+    let numeric = (0..fields.len()).filter(|&field| separator.is_numeric(fields[field]));
+    let numeric: Vec<usize> = numeric.collect();
+    let numbers = |line: &[u8]| -> Vec<f64> {
+        let all = separator.numbers(line, fields.len());
+        let of_field = |&field: &usize| all.get(field).copied().unwrap_or(f64::NAN);
+        numeric.iter().map(of_field).collect()
+    };
+    let values = numeric.len();
+    let moment = moment_of_row(separator, read[0]);
+    let width = match moment {
+        Some((_, row)) => side(separator.fields(row).count()),
+        None => side(values).filter(|_| values == fields.len()),
+    };
+    let enough = lines_needed(options.size, width, values);
+    let mut compared: Vec<Vec<f64>> = read.iter().map(|line| numbers(line)).collect();
+    let (block, parted) = first_block(lines, (read.len(), enough), |line| {
+        compared.push(numbers(line));
+    })?;
+    let own = width.filter(|_| parted && block > 1);
+    let own = FrameSize::of_sides(own, Some(block));
+    let (size, lines) = match (options.size, own) {
+        (Some(size), _) if width == Some(size.columns()) && size.rows() > 1 => {
+            (size, LineLayout::Row { parted })
+        }
+        (Some(size), _) => {
+            // Numbers before a timestamp are not cells.
+            let moment = (0..fields.len()).find(|&field| moment::read(fields[field]).is_some());
+            let before = |&&field: &&usize| moment.is_some_and(|moment| field < moment);
+            let before = numeric.iter().filter(before).count();
+            let found = FrameFields::unnamed(size, number, (&compared, before))?;
+            let found = found.among(&numeric, &fields, number)?;
+            let found = found.with_moment(separator, &fields);
+            (size, LineLayout::Frame(found))
+        }
+        (None, Some(own)) => (own, LineLayout::Row { parted }),
+        (None, None) => {
+            let numbers = values as u64;
+            return Err(RecordingError::Columns { numbers });
+        }
+    };
+    let start = match lines {
+        LineLayout::Row { .. } => moment.map(|(moment, _)| text(moment)),
+        LineLayout::Frame(_) => lines.start(&fields),
+    };
+    Ok(TableLayout {
+        separator,
+        size,
+        start,
+        lines,
+        note: None,
+        unit: None,
+    })
+}
+
+/// Continues the first block, of which `read` lines have been read, until there are enough lines or an empty line
+/// ends it. Passes the first lines to `take`, for comparison. Returns the number of lines, and whether an empty line
+/// ended the block.
+fn first_block(
+    lines: &mut TextLines<impl BufRead>,
+    (read, enough): (usize, u16),
+    mut take: impl FnMut(&[u8]),
+) -> Result<(u16, bool), RecordingError> {
+    let mut block = if read > 1 { 2_u16 } else { 1 };
+    while block < enough && lines.advance()? {
+        if is_blank(lines.line()) {
+            return Ok((block, true));
+        }
+        if is_comment(lines.line()) {
+            continue;
+        }
+        if block < COMPARED {
+            take(lines.line());
+        }
+        block += 1;
+    }
+    Ok((block, false))
+}
+
+/// Returns the number of lines that are needed to decide how a table without names is arranged. `size` is the size of
+/// a frame, `width` the width of a row, `values` the number of values in the first line. A growing file is read no
+/// further than these lines.
+fn lines_needed(size: Option<FrameSize>, width: Option<u16>, values: usize) -> u16 {
+    match size {
+        Some(size) if width == Some(size.columns()) && size.rows() > 1 => size.rows() + 1,
+        Some(size) => match values.checked_sub(size.cells()) {
+            Some(1 | 2) => COMPARED,
+            _ => 2,
+        },
+        None => MAX_FRAME_SIDE + 1,
+    }
+}
+
+impl LineLayout {
+    /// Returns the timestamp in the fields of the first frame, as it is written.
+    fn start(&self, fields: &[&[u8]]) -> Option<String> {
+        let Self::Frame(FrameFields { time, .. }) = self else {
+            return None;
+        };
+        let field = *fields.get((*time)?.field)?;
+        let is_start = moment::read(field).is_some() && !moment::is_duration(field);
+        is_start.then(|| text(field))
+    }
+}
+
+impl FrameFields {
+    /// Finds the fields of lines of numbers without names, the first of them in line `number`. The first `before`
+    /// numbers of a line are not cells if other numbers follow.
+    ///
+    /// # Errors
+    /// Returns an error if the lines do not show which fields are cells.
+    fn unnamed(
+        size: FrameSize,
+        number: u64,
+        (lines, before): (&[Vec<f64>], usize),
+    ) -> Result<Self, RecordingError> {
+        let cells = size.cells();
+        let found = unnamed_fields((cells, before), number, lines)?;
+        Ok(Self {
+            count: lines[0].len(),
+            header: None,
+            cells: (found.start..found.start + cells).collect(),
+            label: found.label,
+            time: found.time,
+        })
+    }
+
+    /// Adds a timestamp beside the cells as the time, unless a number gives the time; `fields` are those of the first
+    /// line.
+    fn with_moment(mut self, separator: Separator, fields: &[&[u8]]) -> Self {
+        let is_moment =
+            |&field: &usize| fields.get(field).copied().and_then(moment::read).is_some();
+        let is_time = |field: usize| {
+            let own = fields.get(field);
+            own.is_some_and(|own| separator.is_numeric(own)) || is_moment(&field)
+        };
+        // A column with the name of a time may hold anything, such as a date without a time of day.
+        if !self.time.is_some_and(|time| is_time(time.field)) {
+            let moment = (0..fields.len()).find(is_moment);
+            // An index of timestamps, which pandas writes without a name, is not a label.
+            self.label = self.label.filter(|&label| moment != Some(label));
+            let moment = moment.map(|field| TimeFields::new(field, None));
+            self.time = moment.or(self.time);
+        }
+        self
+    }
+
+    /// Converts fields that were found among numbers alone to those of lines that also contain texts: `fields` are
+    /// those of line `number`, and `numeric` are the indices of the numbers among them.
+    ///
+    /// # Errors
+    /// Returns an error if there is a text between two cells: it belongs neither to them nor beside them.
+    fn among(
+        self,
+        numeric: &[usize],
+        fields: &[&[u8]],
+        number: u64,
+    ) -> Result<Self, RecordingError> {
+        let cells: Vec<usize> = self.cells.iter().map(|&cell| numeric[cell]).collect();
+        if let Some(pair) = cells.windows(2).find(|pair| pair[1] - pair[0] > 1) {
+            let text = pair[0] + 1;
+            return Err(row::wrong(number, text + 1, fields[text]));
+        }
+        Ok(Self {
+            count: fields.len(),
+            header: self.header,
+            cells,
+            label: self.label.map(|label| numeric[label]),
+            time: self.time.map(|time| TimeFields {
+                field: numeric[time.field],
+                ..time
+            }),
+        })
+    }
+}
+
+/// Finds the arrangement that a header describes; `first` is the first line of values.
+///
+/// # Errors
+/// Returns an error if the names are those of another number of rows and columns than the given one.
+fn with_header(
+    header: TableHeader<'_>,
+    separator: Separator,
+    first: &[u8],
+    options: ReadOptions,
+) -> Result<TableLayout, RecordingError> {
+    let TableHeader { names, number, .. } = header;
+    let roles = roles(names);
+    let (size, cells, note) = named_cells(names, &roles, number, options)?;
+    let expected = size.cells();
+    if cells.len() != expected {
+        return Err(row::count(number, cells.len(), expected));
+    }
+    // A line may have a quarter of a million names, so cells are looked up by index.
+    let mut is_cell = vec![false; names.len()];
+    for &cell in &cells {
+        is_cell[cell] = true;
+    }
+    let others = || {
+        let roles = roles.iter().enumerate();
+        roles.filter(|&(field, _)| !is_cell[field])
+    };
+    let label = others().find(|(_, role)| **role == Some(FieldRole::Label));
+    let time = header.time(others());
+    let fields = separator.fields_of(first, names.len());
+    let fields: Vec<&[u8]> = fields.take(names.len()).collect();
+    let found = FrameFields {
+        count: names.len(),
+        header: Some(header.units.map_or(number, |(number, _)| *number)),
+        label: label.map(|(field, _)| field),
+        time,
+        cells,
+    };
+    let unit = header.unit_of_all(&found.cells).map(str::to_owned);
+    let lines = LineLayout::Frame(found.with_moment(separator, &fields));
+    Ok(TableLayout {
+        separator,
+        size,
+        note,
+        unit,
+        start: lines.start(&fields),
+        lines,
+    })
+}
+
+/// The size of a frame, the field of each cell, and a note if something was assumed.
+type CellFields = (FrameSize, Vec<usize>, Option<RecordingNote>);
+
+/// Returns the cells that names describe.
+///
+/// - Names with rows and columns say everything. Given rows and columns must be the same.
+/// - Names that only count are arranged in the given rows and columns, otherwise in a square, which is noted.
+/// - With other names, all fields are cells except those at the beginning and the end that have a known role.
+fn named_cells(
+    names: &[&str],
+    roles: &[Option<FieldRole>],
+    number: u64,
+    options: ReadOptions,
+) -> Result<CellFields, RecordingError> {
+    match cells(names) {
+        Some(NamedCells::Grid(size, fields)) => match options.size {
+            Some(asked) if asked != size => {
+                let (rows, columns) = (asked.rows(), asked.columns());
+                let named = size.in_words();
+                let message = format!("the header names {named} cells, not {rows} of {columns}");
+                Err(RecordingError::in_line(number, message))
+            }
+            _ => Ok((size, fields, None)),
+        },
+        Some(NamedCells::Counted(start, length)) => {
+            let fields = (start..start + length).collect();
+            if let Some(size) = options.size {
+                return Ok((size, fields, None));
+            }
+            let side = (1..=MAX_FRAME_SIDE).find(|side| usize::from(*side).pow(2) == length);
+            let values = length as u64;
+            let size = FrameSize::of_sides(side, side).ok_or(RecordingError::Shape { values })?;
+            let side = size.rows();
+            Ok((size, fields, Some(RecordingNote::Square { side })))
+        }
+        Some(NamedCells::Incomplete(size, found)) => {
+            let found = counted(found as u64, "cell");
+            let message = format!("the header names {found} of {}", size.in_words());
+            Err(RecordingError::in_line(number, message))
+        }
+        None => {
+            let leading = roles.iter().take_while(|role| role.is_some()).count();
+            let trailing = roles.iter().rev().take_while(|role| role.is_some()).count();
+            let end = names.len().saturating_sub(trailing).max(leading);
+            let values = (end - leading) as u64;
+            let size = options.size.ok_or(RecordingError::Shape { values })?;
+            Ok((size, (leading..end).collect(), None))
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! Reads tables of numbers, with or without a header.
+//!
+//! ```text
+//! clock            the times of a table
+//! cell_names       a header's names of cells
+//! unnamed_fields   the fields beside the cells, without a header
+//! header           whether the first line is a header
+//! layout           what each field is, from the lines above
+//! delimited        the frames
+//! ```
+
+mod clock;
+
+mod cell_names;
+
+mod unnamed_fields;
+
+mod header;
+
+mod layout;
+
+pub(super) mod delimited;

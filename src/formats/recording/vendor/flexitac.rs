@@ -1,0 +1,72 @@
+//! The bytes of a `FlexiTac` board in a file: `AA 55`, then a byte per cell.
+//!
+//! The bytes are the same as from the board itself, so the decoder of streams reads them. The file does not give rows
+//! and columns; if the caller does not either, the error says how many cells the first frame has. Torn frames are
+//! dropped and counted in a note, as no checksum could show what is wrong with them.
+
+use std::cell::Cell;
+use std::io::{ErrorKind, Read};
+use std::ops::ControlFlow;
+
+use crate::formats::recording::error::RecordingError;
+use crate::formats::recording::event::{
+    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
+};
+use crate::formats::stream::{StreamDecoder, StreamEvent, StreamFormat, StreamOptions};
+
+/// The most bytes read at a time.
+const CHUNK: usize = 1 << 16;
+
+/// Reads a recording.
+///
+/// # Errors
+/// Returns [`RecordingError::Shape`] if rows and columns are not given.
+pub(in crate::formats::recording) fn read(
+    input: &mut impl Read,
+    options: ReadOptions,
+    sink: &mut Sink<'_>,
+) -> Result<(), RecordingError> {
+    let Some(size) = options.size else {
+        let mut start = Vec::new();
+        input.take(CHUNK as u64).read_to_end(&mut start)?;
+        let marker = |at: &usize| start.get(*at..at + 2) == Some(&[0xaa, 0x55]);
+        let next = (3..start.len()).find(marker).unwrap_or(start.len());
+        let values = next.saturating_sub(2) as u64;
+        return Err(RecordingError::Shape { values });
+    };
+    let info = ChannelInfo {
+        size: options.size,
+        ..ChannelInfo::default()
+    };
+    if sink(RecordingEvent::Channel(&info)).is_break() {
+        return Ok(());
+    }
+    let stream = StreamOptions::default()
+        .with_format(StreamFormat::Flexitac)
+        .with_size(size)
+        .from_start();
+    let mut decoder = StreamDecoder::new(stream);
+    let state = Cell::new(ControlFlow::Continue(()));
+    let mut give = |event: StreamEvent<'_>| {
+        if let (StreamEvent::Frame(frame), ControlFlow::Continue(())) = (event, state.get()) {
+            state.set(sink(RecordingEvent::Frame(frame)));
+        }
+    };
+    let mut bytes = vec![0; CHUNK];
+    while state.get().is_continue() {
+        // Read only the bytes that are there: a full read would wait for the end of a growing file.
+        let length = match input.read(&mut bytes) {
+            Ok(0) => break,
+            Ok(length) => length,
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            Err(error) => return Err(error.into()),
+        };
+        decoder.push(&bytes[..length], &mut give);
+    }
+    decoder.finish(&mut give);
+    let frames = decoder.counts().dropped;
+    if state.get().is_continue() && frames > 0 {
+        let _ = sink(RecordingEvent::Note(&RecordingNote::Garbled { frames }));
+    }
+    Ok(())
+}

@@ -1,0 +1,11 @@
+//! Reads the files of the makers of sensors, a format in each file.
+
+pub(super) mod tekscan;
+
+pub(super) mod xsensor;
+
+pub(super) mod emed;
+
+pub(super) mod zebris;
+
+pub(super) mod flexitac;
