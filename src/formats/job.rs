@@ -1,13 +1,13 @@
 //! One line of `taxel batch`: a figure, a picture or a whole matrix, perhaps with a sensor of its own; or the values
 //! of a real sensor with a threshold.
 
-use std::fmt;
-
-use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use serde::de::{Deserialize, Deserializer, MapAccess};
 
 use crate::formats::framed::{FrameRows, RULE_KEYS, RuleRecord};
 use crate::formats::json::message;
-use crate::formats::record::{KnownKeys, Record, RecordError, Text, once, value_of};
+use crate::formats::record::{
+    KeyedObject, KnownKeys, Record, RecordError, keyed_object, once, value_of,
+};
 use crate::imprint::Imprint;
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -170,28 +170,20 @@ impl JobLine<'_> {
 
 impl<'de: 'a, 'a> Deserialize<'de> for JobLine<'a> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct JobVisitor;
-        impl<'de> Visitor<'de> for JobVisitor {
-            type Value = JobLine<'de>;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("an object with a figure, a picture, an imprint or a frame")
-            }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-                let mut line = JobLine::default();
-                while let Some(Text(key)) = map.next_key()? {
-                    if let Some(key) = RULE_KEYS.into_iter().find(|own| *own == key) {
-                        line.take_rule(key, &mut map)?;
-                        continue;
-                    }
-                    if key == "frame" {
-                        once("frame", &mut line.frame, value_of("frame", &mut map)?)?;
-                        continue;
-                    }
-                    line.record.take(&key, &mut map, &JOB_KEYS)?;
-                }
-                Ok(line)
-            }
+        keyed_object::<JobLine<'de>, D>(deserializer)
+    }
+}
+
+impl<'de> KeyedObject<'de> for JobLine<'de> {
+    const EXPECTED: &'static str = "an object with a figure, a picture, an imprint or a frame";
+
+    fn take_key<A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error> {
+        if let Some(key) = RULE_KEYS.into_iter().find(|own| *own == key) {
+            return self.take_rule(key, map);
         }
-        deserializer.deserialize_map(JobVisitor)
+        match key {
+            "frame" => once("frame", &mut self.frame, value_of("frame", map)?),
+            _ => self.record.take(key, map, &JOB_KEYS),
+        }
     }
 }

@@ -9,13 +9,14 @@
 //! ```
 
 use std::borrow::Cow;
-use std::fmt;
 
-use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use serde::de::{Deserialize, Deserializer, MapAccess};
 
 use crate::figure::FigureKind;
 use crate::formats::json::message;
-use crate::formats::record::{ImprintOrName, KnownKeys, Record, RecordError, Text, once, value_of};
+use crate::formats::record::{
+    ImprintOrName, KeyedObject, KnownKeys, Record, RecordError, keyed_object, once, value_of,
+};
 use crate::imprint::Imprint;
 use crate::parameter::{PARAMETERS, Parameter, number};
 use crate::picture::Picture;
@@ -219,26 +220,18 @@ const LINE_KEYS: KnownKeys = KnownKeys {
 
 impl<'de: 'a, 'a> Deserialize<'de> for Line<'a> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct LineVisitor;
-        impl<'de> Visitor<'de> for LineVisitor {
-            type Value = Line<'de>;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("an object with a name and a figure, a picture or an imprint")
-            }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-                let mut line = Line::default();
-                while let Some(Text(key)) = map.next_key()? {
-                    match key.as_ref() {
-                        "name" => once("name", &mut line.name, value_of("name", &mut map)?)?,
-                        "weight" => {
-                            once("weight", &mut line.weight, value_of("weight", &mut map)?)?;
-                        }
-                        _ => line.record.take(&key, &mut map, &LINE_KEYS)?,
-                    }
-                }
-                Ok(line)
-            }
+        keyed_object::<Line<'de>, D>(deserializer)
+    }
+}
+
+impl<'de> KeyedObject<'de> for Line<'de> {
+    const EXPECTED: &'static str = "an object with a name and a figure, a picture or an imprint";
+
+    fn take_key<A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error> {
+        match key {
+            "name" => once("name", &mut self.name, value_of("name", map)?),
+            "weight" => once("weight", &mut self.weight, value_of("weight", map)?),
+            _ => self.record.take(key, map, &LINE_KEYS),
         }
-        deserializer.deserialize_map(LineVisitor)
     }
 }

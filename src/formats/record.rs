@@ -4,6 +4,7 @@
 
 use std::borrow::Cow;
 use std::fmt;
+use std::marker::PhantomData;
 
 use serde::de::{Deserialize, DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -234,27 +235,50 @@ impl Record<'_> {
     }
 }
 
+/// A JSON object that is read key by key.
+pub(crate) trait KeyedObject<'de>: Default {
+    /// The kind of object, with its article, for the message about anything else.
+    const EXPECTED: &'static str;
+
+    /// Reads the value of a key.
+    ///
+    /// # Errors
+    /// Returns an error if the key is unknown or was given before, or if its value is wrong.
+    fn take_key<A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error>;
+}
+
+/// Reads an object key by key.
+pub(crate) fn keyed_object<'de, T: KeyedObject<'de>, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<T, D::Error> {
+    struct ObjectVisitor<T>(PhantomData<T>);
+    impl<'de, T: KeyedObject<'de>> Visitor<'de> for ObjectVisitor<T> {
+        type Value = T;
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str(T::EXPECTED)
+        }
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<T, A::Error> {
+            let mut object = T::default();
+            while let Some(Text(key)) = map.next_key()? {
+                object.take_key(&key, &mut map)?;
+            }
+            Ok(object)
+        }
+    }
+    deserializer.deserialize_map(ObjectVisitor(PhantomData))
+}
+
 impl<'de: 'a, 'a> Deserialize<'de> for Record<'a> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(RecordVisitor)
+        keyed_object::<Record<'de>, D>(deserializer)
     }
 }
 
-struct RecordVisitor;
+impl<'de> KeyedObject<'de> for Record<'de> {
+    const EXPECTED: &'static str = "an object with a figure, a picture or an imprint";
 
-impl<'de> Visitor<'de> for RecordVisitor {
-    type Value = Record<'de>;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("an object with a figure, a picture or an imprint")
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-        let mut record = Record::default();
-        while let Some(Text(key)) = map.next_key()? {
-            record.take(&key, &mut map, &RECORD_KEYS)?;
-        }
-        Ok(record)
+    fn take_key<A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error> {
+        self.take(key, map, &RECORD_KEYS)
     }
 }
 
@@ -376,21 +400,15 @@ impl Values {
 
 impl<'de> Deserialize<'de> for Values {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct ValuesVisitor;
-        impl<'de> Visitor<'de> for ValuesVisitor {
-            type Value = Values;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("an object of parameters")
-            }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-                let mut values = Values::default();
-                while let Some(Text(key)) = map.next_key()? {
-                    values.take(&key, &mut map, &SENSOR_KEYS)?;
-                }
-                Ok(values)
-            }
-        }
-        deserializer.deserialize_map(ValuesVisitor)
+        keyed_object(deserializer)
+    }
+}
+
+impl<'de> KeyedObject<'de> for Values {
+    const EXPECTED: &'static str = "an object of parameters";
+
+    fn take_key<A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error> {
+        self.take(key, map, &SENSOR_KEYS)
     }
 }
 

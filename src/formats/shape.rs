@@ -7,7 +7,9 @@ use std::fmt;
 use crate::formats::described::Rows;
 use crate::formats::json::{self, message};
 use crate::formats::name::Name;
-use crate::formats::record::{ImprintRecord, Record, RecordError, Values, value_of};
+use crate::formats::record::{
+    ImprintRecord, KeyedObject, Record, RecordError, Values, keyed_object, value_of,
+};
 use crate::imprint::Imprint;
 use crate::quote::shortened;
 use crate::sensor::{MatrixSize, Sensor};
@@ -196,48 +198,72 @@ struct ShapeFile<'a> {
 
 impl<'de: 'a, 'a> Deserialize<'de> for ShapeFile<'a> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct ShapeVisitor;
-        impl<'de> Visitor<'de> for ShapeVisitor {
-            type Value = ShapeFile<'de>;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a stored shape")
+        keyed_object::<ShapeFile<'de>, D>(deserializer)
+    }
+}
+
+impl<'de> KeyedObject<'de> for ShapeFile<'de> {
+    const EXPECTED: &'static str = "a stored shape";
+
+    fn take_key<A: MapAccess<'de>>(&mut self, key: &str, map: &mut A) -> Result<(), A::Error> {
+        let is_given = match key {
+            "format" => self.format,
+            "name" => self.name.is_some(),
+            "sensor" => self.sensor.is_some(),
+            "imprint" => self.imprint.is_some(),
+            "source" => self.source.is_some(),
+            _ => {
+                let keys = &["format", "name", "sensor", "imprint", "source"];
+                return Err(A::Error::unknown_field(&shortened(key), keys));
             }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-                let mut file = ShapeFile::default();
-                let mut seen: Vec<String> = Vec::new();
-                while let Some(key) = map.next_key::<String>()? {
-                    if seen.contains(&key) {
-                        return Err(A::Error::custom(format_args!(
-                            "key {:?} is given twice",
-                            shortened(&key)
-                        )));
-                    }
-                    match key.as_str() {
-                        "format" => {
-                            let format: String = map.next_value()?;
-                            if format != FORMAT {
-                                // Another format has other keys, so its name is reported before its keys are refused.
-                                return Err(A::Error::custom(format_args!(
-                                    "format: {:?} is not known here, expected {FORMAT:?}",
-                                    shortened(&format)
-                                )));
-                            }
-                            file.format = true;
-                        }
-                        "name" => file.name = Some(value_of("name", &mut map)?),
-                        "sensor" => file.sensor = Some(value_of("sensor", &mut map)?),
-                        "imprint" => file.imprint = Some(value_of("imprint", &mut map)?),
-                        "source" => file.source = Some(value_of("source", &mut map)?),
-                        _ => {
-                            let keys = &["format", "name", "sensor", "imprint", "source"];
-                            return Err(A::Error::unknown_field(&shortened(&key), keys));
-                        }
-                    }
-                    seen.push(key);
-                }
-                Ok(file)
-            }
+        };
+        if is_given {
+            return Err(A::Error::custom(format_args!("key {key:?} is given twice")));
         }
-        deserializer.deserialize_map(ShapeVisitor)
+        match key {
+            "format" => {
+                let format: String = map.next_value()?;
+                if format != FORMAT {
+                    // Another format has other keys, so its name is reported before its keys are refused.
+                    return Err(A::Error::custom(format_args!(
+                        "format: {:?} is not known here, expected {FORMAT:?}",
+                        shortened(&format)
+                    )));
+                }
+                self.format = true;
+            }
+            "name" => self.name = Some(value_of("name", map)?),
+            "sensor" => self.sensor = Some(value_of("sensor", map)?),
+            "imprint" => self.imprint = Some(value_of("imprint", map)?),
+            _ => self.source = Some(value_of("source", map)?),
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_given_twice_is_refused() {
+        let keys = [
+            "\"format\":\"taxel-shape/1\"",
+            "\"name\":\"cup\"",
+            "\"sensor\":{}",
+            "\"imprint\":[\"#\"]",
+            "\"source\":{\"picture\":[\"#\"]}",
+        ];
+        for key in keys {
+            let text = format!("{{{key},{key}}}");
+            let error = StoredShape::read(text.as_bytes()).expect_err("twice");
+            let name = key.split(':').next().expect("a name");
+            assert!(
+                error
+                    .to_string()
+                    .ends_with(&format!("key {name} is given twice")),
+                "{error}"
+            );
+        }
     }
 }
