@@ -38,9 +38,7 @@ use crate::cli::output::heat_map::heat_map;
 use crate::cli::output::recording_list::{self, ListedChannel};
 use crate::cli::output::report;
 use crate::cli::settings::pitch::Pitch;
-use crate::formats::recording::{
-    ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent,
-};
+use crate::formats::recording::{ChannelInfo, FrameAnswer, ReadOptions, RecordingError};
 use crate::formats::value::counted;
 use crate::formats::{StoredShape, json};
 use crate::frame::{FlipReport, Frame, Processed, Processing, Rule, SetRule, Tare};
@@ -278,14 +276,13 @@ impl Selection {
         Ok((selection, processing))
     }
 
-    /// Returns true if this frame is to be answered.
+    /// Returns true if this frame of the channel is to be answered.
     fn has(&self, frame: &Frame) -> bool {
-        frame.channel == self.channel
-            && match self.choice {
-                FrameChoice::All | FrameChoice::NoiseReport => true,
-                FrameChoice::Label(label) => frame.label == Some(label),
-                FrameChoice::Number(_) | FrameChoice::Peak => Some(frame.number) == self.number,
-            }
+        match self.choice {
+            FrameChoice::All | FrameChoice::NoiseReport => true,
+            FrameChoice::Label(label) => frame.label == Some(label),
+            FrameChoice::Number(_) | FrameChoice::Peak => Some(frame.number) == self.number,
+        }
     }
 
     /// Refuses a label that several frames have: it is not clear which of them is meant.
@@ -294,18 +291,13 @@ impl Selection {
     /// Returns [`CliError::Frames`] with the numbers of the first two.
     fn check_label(&self, recording: &mut RecordingFile, label: i64) -> Result<(), CliError> {
         let mut numbers = Vec::new();
-        recording.read_again(&mut |event| {
-            if let RecordingEvent::Frame(frame) = event
-                && self.has(frame)
-            {
-                numbers.push(frame.number);
-            }
-            if numbers.len() < 2 {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
-        })?;
+        recording.frames_again(self.channel, |frame| {
+            numbers.extend(self.has(frame).then_some(frame.number));
+            Ok::<_, CliError>(match numbers.len() {
+                0 | 1 => ControlFlow::Continue(()),
+                _ => ControlFlow::Break(()),
+            })
+        })??;
         match numbers[..] {
             [first, second] => Err(recording.refused(&format!(
                 "frames {first} and {second} are both labelled {label}; choose one with --frame"
@@ -331,31 +323,23 @@ impl Selection {
         {
             self.check_label(recording, label)?;
         }
-        let (mut answered, mut failure) = (false, None);
+        let mut answered = false;
         let name = recording.name().to_owned();
-        // A damage was found before, and is reported afterwards.
-        let read = recording.read_again(&mut |event| {
-            let RecordingEvent::Frame(frame) = event else {
-                return ControlFlow::Continue(());
-            };
+        recording.frames_again(self.channel, |frame| {
             if !self.has(frame) {
-                return ControlFlow::Continue(());
+                return Ok::<_, CliError>(ControlFlow::Continue(()));
             }
-            let result = match processing.run(frame) {
-                Ok(processed) => self.give(&name, frame, &processed, listed, answered, output),
-                Err(error) => Err(CliError::Frames {
-                    name: name.clone(),
-                    message: error.to_string(),
-                }),
-            };
+            let processed = processing.run(frame).map_err(|error| CliError::Frames {
+                name: name.clone(),
+                message: error.to_string(),
+            })?;
+            self.give(&name, frame, &processed, listed, answered, output)?;
             answered = true;
-            failure = result.err();
-            if failure.is_some() || self.number.is_some() {
-                return ControlFlow::Break(());
-            }
-            ControlFlow::Continue(())
-        });
-        failure.map_or(read, Err)?;
+            Ok(match self.number {
+                Some(_) => ControlFlow::Break(()),
+                None => ControlFlow::Continue(()),
+            })
+        })??;
         Ok(answered)
     }
 

@@ -7,9 +7,8 @@ use serde::Serialize;
 use crate::cli::error::CliError;
 use crate::cli::input::recording::RecordingFile;
 use crate::formats::json;
-use crate::formats::recording::RecordingEvent;
 use crate::formats::value::{counted, grouped};
-use crate::frame::{FlipCounter, FlipReport, Processing};
+use crate::frame::{FlipCounter, FlipReport, FrameError, Processing};
 use crate::imprint::Imprint;
 
 /// The report as a JSON object, with its keys in the order of the documentation.
@@ -38,42 +37,24 @@ pub(crate) fn gather(
     processing: &mut Processing,
 ) -> Result<Option<FlipReport>, CliError> {
     let mut counter: Option<FlipCounter> = None;
-    let mut failure = None;
-    // A damage was found before, and is reported afterwards.
-    let read = recording.read_again(&mut |event| {
-        let RecordingEvent::Frame(frame) = event else {
-            return ControlFlow::Continue(());
-        };
-        if frame.channel != channel {
-            return ControlFlow::Continue(());
-        }
-        match processing.run(frame) {
-            Ok(processed) => {
-                let counter = counter.get_or_insert_with(|| {
-                    let values = processed.raw;
-                    let mut cells = Imprint::empty(values.size());
-                    for row in 0..values.rows() {
-                        for (column, value) in (0..values.columns()).zip(values.row(row)) {
-                            cells.set(column, row, !value.is_nan());
-                        }
-                    }
-                    FlipCounter::new(cells)
-                });
-                if let Some(imprint) = &processed.imprint {
-                    counter.add(imprint);
+    let counted = recording.frames_again(channel, |frame| {
+        let processed = processing.run(frame)?;
+        let counter = counter.get_or_insert_with(|| {
+            let values = processed.raw;
+            let mut cells = Imprint::empty(values.size());
+            for row in 0..values.rows() {
+                for (column, value) in (0..values.columns()).zip(values.row(row)) {
+                    cells.set(column, row, !value.is_nan());
                 }
-                ControlFlow::Continue(())
             }
-            Err(error) => {
-                failure = Some(error);
-                ControlFlow::Break(())
-            }
+            FlipCounter::new(cells)
+        });
+        if let Some(imprint) = &processed.imprint {
+            counter.add(imprint);
         }
-    });
-    if let Some(error) = failure {
-        return Err(recording.refused(&error));
-    }
-    read?;
+        Ok::<_, FrameError>(ControlFlow::Continue(()))
+    })?;
+    counted.map_err(|error| recording.refused(&error))?;
     Ok(counter.map(|counter| counter.finish()))
 }
 

@@ -7,7 +7,7 @@ use crate::cli::error::CliError;
 use crate::cli::input::recording::{RecordingFile, dead_cells};
 use crate::cli::output::recording_list::ListedChannel;
 use crate::formats::recording::{ChannelInfo, ReadOptions, RecordingError, RecordingEvent};
-use crate::frame::{Peak, Processing, SetRule, TareFrames, View};
+use crate::frame::{FrameError, Peak, Processing, SetRule, TareFrames, View};
 use crate::matrix::Matrix;
 use crate::sensor::MatrixSize;
 
@@ -127,25 +127,17 @@ pub(crate) fn tare(
 ) -> Result<(), CliError> {
     let mut frames = TareFrames::new(wanted);
     let mut seen = Matrix::default();
-    let mut failure = None;
-    let view = processing.view.clone();
+    let view = &processing.view;
     // Damage after the tare's frames does not matter here.
-    let read = recording.read_again(&mut |event| {
-        if let RecordingEvent::Frame(frame) = event
-            && frame.channel == channel
-        {
-            let added = view.of(frame, &mut seen).and_then(|()| frames.add(&seen));
-            failure = added.err();
-            if failure.is_some() || frames.missing() == 0 {
-                return ControlFlow::Break(());
-            }
-        }
-        ControlFlow::Continue(())
-    });
-    if failure.is_none() {
-        read?;
-    }
-    let tare = failure.map_or_else(|| frames.finish(), Err);
+    let added = recording.frames_again(channel, |frame| {
+        view.of(frame, &mut seen)?;
+        frames.add(&seen)?;
+        Ok::<_, FrameError>(match frames.missing() {
+            0 => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        })
+    })?;
+    let tare = added.and_then(|()| frames.finish());
     let refused = |error| recording.refused(&asked.tare_refused(&error));
     processing.tare = Some(tare.map_err(refused)?);
     Ok(())
@@ -163,24 +155,13 @@ pub(crate) fn peak(
         return Ok(listed.peak.number());
     }
     let mut peak = Peak::default();
-    let mut failure = None;
-    let read = recording.read_again(&mut |event| {
-        if let RecordingEvent::Frame(frame) = event
-            && frame.channel == channel
-        {
-            match processing.run(frame) {
-                Ok(processed) if processed.cells == 0 => {}
-                Ok(processed) => drop(peak.add(frame.number, processed.tared_sum)),
-                Err(error) => {
-                    failure = Some(error);
-                    return ControlFlow::Break(());
-                }
-            }
+    let added = recording.frames_again(channel, |frame| {
+        let processed = processing.run(frame)?;
+        if processed.cells > 0 {
+            peak.add(frame.number, processed.tared_sum);
         }
-        ControlFlow::Continue(())
-    });
-    match failure {
-        Some(error) => Err(recording.refused(&error)),
-        None => read.map(|()| peak.number()),
-    }
+        Ok::<_, FrameError>(ControlFlow::Continue(()))
+    })?;
+    added.map_err(|error| recording.refused(&error))?;
+    Ok(peak.number())
 }

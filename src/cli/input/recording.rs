@@ -4,6 +4,7 @@
 use std::fmt::Debug;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use crate::acquire::description_beside;
@@ -15,6 +16,7 @@ use crate::formats::recording::{
     ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, format_of,
     read, read_rows,
 };
+use crate::frame::Frame;
 use crate::imprint::Imprint;
 
 /// The most bytes that are read of a table. A table of 64 × 64 factors is much smaller.
@@ -102,7 +104,7 @@ impl RecordingFile {
     /// Returns an error if it cannot be read, is not a recording, or is damaged.
     pub(crate) fn read(
         &mut self,
-        sink: &mut dyn FnMut(RecordingEvent<'_>) -> std::ops::ControlFlow<()>,
+        sink: &mut dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()>,
     ) -> Result<RecordingFormat, RecordingError> {
         let description = self.description.as_ref();
         read(&mut self.file, self.options, &mut |event| match event {
@@ -119,7 +121,7 @@ impl RecordingFile {
     /// Returns an error if it cannot be read, or is not such a text.
     pub(crate) fn read_table(
         &mut self,
-        sink: &mut dyn FnMut(RecordingEvent<'_>) -> std::ops::ControlFlow<()>,
+        sink: &mut dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()>,
     ) -> Result<(), RecordingError> {
         self.file.seek(SeekFrom::Start(0))?;
         let mut bytes = Vec::new();
@@ -134,18 +136,30 @@ impl RecordingFile {
         self.is_damaged = true;
     }
 
-    /// Reads the recording from its beginning again.
+    /// Reads the frames of a channel from the beginning of the recording again, until `take` breaks or fails. The
+    /// inner result has the error of `take`.
     ///
     /// # Errors
-    /// Returns an error if it cannot be read as before: the disk is gone, or the file was changed. A known damage is
-    /// not an error.
-    pub(crate) fn read_again(
+    /// Returns an error if the recording cannot be read as before: the disk is gone, or the file was changed. A known
+    /// damage is not an error; it is reported by the caller.
+    pub(crate) fn frames_again<E>(
         &mut self,
-        sink: &mut dyn FnMut(RecordingEvent<'_>) -> std::ops::ControlFlow<()>,
-    ) -> Result<(), CliError> {
-        match self.read(sink) {
-            Err(error) if !self.is_damaged => Err(self.damaged(error)),
-            _ => Ok(()),
+        channel: usize,
+        mut take: impl FnMut(&Frame) -> Result<ControlFlow<()>, E>,
+    ) -> Result<Result<(), E>, CliError> {
+        let mut taken = Ok(());
+        let read = self.read(&mut |event| match event {
+            RecordingEvent::Frame(frame) if frame.channel == channel => {
+                take(frame).unwrap_or_else(|error| {
+                    taken = Err(error);
+                    ControlFlow::Break(())
+                })
+            }
+            _ => ControlFlow::Continue(()),
+        });
+        match read {
+            Err(error) if taken.is_ok() && !self.is_damaged => Err(self.damaged(error)),
+            _ => Ok(taken),
         }
     }
 
@@ -219,4 +233,58 @@ impl<T: Read + Seek + Debug> ReadAgain for T {}
 /// Returns an error if no temporary file can be made.
 fn spooled(input: impl Read + 'static) -> io::Result<Box<dyn ReadAgain>> {
     Ok(Box::new(SpooledInput::new(input)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reads frames of the first channel again, and notes their first values; `take` fails at the value `fatal`.
+    fn taken(
+        text: &str,
+        is_damaged: bool,
+        fatal: f64,
+    ) -> (Vec<f64>, Result<Result<(), f64>, String>) {
+        let file = tempfile::NamedTempFile::new().expect("a temporary file");
+        std::fs::write(file.path(), text).expect("written");
+        let mut recording =
+            RecordingFile::open(file.path(), ReadOptions::default()).expect("a file");
+        if is_damaged {
+            recording.remember_damage();
+        }
+        let mut values = Vec::new();
+        let read = recording.frames_again(0, |frame| {
+            let value = frame.values()[0];
+            values.push(value);
+            if value == fatal {
+                Err(value)
+            } else {
+                Ok(ControlFlow::Continue(()))
+            }
+        });
+        (values, read.map_err(|error| error.to_string()))
+    }
+
+    #[test]
+    fn only_unknown_damage_is_an_error_when_frames_are_read_again() {
+        let damaged = "r0c0,r0c1\n1,2\n3,4\n5,x\n";
+        let (values, read) = taken(damaged, false, 9.0);
+        assert_eq!(values, [1.0, 3.0]);
+        let error = read.expect_err("damaged");
+        assert!(
+            error.ends_with("line 4, column 2: found \"x\", expected a number"),
+            "{error}"
+        );
+        assert_eq!(taken(damaged, true, 9.0), (vec![1.0, 3.0], Ok(Ok(()))));
+    }
+
+    #[test]
+    fn frames_are_not_read_beyond_a_failure() {
+        let two_channels = "{\"channel\":\"a\",\"frame\":[[1]]}\n{\"channel\":\"b\",\"frame\":[[2]]}\n\
+                            {\"channel\":\"a\",\"frame\":[[3]]}\n{\"channel\":\"a\",\"frame\":[[4]]}\nx\n";
+        assert_eq!(
+            taken(two_channels, false, 3.0),
+            (vec![1.0, 3.0], Ok(Err(3.0)))
+        );
+    }
 }
