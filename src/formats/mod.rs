@@ -59,6 +59,8 @@ pub mod stream;
 
 pub(crate) mod xml;
 
+pub(crate) mod shade;
+
 mod drawing;
 
 #[cfg(feature = "sweep")]

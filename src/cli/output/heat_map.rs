@@ -8,26 +8,16 @@
 //! ```
 
 use crate::cli::output::charset::Charset;
+use crate::formats::shade::{character, characters};
 use crate::formats::value::fitting;
 use crate::matrix::Matrix;
-
-/// Returns the shades from above 0 to the largest value.
-fn shades(charset: Charset) -> &'static [char] {
-    match charset {
-        Charset::Ascii => &[':', '-', '=', '+', '*', '#', '%', '@'],
-        Charset::Unicode => &['░', '▒', '▓', '█'],
-    }
-}
 
 /// Draws the values of all cells, a line for each row, with numbers of columns and rows as beside imprints, and a
 /// legend of the shades. A cell of 0 or less is a dot; a cell without a value is blank.
 pub(crate) fn heat_map(values: &Matrix<f64>, unit: &str, charset: Charset) -> String {
     let largest = values.values().iter().copied().fold(0.0, f64::max);
-    let shades = shades(charset);
-    let zero = match charset {
-        Charset::Ascii => '.',
-        Charset::Unicode => '·',
-    };
+    let ascii = charset == Charset::Ascii;
+    let (zero, shades) = (character(0.0, ascii), &characters(ascii)[1..]);
     let ruler: Vec<String> = (0..values.columns())
         .step_by(2)
         .map(|column| format!("{column:<4}"))
@@ -36,12 +26,10 @@ pub(crate) fn heat_map(values: &Matrix<f64>, unit: &str, charset: Charset) -> St
     for row in 0..values.rows() {
         let mut line = format!("{row:>2}  ");
         for &value in values.row(row) {
-            let shade = if value > 0.0 {
-                shades[shade(value / largest, shades.len())]
-            } else if value.is_nan() {
-                ' '
-            } else {
-                zero
+            // If no value is above 0, there is no share.
+            let shade = match value {
+                value if value <= 0.0 => zero,
+                value => character(value / largest, ascii),
             };
             line.extend([shade, if shade == zero { ' ' } else { shade }]);
         }
@@ -50,18 +38,6 @@ pub(crate) fn heat_map(values: &Matrix<f64>, unit: &str, charset: Charset) -> St
     }
     let scale: String = shades.iter().collect();
     text + &format!("0 {scale} {}{unit}\n", fitting(largest, 9))
-}
-
-/// Returns the shade for a share of the largest value. The range from 0 to the largest value is divided evenly, upper
-/// bounds included: the largest value has the last shade.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
-    reason = "a share above 0, up to 1, and few shades"
-)]
-fn shade(share: f64, shades: usize) -> usize {
-    ((share * shades as f64).ceil() as usize).clamp(1, shades) - 1
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! is no cell, the page stays white. Active taxels are edged instead of filled, which would hide their values.
 
 use crate::formats::drawing::scene::{Position, Segment};
+use crate::formats::shade::shade;
 use crate::formats::value::fitting;
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
@@ -25,13 +26,7 @@ pub(super) fn shades(values: &Matrix<f64>) -> Vec<(u8, Vec<Position>)> {
     let mut shades = vec![Vec::new(); usize::from(SHADES)];
     for row in 0..values.rows() {
         for (column, &value) in (0..values.columns()).zip(values.row(row)) {
-            let share = (value / largest).clamp(0.0, 1.0) * f64::from(SHADES - 1);
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "0 to 15; 0 for NaN"
-            )]
-            let shade = share.ceil() as usize;
+            let shade = shade(value / largest, shades.len());
             if shade > 0 {
                 shades[shade].push((f64::from(column), f64::from(row)));
             }

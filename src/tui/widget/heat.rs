@@ -5,6 +5,7 @@
 
 use ratatui::style::{Color, Style};
 
+use crate::formats::shade;
 use crate::tui::widget::theme::{ColorDepth, Palette, Theme, Tone};
 
 /// Colours from dark to light.
@@ -22,38 +23,12 @@ const TONES: [Tone; 9] = [
 
 /// Returns the characters of the shades; the first one is for zero.
 pub(in crate::tui) fn shades(theme: &Theme) -> &'static [char] {
-    if theme.ascii {
-        &['.', ':', '-', '=', '+', '*', '#', '%', '@']
-    } else {
-        &['·', '░', '▒', '▓', '█']
-    }
-}
-
-/// Returns the step of a share of the range, from 0: shares up to 0 have the first step, the other steps divide the
-/// rest evenly.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
-    reason = "a share above 0, up to 1, and few steps"
-)]
-fn step(share: f64, steps: usize) -> usize {
-    if share > 0.0 {
-        let last = steps - 1;
-        ((share.min(1.0) * last as f64).ceil() as usize).clamp(1, last)
-    } else {
-        0
-    }
+    shade::characters(theme.ascii)
 }
 
 /// Returns the character for a share of the range; a blank for NaN, a cell that does not exist.
 pub(in crate::tui) fn shade(theme: &Theme, share: f64) -> char {
-    let shades = shades(theme);
-    if share.is_nan() {
-        ' '
-    } else {
-        shades[step(share, shades.len())]
-    }
+    shade::character(share, theme.ascii)
 }
 
 /// Returns true if the two halves of a character can have different colours.
@@ -64,7 +39,7 @@ pub(in crate::tui) fn has_halves(theme: &Theme) -> bool {
 
 /// Returns the colour for a share of the range; None for shares up to 0, and if there are no colours.
 pub(in crate::tui) fn color(theme: &Theme, share: f64) -> Option<Color> {
-    let step = step(share, TONES.len() + 1).checked_sub(1)?;
+    let step = shade::shade(share, TONES.len() + 1).checked_sub(1)?;
     match theme.palette {
         Palette::Dark => theme.color(TONES[step]),
         Palette::Light => theme.color(TONES[TONES.len() - 1 - step]),
@@ -104,19 +79,5 @@ mod tests {
             let [dark, light] = [pair[0].1, pair[1].1].map(of_index).map(luminance);
             assert!(dark < light, "{pair:?}");
         }
-    }
-
-    #[test]
-    fn shades_divide_the_range_evenly() {
-        let shown = |ascii| {
-            let theme = Theme::plain(ascii);
-            let shares = [f64::NAN, -1.0, 0.0, 0.01, 0.25, 0.26, 0.75, 0.76, 1.0, 9.0];
-            shares
-                .map(|share| shade(&theme, share))
-                .iter()
-                .collect::<String>()
-        };
-        assert_eq!(shown(false), " ··░░▒▓███");
-        assert_eq!(shown(true), " ..:-=#%@@");
     }
 }
