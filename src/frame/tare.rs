@@ -1,6 +1,8 @@
 //! The tare: the value of each cell when nothing touches it (the median over some frames), and how much it varies.
 
 use crate::frame::error::{FrameError, check_size};
+use crate::frame::recorded::Frame;
+use crate::frame::view::View;
 use crate::matrix::Matrix;
 use crate::sensor::MatrixSize;
 
@@ -18,6 +20,8 @@ pub struct TareFrames {
     /// All values, frame by frame.
     values: Vec<f64>,
     frames: u64,
+    /// The visible part of the last frame, kept for its memory.
+    visible: Matrix<f64>,
 }
 
 impl TareFrames {
@@ -28,6 +32,7 @@ impl TareFrames {
             size: None,
             values: Vec::new(),
             frames: 0,
+            visible: Matrix::default(),
         }
     }
 
@@ -76,6 +81,19 @@ impl TareFrames {
         self.values.extend_from_slice(frame.values());
         self.frames += 1;
         Ok(())
+    }
+
+    /// Adds the part of a frame that a view shows, like [`Self::add`].
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::add`], and an error if the view does not fit the frame.
+    pub fn add_frame(&mut self, frame: &Frame, view: &View) -> Result<(), FrameError> {
+        let mut visible = std::mem::take(&mut self.visible);
+        let added = view
+            .of(frame, &mut visible)
+            .and_then(|()| self.add(&visible));
+        self.visible = visible;
+        added
     }
 
     /// Computes the tare.
@@ -210,6 +228,7 @@ impl Tare {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::FrameSize;
 
     fn tare(frames: &[[f64; 2]]) -> Result<Tare, FrameError> {
         let mut tare = TareFrames::new(frames.len() as u64);
@@ -250,6 +269,26 @@ mod tests {
         assert_eq!(TareFrames::new(8192).check_memory(64 * 64), Ok(()));
         let longer = TareFrames::new(8193).check_memory(64 * 64);
         assert_eq!(longer, Err(FrameError::TareSize { most: 8192 }));
+    }
+
+    #[test]
+    fn only_the_visible_part_of_a_frame_is_added() {
+        let mut frame = Frame::new(FrameSize::of(3, 1));
+        frame.values_mut().copy_from_slice(&[1.0, 2.0, 3.0]);
+        let mut view = View {
+            flip_x: true,
+            ..View::default()
+        };
+        let mut tare = TareFrames::new(2);
+        tare.add_frame(&frame, &view).expect("it fits");
+        // A frame of another size is not added.
+        view.quarter_turns = 1;
+        let error = tare.add_frame(&frame, &view).expect_err("of another size");
+        assert!(matches!(error, FrameError::Size { .. }), "{error}");
+        view.quarter_turns = 0;
+        tare.add_frame(&frame, &view).expect("it fits");
+        let tare = tare.finish().expect("two frames");
+        assert_eq!(tare.baseline().values(), [3.0, 2.0, 1.0]);
     }
 
     #[test]

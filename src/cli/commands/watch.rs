@@ -39,7 +39,6 @@ use crate::formats::recording::{
 use crate::formats::stream::{StreamCounts, StreamRefusal};
 use crate::formats::value::counted;
 use crate::frame::{Frame, FrameError, FrameSize, Processing, SetRule, Tare, TareFrames};
-use crate::matrix::Matrix;
 use crate::quote::did_you_mean;
 use crate::tui::live::request::WatchRequest;
 
@@ -468,11 +467,9 @@ impl Watcher<'_> {
             self.frame = own;
             return answered;
         };
-        let mut seen = Matrix::default();
         // The whole frames wait, not only their visible parts.
         let added = tare.check_memory(own.values().len());
-        let added = added.and_then(|()| self.processing.view.of(&own, &mut seen));
-        let added = added.and_then(|()| tare.add(&seen));
+        let added = added.and_then(|()| tare.add_frame(&own, &self.processing.view));
         waiting.push(own);
         added.map_err(|error| self.refused(&error.to_string()))?;
         self.end_tare()

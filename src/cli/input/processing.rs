@@ -126,12 +126,10 @@ pub(crate) fn tare(
     processing: &mut Processing,
 ) -> Result<(), CliError> {
     let mut frames = TareFrames::new(wanted);
-    let mut seen = Matrix::default();
     let view = &processing.view;
     // Damage after the tare's frames does not matter here.
     let added = recording.frames_again(channel, |frame| {
-        view.of(frame, &mut seen)?;
-        frames.add(&seen)?;
+        frames.add_frame(frame, view)?;
         Ok::<_, FrameError>(match frames.missing() {
             0 => ControlFlow::Break(()),
             _ => ControlFlow::Continue(()),

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use crate::formats::recording::ChannelInfo;
 use crate::formats::value::counted;
 use crate::frame::{Frame, FrameError, Processing, TareFrames};
-use crate::matrix::Matrix;
 use crate::tui::live::request::WatchRequest;
 
 /// The origin of a tare.
@@ -82,9 +81,7 @@ impl LiveTare {
         let Some(mut first) = self.first.take() else {
             return;
         };
-        let mut seen = Matrix::default();
-        let added = processing.view.of(frame, &mut seen);
-        let added = added.and_then(|()| first.add(&seen));
+        let added = first.add_frame(frame, &processing.view);
         let ended = added.and_then(|()| {
             if first.missing() > 0 {
                 self.first = Some(first);
@@ -117,10 +114,8 @@ impl LiveTare {
             return Ok(());
         };
         let mut tare = TareFrames::new(frames.len() as u64);
-        let mut seen = Matrix::default();
         for frame in frames.iter().rev() {
-            processing.view.of(frame, &mut seen)?;
-            tare.add(&seen)?;
+            tare.add_frame(frame, &processing.view)?;
         }
         self.end(tare, last, processing)?;
         (self.first, self.error, self.wanted) = (None, None, 0);
