@@ -1,6 +1,8 @@
 //! The options of an acquisition, its reports, and its errors.
 
 use std::io;
+#[cfg(feature = "tui")]
+use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use crate::acquire::growing_file::ReadAnew;
@@ -45,6 +47,23 @@ pub enum Playback {
         /// Whether the recording begins again at its end.
         repeat: bool,
     },
+}
+
+#[cfg(feature = "tui")]
+impl AcquireOptions {
+    /// The allowed bits per second of a serial line.
+    pub(crate) const BAUDS: RangeInclusive<u32> = 50..=20_000_000;
+}
+
+#[cfg(feature = "tui")]
+impl Playback {
+    /// The allowed speeds, in words for messages.
+    pub(crate) const SPEEDS: &'static str = "a number above 0, up to 1000000";
+
+    /// Returns true if a recording may be played at this speed; see [`Self::SPEEDS`].
+    pub(crate) fn allows(speed: f64) -> bool {
+        speed > 0.0 && speed <= 1e6
+    }
 }
 
 impl Playback {

@@ -49,6 +49,8 @@ pub use processing::{Processed, Processing};
 pub use recorded::{FirstCell, Frame, LARGEST_VALUE};
 pub use rule::Rule;
 pub use set_rule::{RuleOrigin, SetRule};
+#[cfg(feature = "frames")]
+pub(crate) use size::MAX_FRAME_CELLS;
 pub use size::{FrameSize, FrameSizeError, MAX_FRAME_SIDE};
 pub use tare::{Tare, TareFrames};
 pub use view::{Crop, View};

@@ -1,6 +1,7 @@
 //! The size of a frame.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 
 #[cfg(feature = "frames")]
 use crate::parameter::number::counted;
@@ -8,6 +9,10 @@ use crate::sensor::MatrixSize;
 
 /// The largest number of columns, and of rows, of a frame before it is cropped.
 pub const MAX_FRAME_SIDE: u16 = 512;
+
+/// The largest number of cells of a frame.
+#[cfg(feature = "frames")]
+pub(crate) const MAX_FRAME_CELLS: usize = MAX_FRAME_SIDE as usize * MAX_FRAME_SIDE as usize;
 
 /// The columns and rows of a frame before it is cropped: each from 1 to [`MAX_FRAME_SIDE`].
 ///
@@ -26,6 +31,9 @@ pub struct FrameSize {
 }
 
 impl FrameSize {
+    /// The allowed numbers of columns, and of rows.
+    pub(crate) const SIDES: RangeInclusive<u16> = 1..=MAX_FRAME_SIDE;
+
     /// One cell.
     pub(crate) const SMALLEST: Self = Self {
         columns: 1,
@@ -37,8 +45,7 @@ impl FrameSize {
     /// # Errors
     /// Returns an error if a number is not from 1 to [`MAX_FRAME_SIDE`].
     pub fn new(columns: u16, rows: u16) -> Result<Self, FrameSizeError> {
-        let sides = 1..=MAX_FRAME_SIDE;
-        if sides.contains(&columns) && sides.contains(&rows) {
+        if Self::SIDES.contains(&columns) && Self::SIDES.contains(&rows) {
             Ok(Self { columns, rows })
         } else {
             Err(FrameSizeError { columns, rows })

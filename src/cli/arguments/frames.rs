@@ -128,13 +128,13 @@ pub(crate) fn heat() -> Arg {
 }
 
 /// Defines the flags that prepare frames. `--rows` and `--columns` have ids of their own: they are not those of a
-/// sensor, and go up to 512.
+/// sensor, and go further.
 pub(crate) fn processing() -> [Arg; 9] {
     let side = |id: &'static str, flag: &'static str, help: &'static str| {
         Arg::new(id)
             .long(flag)
             .value_name(flag.to_ascii_uppercase())
-            .value_parser(whole::<u16>(1..=512))
+            .value_parser(whole::<u16>(FrameSize::SIDES))
             .help(help)
     };
     let text = |flag: &'static str, value: &'static str, help: &'static str| {

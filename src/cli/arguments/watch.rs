@@ -67,7 +67,7 @@ pub(crate) fn command() -> Command {
             52,
         ));
     let baud = option("baud", "BAUD", "Speed of a serial line; default 115200")
-        .value_parser(whole::<u32>(50..=20_000_000));
+        .value_parser(whole::<u32>(AcquireOptions::BAUDS));
     let once = switch("once", "Read to the end as fast as possible, then stop")
         .conflicts_with_all(["loop", "speed"]);
     let again = switch("loop", "Start a recording again when it ends");
@@ -98,9 +98,8 @@ pub(crate) fn command() -> Command {
 /// Parses a factor above 0: 2 plays twice as fast, 0.5 at half the speed.
 fn parse_speed(text: &str) -> Result<f64, String> {
     let speed = flags::parse_number(text)?;
-    (speed > 0.0 && speed <= 1e6)
-        .then_some(speed)
-        .ok_or_else(|| "expected a number above 0, up to 1000000".to_owned())
+    let allowed = Playback::allows(speed).then_some(speed);
+    allowed.ok_or_else(|| format!("expected {}", Playback::SPEEDS))
 }
 
 /// Returns how the source is played.

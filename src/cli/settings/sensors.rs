@@ -4,7 +4,7 @@
 
 use crate::acquire::AcquireOptions;
 use crate::formats::stream::StreamFormat;
-use crate::frame::{FrameSize, Rule, RuleOrigin, SetRule};
+use crate::frame::{FrameSize, LARGEST_VALUE, Rule, RuleOrigin, SetRule};
 use crate::tui::live::history::HISTORY_BYTES;
 use crate::tui::live::request::WatchRequest;
 
@@ -76,12 +76,18 @@ pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
             kind,
         }
     }
-    let value = Number(-1e300, 1e300);
+    let value = Number(-LARGEST_VALUE, LARGEST_VALUE);
+    let side = Whole(
+        *FrameSize::SIDES.start() as u64,
+        *FrameSize::SIDES.end() as u64,
+    );
+    let baud = &AcquireOptions::BAUDS;
+    let baud = Whole(*baud.start() as u64, *baud.end() as u64);
     [
         row("source", "format", Key::Format, Format),
-        row("source", "baud", Key::Baud, Whole(50, 20_000_000)),
-        row("source", "rows", Key::Rows, Whole(1, 512)),
-        row("source", "columns", Key::Columns, Whole(1, 512)),
+        row("source", "baud", Key::Baud, baud),
+        row("source", "rows", Key::Rows, side),
+        row("source", "columns", Key::Columns, side),
         row("frames", "at_least", Key::AtLeast, value),
         row("frames", "percent", Key::Percent, Percent),
         row("frames", "low", Key::Low, value),

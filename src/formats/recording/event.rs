@@ -108,6 +108,12 @@ impl ReadOptions {
 /// The name of a channel without a name.
 pub(crate) const UNNAMED: &str = "unnamed";
 
+/// The most channels of a recording or a stream.
+pub(in crate::formats) const MOST_CHANNELS: usize = 256;
+
+/// The most bytes of a channel's name.
+pub(in crate::formats::recording) const LONGEST_NAME: usize = 1024;
+
 /// A description of a channel, as far as the recording gives it: a field is None if it does not.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]

@@ -77,6 +77,7 @@ pub(crate) use detect::may_be_recording;
 pub(crate) use detect::{RecordingInput, format_of, read_as};
 pub use detect::{read, recognised, recognised_input};
 pub use error::RecordingError;
+pub(super) use event::MOST_CHANNELS;
 #[cfg(feature = "cli")]
 pub(crate) use event::UNNAMED;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};

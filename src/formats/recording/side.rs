@@ -7,7 +7,7 @@ use crate::quote::shortened;
 /// Returns a number of rows or columns; None if it is 0 or larger than a frame can be.
 pub(crate) fn side(length: impl TryInto<u16>) -> Option<u16> {
     let length = length.try_into().ok();
-    length.filter(|side| (1..=MAX_FRAME_SIDE).contains(side))
+    length.filter(|side| FrameSize::SIDES.contains(side))
 }
 
 /// Returns the size of a frame; None if a side is out of range.

@@ -4,8 +4,9 @@
 //! ones: it is dropped and counted.
 
 use crate::formats::recording::ChannelInfo;
+use crate::formats::recording::MOST_CHANNELS;
 use crate::formats::recording::json::clock::JsonClock;
-use crate::formats::recording::json::lines::{FrameLine, MOST_CHANNELS};
+use crate::formats::recording::json::lines::FrameLine;
 use crate::formats::recording::ros::echo::{self, RosLine, RosMessage};
 use crate::formats::recording::side::arranged;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};

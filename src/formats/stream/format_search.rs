@@ -17,7 +17,7 @@ use crate::formats::stream::event::{StreamCounts, StreamFormat};
 use crate::formats::stream::flexitac::MARKER;
 use crate::formats::stream::matsense::MatsenseDecoder;
 use crate::formats::stream::numbers;
-use crate::frame::FrameSize;
+use crate::frame::{FrameSize, MAX_FRAME_CELLS};
 
 /// The number of bytes of text within which a line must end; otherwise it is not a known stream.
 const LOOKED_AT: usize = 1 << 16;
@@ -26,7 +26,7 @@ const LOOKED_AT: usize = 1 << 16;
 const NOISE: usize = 1 << 12;
 
 /// The number of bytes within which two markers of the largest frames are found.
-const MARKERS_IN: usize = 3 * (512 * 512 + 2) + 3;
+const MARKERS_IN: usize = 3 * (MAX_FRAME_CELLS + 2) + 3;
 
 /// The byte order mark, with which some programs begin a text.
 pub(super) const MARK: &[u8] = b"\xef\xbb\xbf";

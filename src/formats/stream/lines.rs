@@ -24,11 +24,8 @@ use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
 use crate::formats::stream::size::StreamSize;
 use crate::formats::stream::source_clock::SourceClock;
-use crate::frame::{Frame, FrameSize, MAX_FRAME_SIDE};
+use crate::frame::{Frame, FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
 use crate::parameter::number::counted;
-
-/// The most values of a frame.
-const MOST: usize = 512 * 512;
 
 /// The assumed content of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,7 +143,7 @@ impl LinesDecoder {
         sink: &mut StreamSink<'_>,
     ) {
         let before = self.values.len();
-        let room = MOST.saturating_sub(before);
+        let room = MAX_FRAME_CELLS.saturating_sub(before);
         let read = numbers::read(line, &mut self.values, room);
         let count = self.values.len() - before;
         // A line with all cells is a boundary itself. Frames of one row must be given as such: otherwise a line

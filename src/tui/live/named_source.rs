@@ -6,8 +6,9 @@
 //! ```
 
 use std::fmt;
+use std::ops::RangeInclusive;
 
-use crate::acquire::Playback;
+use crate::acquire::{AcquireOptions, Playback};
 use crate::formats::stream::StreamFormat;
 use crate::frame::{FrameError, FrameSize, Rule, RuleOrigin, SetRule};
 use crate::parameter::{UnknownName, number};
@@ -74,8 +75,9 @@ impl NamedSource {
             format!("{flag} takes {expected}, found {}", shortened(text))
         };
         let side = || {
-            let side = text.parse().ok().filter(|side| (1..=512).contains(side));
-            side.ok_or_else(|| refused(&"a whole number from 1 to 512"))
+            let side = text.parse().ok();
+            let side = side.filter(|side| FrameSize::SIDES.contains(side));
+            side.ok_or_else(|| refused(&format!("a whole number {}", bounds(&FrameSize::SIDES))))
         };
         match flag {
             "--rows" => self.rows = Some(side()?),
@@ -86,14 +88,15 @@ impl NamedSource {
             }
             "--baud" => {
                 let baud = text.parse().ok();
-                let baud = baud.filter(|baud| (50..=20_000_000).contains(baud));
-                self.baud = Some(baud.ok_or_else(|| refused(&"a number from 50 to 20000000"))?);
+                let bauds = AcquireOptions::BAUDS;
+                let baud = baud.filter(|baud| bauds.contains(baud));
+                let expected = || refused(&format!("a number {}", bounds(&bauds)));
+                self.baud = Some(baud.ok_or_else(expected)?);
             }
             "--channel" => self.channel = Some(text.to_owned()),
             "--speed" => {
-                let speed = number::read(text).filter(|speed| *speed > 0.0 && *speed <= 1e6);
-                self.speed =
-                    Some(speed.ok_or_else(|| refused(&"a number above 0, up to 1000000"))?);
+                let speed = number::read(text).filter(|&speed| Playback::allows(speed));
+                self.speed = Some(speed.ok_or_else(|| refused(&Playback::SPEEDS))?);
             }
             _ if self.rule.is_some() => {
                 return Err("--at-least and --percent do not go together".to_owned());
@@ -136,6 +139,11 @@ impl NamedSource {
 /// Returns the index of the first flag in the text after `:watch`; None without flags.
 pub(in crate::tui) fn flags_start(text: &str) -> Option<usize> {
     text.find(" --").map(|blank| blank + 1)
+}
+
+/// Returns the bounds of a number: `from 1 to 512`.
+fn bounds(range: &RangeInclusive<impl fmt::Display>) -> String {
+    format!("from {} to {}", range.start(), range.end())
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
 
 use crate::formats::framed::too_large;
-use crate::frame::LARGEST_VALUE;
+use crate::frame::{LARGEST_VALUE, MAX_FRAME_CELLS};
 use crate::parameter::number::counted;
 
 /// Reads a list of rows or of cells. Lists inside it are rows only if there is a counter of rows.
@@ -13,9 +13,6 @@ pub(super) struct CellsSeed<'a>(
     pub(super) &'a mut Vec<f64>,
     pub(super) Option<&'a mut usize>,
 );
-
-/// The most cells of a frame: 512 × 512. A frame of more cells is refused before it takes memory.
-const MOST_CELLS: usize = 512 * 512;
 
 impl<'de> DeserializeSeed<'de> for CellsSeed<'_> {
     type Value = ();
@@ -40,7 +37,8 @@ impl<'de> Visitor<'de> for CellsSeed<'_> {
             let Some(is_row) = list.next_element_seed(CellSeed(values, rows.is_some()))? else {
                 return Ok(());
             };
-            if values.len() > MOST_CELLS {
+            // Before it takes memory.
+            if values.len() > MAX_FRAME_CELLS {
                 return Err(A::Error::custom("more than 512 × 512 cells"));
             }
             cells |= !is_row;

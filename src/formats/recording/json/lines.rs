@@ -23,7 +23,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Vis
 use crate::formats::json;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
-    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
+    ChannelInfo, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
 use crate::formats::recording::json::cells::CellsSeed;
 use crate::formats::recording::json::clock::{JsonClock, TimeCandidates};
@@ -32,12 +32,6 @@ use crate::formats::recording::text::lines::TextLines;
 use crate::formats::seconds::since;
 use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
 use crate::parameter::number::counted;
-
-/// The most channels of a recording or a stream.
-pub(in crate::formats) const MOST_CHANNELS: usize = 256;
-
-/// The most bytes of a channel's name.
-const LONGEST_NAME: usize = 1024;
 
 /// Reads a recording.
 pub(in crate::formats::recording) fn read(

@@ -25,7 +25,7 @@ use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent,
 use crate::formats::recording::side::{arranged, changed, frame_size};
 use crate::formats::recording::text::lines::TextLines;
 use crate::formats::recording::text::row::{self, Field};
-use crate::frame::{Frame, FrameSize};
+use crate::frame::{Frame, FrameSize, MAX_FRAME_CELLS};
 
 /// The values of a message, and the sizes of its layout, in memory that is reused.
 #[derive(Debug, Default)]
@@ -56,7 +56,7 @@ pub(in crate::formats) enum RosLine {
 }
 
 /// The most values of a message that are kept, one more than any frame has.
-const MOST_VALUES: usize = 512 * 512 + 1;
+const MOST_VALUES: usize = MAX_FRAME_CELLS + 1;
 
 /// The most sizes of a layout that are kept: more than any message has, so that endless input does not fill the
 /// memory.

@@ -24,7 +24,9 @@ use flate2::CrcReader;
 
 use crate::formats::framed::too_large;
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
+use crate::formats::recording::event::{
+    ChannelInfo, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, Sink,
+};
 use crate::formats::recording::ros::cdr::CdrReader;
 use crate::formats::recording::ros::message::{
     ImageFrame, MessageKind, header, image, matrix_shape, multi_array,
@@ -47,14 +49,8 @@ const LARGEST_WINDOW: u64 = 16 << 20;
 /// The size limit of a decompressed chunk, in bytes.
 const LARGEST_CHUNK: u64 = 1 << 30;
 
-/// The most topics or sensors with frames.
-const MOST_CHANNELS: usize = 256;
-
 /// The most topics whose messages could have frames.
 const MOST_TOPICS: usize = 4096;
-
-/// The most bytes of a topic's name, including the name of a sensor after it.
-const LONGEST_NAME: usize = 1024;
 
 /// The end of the records. The magic number follows.
 const FOOTER: u8 = 2;

@@ -23,11 +23,8 @@ use crate::formats::recording::time::field_role::{
     FieldRole, is_named_time, rest_of_second, role, roles, time_unit,
 };
 use crate::formats::recording::time::moment;
-use crate::frame::{FrameSize, MAX_FRAME_SIDE};
+use crate::frame::{FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
 use crate::parameter::number::{counted, grouped};
-
-/// The most cells of a frame.
-const MOST_CELLS: usize = MAX_FRAME_SIDE as usize * MAX_FRAME_SIDE as usize;
 
 /// The most fields beside the cells. A line with more is refused before its fields take memory.
 const MOST_BESIDE: usize = 16;
@@ -91,12 +88,12 @@ pub(super) fn layout(
     let number = lines.number();
     if separator
         .fields(&first)
-        .nth(MOST_CELLS + MOST_BESIDE)
+        .nth(MAX_FRAME_CELLS + MOST_BESIDE)
         .is_some()
     {
         let message = format!(
             "more than {} fields, expected at most {MAX_FRAME_SIDE} × {MAX_FRAME_SIDE} cells and {MOST_BESIDE} beside them",
-            grouped((MOST_CELLS + MOST_BESIDE) as u64)
+            grouped((MAX_FRAME_CELLS + MOST_BESIDE) as u64)
         );
         return Err(RecordingError::in_line(number, message));
     }
