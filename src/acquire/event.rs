@@ -8,6 +8,8 @@ use std::time::Duration;
 use crate::acquire::growing_file::ReadAnew;
 use crate::formats::recording::{ChannelInfo, RecordingError, RecordingNote};
 use crate::formats::stream::{StreamCounts, StreamFormat};
+#[cfg(feature = "tui")]
+use crate::formats::value::decimal;
 use crate::frame::{Frame, FrameSize};
 
 /// The options of an acquisition: how a source is read.
@@ -144,6 +146,19 @@ pub enum AcquireEvent<'a> {
     Ended(&'a StreamCounts),
 }
 
+#[cfg(feature = "tui")]
+impl AcquireEvent<'_> {
+    /// Returns the words for [`Self::Lost`].
+    pub(crate) fn lost(error: &io::Error) -> String {
+        format!("lost: {error}; trying again each second")
+    }
+
+    /// Returns the words for [`Self::Back`].
+    pub(crate) fn back_after(gap: Duration) -> String {
+        format!("back after {} s", decimal(gap.as_secs_f64(), 1))
+    }
+}
+
 /// The error that ended an acquisition.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -172,5 +187,22 @@ impl AcquireError {
     pub(super) fn reading(error: io::Error) -> Self {
         let doing = "read it";
         Self::Io { doing, error }
+    }
+}
+
+#[cfg(all(test, feature = "tui"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gap_has_at_most_one_decimal() {
+        let texts = [1000, 1260, 60_000].map(|gap| {
+            let gap = Duration::from_millis(gap);
+            AcquireEvent::back_after(gap)
+        });
+        assert_eq!(
+            texts,
+            ["back after 1 s", "back after 1.3 s", "back after 60 s"]
+        );
     }
 }

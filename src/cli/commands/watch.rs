@@ -309,12 +309,11 @@ impl Watcher<'_> {
                 Ok(())
             }
             AcquireEvent::Lost(error) => {
-                let text = format!("lost: {error}; trying again each second");
-                self.say(&text);
+                self.say(&AcquireEvent::lost(error));
                 Ok(())
             }
             AcquireEvent::Back { gap } => {
-                self.say(&format!("back after {:.1} s", gap.as_secs_f64()));
+                self.say(&AcquireEvent::back_after(gap));
                 Ok(())
             }
             AcquireEvent::Note(note) => {

@@ -15,7 +15,6 @@ use std::time::Duration;
 use crate::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
 use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
 use crate::formats::stream::{StreamCounts, StreamRefusal};
-use crate::formats::value::decimal;
 use crate::frame::Frame;
 use crate::storage::Existing;
 use crate::tui::live::history::bytes_of;
@@ -251,8 +250,7 @@ impl FrameFeed {
             }
             AcquireEvent::Lost(error) => self.change(|pending| {
                 pending.gap.get_or_insert_default();
-                let text = format!("lost: {error}; trying again each second");
-                pending.batch.status.state = SourceState::Lost(text);
+                pending.batch.status.state = SourceState::Lost(AcquireEvent::lost(error));
             }),
             AcquireEvent::Note(note) => self.change(|pending| {
                 let first = &mut pending.batch.status.note;
@@ -316,8 +314,8 @@ impl Pending {
             return SourceState::Waiting;
         };
         *gap += time;
-        let seconds = decimal(gap.as_secs_f64(), 1);
-        SourceState::Silent(format!("back after {seconds} s; no frame yet"))
+        let back = AcquireEvent::back_after(*gap);
+        SourceState::Silent(format!("{back}; no frame yet"))
     }
 
     /// Notes the time of a frame, which ends a gap.
