@@ -27,8 +27,7 @@ use crate::cli::arguments::help::{
 use crate::cli::arguments::program::{
     ascii, completions, config, config_file, look, man, record, script, size,
 };
-use crate::cli::arguments::{frames, model, parameters, recognise, watch};
-use crate::cli::commands::export;
+use crate::cli::arguments::{export, frames, model, parameters, recognise, watch};
 use crate::figure::FigureKind;
 use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;

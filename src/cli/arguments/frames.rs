@@ -16,10 +16,10 @@ use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 use crate::cli::arguments::flags::{name_or_path, option, parse_number, switch, whole};
 use crate::cli::arguments::help::FRAMES_EXAMPLES;
 use crate::cli::arguments::recognise::parse_noise;
-use crate::cli::commands::naming::NamingArguments;
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::SensorSettings;
 use crate::frame::{Crop, FrameError, FrameSize, Rule, RuleOrigin, SetRule};
+use crate::imprint::Imprint;
 use crate::recognition::Noise;
 
 /// The frames that are answered.
@@ -309,6 +309,15 @@ impl FramesArguments {
     }
 }
 
+/// The model that names imprints, and the probability that a taxel of the sensor flips.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NamingArguments {
+    /// The model's name or file; None to name nothing.
+    pub(crate) model: Option<OsString>,
+    /// The probability that a taxel flips.
+    pub(crate) noise: Option<Noise>,
+}
+
 impl NamingArguments {
     /// Reads the arguments of [`naming`].
     pub(crate) fn of(matches: &ArgMatches) -> Self {
@@ -316,6 +325,12 @@ impl NamingArguments {
             model: matches.get_one::<OsString>("model").cloned(),
             noise: matches.get_one::<Noise>("noise").copied(),
         }
+    }
+
+    /// Returns the noise, with the dead cells of a mask left out.
+    pub(crate) fn noise_with(&self, mask: Option<&Imprint>) -> Option<Noise> {
+        let noise = self.noise?;
+        Some(mask.map_or(noise, |mask| noise.without(*mask)))
     }
 }
 

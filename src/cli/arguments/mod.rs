@@ -6,6 +6,7 @@
 //! | `program` | `script`, `config`, `completions`, `man` and the screen's own flags |
 //! | `flags` | flags that several commands have |
 //! | `parameters` | flags made from the table of parameters, and their values |
+//! | `export` | the file and format of an export |
 //! | `frames`, `watch` | the commands `frames` and `watch`, which share the flags of processing |
 //! | `model/` | the command `model`, with a file for each subcommand |
 //! | `recognise` | the command `recognise` |
@@ -25,6 +26,8 @@ pub(super) mod parameters;
 pub(super) mod program;
 
 pub(super) mod flags;
+
+pub(super) mod export;
 
 pub(super) mod frames;
 

@@ -11,7 +11,6 @@ use crate::cli::arguments::help::{
     COMPLETIONS_EXAMPLES, CONFIG_EXAMPLES, MAN_EXAMPLES, SCRIPT_EXAMPLES,
 };
 use crate::cli::arguments::parameters;
-use crate::cli::commands::completions::Shell;
 use crate::cli::input::content::InputSource;
 use crate::cli::settings::file::AUTO;
 use crate::storage::Existing;
@@ -90,6 +89,36 @@ pub(crate) fn script() -> Command {
         .about("Drive the screen without a terminal")
         .after_help(SCRIPT_EXAMPLES)
         .args([file, keys, size(), styles, json, svg, force, allow_outside])
+}
+
+/// A shell with completions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shell {
+    /// bash.
+    Bash,
+    /// zsh.
+    Zsh,
+    /// fish.
+    Fish,
+}
+
+impl Shell {
+    /// All shells.
+    pub(crate) const ALL: [Self; 3] = [Self::Bash, Self::Zsh, Self::Fish];
+
+    /// Returns its name, as in the argument.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Bash => "bash",
+            Self::Zsh => "zsh",
+            Self::Fish => "fish",
+        }
+    }
+
+    /// Returns the shell of this name; None for any other word.
+    pub(crate) fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|shell| shell.name() == name)
+    }
 }
 
 /// Defines `taxel completions SHELL`.

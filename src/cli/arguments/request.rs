@@ -12,24 +12,23 @@ use clap::parser::ValueSource;
 
 use crate::cli::arguments::advice::with_tips;
 use crate::cli::arguments::definitions;
+use crate::cli::arguments::export::Export;
 use crate::cli::arguments::flags::{self, required, unhandled_subcommand};
 use crate::cli::arguments::frames::FramesArguments;
 use crate::cli::arguments::groups;
 use crate::cli::arguments::model::ModelRequest;
 use crate::cli::arguments::parameters;
 use crate::cli::arguments::parameters::{Given, ShardFile};
-use crate::cli::arguments::program::Script;
+use crate::cli::arguments::program::{Script, Shell};
 use crate::cli::arguments::recognise::RecogniseArguments;
 use crate::cli::arguments::watch::WatchArguments;
-use crate::cli::commands::completions::Shell;
-use crate::cli::commands::export::Export;
-use crate::cli::commands::sweep::Wanted;
 use crate::cli::error::CliError;
 use crate::cli::settings::flags::Chosen;
 use crate::cli::settings::pitch::Pitch;
 use crate::cli::settings::resolved::{Effective, Loaded};
 use crate::figure::FigureKind;
 use crate::formats::Name;
+use crate::memory::MemorySize;
 use crate::pose::{Anchor, GivenRanges};
 use crate::sensor::Sensor;
 use crate::source::Source;
@@ -104,6 +103,23 @@ pub(crate) struct SweepArguments {
     pub(crate) jobs: usize,
     /// The files to write, and the form of the summary.
     pub(crate) wanted: Wanted,
+}
+
+/// The files that a sweep or a merge writes, and the form of its summary.
+#[derive(Clone, Debug)]
+pub(crate) struct Wanted {
+    /// `--atlas`: the file of all distinct imprints.
+    pub(crate) atlas: Option<AtlasFile>,
+    /// `--poses`: the file of each pose's imprint.
+    pub(crate) poses: Option<PathBuf>,
+    /// The action if a file exists already.
+    pub(crate) there: ShardFile,
+    /// Whether the summary is one line of JSON.
+    pub(crate) json: bool,
+    /// Whether to show no progress and no notes.
+    pub(crate) quiet: bool,
+    /// `--memory`: the most memory to use.
+    pub(crate) memory: Option<MemorySize>,
 }
 
 /// The shape of a sweep.

@@ -15,10 +15,9 @@ use clap::{Arg, ArgMatches, Command};
 
 use crate::acquire::{AcquireOptions, Playback};
 use crate::cli::arguments::flags::{self, option, switch, whole};
-use crate::cli::arguments::frames::{self, ProcessingArguments};
+use crate::cli::arguments::frames::{self, NamingArguments, ProcessingArguments};
 use crate::cli::arguments::help::WATCH_EXAMPLES;
 use crate::cli::arguments::{parameters, program};
-use crate::cli::commands::naming::NamingArguments;
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::SensorSettings;
 use crate::formats::stream::StreamFormat;

@@ -9,35 +9,7 @@ use clap::builder::PossibleValue;
 use clap_complete::generate;
 use clap_complete::shells::{Bash, Fish, Zsh};
 
-/// A shell with completions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Shell {
-    /// The script is clap's, wrapped in a function that adds names if a command takes one.
-    Bash,
-    /// The script is clap's, changed line by line; see [`ARGUMENTS_OF_ZSH`].
-    Zsh,
-    /// The script is clap's, with lines added at its end.
-    Fish,
-}
-
-impl Shell {
-    /// All shells.
-    pub(crate) const ALL: [Self; 3] = [Self::Bash, Self::Zsh, Self::Fish];
-
-    /// Returns its name, as in the argument.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Bash => "bash",
-            Self::Zsh => "zsh",
-            Self::Fish => "fish",
-        }
-    }
-
-    /// Returns the shell of this name; None for any other word.
-    pub(crate) fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|shell| shell.name() == name)
-    }
-}
+use crate::cli::arguments::program::Shell;
 
 /// The end of the script for bash, which adds names to clap's completions. `VALUES` is replaced by all flags with a
 /// value, which are not arguments of a command. The names are those of the folder that `--library` names on the line,

@@ -7,9 +7,10 @@ use std::path::Path;
 
 use serde_json::json;
 
+use crate::cli::arguments::export::ending;
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::confusion::{ConfusionArguments, Evaluated};
-use crate::cli::commands::export::{ending, put, written};
+use crate::cli::commands::export::{put, written};
 use crate::cli::commands::model;
 use crate::cli::commands::noise;
 use crate::cli::error::{CliError, MOST_PAIRED};

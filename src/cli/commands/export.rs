@@ -4,91 +4,19 @@
 //! Standard output, `-`, gets the same bytes.
 
 use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use crate::cli::arguments::export::{Export, ExportFormat};
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::settings::pitch::Pitch;
-use crate::formats::Content;
-use crate::formats::{Drawing, DrawingFormat, ImprintFormat};
+use crate::formats::{Content, Drawing};
 use crate::imprint::Imprint;
 use crate::matrix::Matrix;
 use crate::source::Source;
 use crate::storage::{Existing, FinishedFile};
 
-/// The format of a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    /// The imprint, as text, PBM, CSV or NPY.
-    Imprint(ImprintFormat),
-    /// A drawing of the imprint with its descriptors.
-    Drawing(DrawingFormat),
-}
-
-impl Format {
-    /// Returns the format of this name, as in `--format`.
-    fn of(name: &str) -> Option<Self> {
-        let format = name.parse().map(Self::Imprint);
-        format.or_else(|_| name.parse().map(Self::Drawing)).ok()
-    }
-
-    /// Returns the format of a file's extension.
-    fn of_ending(path: &Path) -> Option<Self> {
-        let format = ImprintFormat::of_ending(&ending(path)).map(Self::Imprint);
-        format.or_else(|| DrawingFormat::of_path(path).map(Self::Drawing))
-    }
-}
-
-/// Returns the names of all formats, for `--format`.
-pub(crate) fn names() -> Vec<&'static str> {
-    let imprints = ImprintFormat::ALL.iter().map(|format| format.name());
-    let drawings = DrawingFormat::ALL.iter().map(|format| format.name());
-    imprints.chain(drawings).collect()
-}
-
-/// A file to write.
-#[derive(Clone, Debug)]
-pub(crate) struct Export {
-    /// Its path; None for standard output.
-    path: Option<PathBuf>,
-    /// The format that is written.
-    format: Format,
-    /// Whether an existing file is replaced.
-    existing: Existing,
-}
-
 impl Export {
-    /// Creates an export to `path`, or to standard output for `-`, in the format named by `format`, or else by the
-    /// path's extension.
-    ///
-    /// # Errors
-    /// Returns a message if neither names a format.
-    pub(crate) fn new(
-        path: &Path,
-        format: Option<&str>,
-        existing: Existing,
-    ) -> Result<Self, String> {
-        let format = match format {
-            Some(name) => Format::of(name),
-            None => Format::of_ending(path),
-        };
-        let is_standard = path.as_os_str() == "-";
-        let format = format.ok_or_else(|| {
-            if is_standard {
-                return "writing to standard output needs '--format'".to_owned();
-            }
-            format!(
-                "'{}': expected a name that ends in .txt, .pbm, .csv, .npy, .svg or .png, or a '--format'",
-                path.display()
-            )
-        })?;
-        Ok(Self {
-            path: (!is_standard).then(|| path.to_owned()),
-            format,
-            existing,
-        })
-    }
-
     /// Returns the same export with the number of a frame at the end of the file name, before the extension.
     pub(crate) fn numbered(&self, number: u64) -> Self {
         let path = self.path.as_ref().map(|path| {
@@ -155,8 +83,8 @@ impl Export {
     /// drawings.
     fn begin_with(&self, imprint: &Imprint, draw: impl Fn() -> Drawing) -> Result<Begun, CliError> {
         let content = match self.format {
-            Format::Imprint(format) => format.write(imprint),
-            Format::Drawing(format) => draw().content(format).map_err(CliError::Write)?,
+            ExportFormat::Imprint(format) => format.write(imprint),
+            ExportFormat::Drawing(format) => draw().content(format).map_err(CliError::Write)?,
         };
         match &self.path {
             None => Ok(Begun::Content(content)),
@@ -207,12 +135,6 @@ pub(crate) enum Exported {
 /// Returns the note that a file was written.
 pub(crate) fn written(path: &Path) -> String {
     format!("written: {}", path.display())
-}
-
-/// Returns the extension of a file's name in lower case; empty if there is none.
-pub(crate) fn ending(path: &Path) -> String {
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    ending.map_or_else(String::new, str::to_ascii_lowercase)
 }
 
 /// Writes a file, completely or not at all.

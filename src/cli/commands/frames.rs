@@ -23,9 +23,10 @@ use std::io::Write;
 use std::ops::ControlFlow;
 use std::slice;
 
+use crate::cli::arguments::export::Export;
 use crate::cli::arguments::frames::{FrameChoice, FramesArguments};
 use crate::cli::arguments::request::{Form, Kept, Saving};
-use crate::cli::commands::export::{Begun, Export, Exported};
+use crate::cli::commands::export::{Begun, Exported};
 use crate::cli::commands::naming::FrameNamer;
 use crate::cli::commands::noise_report;
 use crate::cli::commands::recording_scan::Scan;

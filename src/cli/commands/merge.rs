@@ -14,7 +14,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::cli::arguments::model::train::model_file;
-use crate::cli::commands::sweep::{Wanted, leave};
+use crate::cli::arguments::request::Wanted;
+use crate::cli::commands::sweep::leave;
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson};

@@ -1,7 +1,6 @@
 //! Names the shape that left the imprint of a frame, for `taxel frames` and `taxel watch` with `--model`.
 
-use std::ffi::OsString;
-
+use crate::cli::arguments::frames::NamingArguments;
 use crate::cli::commands::model::{self, FoundModel};
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
@@ -11,15 +10,6 @@ use crate::formats::json;
 use crate::imprint::Imprint;
 use crate::recognition::{Evidence, Model, Noise};
 
-/// The model that names imprints, and the probability that a taxel of the sensor flips.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct NamingArguments {
-    /// The model's name or file; None to name nothing.
-    pub(crate) model: Option<OsString>,
-    /// The probability that a taxel flips.
-    pub(crate) noise: Option<Noise>,
-}
-
 impl NamingArguments {
     /// Finds the model; None if none is given.
     ///
@@ -28,12 +18,6 @@ impl NamingArguments {
     pub(crate) fn find(&self, shelf: &Shelf) -> Result<Option<FoundModel>, CliError> {
         let model = self.model.as_ref();
         model.map(|model| model::find(model, shelf)).transpose()
-    }
-
-    /// Returns the noise, with the dead cells of a mask left out.
-    pub(crate) fn noise_with(&self, mask: Option<&Imprint>) -> Option<Noise> {
-        let noise = self.noise?;
-        Some(mask.map_or(noise, |mask| noise.without(*mask)))
     }
 }
 

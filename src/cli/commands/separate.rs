@@ -11,9 +11,10 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
+use crate::cli::arguments::export::ending;
 use crate::cli::arguments::flags::EvaluationForm;
 use crate::cli::arguments::model::separate::SeparateArguments;
-use crate::cli::commands::export::{ending, put, written};
+use crate::cli::commands::export::{put, written};
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::shape_set;

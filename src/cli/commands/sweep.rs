@@ -10,12 +10,12 @@
 //! The result of a sweep: `--atlas` writes every distinct imprint with its number of poses, `--poses` writes the
 //! number of its imprint for each pose, and standard output gets a summary.
 
-use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
 use crate::cli::arguments::parameters::ShardFile;
+use crate::cli::arguments::request::Wanted;
 use crate::cli::commands::export::written;
 use crate::cli::commands::resume::{self, KEPT};
 use crate::cli::error::CliError;
@@ -25,29 +25,12 @@ use crate::cli::output::sweep_summary::SweepSummary;
 use crate::cli::signals::Signals;
 use crate::cli::threads;
 use crate::formats::value::{counted, grouped};
-use crate::memory::{MemoryGuard, MemorySize};
+use crate::memory::MemoryGuard;
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, Ranges, common_ranges, default_ranges};
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::{ArchiveFileError, AtlasFile, FinishedFile, PoseFile, persist_pair};
 use crate::sweep::{Shard, Sweep, SweepResult};
-
-/// The files that a sweep or a merge writes, and the form of its summary.
-#[derive(Clone, Debug)]
-pub(crate) struct Wanted {
-    /// `--atlas`: the file of all distinct imprints.
-    pub(crate) atlas: Option<AtlasFile>,
-    /// `--poses`: the file of each pose's imprint.
-    pub(crate) poses: Option<PathBuf>,
-    /// The action if a file exists already.
-    pub(crate) there: ShardFile,
-    /// Whether the summary is one line of JSON.
-    pub(crate) json: bool,
-    /// Whether to show no progress and no notes.
-    pub(crate) quiet: bool,
-    /// `--memory`: the most memory to use.
-    pub(crate) memory: Option<MemorySize>,
-}
 
 impl Wanted {
     /// Notes each file that was written, in a line on standard error.
