@@ -1,5 +1,6 @@
 //! An imprint in any format, or a stored shape; the first character shows which of the two it is.
 
+use crate::formats::byte_order_mark::without_mark;
 use crate::formats::imprint_file::{self, ImprintFormatError};
 use crate::formats::shape::{ShapeError, StoredShape};
 use crate::imprint::Imprint;
@@ -43,7 +44,7 @@ pub enum ContentError {
 /// # Errors
 /// Returns the first error and its place.
 pub fn read_content(bytes: &[u8]) -> Result<Content, ContentError> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let bytes = without_mark(bytes);
     if bytes.trim_ascii_start().starts_with(b"{") {
         Ok(Content::Shape(StoredShape::read(bytes)?))
     } else {

@@ -16,6 +16,7 @@
 use std::fmt;
 
 use crate::formats::array::ArrayError;
+use crate::formats::byte_order_mark::without_mark;
 use crate::formats::pbm::PbmError;
 use crate::formats::table::TableError;
 use crate::formats::text::TextError;
@@ -145,7 +146,7 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, ImprintFormatError> {
         [b'P', b'0'..=b'9', ..] => return pbm::read(bytes).map_err(ImprintFormatError::Pbm),
         _ => {}
     }
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let text = without_mark(bytes);
     // Files of the classic Mac OS have lines that end in CR alone.
     let lines;
     let text = if text.contains(&b'\r') && !text.contains(&b'\n') {

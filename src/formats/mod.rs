@@ -10,6 +10,8 @@
 
 pub mod value;
 
+pub(crate) mod byte_order_mark;
+
 pub(crate) mod described;
 
 #[cfg(feature = "json")]

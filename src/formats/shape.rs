@@ -4,6 +4,7 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::fmt;
 
+use crate::formats::byte_order_mark::without_mark;
 use crate::formats::described::Rows;
 use crate::formats::json::{self, message};
 use crate::formats::name::Name;
@@ -105,7 +106,7 @@ impl StoredShape {
         if text.len() > MAX_BYTES {
             return Err(ShapeError::Large);
         }
-        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+        let text = without_mark(text);
         let file: ShapeFile<'_> =
             serde_json::from_slice(text).map_err(|error| ShapeError::Json {
                 line: error.line(),

@@ -9,6 +9,7 @@
 
 use std::fmt;
 
+use crate::formats::byte_order_mark::without_mark;
 use crate::formats::mask::Mask;
 use crate::imprint::Imprint;
 use crate::parameter::number::counted;
@@ -143,7 +144,7 @@ impl std::error::Error for TableError {}
 /// # Ok::<(), taxel::formats::table::TableError>(())
 /// ```
 pub fn read(bytes: &[u8]) -> Result<Imprint, TableError> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let bytes = without_mark(bytes);
     let text = str::from_utf8(bytes).map_err(|error| {
         let valid = &bytes[..error.valid_up_to()];
         let line = valid.split(|&byte| byte == b'\n').count();

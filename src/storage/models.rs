@@ -14,6 +14,7 @@ use std::sync::atomic::AtomicBool;
 
 use xxhash_rust::xxh3::xxh3_128;
 
+use crate::formats::byte_order_mark::without_mark;
 use crate::formats::{ArchiveError, Name, read_model, write_model};
 use crate::recognition::{Model, Training};
 use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile};
@@ -49,7 +50,7 @@ fn is_json(file: &mut (impl Read + Seek)) -> bool {
     let read = file
         .rewind()
         .and_then(|()| file.take(1 << 10).read_to_end(&mut start));
-    let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&start);
+    let start = without_mark(&start);
     read.is_ok() && start.trim_ascii_start().starts_with(b"{")
 }
 

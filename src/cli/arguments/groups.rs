@@ -5,7 +5,7 @@ use clap::Command;
 use crate::cli::arguments::parameters;
 
 /// The headings and their commands, in the order of the help.
-pub(crate) const GROUPS: [(&str, &[&str]); 5] = [
+const GROUPS: [(&str, &[&str]); 5] = [
     (
         "Touch",
         &["figure", "picture", "describe", "export", "batch"],

@@ -28,6 +28,7 @@ use crate::cli::output::answer::{AnswerJson, AnswerText};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::pose::PoseReport;
 use crate::cli::output::progress::Progress;
+use crate::formats::byte_order_mark::without_mark;
 use crate::formats::framed::{FrameRows, RuleRecord};
 use crate::formats::json;
 use crate::formats::record::Text;
@@ -346,7 +347,7 @@ fn is_line(text: &[u8]) -> Option<bool> {
     struct FormatKey {
         format: Option<IgnoredAny>,
     }
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let text = without_mark(text);
     if !text.trim_ascii_start().starts_with(b"{") {
         return Some(false);
     }

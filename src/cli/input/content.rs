@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
+use crate::formats::byte_order_mark::without_mark;
 use crate::formats::recording::may_be_recording;
 use crate::formats::shape::MAX_BYTES;
 use crate::formats::{Content, ContentError, read_content};
@@ -108,7 +109,7 @@ fn read(bytes: &[u8]) -> Result<Content, InputError> {
 /// Returns what JSON lines are if not imprints, a list of poses or a set of shapes, and the command that reads them.
 /// The first line decides.
 fn lines_of(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let bytes = without_mark(bytes);
     let mut lines = bytes.split(|&byte| byte == b'\n');
     let first = lines.find(|line| !line.trim_ascii().is_empty())?;
     line_of_sources(first)

@@ -20,6 +20,7 @@ use crate::cli::input::content;
 use crate::cli::input::content::{InputError, InputSource};
 use crate::cli::input::shapes::Shelf;
 use crate::figure::{Figure, FigureKind};
+use crate::formats::byte_order_mark::without_mark;
 use crate::formats::{ShapeLookup, named_shape, named_shape_of_words};
 use crate::picture::Picture;
 use crate::quote::shortened;
@@ -150,7 +151,7 @@ fn lines(
         let error = "larger than 64 MiB, the limit for a set of shapes";
         return Err(refused(name.to_owned(), error.to_owned()));
     }
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
+    let text = without_mark(&text);
     let before = shapes.len();
     for (index, line) in text.split(|&byte| byte == b'\n').enumerate() {
         if line.trim_ascii().is_empty() {

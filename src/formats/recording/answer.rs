@@ -93,7 +93,7 @@ impl Serialize for SetRule {
 
 /// A finite number, written without a fraction if it is whole.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shortest(pub(crate) f64);
+struct Shortest(f64);
 
 impl Serialize for Shortest {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -6,6 +6,7 @@
 
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
+use crate::formats::byte_order_mark::without_mark;
 use crate::formats::foreign;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
@@ -39,7 +40,7 @@ pub fn recognised(start: &[u8]) -> Option<RecordingFormat> {
 /// table, too.
 fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat> {
     let start = &start[..start.len().min(LOOKED_AT)];
-    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+    let text = without_mark(start);
     let trimmed = text.trim_ascii_start();
     let has = |word: &[u8]| start.windows(word.len()).any(|window| window == word);
     let line_with = |word: &[u8]| {
@@ -136,7 +137,7 @@ fn is_bitmap(start: &[u8]) -> bool {
 
 /// Returns true if a text consists of numbers, one per line.
 fn is_column(text: &[u8]) -> bool {
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let text = without_mark(text);
     let lines = text.split(|&byte| byte == b'\n');
     let mut rows = lines
         .filter(|line| !is_blank(line) && !is_comment(line))

@@ -8,11 +8,12 @@
 
 use std::mem::take;
 
+use crate::formats::byte_order_mark::without_mark;
 use crate::formats::recording::text::row::is_parted_by_cr;
 use crate::formats::stream::documents::{JsonChannels, JsonDecoder, RosDecoder};
 use crate::formats::stream::event::{StreamCounts, StreamFormat, StreamOptions, StreamSink};
 use crate::formats::stream::flexitac::FlexitacDecoder;
-use crate::formats::stream::format_search::{FormatSearch, MARK, is_numbers};
+use crate::formats::stream::format_search::{FormatSearch, is_numbers};
 use crate::formats::stream::lines::LinesDecoder;
 use crate::formats::stream::matsense::MatsenseDecoder;
 use crate::formats::stream::source_clock::SourceClock;
@@ -242,7 +243,7 @@ impl StreamDecoder {
     /// Removes the byte order mark that may precede the first line.
     fn without_mark<'a>(&mut self, line: &'a [u8]) -> &'a [u8] {
         let first = take(&mut self.first);
-        line.strip_prefix(MARK).filter(|_| first).unwrap_or(line)
+        if first { without_mark(line) } else { line }
     }
 
     /// Detects the format if it is not known, and then decodes the bytes so far.
@@ -268,6 +269,7 @@ impl StreamDecoder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::byte_order_mark::BYTE_ORDER_MARK;
     use crate::frame::FrameSize;
 
     #[test]
@@ -308,7 +310,7 @@ mod tests {
                 }
                 let mut decoder = StreamDecoder::new(options);
                 let mut sink = |_: crate::formats::stream::StreamEvent<'_>| {};
-                decoder.push(&[MARK, text.as_bytes()].concat(), &mut sink);
+                decoder.push(&[BYTE_ORDER_MARK, text.as_bytes()].concat(), &mut sink);
                 decoder.finish(&mut sink);
                 let counts = decoder.counts();
                 assert_eq!((counts.frames, counts.dropped), (frames, 0), "{text}");

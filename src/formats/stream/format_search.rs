@@ -11,6 +11,7 @@
 //! A stream that shows none of this is taken for numbers if it is text, and otherwise for `MatSense`, whose decoder
 //! counts what it drops.
 
+use crate::formats::byte_order_mark::BYTE_ORDER_MARK;
 use crate::formats::recording::ros::echo;
 use crate::formats::recording::time::moment;
 use crate::formats::stream::event::{StreamCounts, StreamFormat};
@@ -27,9 +28,6 @@ const NOISE: usize = 1 << 12;
 
 /// The number of bytes within which two markers of the largest frames are found.
 const MARKERS_IN: usize = 3 * (MAX_FRAME_CELLS + 2) + 3;
-
-/// The byte order mark, with which some programs begin a text.
-pub(super) const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// The search for the format of a stream. When more bytes arrive, it continues where it was.
 #[derive(Clone, Debug, Default)]
@@ -56,11 +54,11 @@ impl FormatSearch {
         size: Option<FrameSize>,
         ended: bool,
     ) -> Option<StreamFormat> {
-        if bytes.len() < MARK.len() && MARK.starts_with(bytes) && !ended {
+        if bytes.len() < BYTE_ORDER_MARK.len() && BYTE_ORDER_MARK.starts_with(bytes) && !ended {
             return None;
         }
-        if self.seen == 0 && bytes.starts_with(MARK) {
-            (self.seen, self.line) = (MARK.len(), MARK.len());
+        if self.seen == 0 && bytes.starts_with(BYTE_ORDER_MARK) {
+            (self.seen, self.line) = (BYTE_ORDER_MARK.len(), BYTE_ORDER_MARK.len());
         }
         while self.seen < bytes.len() {
             self.seen += 1;

@@ -19,6 +19,7 @@ use crate::cli::error::CliError;
 use crate::cli::input::content::InputSource;
 use crate::cli::input::lines::block::{Block, BlockReader};
 use crate::cli::input::lines::buffers::Buffers;
+use crate::formats::byte_order_mark::without_mark;
 use crate::formats::json;
 
 pub(crate) mod block;
@@ -133,7 +134,7 @@ fn answer_block(
         let begin = answers.text.len();
         // Some programs start a text with a byte order mark.
         let line = line.map(|content| match number {
-            1 => content.strip_prefix(b"\xef\xbb\xbf").unwrap_or(content),
+            1 => without_mark(content),
             _ => content,
         });
         let result = match line {

@@ -14,6 +14,7 @@ use std::io::BufRead;
 
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Visitor};
 
+use crate::formats::byte_order_mark::BYTE_ORDER_MARK;
 use crate::formats::json;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink};
@@ -34,9 +35,8 @@ pub(in crate::formats::recording) fn read(
     mut input: impl BufRead,
     sink: &mut Sink<'_>,
 ) -> Result<(), RecordingError> {
-    let mark = b"\xef\xbb\xbf";
-    if input.fill_buf()?.starts_with(mark) {
-        input.consume(mark.len());
+    if input.fill_buf()?.starts_with(BYTE_ORDER_MARK) {
+        input.consume(BYTE_ORDER_MARK.len());
     }
     let mut content = serde_json::Deserializer::from_reader(input);
     let mut state = PopuState {

@@ -4,6 +4,7 @@
 
 use std::io::{self, BufRead};
 
+use crate::formats::byte_order_mark::BYTE_ORDER_MARK;
 use crate::formats::recording::error::RecordingError;
 
 /// The size limit of a line in bytes, more than a frame of 512 × 512 values takes; thus one line cannot fill all
@@ -76,8 +77,8 @@ impl<R: BufRead> TextLines<R> {
         if self.line.last() == Some(&b'\r') {
             self.line.pop();
         }
-        if self.number == 1 && self.line.starts_with(b"\xef\xbb\xbf") {
-            self.line.drain(..3);
+        if self.number == 1 && self.line.starts_with(BYTE_ORDER_MARK) {
+            self.line.drain(..BYTE_ORDER_MARK.len());
         }
         Ok(true)
     }
