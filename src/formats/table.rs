@@ -220,7 +220,9 @@ impl<'a> Table<'a> {
         let Some((_, last)) = lines.last().filter(|_| found <= MOST) else {
             return Err(TableError::Lines { found });
         };
-        // The last line holds numbers; names may contain any character.
+        // The last line holds numbers; names may contain any character. Tabs come first: a comma
+        // beside a tab or a semicolon is a decimal sign. Recordings, which are read line by line, have an order of
+        // their own: see `recording::text::separator`.
         let in_last = |mark: &char| last.contains(*mark);
         let in_any = |mark: &char| lines.iter().any(|(_, line)| line.contains(*mark));
         let marks = ['\t', ';', ','].into_iter();

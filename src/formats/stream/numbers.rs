@@ -1,23 +1,23 @@
 //! Reads the numbers of a line, fast enough for any sensor.
 
 use crate::formats::recording::text::row::Field;
-use crate::formats::recording::text::separator::{Separator, unquoted};
+use crate::formats::recording::text::separator::{SEPARATORS, Separator, unquoted};
 
 /// The most digits of a number that is read here; longer ones are left to the general reader.
 const FAST_DIGITS: usize = 9;
 
-/// Appends the numbers of a line to `values`. They are separated as in a table: by the first of semicolons, commas
-/// and tabs that the line contains, with or without blanks, otherwise by blanks. With semicolons, a comma is the
-/// decimal sign. Quotes around a number are ignored. An empty field and words such as `nan` mean that there is no
-/// cell; a separator at the end of the line is ignored, as are tabs at both ends. Returns None if there is anything
-/// else, or more than `most` numbers.
+/// Appends the numbers of a line to `values`. They are separated as in a table: by the first of [`SEPARATORS`] that
+/// the line contains, with or without blanks, otherwise by blanks. With semicolons, a comma is the decimal sign.
+/// Quotes around a number are ignored. An empty field and words such as `nan` mean that there is no cell; a separator
+/// at the end of the line is ignored, as are tabs at both ends. Returns None if there is anything else, or more than
+/// `most` numbers.
 pub(super) fn read(line: &[u8], values: &mut Vec<f64>, most: usize) -> Option<()> {
-    let (mark, line) = if line.contains(&b';') {
-        (b';', line)
-    } else if line.contains(&b',') {
-        (b',', line)
+    let mut marks = SEPARATORS.into_iter();
+    let mark = marks.find(|mark| line.contains(mark)).unwrap_or(b'\t');
+    let line = if mark == b'\t' {
+        line.trim_ascii()
     } else {
-        (b'\t', line.trim_ascii())
+        line
     };
     let is_separator = |byte: u8| byte == mark || matches!(byte, b' ' | b'\t' | b'\r');
     let first = values.len();

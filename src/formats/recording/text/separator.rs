@@ -52,6 +52,13 @@ pub(in crate::formats) fn unquoted(field: &[u8]) -> &[u8] {
     inner.map_or(field, <[u8]>::trim_ascii)
 }
 
+/// The bytes that separate fields, the first one that a line has before the others; without any of them, blanks do.
+///
+/// Recordings and streams are read line by line, and docs/sensors.md promises this order. The table of an imprint is short
+/// and read as a whole, so it is separated by what its last line has, where names cannot mislead: see
+/// [`table`](crate::formats::table).
+pub(in crate::formats) const SEPARATORS: [u8; 3] = *b";,\t";
+
 /// The separator between the fields of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::formats) enum Separator {
@@ -62,11 +69,9 @@ pub(in crate::formats) enum Separator {
 }
 
 impl Separator {
-    /// Returns the separator of a line: the first of semicolon, comma and tab that occurs outside quotes, otherwise
-    /// blanks.
+    /// Returns the separator of a line: the first of [`SEPARATORS`] that occurs outside quotes, otherwise blanks.
     pub(in crate::formats::recording) fn of(line: &[u8]) -> Self {
-        let marks = *b";,\t";
-        let found = marks
+        let found = SEPARATORS
             .into_iter()
             .find(|&mark| Self::Byte(mark).split(line).nth(1).is_some());
         found.map_or(Self::Spaces, Self::Byte)
