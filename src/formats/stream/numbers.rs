@@ -1,6 +1,5 @@
 //! Reads the numbers of a line, fast enough for any sensor.
 
-use crate::formats::recording::text::row::Field;
 use crate::formats::recording::text::separator::{SEPARATORS, Separator, unquoted};
 
 /// The most digits of a number that is read here; longer ones are left to the general reader.
@@ -58,13 +57,8 @@ pub(super) fn read(line: &[u8], values: &mut Vec<f64>, most: usize) -> Option<()
         while line.get(at).is_some_and(|&byte| !is_separator(byte)) {
             at += 1;
         }
-        values.push(
-            match Separator::Byte(mark).value(unquoted(&line[start..at])) {
-                Field::Value(value) => value,
-                Field::NoCell => f64::NAN,
-                Field::Wrong => return None,
-            },
-        );
+        let field = unquoted(&line[start..at]);
+        values.push(Separator::Byte(mark).value(field).cell()?);
     }
 }
 

@@ -184,11 +184,8 @@ impl FrameFields {
                 continue;
             };
             if let Some(slot) = slot {
-                values[*slot] = match separator.value(field) {
-                    Field::Value(value) => value,
-                    Field::NoCell => f64::NAN,
-                    Field::Wrong => return Err(row::wrong(number, found, field)),
-                };
+                let cell = separator.value(field).cell();
+                values[*slot] = cell.ok_or_else(|| row::wrong(number, found, field))?;
             } else if self.label == Some(index) {
                 if let Field::Value(value) = separator.value(field) {
                     label = whole(value);
@@ -310,11 +307,8 @@ impl RowBlock {
             let Some(slot) = slots.get_mut(count - 1) else {
                 continue;
             };
-            *slot = match self.separator.value(field) {
-                Field::Value(value) => value,
-                Field::NoCell => f64::NAN,
-                Field::Wrong => return Err(row::wrong(number, count, field)),
-            };
+            let cell = self.separator.value(field).cell();
+            *slot = cell.ok_or_else(|| row::wrong(number, count, field))?;
         }
         if count != columns {
             return Err(row::count(number, count, columns));

@@ -21,6 +21,17 @@ pub(in crate::formats) enum Field {
     Wrong,
 }
 
+impl Field {
+    /// Returns the value of a cell, NaN if there is none; None if the field is anything else.
+    pub(in crate::formats) fn cell(self) -> Option<f64> {
+        match self {
+            Self::Value(value) => Some(value),
+            Self::NoCell => Some(f64::NAN),
+            Self::Wrong => None,
+        }
+    }
+}
+
 /// Reads a number that may be the value of a cell.
 pub(in crate::formats::recording) fn value(field: &[u8]) -> Field {
     match number::read(field) {
@@ -46,11 +57,9 @@ pub(in crate::formats::recording) fn fill<'a>(
         let Some(field) = field.filter(|field| !field.is_empty()) else {
             return Err(count(number, found, expected));
         };
-        *slot = match read(field) {
-            Field::Value(value) => value,
-            Field::NoCell => f64::NAN,
-            Field::Wrong => return Err(wrong(number, found + 1, field)),
-        };
+        *slot = read(field)
+            .cell()
+            .ok_or_else(|| wrong(number, found + 1, field))?;
     }
     match fields.filter(|(field, _)| !field.is_empty()).last() {
         Some((_, found)) => Err(count(number, found, expected)),
