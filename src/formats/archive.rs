@@ -14,9 +14,9 @@ use serde::{Deserialize, Serialize};
 use crate::atlas::{Atlas, ImprintSummary, feature_values, features};
 use crate::formats::npy::Dtype;
 use crate::formats::npz::{
-    ArchiveError, ArrayReader, ArrayWriter, HEADER, format_in, little_endian,
+    ArchiveError, ArrayReader, ArrayWriter, HEADER, header_of, little_endian,
 };
-use crate::formats::record::{Record, Values};
+use crate::formats::record::{Record, Values, no_names};
 use crate::pose::{Anchor, Axis, PoseGrid, Ranges};
 use crate::quote::shortened;
 use crate::sensor::Sensor;
@@ -146,20 +146,10 @@ fn feature_columns(atlas: &Atlas) -> Vec<Vec<u8>> {
 pub fn read(input: impl Read + Seek) -> Result<SweepResult, ArchiveError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
-    // Another format has other keys, so report the format before a missing key.
-    let found = format_in(&header)?;
-    if found != FORMAT {
-        return Err(ArchiveError::Format {
-            found: shortened(&found),
-            expected: FORMAT,
-        });
-    }
-    let header: ArchiveHeader<Record<'_>, Values> = serde_json::from_slice(&header)
-        .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
+    let header: ArchiveHeader<Record<'_>, Values> = header_of(&header, FORMAT)?;
     let sensor = header.sensor.sensor(Sensor::default())?;
-    let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
     header.source.no_sensor("source")?;
-    let source = header.source.source(&sensor, &no_name)?;
+    let source = header.source.source(&sensor, &no_names)?;
     let anchor = anchor(&header.anchor)?;
     let ranges = ranges([
         &header.x0,

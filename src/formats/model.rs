@@ -17,13 +17,12 @@ use serde::{Deserialize, Serialize};
 use crate::formats::archive::{anchor, ranges};
 use crate::formats::npy::Dtype;
 use crate::formats::npz::{
-    ArchiveError, ArrayReader, ArrayWriter, HEADER, format_in, little_endian,
+    ArchiveError, ArrayReader, ArrayWriter, HEADER, header_of, little_endian,
 };
-use crate::formats::record::{Record, Values};
+use crate::formats::record::{Record, Values, no_names};
 use crate::imprint::Imprint;
 use crate::index::index;
 use crate::pose::Axis;
-use crate::quote::shortened;
 use crate::recognition::{
     ImprintKey, KeyTable, Model, ModelError, ModelParts, NamedShape, ShapeCount,
 };
@@ -162,22 +161,12 @@ fn header(model: &Model) -> Result<Vec<u8>, ArchiveError> {
 pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
     let mut archive = ArrayReader::new(input)?;
     let header = archive.header()?;
-    // Another format has other fields: report the format before a missing field.
-    let found = format_in(&header)?;
-    if found != FORMAT {
-        return Err(ArchiveError::Format {
-            found: shortened(&found),
-            expected: FORMAT,
-        });
-    }
-    let header: ModelHeader<Record<'_>, Values> = serde_json::from_slice(&header)
-        .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
+    let header: ModelHeader<Record<'_>, Values> = header_of(&header, FORMAT)?;
     let sensor = header.sensor.sensor(Sensor::default())?;
-    let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
     let mut shapes = Vec::with_capacity(header.shapes.len());
     for shape in &header.shapes {
         shape.source.no_sensor("shape")?;
-        let source = shape.source.source(&Sensor::LARGEST, &no_name)?;
+        let source = shape.source.source(&Sensor::LARGEST, &no_names)?;
         shapes.push(NamedShape::new(shape.name.clone(), source).weighted(shape.weight));
     }
     let texts = [

@@ -3,11 +3,13 @@
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
+use serde::Deserialize;
 use zip::read::ZipFile;
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
+use crate::formats::json;
 use crate::formats::npy;
 use crate::formats::npy::Dtype;
 use crate::formats::record::RecordError;
@@ -207,27 +209,47 @@ pub struct ArchiveKind {
 /// # Errors
 /// Returns an error if it is not an archive with such a header.
 pub fn kind_of(input: impl Read + Seek) -> Result<ArchiveKind, ArchiveError> {
-    #[derive(serde::Deserialize)]
+    #[derive(Deserialize)]
     struct Part {
         shard: String,
     }
     let header = ArrayReader::new(input)?.header()?;
     let format = format_in(&header)?;
-    let part: Part = serde_json::from_slice(&header)
-        .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
+    let part: Part = parsed(&header)?;
     let shard = part.shard.parse()?;
     Ok(ArchiveKind { format, shard })
 }
 
 /// Returns the format in a header, without checking the other keys.
-pub(crate) fn format_in(header: &[u8]) -> Result<String, ArchiveError> {
-    #[derive(serde::Deserialize)]
+fn format_in(header: &[u8]) -> Result<String, ArchiveError> {
+    #[derive(Deserialize)]
     struct Format {
         format: String,
     }
-    let format: Format = serde_json::from_slice(header)
-        .map_err(|error| ArchiveError::Header(crate::formats::json::message(&error)))?;
+    let format: Format = parsed(header)?;
     Ok(format.format)
+}
+
+/// Parses a header.
+fn parsed<'a, T: Deserialize<'a>>(header: &'a [u8]) -> Result<T, ArchiveError> {
+    serde_json::from_slice(header).map_err(|error| ArchiveError::Header(json::message(&error)))
+}
+
+/// Parses a header of the format `expected`.
+///
+/// # Errors
+/// Returns an error if the header is that of another format, or if keys are missing or wrong.
+pub(crate) fn header_of<'a, T: Deserialize<'a>>(
+    header: &'a [u8],
+    expected: &'static str,
+) -> Result<T, ArchiveError> {
+    // Another format has other keys, so the format is reported before a missing key.
+    let found = format_in(header)?;
+    if found != expected {
+        let found = shortened(&found);
+        return Err(ArchiveError::Format { found, expected });
+    }
+    parsed(header)
 }
 
 /// Returns the error for an archive, in words that require no knowledge of its layout. The error type of the zip

@@ -9,7 +9,7 @@ use crate::formats::described::Rows;
 use crate::formats::json::{self, message};
 use crate::formats::name::Name;
 use crate::formats::record::{
-    ImprintRecord, KeyedObject, Record, RecordError, Values, keyed_object, value_of,
+    ImprintRecord, KeyedObject, Record, RecordError, Values, keyed_object, no_names, value_of,
 };
 use crate::imprint::Imprint;
 use crate::quote::shortened;
@@ -119,12 +119,11 @@ impl StoredShape {
         let NameRecord(name) = file.name.ok_or(ShapeError::Missing("name"))?;
         let SensorRecord(sensor) = file.sensor.ok_or(ShapeError::Missing("sensor"))?;
         let ImprintRecord(imprint) = file.imprint.ok_or(ShapeError::Missing("imprint"))?;
-        let no_name = |_: &str| Err("expected rows of '#' and '.'".to_owned());
         let source = file
             .source
             .map(|source| {
                 source.no_sensor("source")?;
-                source.source(&sensor, &no_name)
+                source.source(&sensor, &no_names)
             })
             .transpose();
         Self::new(name, sensor, imprint, source.map_err(ShapeError::Source)?)
