@@ -6,9 +6,8 @@
 
 use std::ops::ControlFlow;
 
-use crate::cli::commands::watch::no_channel;
 use crate::cli::error::{CliError, note_advice};
-use crate::cli::input::recording::RecordingFile;
+use crate::cli::input::recording::{RecordingFile, no_channel};
 use crate::cli::output::recording_list::ListedChannel;
 use crate::formats::recording::{RecordingError, RecordingEvent, RecordingFormat, RecordingNote};
 use crate::formats::value::counted;

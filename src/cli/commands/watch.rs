@@ -25,7 +25,7 @@ use crate::cli::commands::model;
 use crate::cli::commands::naming::FrameNamer;
 use crate::cli::error::{CliError, note_advice, stream_advice};
 use crate::cli::input::processing;
-use crate::cli::input::recording::RecordingFile;
+use crate::cli::input::recording::{RecordingFile, no_channel};
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::line_writer::LineWriter;
@@ -33,13 +33,11 @@ use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
 use crate::formats::json;
 use crate::formats::recording::{
-    ChannelChoice, ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingEvent,
-    RecordingMetadata, UNNAMED,
+    ChannelChoice, ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingMetadata,
 };
 use crate::formats::stream::{StreamCounts, StreamRefusal};
 use crate::formats::value::counted;
 use crate::frame::{Frame, FrameError, FrameSize, Processing, SetRule, Tare, TareFrames};
-use crate::quote::did_you_mean;
 use crate::tui::live::request::WatchRequest;
 
 /// The shortest time between two reports of dropped frames.
@@ -206,31 +204,7 @@ fn channels(
     let options = ReadOptions {
         size: asked.options.size,
     };
-    let mut names = Vec::new();
-    let read = RecordingFile::open(path, options)?.read(&mut |event| {
-        if let RecordingEvent::Channel(info) = event {
-            names.push(info.shown_name().to_owned());
-            if up_to == Some(info.shown_name()) {
-                return ControlFlow::Break(());
-            }
-        }
-        ControlFlow::Continue(())
-    });
-    Ok((names, read.is_ok()))
-}
-
-/// Returns the message that a recording has no channel of this name; it lists the others.
-pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
-    if names == [UNNAMED] {
-        return format!(
-            "no channel is called {asked:?}: the recording has one channel, without a name; leave out --channel"
-        );
-    }
-    format!(
-        "no channel is called {asked:?}, expected one of {}{}",
-        names.join(", "),
-        did_you_mean(asked, names.iter().copied())
-    )
+    Ok(RecordingFile::open(path, options)?.channel_names(up_to))
 }
 
 /// Starts the writer of the answers. With a model, it also names each imprint, so that neither training nor search

@@ -13,11 +13,12 @@ use crate::cli::input::content;
 use crate::cli::input::content::{InputError, InputSource};
 use crate::cli::input::spool::SpooledInput;
 use crate::formats::recording::{
-    ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, format_of,
-    read, read_rows,
+    ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, UNNAMED,
+    format_of, read, read_rows,
 };
 use crate::frame::Frame;
 use crate::imprint::Imprint;
+use crate::quote::did_you_mean;
 
 /// The most bytes that are read of a table. A table of 64 × 64 factors is much smaller.
 const LARGEST_TABLE: u64 = 1 << 20;
@@ -163,6 +164,21 @@ impl RecordingFile {
         }
     }
 
+    /// Returns the names of its channels, all or up to one of them; and whether it could be read that far.
+    pub(crate) fn channel_names(&mut self, up_to: Option<&str>) -> (Vec<String>, bool) {
+        let mut names = Vec::new();
+        let read = self.read(&mut |event| {
+            if let RecordingEvent::Channel(info) = event {
+                names.push(info.shown_name().to_owned());
+                if up_to == Some(info.shown_name()) {
+                    return ControlFlow::Break(());
+                }
+            }
+            ControlFlow::Continue(())
+        });
+        (names, read.is_ok())
+    }
+
     /// Returns the format that its beginning shows, even if it is damaged.
     pub(crate) fn format(&mut self) -> Option<RecordingFormat> {
         self.file.seek(SeekFrom::Start(0)).ok()?;
@@ -184,6 +200,20 @@ impl RecordingFile {
             message: message.to_string(),
         }
     }
+}
+
+/// Returns the message that a recording has no channel of this name; it lists the others.
+pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
+    if names == [UNNAMED] {
+        return format!(
+            "no channel is called {asked:?}: the recording has one channel, without a name; leave out --channel"
+        );
+    }
+    format!(
+        "no channel is called {asked:?}, expected one of {}{}",
+        names.join(", "),
+        did_you_mean(asked, names.iter().copied())
+    )
 }
 
 /// Reads an imprint, alone or in a stored shape, from a file or, for `-`, from standard input.
