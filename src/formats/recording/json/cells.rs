@@ -114,3 +114,46 @@ impl<'de> Visitor<'de> for CellSeed<'_> {
         Ok(true)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::json;
+
+    /// Returns the cells and the number of rows of a list, or the error.
+    fn cells(text: &str) -> Result<(Vec<f64>, usize), String> {
+        let (mut values, mut rows) = (Vec::new(), 0);
+        let mut list = serde_json::Deserializer::from_str(text);
+        CellsSeed(&mut values, Some(&mut rows))
+            .deserialize(&mut list)
+            .map_err(|error| json::message(&error))?;
+        Ok((values, rows))
+    }
+
+    #[test]
+    fn a_list_has_rows_or_cells() {
+        assert_eq!(cells("[1,2.5,-3]"), Ok((vec![1.0, 2.5, -3.0], 0)));
+        assert_eq!(cells("[[1,2],[3,4]]"), Ok((vec![1.0, 2.0, 3.0, 4.0], 2)));
+        assert!(cells("[null]").expect("a cell").0[0].is_nan());
+        for (text, error) in [
+            ("[[1,2],[3]]", "row 2 has 1 value, expected 2"),
+            ("[[1],2]", "rows and numbers in one list"),
+            ("[1,[2]]", "row 1 has 1 value, expected 1"),
+            ("[[[1]]]", "a list inside a row, expected a number or null"),
+            (
+                "[\"1\"]",
+                "found the string \"1\", expected a number or null",
+            ),
+        ] {
+            assert_eq!(cells(text), Err(error.to_owned()), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_frame_has_at_most_512_rows_of_512_cells() {
+        let list = |count: usize| format!("[{}0]", "0,".repeat(count - 1));
+        assert!(cells(&list(MAX_FRAME_CELLS)).is_ok());
+        let error = cells(&list(MAX_FRAME_CELLS + 1));
+        assert_eq!(error, Err("more than 512 × 512 cells".to_owned()));
+    }
+}
