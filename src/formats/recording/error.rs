@@ -80,7 +80,7 @@ impl RecordingError {
     }
 
     /// Returns the error for damage in a line.
-    pub(crate) fn in_line(line: u64, message: impl Into<String>) -> Self {
+    pub(super) fn in_line(line: u64, message: impl Into<String>) -> Self {
         let message = message.into();
         Self::Damaged {
             line: Some(line),
@@ -90,7 +90,7 @@ impl RecordingError {
     }
 
     /// Returns the error for damage in a field of a line.
-    pub(crate) fn in_field(line: u64, column: usize, message: impl Into<String>) -> Self {
+    pub(super) fn in_field(line: u64, column: usize, message: impl Into<String>) -> Self {
         Self::Damaged {
             line: Some(line),
             column: Some(column as u64),

@@ -320,7 +320,7 @@ pub enum RecordingEvent<'a> {
 }
 
 /// A function that takes the events of a reader; `Break` ends the reading without an error.
-pub(crate) type Sink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a;
+pub(super) type Sink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a;
 
 #[cfg(test)]
 mod tests {

@@ -5,19 +5,19 @@ use crate::frame::{FrameSize, MAX_FRAME_SIDE};
 use crate::quote::shortened;
 
 /// Returns a number of rows or columns; None if it is 0 or larger than a frame can be.
-pub(crate) fn side(length: impl TryInto<u16>) -> Option<u16> {
+pub(in crate::formats) fn side(length: impl TryInto<u16>) -> Option<u16> {
     let length = length.try_into().ok();
     length.filter(|side| FrameSize::SIDES.contains(side))
 }
 
 /// Returns the size of a frame; None if a side is out of range.
-pub(crate) fn frame_size<T: TryInto<u16>>(columns: T, rows: T) -> Option<FrameSize> {
+pub(in crate::formats) fn frame_size<T: TryInto<u16>>(columns: T, rows: T) -> Option<FrameSize> {
     FrameSize::of_sides(side(columns), side(rows))
 }
 
 /// Returns the rows and columns of a message with this number of values: the `named` ones if they have that many
 /// cells, otherwise those that the message states. Many programs publish a layout of one row, or none.
-pub(crate) fn arranged(
+pub(in crate::formats) fn arranged(
     values: usize,
     stated: Option<FrameSize>,
     named: Option<FrameSize>,
