@@ -3,6 +3,7 @@
 //! The format is recognised by the content, never by the file's name ([`read_content`]). At most [`MAX_BYTES`] are
 //! read.
 
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -41,6 +42,17 @@ impl InputSource {
             Self::File(path) => path.to_string_lossy().into_owned(),
             Self::Standard => "standard input".to_owned(),
         }
+    }
+
+    /// Opens it; standard input only once.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be opened, or if standard input was taken before.
+    pub(crate) fn open(&self) -> io::Result<Box<dyn Read>> {
+        Ok(match self {
+            Self::File(path) => Box::new(File::open(path)?),
+            Self::Standard => Box::new(standard()?),
+        })
     }
 }
 

@@ -222,15 +222,8 @@ pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
 /// Returns the errors of [`content::read_from`], with the flag and the name of the file.
 pub(crate) fn dead_cells(path: &Path) -> Result<Imprint, CliError> {
     let source = InputSource::of(path);
-    let content = match &source {
-        InputSource::Standard => content::standard()
-            .map_err(InputError::Read)
-            .and_then(content::read_from),
-        InputSource::File(path) => File::open(path)
-            .map_err(InputError::Read)
-            .and_then(content::read_from),
-    };
-    match content {
+    let opened = source.open().map_err(InputError::Read);
+    match opened.and_then(content::read_from) {
         Ok(content) => Ok(*content.imprint()),
         Err(error) => Err(CliError::Input {
             name: format!("--mask {}", source.name()),

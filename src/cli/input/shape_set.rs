@@ -10,13 +10,11 @@
 //! of that name. Otherwise it is the name of a stored shape, which is taken as it was stored.
 
 use std::ffi::OsStr;
-use std::fs::File;
 use std::io::{BufReader, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::cli::arguments::model::shape_set::SetArguments;
 use crate::cli::error::CliError;
-use crate::cli::input::content;
 use crate::cli::input::content::{InputError, InputSource};
 use crate::cli::input::shapes::Shelf;
 use crate::figure::{Figure, FigureKind};
@@ -44,20 +42,13 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
     };
     let mut shapes = Vec::new();
     for what in &asked.what {
-        if what == "-" {
-            let name = InputSource::Standard.name();
-            let mut file = content::standard().map_err(|error| CliError::Input {
+        if let Some(source) = source_of_lines(what, shelf) {
+            let name = source.name();
+            let mut input = source.open().map_err(|error| CliError::Input {
                 name: name.clone(),
                 error: InputError::Read(error),
             })?;
-            lines(&mut file, &name, &lookup, &mut shapes)?;
-        } else if let Some(path) = file_of_lines(what, shelf) {
-            let name = path.to_string_lossy().into_owned();
-            let mut file = File::open(&path).map_err(|error| CliError::Input {
-                name: name.clone(),
-                error: InputError::Read(error),
-            })?;
-            lines(&mut file, &name, &lookup, &mut shapes)?;
+            lines(&mut input, &name, &lookup, &mut shapes)?;
         } else {
             let name = what.to_string_lossy();
             let imprint = shelf
@@ -117,8 +108,8 @@ fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
     Ok(shapes)
 }
 
-/// Returns the file that an argument names; None if it is the name of a shape.
-fn file_of_lines(what: &OsStr, shelf: &Shelf) -> Option<PathBuf> {
+/// Returns the file, or standard input, that an argument names; None if it is the name of a shape.
+fn source_of_lines(what: &OsStr, shelf: &Shelf) -> Option<InputSource> {
     let path = Path::new(what);
     let ending = path
         .extension()
@@ -127,7 +118,9 @@ fn file_of_lines(what: &OsStr, shelf: &Shelf) -> Option<PathBuf> {
         what.to_str()
             .is_some_and(|name| shelf.imprint(name).is_ok())
     };
-    (ending || path.components().count() > 1 || path.is_file() && !known()).then(|| path.to_owned())
+    let is_source =
+        what == "-" || ending || path.components().count() > 1 || path.is_file() && !known();
+    is_source.then(|| InputSource::of(path))
 }
 
 /// Reads a set of shapes, one line of JSON each. Blank lines are skipped.
