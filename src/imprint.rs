@@ -66,15 +66,6 @@ impl Imprint {
         }
     }
 
-    /// Sets rows `2 * pair` and `2 * pair + 1`, like [`Self::set_word`].
-    pub(crate) fn set_pair(&mut self, pair: usize, words: [u64; 2]) {
-        let mask = self.mask();
-        let rows = &mut self.words[..usize::from(self.size.rows())];
-        for (slot, word) in rows.iter_mut().skip(2 * pair).zip(words) {
-            *slot = word & mask;
-        }
-    }
-
     /// Returns a row in which all taxels are active.
     pub fn mask(&self) -> u64 {
         u64::MAX >> (MAX_SIDE - self.columns())
@@ -112,13 +103,16 @@ impl Imprint {
 
     /// Returns the smallest rectangle of whole taxels around the active ones; None for an empty imprint.
     pub fn bounds(&self) -> Option<Bounds> {
-        let active = |&word: &u64| word != 0;
-        let top = self.words().iter().position(active)?;
-        let last = self.words().iter().rposition(active)?;
-        let across = self.words()[top..=last]
-            .iter()
-            .fold(0, |across, word| across | word);
-        Bounds::around(across, top, last + 1 - top)
+        let mut rows = self.words();
+        while let [0, below @ ..] = rows {
+            rows = below;
+        }
+        let top = self.words().len() - rows.len();
+        while let [above @ .., 0] = rows {
+            rows = above;
+        }
+        let across = rows.iter().fold(0, |across, word| across | word);
+        Bounds::around(across, top, rows.len())
     }
 
     /// Returns true if a taxel in the first or last row or column is active, so that the shape may be cut off.
@@ -243,6 +237,11 @@ impl Bounds {
     /// Returns the rows of the rectangle.
     pub fn rows(&self) -> Range<u8> {
         self.top..self.bottom
+    }
+
+    /// Returns the rows of an imprint within the rectangle.
+    pub(crate) fn words(self, imprint: &Imprint) -> &[u64] {
+        &imprint.words()[usize::from(self.top)..usize::from(self.bottom)]
     }
 
     /// Returns the number of taxels in the rectangle; 0 if left and right, or top and bottom, are the wrong way

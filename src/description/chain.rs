@@ -51,48 +51,53 @@ impl OutlineCounts {
     /// instruction for it. So four rows share a word if at least one column stays free between them.
     pub(super) fn of(filled: &Imprint, bounds: Bounds) -> Self {
         if bounds.right - bounds.left < 16 {
-            Self::count::<16>(filled, bounds)
+            Self::count::<4, 16>(filled, bounds)
         } else {
-            Self::count::<64>(filled, bounds)
+            Self::count::<1, 64>(filled, bounds)
         }
     }
 
-    /// Counts the region with `BITS` bits per row.
-    fn count<const BITS: u32>(filled: &Imprint, bounds: Bounds) -> Self {
-        let rows = &filled.words()[usize::from(bounds.top)..usize::from(bounds.bottom)];
-        let mut words = rows.chunks((u64::BITS / BITS) as usize).map(|rows| {
-            // The first row goes into the lowest bits.
-            let join = |word: u64, &row: &u64| word.unbounded_shl(BITS) | row >> bounds.left;
-            rows.iter().rev().fold(0, join)
-        });
-        let (mut taxels, mut inner, mut counts) = (0, 0, [0; 3]);
-        // Below the last row nothing is active.
-        let mut following = || words.next().unwrap_or(0);
-        let (mut before, mut here) = (0, following());
-        // If the last word is full, one more word is needed: the windows of the last row reach below it.
-        for _ in 0..=rows.len() / (u64::BITS / BITS) as usize {
-            let next = following();
+    /// Counts the region with `ROWS` rows in each word, `BITS` bits per row.
+    fn count<const ROWS: usize, const BITS: u32>(filled: &Imprint, bounds: Bounds) -> Self {
+        let (full, rest) = bounds.words(filled).as_chunks::<ROWS>();
+        // The first row goes into the lowest bits.
+        let join = |rows: &[u64]| {
+            let add = |word: u64, &row: &u64| word.unbounded_shl(BITS) | row >> bounds.left;
+            rows.iter().rev().fold(0, add)
+        };
+        // The windows of the last row reach below it, so the last word is needed even if it is empty.
+        let mut words = full.iter().map(|rows| join(rows)).chain([join(rest)]);
+        let (mut counts, mut diagonals) = ([0; 4], 0);
+        // Counts the taxels, those with four neighbours, the windows with many, and those with three: side by side, so
+        // that a processor can count two at once.
+        let mut add = |inside: [u64; 2], [many, three, across]: [u64; 3]| {
+            for (count, word) in counts.iter_mut().zip([inside[0], inside[1], many, three]) {
+                *count += u64::from(word.count_ones());
+            }
+            // Diagonals are rare.
+            if across != 0 {
+                diagonals += across.count_ones();
+            }
+        };
+        let (mut before, mut following) = (0, words.next());
+        while let Some(here) = following {
+            following = words.next();
             let above = here.unbounded_shl(BITS) | before >> (u64::BITS - BITS);
-            let below = here.unbounded_shr(BITS) | next << (u64::BITS - BITS);
-            taxels += here.count_ones();
-            inner += (here & here << 1 & here >> 1 & above & below).count_ones();
+            let below = here.unbounded_shr(BITS) | following.unwrap_or(0) << (u64::BITS - BITS);
+            let inner = here & here << 1 & here >> 1 & above & below;
             // Bit i of the four words holds the corners of a window. One window lies left of column 0, so the words are
             // shifted up, not down. The window to the right of column 63 is lost by this, and is added separately.
-            let mut add = |[many, three, across]: [u64; 3]| {
-                counts[0] += many.count_ones();
-                counts[1] += three.count_ones();
-                // Diagonals are rare.
-                if across != 0 {
-                    counts[2] += across.count_ones();
-                }
-            };
-            add(windows(above << 1, above, here << 1, here));
-            if BITS == u64::BITS {
-                add(windows(above >> 63, 0, here >> 63, 0));
+            add([here, inner], windows(above << 1, above, here << 1, here));
+            if ROWS == 1 {
+                add([0; 2], windows(above >> 63, 0, here >> 63, 0));
             }
-            (before, here) = (here, next);
+            before = here;
         }
-        let [many, three, across] = counts;
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "an imprint has 4096 taxels"
+        )]
+        let [taxels, inner, many, three] = counts.map(|count: u64| count as u32);
         Self {
             taxels,
             rim: taxels - inner,
@@ -101,7 +106,7 @@ impl OutlineCounts {
                 // four, plus the number with three, plus twice the number with a diagonal. So the number of windows
                 // with two neighbours, which have one step each, follows from the other kinds.
                 straight: 2 * taxels.saturating_sub(1 + many),
-                diagonal: three + 2 * across,
+                diagonal: three + 2 * diagonals,
             },
         }
     }

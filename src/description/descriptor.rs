@@ -184,22 +184,22 @@ impl Description {
 
 /// Returns the number of taxels, the sum of their columns and the sum of their rows.
 fn sums(taxels: &Imprint, bounds: Bounds) -> (u32, u32, u32) {
-    let (mut count, mut columns, mut rows) = (0, 0, 0);
-    for row in bounds.rows() {
-        let mut word = taxels.words()[usize::from(row)];
-        let mut in_row = 0;
-        // Works run by run: the columns of a run add up to its length times their mean.
-        while word != 0 {
-            let first = word.trailing_zeros();
-            let length = (word >> first).trailing_ones();
-            columns += length * (2 * first + length - 1) / 2;
-            in_row += length;
-            word &= u64::MAX.unbounded_shl(first + length);
+    let (mut count, mut doubled, mut rows) = (0, 0, 0);
+    for (row, &word) in (u32::from(bounds.top)..).zip(bounds.words(taxels)) {
+        let (mut rest, mut in_row) = (word, 0);
+        // Works run by run: the columns of a run add up to its length times the mean of the first and the last.
+        while rest != 0 {
+            // Adding its first taxel carries through the run, to the first gap behind it.
+            let carried = rest.wrapping_add(rest & rest.wrapping_neg());
+            let (first, end) = (rest.trailing_zeros(), carried.trailing_zeros());
+            doubled += (end - first) * (first + end - 1);
+            in_row += end - first;
+            rest &= carried;
         }
         count += in_row;
-        rows += u32::from(row) * in_row;
+        rows += row * in_row;
     }
-    (count, columns, rows)
+    (count, doubled / 2, rows)
 }
 
 /// The value of a descriptor.
