@@ -18,8 +18,8 @@
 use std::ops::Range;
 
 use crate::geometry::{
-    CentreSampling, Double, Ellipse, Extent, Overlap, Pen, Point, Real, Side, Solid, cell_area,
-    row_areas,
+    CentreSampling, Double, Drawn, Ellipse, Extent, Overlap, Pen, Point, Real, Side, Solid,
+    cell_area, row_areas,
 };
 use crate::imprint::Imprint;
 use crate::index::from_first;
@@ -49,8 +49,12 @@ const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 #[derive(Clone, Debug)]
 pub struct Plane {
     sensor: Sensor,
-    /// The areas of the last touch, without those of `ellipses`.
-    areas: Overlap<f64>,
+    /// Adds up the areas of a touch. Empty between touches.
+    overlap: Overlap<f64>,
+    /// The areas of the last touch, without those of `ellipses`, in pairs of rows: the first pair of `drawn` first.
+    areas: Vec<[f64; 2]>,
+    /// The cells of the last touch that may have an area.
+    drawn: Drawn,
     /// The ellipses of the last touch whose areas were not computed, because their centres decided.
     ellipses: CentreSampling,
 }
@@ -60,7 +64,12 @@ impl Plane {
     pub fn new(sensor: Sensor) -> Self {
         Self {
             sensor,
-            areas: Overlap::new(sensor.columns(), sensor.rows()),
+            overlap: Overlap::new(sensor.columns(), sensor.rows()),
+            areas: vec![
+                [0.0; 2];
+                usize::from(sensor.columns()) * usize::from(sensor.rows().div_ceil(2))
+            ],
+            drawn: Drawn::default(),
             ellipses: CentreSampling::new(sensor.rows()),
         }
     }
@@ -73,34 +82,37 @@ impl Plane {
     /// Returns the imprint that a shape leaves. It never fails: the imprint is empty if the shape has no boundary, or
     /// has (as your own shapes may) a coordinate that is not finite or an ellipse with a coordinate of 1e70 or more.
     pub fn touch(&mut self, solid: &impl Solid) -> Imprint {
-        self.areas.clear();
+        let mut imprint = Imprint::empty(self.sensor.size());
+        self.activate(solid, &mut imprint);
+        imprint
+    }
+
+    /// Activates the taxels of an empty imprint that a shape covers enough.
+    fn activate(&mut self, solid: &impl Solid, imprint: &mut Imprint) {
+        self.drawn = Drawn::default();
         self.ellipses.clear();
         let mut pen = TouchPen {
-            areas: &mut self.areas,
+            overlap: &mut self.overlap,
             ellipses: &mut self.ellipses,
             edges: false,
             finite: true,
         };
         solid.draw(&mut pen);
         let (round, finite) = (!pen.edges, pen.finite);
-        let mut imprint = Imprint::empty(self.sensor.size());
         if !finite {
             // Clears everything, since the extent of such a shape is not known.
-            self.areas.wipe();
+            self.overlap.wipe();
             self.ellipses.clear();
-            return imprint;
-        }
-        if round
+        } else if round
             && self.sensor.threshold() == CentreSampling::THRESHOLD
             && let Some(rows) = self.ellipses.sample()
         {
-            self.activate_by_centres(solid, rows, &mut imprint);
+            self.activate_by_centres(solid, rows, imprint);
         } else {
-            self.ellipses.draw(&mut self.areas);
+            self.ellipses.draw(&mut self.overlap);
             self.ellipses.clear();
-            self.activate_by_areas(solid, &mut imprint);
+            self.activate_by_areas(solid, imprint);
         }
-        imprint
     }
 
     /// Activates the taxels that are covered enough. For most of them, the position of the cell's centre decides.
@@ -125,52 +137,56 @@ impl Plane {
     }
 
     /// Activates the taxels that are covered enough. The covered areas decide.
-    fn activate_by_areas(&self, solid: &impl Solid, imprint: &mut Imprint) {
-        let (threshold, doubt) = (self.sensor.threshold(), self.doubt());
-        let areas = self.areas.grid();
-        let rows = areas.rows();
-        let columns = areas.columns();
-        let first = columns.start;
-        let unused = u64::BITS as usize - columns.len();
-        // A shape wholly right of the sensor has no columns.
-        if rows.is_empty() || columns.is_empty() {
+    fn activate_by_areas(&mut self, solid: &impl Solid, imprint: &mut Imprint) {
+        let grid = self.overlap.grid_mut();
+        let drawn = grid.drawn();
+        if drawn.is_empty() {
+            grid.clear();
             return;
         }
-        for pair in rows.start / 2..rows.end.div_ceil(2) {
-            // The sign of a cell's excess becomes its bit. Bits are shifted in from the left, so after the last
-            // column they are `unused` places too high.
-            let (mut short, mut nearest) = ([0_u64; 2], [f64::MAX; 2]);
-            for excess in areas.pair(pair, &columns, threshold) {
-                for lane in 0..2 {
-                    short[lane] = short[lane] >> 1 | excess[lane].to_bits() & 1 << 63;
-                    nearest[lane] = Real::min(Real::abs(excess[lane]), nearest[lane]);
-                }
+        // Rounding errors grow with the coordinates.
+        let doubt = DOUBTFUL.max(ROUNDINGS * grid.magnitude());
+        let unused = u64::BITS as usize - drawn.columns.len();
+        let words = &mut imprint.words_mut()[drawn.rows.clone()];
+        let kept = self.areas.chunks_exact_mut(drawn.columns.len());
+        let mut nearest = f64::MAX;
+        for ((areas, kept), words) in grid.take_pairs(&drawn).zip(kept).zip(words.chunks_mut(2)) {
+            let (short, near) = compare(areas, self.sensor.threshold(), kept);
+            for (word, short) in words.iter_mut().zip(short) {
+                *word = (!short >> unused) << drawn.columns.start;
             }
-            let mut active = short.map(|short| (!short >> unused) << first);
-            if Real::min(nearest[0], nearest[1]) < doubt {
-                for (row, active) in (2 * pair..).zip(&mut active) {
-                    *active = self.decide(solid, row, *active, self.doubtful(row));
-                }
-            }
-            imprint.set_pair(pair, active);
+            nearest = Real::min(near, nearest);
+        }
+        grid.forget();
+        self.drawn = drawn;
+        if nearest < doubt {
+            self.decide_doubtful(solid, imprint, doubt);
         }
     }
 
-    /// Returns how near to the threshold a coverage of the last touch must be to be in doubt.
-    fn doubt(&self) -> f64 {
-        DOUBTFUL.max(ROUNDINGS * self.areas.grid().magnitude())
+    /// Iterates over the rows of the last touch whose areas were computed: the number of the row, and for each of its
+    /// columns the number and the area.
+    fn computed(&self) -> impl Iterator<Item = (usize, impl Iterator<Item = (usize, f64)>)> {
+        let Drawn { rows, columns } = &self.drawn;
+        rows.clone().map(move |row| {
+            let (pair, lane) = ((row - rows.start) / 2, (row - rows.start) % 2);
+            let areas = self.areas[pair * columns.len()..][..columns.len()].iter();
+            (row, columns.clone().zip(areas.map(move |pair| pair[lane])))
+        })
     }
 
-    /// Returns the taxels of a row whose areas are in doubt.
-    fn doubtful(&self, row: usize) -> u64 {
-        let (threshold, doubt) = (self.sensor.threshold(), self.doubt());
-        let areas = self.areas.grid();
-        let columns = areas.columns();
-        let mut doubtful = 0;
-        for (column, area) in columns.clone().zip(areas.row(row, &columns)) {
-            doubtful |= u64::from((area - threshold).abs() < doubt) << column;
+    /// Computes the areas near the threshold again, with more digits.
+    #[cold]
+    fn decide_doubtful(&self, solid: &impl Solid, imprint: &mut Imprint, doubt: f64) {
+        let threshold = self.sensor.threshold();
+        for (row, areas) in self.computed() {
+            let near = areas.filter(|(_, area)| (area - threshold).abs() < doubt);
+            let doubtful = near.fold(0, |word, (column, _)| word | 1 << column);
+            if doubtful != 0 {
+                let word = &mut imprint.words_mut()[row];
+                *word = self.decide(solid, row, *word, doubtful);
+            }
         }
-        doubtful
     }
 
     /// Returns the active taxels of a row, after computing those in doubt again.
@@ -198,30 +214,57 @@ impl Plane {
 
     /// Returns the share of each taxel's cell that the shape of the last touch covers, 0 to 1.
     pub fn coverages(&self) -> Matrix<f64> {
-        let width = usize::from(self.sensor.columns());
         let mut all = Matrix::filled(self.sensor.size(), 0.0);
-        let mut areas = self.areas.clone();
-        self.ellipses.draw(&mut areas);
-        let areas = areas.grid();
-        let columns = areas.columns();
-        // A shape beside the sensor has no columns.
-        if columns.is_empty() {
+        let width = usize::from(self.sensor.columns());
+        let mut cover = |row: usize, column: usize, area: f64| {
+            all.values_mut()[row * width + column] = share(area);
+        };
+        for (row, areas) in self.computed() {
+            areas.for_each(|(column, area)| cover(row, column, area));
+        }
+        if self.ellipses.is_empty() {
             return all;
         }
-        for row in areas.rows() {
-            let cells = &mut all.values_mut()[row * width..][columns.clone()];
-            for (cell, area) in cells.iter_mut().zip(areas.row(row, &columns)) {
-                *cell = share(area);
+        // Centres decided, so the areas were not needed.
+        let mut overlap = Overlap::new(self.sensor.columns(), self.sensor.rows());
+        self.ellipses.draw(&mut overlap);
+        let grid = overlap.grid();
+        let drawn = grid.drawn();
+        if !drawn.is_empty() {
+            for row in drawn.rows {
+                for (column, area) in drawn.columns.clone().zip(grid.row(row, &drawn.columns)) {
+                    cover(row, column, area);
+                }
             }
         }
         all
     }
 }
 
+/// Compares the areas of two rows with the threshold, and keeps them. Returns for both rows which cells fall short of
+/// it, with the last column in the highest bit, and the distance of the nearest area from it.
+fn compare(
+    areas: impl Iterator<Item = [f64; 2]>,
+    threshold: f64,
+    kept: &mut [[f64; 2]],
+) -> ([u64; 2], f64) {
+    let (mut short, mut nearest) = ([0_u64; 2], [f64::MAX; 2]);
+    for (kept, areas) in kept.iter_mut().zip(areas) {
+        *kept = areas;
+        for lane in 0..2 {
+            let excess = areas[lane] - threshold;
+            // The sign becomes the bit.
+            short[lane] = short[lane] >> 1 | excess.to_bits() & 1 << 63;
+            nearest[lane] = Real::min(Real::abs(excess), nearest[lane]);
+        }
+    }
+    (short, Real::min(nearest[0], nearest[1]))
+}
+
 /// A pen that draws edges at once but only collects ellipses: if there is nothing else, their areas may not be
 /// needed.
 struct TouchPen<'a> {
-    areas: &'a mut Overlap<f64>,
+    overlap: &'a mut Overlap<f64>,
     ellipses: &'a mut CentreSampling,
     /// Whether the shape has edges.
     edges: bool,
@@ -230,16 +273,24 @@ struct TouchPen<'a> {
     finite: bool,
 }
 
-/// Returns true if both coordinates of a point are below a limit in size; false if one is NaN.
-fn is_within(point: Point<f64>, limit: f64) -> bool {
-    point.x.abs() < limit && point.y.abs() < limit
+/// Returns true if both coordinates of a point of an ellipse are small enough; false if one is NaN.
+fn is_within_limit(point: Point<f64>) -> bool {
+    point.x.abs() < ELLIPSE_LIMIT && point.y.abs() < ELLIPSE_LIMIT
+}
+
+/// Returns true if all coordinates are finite.
+fn are_finite(points: &[Point<f64>]) -> bool {
+    // 0 times infinity is NaN, as is everything added to NaN. Adding is faster than comparing each coordinate.
+    let sum = |sum: [f64; 2], point: &Point<f64>| [sum[0] + 0.0 * point.x, sum[1] + 0.0 * point.y];
+    let [x, y] = points.iter().fold([0.0; 2], sum);
+    x + y == 0.0
 }
 
 impl Pen<f64> for TouchPen<'_> {
     fn edge(&mut self, from: Point<f64>, to: Point<f64>) {
         self.edges = true;
-        self.finite &= is_within(from, f64::INFINITY) & is_within(to, f64::INFINITY);
-        self.areas.edge(from, to);
+        self.finite &= are_finite(&[from, to]);
+        self.overlap.edge(from, to);
     }
 
     #[inline]
@@ -249,18 +300,14 @@ impl Pen<f64> for TouchPen<'_> {
             across,
             along,
         } = *ellipse;
-        self.finite &= is_within(centre, ELLIPSE_LIMIT)
-            & is_within(across, ELLIPSE_LIMIT)
-            & is_within(along, ELLIPSE_LIMIT);
+        self.finite &= is_within_limit(centre) & is_within_limit(across) & is_within_limit(along);
         self.ellipses.add(ellipse, material);
     }
 
     fn ring(&mut self, points: &[Point<f64>], material: Side) {
         self.edges = true;
-        for &point in points {
-            self.finite &= is_within(point, f64::INFINITY);
-        }
-        self.areas.ring(points, material);
+        self.finite &= are_finite(points);
+        self.overlap.ring(points, material);
     }
 }
 

@@ -36,7 +36,6 @@ struct Way<T> {
 
 /// A row of the grid in which a half is followed.
 struct RowPass<T> {
-    number: usize,
     start: usize,
     /// +1 or −1: whether the descent adds or subtracts.
     sign: T,
@@ -96,7 +95,6 @@ impl<T: Real> Arcs<T> {
             for (number, ends) in (first..).zip(self.horizontal[..=rows].windows(2)) {
                 let (mut way, goal) = (ends[0][side], ends[1][side]);
                 let row = RowPass {
-                    number: from_first(number),
                     start: grid.start(from_first(number)),
                     sign,
                     quarter,
@@ -176,6 +174,6 @@ impl<T: Real> RowPass<T> {
         let height = self.sign * (to.height - from.sums.height);
         let moment = self.sign * (to.moment - from.sums.moment);
         let here = from.right * height - moment;
-        grid.add(self.start + from.slot, self.number, here, height);
+        grid.add(self.start + from.slot, here, height);
     }
 }

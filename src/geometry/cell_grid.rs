@@ -8,9 +8,9 @@
 //! A piece left of the grid belongs to a column before the first one, where only its height counts. A piece right of
 //! the grid belongs to a column behind the last one. So no piece is a special case.
 //!
-//! Two rows are kept side by side, so that one running sum serves both: a processor adds a pair of `f64` in the time of
-//! one, and a touch of a polygon spends most of its time on running sums.
+//! Areas are read from two rows at once, because a processor adds a pair of `f64` in the time of one.
 
+use std::mem;
 use std::ops::Range;
 
 use crate::geometry::outline::Point;
@@ -22,8 +22,10 @@ use crate::index::from_first;
 pub(crate) struct CellGrid<T> {
     columns: i32,
     rows: i32,
-    /// The number of entries of a pair of rows: one before the first column, one per column, one behind the last.
+    /// The number of entries of a row: one before the first column, one per column, one behind the last.
     stride: usize,
+    /// The entries of all rows, and of one more below them. That row is the second of a pair if the last row is the
+    /// first, and it takes the rounding errors of edges that end at the lower end of the grid.
     entries: Vec<CellSums<T>>,
     /// The extent of everything drawn: the smallest x and y, and the largest ones.
     low: Point<T>,
@@ -32,18 +34,31 @@ pub(crate) struct CellGrid<T> {
     moment: T,
 }
 
-/// The sums of the pieces of boundary in a cell and in the cell below: what they add there, and to each cell further
-/// right.
+/// The cells of a grid that may contain something; all others are empty.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Drawn {
+    pub(crate) rows: Range<usize>,
+    pub(crate) columns: Range<usize>,
+}
+
+impl Drawn {
+    /// Returns true if nothing lies on the grid.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.rows.is_empty() || self.columns.is_empty()
+    }
+}
+
+/// The sums of the pieces of boundary in a cell: what they add to its area, and to that of each cell further right.
 #[derive(Clone, Copy, Debug)]
 struct CellSums<T> {
-    here: [T; 2],
-    beyond: [T; 2],
+    here: T,
+    beyond: T,
 }
 
 impl<T: Real> CellSums<T> {
     const EMPTY: Self = Self {
-        here: [T::ZERO; 2],
-        beyond: [T::ZERO; 2],
+        here: T::ZERO,
+        beyond: T::ZERO,
     };
 }
 
@@ -55,7 +70,7 @@ impl<T: Real> CellGrid<T> {
             columns: columns.into(),
             rows: rows.into(),
             stride,
-            entries: vec![CellSums::EMPTY; stride * usize::from(rows).div_ceil(2)],
+            entries: vec![CellSums::EMPTY; stride * (usize::from(rows) + 1)],
             low: Point::new(T::ZERO, T::ZERO),
             high: Point::new(T::ZERO, T::ZERO),
             moment: T::ZERO,
@@ -66,14 +81,17 @@ impl<T: Real> CellGrid<T> {
 
     /// Clears the grid.
     pub(crate) fn clear(&mut self) {
-        let (rows, drawn) = (self.rows(), self.entries_drawn());
-        if !rows.is_empty() && !drawn.is_empty() {
-            for pair in rows.start / 2..rows.end.div_ceil(2) {
-                for entry in &mut self.entries[pair * self.stride..][drawn.clone()] {
-                    *entry = CellSums::EMPTY;
-                }
+        let (rows, drawn) = (self.rows_drawn(), self.entries_drawn());
+        if !drawn.is_empty() {
+            for row in rows {
+                self.entries[row * self.stride..][drawn.clone()].fill(CellSums::EMPTY);
             }
         }
+        self.forget();
+    }
+
+    /// Prepares a grid whose entries are empty for the next drawing.
+    pub(crate) fn forget(&mut self) {
         self.low = Point::new(self.right(), self.bottom());
         self.high = Point::new(-T::ONE, -T::ONE);
         self.moment = T::ZERO;
@@ -100,8 +118,17 @@ impl<T: Real> CellGrid<T> {
         low.x >= T::ZERO && low.y >= T::ZERO && high.x <= self.right() && high.y <= self.bottom()
     }
 
-    /// Returns the rows that may contain something; all others are empty.
-    pub(crate) fn rows(&self) -> Range<usize> {
+    /// Returns the cells that may contain something; all others are empty.
+    pub(crate) fn drawn(&self) -> Drawn {
+        let entries = self.entries_drawn();
+        let column = |entry: usize| entry.saturating_sub(1).min(self.stride - 2);
+        Drawn {
+            rows: self.rows_drawn(),
+            columns: column(entries.start)..column(entries.end),
+        }
+    }
+
+    fn rows_drawn(&self) -> Range<usize> {
         let row = |y: T| y.max(T::ZERO).min(self.bottom()).cell().0;
         let rows = from_first(self.rows);
         row(self.low.y)..(row(self.high.y) + 1).min(rows)
@@ -113,41 +140,50 @@ impl<T: Real> CellGrid<T> {
         self.locate(self.low.x).0..self.locate(self.high.x).0 + 1
     }
 
-    /// Returns the columns that may contain something; all others are empty.
-    pub(crate) fn columns(&self) -> Range<usize> {
-        let entries = self.entries_drawn();
-        let column = |entry: usize| entry.saturating_sub(1).min(self.stride - 2);
-        column(entries.start)..column(entries.end)
-    }
-
-    /// Returns by how much the areas of rows `2 * pair` and `2 * pair + 1` exceed a level, for each of these columns.
-    /// The areas are in [0, 1] up to a rounding error. `columns` is [`Self::columns`]. At least one of the two rows
-    /// lies in [`Self::rows`]; the areas of a row outside are 0.
-    pub(crate) fn pair(
-        &self,
-        pair: usize,
-        columns: &Range<usize>,
-        level: T,
-    ) -> impl Iterator<Item = [T; 2]> {
-        let entries = &self.entries[pair * self.stride..][columns.start..=columns.end];
-        // No entry left of these columns has a height, unless they begin with the first column.
-        let mut above = entries[0].beyond.map(|area| area - level);
-        entries[1..].iter().map(move |entry| {
-            let areas = [above[0] + entry.here[0], above[1] + entry.here[1]];
-            above = [above[0] + entry.beyond[0], above[1] + entry.beyond[1]];
-            areas
+    /// Takes the areas of the cells that [`Self::drawn`] returns, in pairs of rows from the first one on, and leaves the
+    /// grid empty. The areas are in [0, 1] up to a rounding error. The second row of the last pair may lie below the
+    /// others; then its areas are 0, up to a rounding error.
+    pub(crate) fn take_pairs(
+        &mut self,
+        drawn: &Drawn,
+    ) -> impl Iterator<Item = impl Iterator<Item = [T; 2]>> {
+        let Drawn { rows, columns } = drawn;
+        let stride = self.stride;
+        let take = |entry: &mut CellSums<T>| mem::replace(entry, CellSums::EMPTY);
+        let pairs = self.entries[rows.start * stride..].chunks_exact_mut(2 * stride);
+        pairs.take(rows.len().div_ceil(2)).map(move |pair| {
+            let (upper, lower) = pair.split_at_mut(stride);
+            // What lies behind the last column counts nowhere.
+            upper[stride - 1] = CellSums::EMPTY;
+            lower[stride - 1] = CellSums::EMPTY;
+            let upper = &mut upper[columns.start..=columns.end];
+            let lower = &mut lower[columns.start..=columns.end];
+            // No entry left of these columns has a height, unless they begin with the first column.
+            let mut above = [take(&mut upper[0]).beyond, take(&mut lower[0]).beyond];
+            let pairs = upper[1..].iter_mut().zip(&mut lower[1..]);
+            pairs.map(move |(upper, lower)| {
+                let (upper, lower) = (take(upper), take(lower));
+                let areas = [above[0] + upper.here, above[1] + lower.here];
+                above = [above[0] + upper.beyond, above[1] + lower.beyond];
+                areas
+            })
         })
     }
 
-    /// Returns the areas of one row.
+    /// Returns the areas of a row in these columns, of the cells that [`Self::drawn`] returns.
     pub(crate) fn row(&self, row: usize, columns: &Range<usize>) -> impl Iterator<Item = T> {
-        self.pair(row / 2, columns, T::ZERO)
-            .map(move |areas| areas[row % 2])
+        let entries = &self.entries[row * self.stride..][columns.start..=columns.end];
+        let mut above = entries[0].beyond;
+        entries[1..].iter().map(move |entry| {
+            let area = above + entry.here;
+            above = above + entry.beyond;
+            area
+        })
     }
 
     /// Returns the area in the top left cell, which is the only cell of a grid of 1 × 1.
     pub(crate) fn first(&self) -> T {
-        let (rows, columns) = (self.rows(), self.columns());
+        let Drawn { rows, columns } = self.drawn();
         if !rows.contains(&0) || !columns.contains(&0) {
             return T::ZERO;
         }
@@ -170,16 +206,15 @@ impl<T: Real> CellGrid<T> {
 
     /// Returns the index of the first entry of a row: that of the column left of the grid.
     pub(crate) fn start(&self, row: usize) -> usize {
-        row / 2 * self.stride
+        row * self.stride
     }
 
     /// Adds what a piece of boundary contributes to its own cell (`here`) and to each cell further right (`beyond`).
     /// `entry` is the index of the cell's entry among those of all rows.
-    pub(crate) fn add(&mut self, entry: usize, row: usize, here: T, beyond: T) {
+    pub(crate) fn add(&mut self, entry: usize, here: T, beyond: T) {
         if let Some(entry) = self.entries.get_mut(entry) {
-            let lane = row % 2;
-            entry.here[lane] = entry.here[lane] + here;
-            entry.beyond[lane] = entry.beyond[lane] + beyond;
+            entry.here = entry.here + here;
+            entry.beyond = entry.beyond + beyond;
         }
     }
 

@@ -88,6 +88,11 @@ impl CentreSampling {
         self.curves.clear();
     }
 
+    /// Returns true if there are no ellipses.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.curves.is_empty()
+    }
+
     /// Adds an ellipse.
     #[expect(
         clippy::inline_always,

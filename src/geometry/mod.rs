@@ -22,6 +22,7 @@ mod overlap;
 
 mod centre_sampling;
 
+pub(crate) use cell_grid::Drawn;
 pub(crate) use centre_sampling::CentreSampling;
 #[cfg(feature = "sweep")]
 pub(crate) use outline::Moving;
