@@ -26,7 +26,6 @@ type Block = (&'static str, fn() -> String);
 
 /// The generated parts of all documents, except those of the glossary, which are in [`glossary::BLOCKS`].
 const BLOCKS: &[Block] = &[
-    ("screen", screen::text),
     ("result", commands::result),
     ("tour", screen::tour),
     ("first-steps", screen::first_steps),

@@ -18,8 +18,8 @@ const FIGURE: &str = include_str!("../../scripts/paper_figure.taxel");
 const TOUR: &str = include_str!("../../scripts/tour.taxel");
 const FIRST_STEPS: &str = include_str!("../../scripts/first_steps.taxel");
 
-/// Returns the screens that a script shows: the name, the text, and a drawing with a title.
-fn screens(script: &str, title: impl Fn(&str) -> String) -> Vec<(String, String, String)> {
+/// Returns the screens that a script shows: the name, and a drawing with a title.
+fn screens(script: &str, title: impl Fn(&str) -> String) -> Vec<(String, String)> {
     let settings = ScriptOptions {
         options: Options {
             theme: Theme {
@@ -40,7 +40,7 @@ fn screens(script: &str, title: impl Fn(&str) -> String) -> Vec<(String, String,
     run_shown(script, &[], &settings, world, &mut |shown| {
         if let ScriptOutput::Screen(name, session) = shown {
             let drawn = session.svg(&title(name));
-            screens.push((name.to_owned(), session.screen(), drawn));
+            screens.push((name.to_owned(), drawn));
         }
         ControlFlow::Continue(())
     })
@@ -48,23 +48,11 @@ fn screens(script: &str, title: impl Fn(&str) -> String) -> Vec<(String, String,
     screens
 }
 
-/// Returns the last screen that a script shows, as text and as a drawing with a title.
-fn last_screen(script: &str, title: &str) -> (String, String) {
-    let last = screens(script, |_| title.to_owned()).pop();
-    let (_, text, drawn) = last.expect("the script shows a screen");
-    (text, drawn)
-}
-
 /// The paper's Fig. 1 on the screen.
-pub(crate) fn text() -> String {
-    let (text, _) = last_screen(FIGURE, "");
-    assert!(text.contains("NA     36"), "{text}");
-    format!("\n```text\n{text}```\n\n")
-}
-
-/// The paper's Fig. 1 on the screen, as a drawing.
 pub(crate) fn svg() -> String {
-    last_screen(FIGURE, "taxel: the imprint of a ring and its descriptors").1
+    let title = "taxel: the imprint of a ring and its descriptors";
+    let last = screens(FIGURE, |_| title.to_owned()).pop();
+    last.expect("the script shows a screen").1
 }
 
 /// The pages of Explore for the rectangle at every tenth degree, with the names of their files.
@@ -95,8 +83,7 @@ Screen explore-angles
         let page = name.strip_prefix("explore-").unwrap_or("map");
         format!("taxel: Explore, the {page} of a rectangle")
     };
-    let all = screens(SCRIPT, title).into_iter();
-    all.map(|(name, _, drawn)| (name, drawn)).collect()
+    screens(SCRIPT, title)
 }
 
 /// The touch that the screen shows in millimetres, drawn by the command on the page about files.
@@ -152,8 +139,7 @@ pub(crate) fn first_steps() -> String {
 /// The pictures of the first steps, with the names of their files.
 pub(crate) fn first_steps_svgs() -> Vec<(String, String)> {
     let title = |name: &str| format!("taxel: {}", name.replace('-', " "));
-    let all = screens(FIRST_STEPS, title).into_iter();
-    all.map(|(name, _, drawn)| (name, drawn)).collect()
+    screens(FIRST_STEPS, title)
 }
 
 /// Describes in words what a line of the script presses or types; None for lines that only check something.
