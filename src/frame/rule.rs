@@ -19,7 +19,7 @@ pub enum Rule {
     #[non_exhaustive]
     AtLeast(f64),
     /// A taxel is active at this percentage of the frame's largest value or more. No taxel is active if that value is 0
-    /// or less.
+    /// or less. The threshold is `percent / 100 * largest` in f64: 7 % of 100 is rounded to slightly more than 7.
     #[non_exhaustive]
     Percent(f64),
     /// A taxel is active at `high` or more. A cell of at least `low` is active too if an 8-connected path of such cells
@@ -52,10 +52,9 @@ fn checked(
 }
 
 impl Rule {
-    /// Returns a percentage of a value. It multiplies before it divides: 7 % of 100 is 7, but 7 / 100 · 100 is more in
-    /// f64.
+    /// Returns a percentage of a value, rounded like `percent / 100 * value` in other programs.
     pub(crate) fn share(percent: f64, value: f64) -> f64 {
-        percent * value / 100.0
+        percent / 100.0 * value
     }
 
     /// Creates a rule with a fixed threshold, in the sensor's unit.
@@ -115,8 +114,7 @@ impl Rule {
             Self::Percent(percent) => {
                 let max = values.values().iter().copied().fold(f64::NAN, f64::max);
                 if max > 0.0 {
-                    // 100 % of the largest value may be rounded to more than that value.
-                    from(values, Self::share(percent, max).min(max))
+                    from(values, Self::share(percent, max))
                 } else {
                     Imprint::empty(values.size())
                 }
@@ -210,12 +208,14 @@ mod tests {
     }
 
     #[test]
-    fn whole_percents_of_whole_numbers_include_ties() {
+    fn a_percentage_is_rounded_as_in_other_programs() {
         for percent in 1_u32..=100 {
-            // This percentage of the peak is a whole number.
-            let values = matrix(&[&[f64::from(3 * percent), 300.0]]);
-            assert_eq!(imprint(Rule::percent(f64::from(percent)), &values), "##");
+            let threshold = f64::from(percent) / 100.0 * 300.0;
+            let values = matrix(&[&[threshold.next_down(), threshold, 300.0]]);
+            assert_eq!(imprint(Rule::percent(f64::from(percent)), &values), ".##");
         }
+        assert_eq!(imprint(Rule::percent(7.0), &matrix(&[&[7.0, 100.0]])), ".#");
+        assert_eq!(imprint(Rule::percent(50.0), &matrix(&[&[7.0, 14.0]])), "##");
     }
 
     #[test]
