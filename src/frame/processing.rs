@@ -54,7 +54,7 @@ pub struct Processed<'a> {
     pub max: Option<f64>,
     /// The number of cells that have a value.
     pub cells: u32,
-    /// The sum of the values after tare and gain, by which peaks are compared.
+    /// The sum of the values after tare and gain, by which peaks are compared; NaN if no cell has a value then.
     pub tared_sum: f64,
     /// The imprint; None if there is no rule.
     pub imprint: Option<Imprint>,
@@ -86,11 +86,12 @@ impl Processing {
     pub fn run(&mut self, frame: &Frame) -> Result<Processed<'_>, FrameError> {
         self.values(frame)?;
         let (sum, max, cells) = summary(self.raw.values());
-        let tared_sum = if self.tare.is_none() && self.gain.is_none() {
-            sum
+        let (tared_sum, _, tared_cells) = if self.tare.is_none() && self.gain.is_none() {
+            (sum, max, cells)
         } else {
-            summary(self.tared.values()).0
+            summary(self.tared.values())
         };
+        let tared_sum = if tared_cells > 0 { tared_sum } else { f64::NAN };
         let rule = self.rule.as_ref();
         let (tare, gain) = (self.tare.as_ref(), self.gain.as_ref());
         let imprint = rule.map(|rule| rule.imprint(&self.tared, tare, gain));
@@ -225,6 +226,22 @@ mod tests {
             sums(None, Some(Matrix::filled(MatrixSize::of(2, 1), 0.5))),
             (22.0, 11.0)
         );
+    }
+
+    #[test]
+    fn a_frame_whose_cells_have_no_tare_has_no_sum_to_compare() {
+        let mut frame = Frame::new(FrameSize::of(2, 1));
+        frame.values_mut().copy_from_slice(&[5.0, 6.0]);
+        let mut tare = TareFrames::new(1);
+        tare.add(&Matrix::filled(MatrixSize::of(2, 1), f64::NAN))
+            .expect("it fits");
+        let mut processing = Processing {
+            tare: tare.finish().ok(),
+            ..Processing::default()
+        };
+        let processed = processing.run(&frame).expect("it fits");
+        assert_eq!(processed.sum, 11.0);
+        assert!(processed.tared_sum.is_nan());
     }
 
     #[test]

@@ -155,9 +155,7 @@ pub(crate) fn peak(
     let mut peak = Peak::default();
     let added = recording.frames_again(channel, |frame| {
         let processed = processing.run(frame)?;
-        if processed.cells > 0 {
-            peak.add(frame.number, processed.tared_sum);
-        }
+        peak.add(frame.number, processed.tared_sum);
         Ok::<_, FrameError>(ControlFlow::Continue(()))
     })?;
     added.map_err(|error| recording.refused(&error))?;
