@@ -416,7 +416,7 @@ fn with_flag(error: &GridError) -> String {
 
 impl CliError {
     /// Returns true if the reader of our output has closed it, as in `taxel batch | head -1`. This is not an error.
-    fn is_closed_pipe(&self) -> bool {
+    pub(crate) fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::Write(error) | Self::Screen(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
 

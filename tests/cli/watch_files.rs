@@ -455,6 +455,82 @@ fn a_recording_on_a_full_disk_ends_with_its_last_whole_record() {
     );
 }
 
+/// Returns the description beside a recording, as JSON.
+fn beside(file: &std::path::Path) -> Value {
+    let beside = fs::read(file.with_extension("json")).expect("it is there");
+    serde_json::from_slice(&beside).expect("JSON")
+}
+
+#[test]
+fn a_recording_continues_after_the_reader_of_the_answers_is_gone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = folder.path().join("s.txt");
+    fs::write(&source, stream(0..2000)).expect("written");
+    for from in ["-", &format!("{} --once", source.display())] {
+        let file = folder.path().join("touch.npy");
+        let line = format!(
+            "watch {from} --format lines --force --write {}",
+            file.display()
+        );
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let mut command = program(&line.split(' ').collect::<Vec<_>>(), "C.UTF-8");
+        let mut child = command.stdout(writer).spawn().expect("it starts");
+        let mut input = child.stdin.take().expect("piped");
+        if from == "-" {
+            for frames in [0..1000, 1000..2000] {
+                let sent = input.write_all(stream(frames).as_bytes());
+                sent.expect("it reads");
+                std::thread::sleep(std::time::Duration::from_millis(300));
+            }
+        }
+        drop(input);
+        let run = child.wait_with_output().expect("it ends");
+        let stderr = String::from_utf8_lossy(&run.stderr);
+        assert_eq!(run.status.code(), Some(0), "{from}: {stderr}");
+        let expected = "standard output is closed; the recording continues\n";
+        assert!(stderr.ends_with(expected), "{from}: {stderr}");
+        let bytes = fs::read(&file).expect("it is there");
+        assert_eq!(array::records(&bytes), Some(2000), "{from}");
+        assert_eq!(beside(&file).get("ended_by"), None, "{from}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_recording_that_an_error_ends_says_which() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("touch.npy");
+    let name = file.to_str().expect("UTF-8");
+    let full = fs::File::options().write(true).open("/dev/full");
+    let mut command = program(&["watch", "-", "--write", name], "C.UTF-8");
+    let command = command.stdout(full.expect("there is one"));
+    let mut child = command.spawn().expect("it starts");
+    let mut input = child.stdin.take().expect("piped");
+    let mut code = || {
+        child
+            .try_wait()
+            .expect("it is known")
+            .map(|exit| exit.code())
+    };
+    super::until("end", || {
+        let _ = input.write_all(stream(0..3).as_bytes());
+        code().is_some()
+    });
+    assert_eq!(code(), Some(Some(1)));
+    let reason = beside(&file)["ended_by"].clone();
+    let expected = "cannot write to standard output: No space left on device (os error 28)";
+    assert_eq!(reason, expected);
+    let bad = folder.path().join("bad.csv");
+    fs::write(&bad, "r0c0,r0c1\n1,2\n3,x\n").expect("written");
+    let said = refused(
+        &format!("watch {} --once --force --write {name}", bad.display()),
+        "",
+    );
+    let reason = beside(&file)["ended_by"].clone();
+    assert_eq!(said, format!("error: {}\n", reason.as_str().expect("text")));
+}
+
 #[test]
 fn dots_in_place_of_values_mean_omitted_values_and_nothing_else_does() {
     let line = "watch - --once --format ros2 --rows 1 --columns 2";

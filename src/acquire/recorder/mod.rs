@@ -166,10 +166,15 @@ impl FrameRecorder {
 
     /// Keeps the message of a failure for the description, if it is the first.
     pub(crate) fn note_failure(&mut self, error: &RecorderError) {
-        self.reason.get_or_insert_with(|| match error {
-            RecorderError::Io { error, .. } => error.to_string(),
-            error => error.to_string(),
-        });
+        match error {
+            RecorderError::Io { error, .. } => self.note_reason(&error.to_string()),
+            error => self.note_reason(&error.to_string()),
+        }
+    }
+
+    /// Keeps the reason why the recording ends early for the description, if it is the first.
+    pub(crate) fn note_reason(&mut self, reason: &str) {
+        self.reason.get_or_insert_with(|| reason.to_owned());
     }
 
     fn draft(&self) -> DescriptionDraft {

@@ -2,7 +2,7 @@
 //!
 //! Every frame is recorded before it is answered. A live source that is recorded is never held up: if the reader of the
 //! answers is slow, some frames get no answer, and their number is reported. Otherwise answers wait, as in any
-//! pipeline.
+//! pipeline. If the reader is gone, as in `| head -1`, the recording continues; without one, the command ends.
 //!
 //! ```text
 //! $ taxel watch /dev/ttyUSB0 --at-least 20 --write grip.npy | jq .na
@@ -66,8 +66,8 @@ struct Watcher<'a> {
     /// The first frame of a recording, held back until it is clear that there is no other channel.
     held: Option<(Frame, Option<f64>)>,
     begun: bool,
-    /// The writer of standard output, on a thread of its own.
-    lines: LineWriter,
+    /// The writer of standard output, on a thread of its own; None once its reader is gone while frames are recorded.
+    lines: Option<LineWriter>,
     /// The memory of a frame, reused for the next one.
     frame: Frame,
     /// Rows and columns of the last frame; None before the first.
@@ -126,7 +126,7 @@ pub(crate) fn watch(
         choice: ChannelChoice::new(asked.processing.channel.as_deref()),
         held: None,
         begun: false,
-        lines,
+        lines: Some(lines),
         frame: Frame::default(),
         size: None,
         answered: 0,
@@ -468,6 +468,9 @@ impl Watcher<'_> {
     /// # Errors
     /// Returns an error if the first frame does not fit; [`CliError::Write`] once standard output is closed.
     fn answer(&mut self, frame: &Frame) -> Result<(), CliError> {
+        let Some(lines) = &mut self.lines else {
+            return Ok(());
+        };
         let tare = self.processing.tare.as_ref().map_or(0, Tare::frames);
         let processed = match self.processing.run(frame) {
             Ok(processed) => processed,
@@ -492,13 +495,25 @@ impl Watcher<'_> {
         };
         let line = json::ascii(&answer) + "\n";
         let may_give_up = self.live && self.recorder.is_some();
-        if self
-            .lines
-            .send((line.into_bytes(), processed.imprint), may_give_up)
-        {
+        if lines.send((line.into_bytes(), processed.imprint), may_give_up) {
             return Ok(());
         }
-        Err(CliError::Write(std::io::ErrorKind::BrokenPipe.into()))
+        self.end_answers()
+    }
+
+    /// Ends the answers, once no more can be written. If only their reader is gone, a recording continues.
+    ///
+    /// # Errors
+    /// Returns the reason why no more can be written.
+    fn end_answers(&mut self) -> Result<(), CliError> {
+        let written = self.lines.take().map_or(Ok(()), LineWriter::finish);
+        match written {
+            Err(error) if error.is_closed_pipe() && self.recorder.is_some() => {
+                self.say("standard output is closed; the recording continues");
+                Ok(())
+            }
+            written => written,
+        }
     }
 
     /// Handles a tick, ten times a second: flushes the recording, and reports dropped frames.
@@ -508,8 +523,8 @@ impl Watcher<'_> {
         }
         self.shaped(counts)?;
         // The reader of the answers is gone, or there is no model.
-        if self.lines.is_over() {
-            return Err(CliError::Write(std::io::ErrorKind::BrokenPipe.into()));
+        if self.lines.as_ref().is_some_and(LineWriter::is_over) {
+            self.end_answers()?;
         }
         if self.reported.is_none_or(|last| last.elapsed() >= REPORT) {
             self.report_dropped(counts);
@@ -594,6 +609,12 @@ impl Watcher<'_> {
             failure = self.release().err();
         }
         let ended_well = acquired.is_ok() && !stopped;
+        let damage = acquired.err().map(|error| self.damage(error));
+        if let (Some(error), Some(recorder)) =
+            (failure.as_ref().or(damage.as_ref()), &mut self.recorder)
+        {
+            recorder.note_reason(&error.to_string());
+        }
         if let (None, Some((tare, _)), true) = (&failure, &self.tare, ended_well) {
             let wanted = tare.wanted();
             let frames = wanted - tare.missing();
@@ -627,22 +648,30 @@ impl Watcher<'_> {
             let path = path.display();
             self.say(&format!("no frame came, so {path} was not written"));
         }
-        let given_up = self.lines.given_up;
+        let given_up = self.lines.as_ref().map_or(0, |lines| lines.given_up);
         if given_up > 0 {
             let frames = counted(given_up, "frame");
             self.say(&format!("{frames} recorded but not printed"));
         }
-        let name = self.name.clone();
-        let written = self.lines.finish();
-        let damage = acquired.err().map(|error| match error {
-            AcquireError::Recording(error) => CliError::Recording { name, error },
-            error => CliError::Frames {
-                name,
-                message: error.to_string(),
-            },
-        });
+        let written = self.lines.take().map_or(Ok(()), LineWriter::finish);
+        let is_recorded = recorded.is_some();
         recorded.transpose().map_err(CliError::Recorder)?;
-        written?;
+        // A recording does not need a reader of the answers.
+        written.or_else(|error| match error {
+            error if is_recorded && error.is_closed_pipe() => Ok(()),
+            error => Err(error),
+        })?;
         failure.or(damage).map_or(Ok(()), Err)
+    }
+
+    /// Returns the error of a source that cannot be read to its end.
+    fn damage(&self, error: AcquireError) -> CliError {
+        match error {
+            AcquireError::Recording(error) => CliError::Recording {
+                name: self.name.clone(),
+                error,
+            },
+            error => self.refused(&error.to_string()),
+        }
     }
 }
