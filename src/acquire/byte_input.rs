@@ -13,6 +13,8 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{Mode, OFlags, open};
 use rustix::net::sockopt;
 
+use crate::acquire::event::{AcquireOptions, Playback};
+use crate::acquire::followed_file::{self, Growth};
 use crate::acquire::growing_file::{GrowingFile, ReadAnew};
 use crate::acquire::serial;
 use crate::acquire::source::{FrameSource, check_address};
@@ -55,20 +57,19 @@ pub(super) enum ByteInput {
     Device(File),
     /// A file that is read to its end.
     File(File),
-    /// A file that is waited for at its end.
-    Growing(GrowingFile),
+    /// A file that is waited for at its end: always, or as long as it may grow.
+    Growing(GrowingFile, Option<Growth>),
 }
 
 impl ByteInput {
-    /// Opens a source. If `once`, a file is read only to its end. `waiting` is called ten times a second while
-    /// opening takes long; returns None if it breaks.
+    /// Opens a source. With [`Playback::Once`], a file is read only to its end; if a format is given, it is always
+    /// waited for. `waiting` is called ten times a second while opening takes long; returns None if it breaks.
     ///
     /// # Errors
     /// Returns the system's error.
     pub(super) fn open(
         source: &FrameSource,
-        baud: u32,
-        once: bool,
+        options: &AcquireOptions,
         waiting: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> io::Result<Option<Self>> {
         Ok(Some(match source {
@@ -77,10 +78,15 @@ impl ByteInput {
                 Some(stream) => Self::Tcp(stream),
                 None => return Ok(None),
             },
-            FrameSource::Serial(path) => Self::Device(serial::open_line(path, baud)?),
+            FrameSource::Serial(path) => Self::Device(serial::open_line(path, options.baud)?),
             FrameSource::Fifo(path) => Self::Device(open_fifo(path)?),
-            FrameSource::File(path) if once => Self::File(File::open(path)?),
-            FrameSource::File(path) => Self::Growing(GrowingFile::open(path)?),
+            FrameSource::File(path) if options.playback == Playback::Once => {
+                Self::File(File::open(path)?)
+            }
+            FrameSource::File(path) => {
+                let (file, growth) = followed_file::open(path)?;
+                Self::Growing(file, options.format.is_none().then_some(growth))
+            }
         }))
     }
 
@@ -90,7 +96,7 @@ impl ByteInput {
             Self::Standard(input) => Some(input.as_fd()),
             Self::Tcp(stream) => Some(stream.as_fd()),
             Self::Device(file) => Some(file.as_fd()),
-            Self::File(_) | Self::Growing(_) => None,
+            Self::File(_) | Self::Growing(..) => None,
         }
     }
 
@@ -112,11 +118,16 @@ impl ByteInput {
             Self::Standard(input) => rustix::io::read(&*input, bytes).map_err(io::Error::from),
             Self::Tcp(stream) => stream.read(bytes),
             Self::Device(file) | Self::File(file) => file.read(bytes),
-            Self::Growing(file) => {
+            Self::Growing(file, growth) => {
                 if let Some(anew) = file.anew()? {
+                    *growth = None;
                     return Ok(ReadOutcome::Anew(anew));
                 }
-                return file.read(bytes).map(ReadOutcome::Bytes);
+                let count = file.read(bytes)?;
+                if count == 0 && growth.as_ref().is_some_and(|growth| !growth.may_go_on()) {
+                    return Ok(ReadOutcome::End);
+                }
+                return Ok(ReadOutcome::Bytes(count));
             }
         };
         match read {
@@ -225,7 +236,8 @@ mod tests {
         let begun = std::time::Instant::now();
         let source = FrameSource::Tcp(address.to_string());
         let waiting = &mut || ControlFlow::Break(());
-        let opened = ByteInput::open(&source, 0, false, waiting).expect("no error");
+        let opened = ByteInput::open(&source, &AcquireOptions::default(), waiting);
+        let opened = opened.expect("no error");
         assert!(opened.is_none() && begun.elapsed() < CONNECTING);
     }
 
@@ -237,8 +249,8 @@ mod tests {
         assert!(made.expect("mkfifo starts").success());
         let source = FrameSource::new(path.as_os_str());
         let waiting = &mut || ControlFlow::Continue(());
-        let input = ByteInput::open(&source, 0, false, waiting).expect("opened");
-        let mut input = input.expect("wanted");
+        let input = ByteInput::open(&source, &AcquireOptions::default(), waiting);
+        let mut input = input.expect("opened").expect("wanted");
         let mut bytes = [0; 8];
         let mut read = || input.read(&mut bytes).expect("read");
         assert_eq!(read(), ReadOutcome::Bytes(0));

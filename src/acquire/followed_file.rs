@@ -41,6 +41,11 @@ impl Growth {
         self.has_grown.get()
     }
 
+    /// Returns true if more may come: the file has grown, or was changed just now.
+    pub(super) fn may_go_on(&self) -> bool {
+        self.has_grown() || self.was_just_changed()
+    }
+
     /// Returns true if the file was changed just now, so that it may be about to grow.
     fn was_just_changed(&self) -> bool {
         let changed = self.file.metadata().and_then(|found| found.modified());
@@ -119,7 +124,7 @@ impl Read for FollowedFile<'_> {
             if count > 0 {
                 return Ok(count);
             }
-            if !self.growth.has_grown() && !self.growth.was_just_changed() {
+            if !self.growth.may_go_on() {
                 break;
             }
             self.growth.has_caught_up.set(true);

@@ -8,7 +8,8 @@ use crate::acquire::stream::Consumer;
 use crate::acquire::{playback, stream};
 
 /// Reads a source until it ends, `stop` is set, or the consumer breaks off. A recording is played back, and followed
-/// if it grows meanwhile. Any other file, or one for which the format of a stream is given, is read as it grows.
+/// if it grows meanwhile. Any other file is read while it grows, and always waited for if the format of a stream is
+/// given.
 ///
 /// ```
 /// use std::ops::ControlFlow;

@@ -73,7 +73,7 @@ pub(super) fn run(
     };
     let mut decoder = StreamDecoder::new(stream);
     let once = options.playback == Playback::Once;
-    let open: &Open<'_> = &|waiting| ByteInput::open(source, options.baud, once, waiting);
+    let open: &Open<'_> = &|waiting| ByteInput::open(source, options, waiting);
     let opened = first_input(source, options, open, stop, &decoder, consumer)?;
     let Some(mut input) = opened else {
         return Ok(());

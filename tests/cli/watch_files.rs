@@ -296,6 +296,28 @@ fn a_file_that_no_longer_grows_ends_at_its_end() {
 }
 
 #[test]
+fn a_file_without_frames_that_no_longer_grows_ends_at_its_end() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("old.txt");
+    let name = file.to_str().expect("UTF-8");
+    for text in ["", "# comment\n", "words\n"] {
+        fs::write(&file, text).expect("written");
+        let earlier = std::time::SystemTime::now() - std::time::Duration::from_secs(60);
+        let opened = fs::File::options().write(true).open(&file);
+        opened.expect("opened").set_modified(earlier).expect("set");
+        let run = taxel(&format!("watch {name}"), "");
+        assert_eq!(run, taxel(&format!("watch {name} --once"), ""), "{text}");
+        assert_eq!(run.status, Some(1), "{text}");
+    }
+    fs::write(&file, "").expect("written");
+    super::refused(
+        &taxel(&format!("watch {name}"), ""),
+        1,
+        &format!("{name} is empty"),
+    );
+}
+
+#[test]
 fn a_missing_channel_is_refused_in_a_recording_and_reported_in_a_stream() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("touch.npy");
