@@ -337,6 +337,12 @@ fn a_pose_is_given_in_cells_degrees_and_mm() {
             .stdout
             .ends_with("no pose: the shape leaves this imprint in no pose of the model\n")
     );
+    // So far beside the centres of the taxels, a tiny disc leaves nothing.
+    let tiny = "'tiny=ellipse radius_x=0.1 radius_y=0.1'";
+    place.done(&format!("model train --shape {tiny} {COARSE} --name tiny"));
+    let empty = place.run("recognise - --model tiny --pose", "....\n....\n");
+    let said = "no pose: an empty imprint does not tell where the shape lies\n";
+    assert!(empty.stdout.ends_with(said), "{}", empty.stdout);
     let unknown = answer(&place.run("recognise - --model r --pose --json", SPECK));
     assert!(unknown["pose"].is_null() && unknown.get("pose").is_some());
     place.done(&format!("model train parts.jsonl {COARSE} --name parts"));

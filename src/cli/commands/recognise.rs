@@ -118,6 +118,9 @@ impl Recogniser<'_> {
             };
             let pose = match self.pose(&touches, &answer)? {
                 Some(pose) => pose.text(imprint, charset),
+                None if self.asked.pose && imprint.is_empty() => {
+                    "no pose: an empty imprint does not tell where the shape lies\n".to_owned()
+                }
                 None if self.asked.pose && answer.shape.is_some() => {
                     "no pose: the shape leaves this imprint in no pose of the model\n".to_owned()
                 }
