@@ -204,6 +204,18 @@ fn ambiguous_names_are_reported() {
 }
 
 #[test]
+fn a_check_of_a_folder_that_does_not_exist_fails() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let missing = folder.path().join("shapes_missing").display().to_string();
+    let run = super::taxel(&format!("library --library {missing} check"), "");
+    let said = "cannot read: No such file or directory (os error 2)";
+    refused(&run, 1, &format!("{missing}: {said}"));
+    // The library of the environment has no folder yet, as that of a new user.
+    let run = super::taxel("library check", "");
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+}
+
+#[test]
 fn broken_shapes_are_listed_and_checked_with_the_reason() {
     let shelf = Shelf::new();
     shelf.does("library|save|good|-", RING);

@@ -312,12 +312,13 @@ fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
 /// array of objects, and [`CliError::Shapes`] if a shape is damaged, to be reported after it.
 ///
 /// # Errors
-/// Returns an error if the folder cannot be listed.
+/// Returns an error if the folder cannot be listed, or if `--library` names one that does not exist.
 pub(crate) fn check(
     shelf: &Shelf,
     as_json: bool,
     charset: Charset,
 ) -> Result<(String, Result<(), CliError>), CliError> {
+    shelf.check_named_folder()?;
     let library = shelf.library()?;
     let lines = lines(&library)?;
     let shapes = lines.len();

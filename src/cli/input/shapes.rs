@@ -85,6 +85,25 @@ impl Shelf {
         self.asked.then(|| self.library()).transpose()
     }
 
+    /// Checks that the folder that `--library` names exists. A library that was never used, in the default folder or
+    /// in that of the settings, has none yet.
+    ///
+    /// # Errors
+    /// Returns [`CliError::Read`].
+    pub(crate) fn check_named_folder(&self) -> Result<(), CliError> {
+        let (true, Some(folder)) = (self.asked, &self.folder) else {
+            return Ok(());
+        };
+        match folder.metadata() {
+            Err(error) if error.kind() == ErrorKind::NotFound => Err(CliError::Read {
+                name: folder.display().to_string(),
+                error,
+            }),
+            // Other errors are reported where the folder is read.
+            _ => Ok(()),
+        }
+    }
+
     /// Looks up a `NAME|FILE` argument and reads it.
     ///
     /// # Errors
