@@ -147,36 +147,49 @@ impl Classifier {
     ///
     /// Ties go to the first shape in the order of the set.
     pub fn evaluate(self, model: &Model, settings: &ClassifierSettings) -> ClassifierEvaluation {
+        self.evaluate_with_progress(model, settings, &|_| ())
+    }
+
+    /// Returns the same as [`Self::evaluate`]. `progress` is called from time to time, from any thread, with the number
+    /// of keys of the model that were classified since the last call.
+    pub fn evaluate_with_progress(
+        self,
+        model: &Model,
+        settings: &ClassifierSettings,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> ClassifierEvaluation {
+        let evaluate =
+            |scores: &(dyn Fn(usize) -> Scores + Sync)| evaluate(model, scores, progress);
         let features = || FeatureTable::new(model, settings.descriptors.as_deref());
         let (evaluation, table) = match self {
             Self::Z => {
                 let table = features();
                 let classes = table.gaussians(model);
                 let scores = |key| table.z_scores(&classes, key);
-                (evaluate(model, scores), Some(table))
+                (evaluate(&scores), Some(table))
             }
             Self::Diagonal => {
                 let table = features();
                 let classes = table.gaussians(model);
                 let scores = |key| table.diagonal_scores(model, &classes, key);
-                (evaluate(model, scores), Some(table))
+                (evaluate(&scores), Some(table))
             }
             Self::Lda | Self::Qda => {
                 let table = features();
                 let classes = table.covariances(model, self == Self::Lda);
                 let scores = |key| table.covariance_scores(model, &classes, key);
-                (evaluate(model, scores), Some(table))
+                (evaluate(&scores), Some(table))
             }
             Self::Knn => {
                 let table = features();
                 let sample = Sample::new(model, settings);
                 let neighbours = settings.neighbours.max(1);
                 let scores = |key| sample.scores(&table, neighbours, key);
-                (evaluate(model, scores), Some(table))
+                (evaluate(&scores), Some(table))
             }
             Self::Template => {
                 let templates = Templates::new(model, settings.templates.max(1));
-                (evaluate(model, |key| templates.scores(model, key)), None)
+                (evaluate(&|key| templates.scores(model, key)), None)
             }
         };
         let (features, dropped) = match table {
@@ -198,10 +211,18 @@ impl Classifier {
 }
 
 /// Classifies every key by its scores.
-fn evaluate(model: &Model, scores: impl Fn(usize) -> Scores + Sync) -> Evaluation {
+fn evaluate(
+    model: &Model,
+    scores: &(dyn Fn(usize) -> Scores + Sync),
+    progress: &(dyn Fn(u64) + Sync),
+) -> Evaluation {
     let ranked: Vec<[Option<usize>; 3]> = (0..model.keys().len())
         .into_par_iter()
-        .map(|key| first_two(&scores(key)))
+        .map(|key| {
+            let ranked = first_two(&scores(key));
+            progress(1);
+            ranked
+        })
         .collect();
     let mut evaluation = Evaluation::new(model);
     evaluation.keys = model.keys().len();
@@ -580,6 +601,8 @@ impl Sample {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicU64, Ordering};
+
     use super::*;
     use crate::figure::Figure;
     use crate::recognition::model::NamedShape;
@@ -612,6 +635,23 @@ mod tests {
         let some = reached(5, 0);
         assert_eq!(some.sample.map(|sample| sample.per_shape), Some(5));
         assert_ne!(some.evaluation, all.evaluation);
+    }
+
+    #[test]
+    fn the_progress_of_every_classifier_counts_all_keys() {
+        let sensor = Sensor::default();
+        let bar = Figure::rectangle(6.0, 3.0).on(&sensor).expect("in range");
+        let steps = GridSteps::new(4, 45).expect("divisors");
+        let training = Training::fitting(vec![NamedShape::new("bar", bar)], steps);
+        let model = training.expect("it fits").run().expect("not stopped");
+        for classifier in Classifier::ALL {
+            let keys = AtomicU64::new(0);
+            let add = |more| {
+                keys.fetch_add(more, Ordering::Relaxed);
+            };
+            classifier.evaluate_with_progress(&model, &ClassifierSettings::default(), &add);
+            assert_eq!(keys.into_inner(), model.keys().len() as u64);
+        }
     }
 
     #[test]

@@ -25,6 +25,19 @@ pub struct HalfStep {
     pub right_with_nearest: u128,
 }
 
+/// A part of the work of [`Model::half_step`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum HalfStepWork {
+    /// So many poses more were touched.
+    Poses(u64),
+    /// The nearest imprint is searched for one more imprint that the model does not hold, after all poses.
+    Search {
+        /// The number of all imprints that the model does not hold.
+        of: u64,
+    },
+}
+
 impl HalfStep {
     /// Returns the share of touches whose imprint the model does not hold.
     pub fn missing(&self) -> f64 {
@@ -45,15 +58,14 @@ impl HalfStep {
 impl Model {
     /// Touches every shape half a step beyond each pose of the model, and names the imprints.
     ///
-    /// It takes about as long as the training, and more where many imprints are new. `progress` is called as by
-    /// [`Training::progress`]; after the training, it is called with 0 for each new imprint whose nearest one is
-    /// searched.
+    /// It takes about as long as the training, and more where many imprints are new. `progress` is called from time to
+    /// time, from any thread, with the work that is done; it stops the test by returning false.
     ///
     /// # Errors
     /// Returns [`TrainingError::Steps`] if half a step has too many decimals, or [`TrainingError::Stopped`].
     pub fn half_step(
         &self,
-        progress: &(dyn Fn(u64) -> bool + Sync),
+        progress: &(dyn Fn(HalfStepWork) -> bool + Sync),
     ) -> Result<HalfStep, TrainingError> {
         let mut ranges = *self.ranges();
         for axis in [Axis::X0, Axis::Y0, Axis::Angle] {
@@ -61,7 +73,8 @@ impl Model {
         }
         let shapes = self.shapes().to_vec();
         let training = Training::new(shapes, *self.sensor(), self.anchor(), ranges)?;
-        let between = training.allow_cut(true).progress(progress).run()?;
+        let touched = |poses| progress(HalfStepWork::Poses(poses));
+        let between = training.allow_cut(true).progress(&touched).run()?;
         let keys = between.keys();
         let known: Vec<Option<usize>> = (0..keys.len())
             .map(|key| self.keys().find_ref(keys.get(key)))
@@ -69,8 +82,11 @@ impl Model {
         let missing: Vec<usize> = (0..keys.len())
             .filter(|&key| known[key].is_none())
             .collect();
+        let search = HalfStepWork::Search {
+            of: missing.len() as u64,
+        };
         let nearest = missing.par_iter().map(|&key| {
-            if !progress(0) {
+            if !progress(search) {
                 return Err(TrainingError::Stopped);
             }
             let nearest = self.nearest(&with_margin(keys.imprint(key).as_ref()));
@@ -128,7 +144,7 @@ fn with_margin(imprint: Option<&Imprint>) -> Imprint {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
     use super::*;
     use crate::recognition::sets::{GridSteps, equal_figures};
@@ -145,6 +161,22 @@ mod tests {
         };
         let result = stop_after(usize::MAX).expect("not stopped");
         assert!(result.missing() > 0.0);
+        let [poses, searches, all] = [0, 0, 0].map(AtomicU64::new);
+        let reported = model.half_step(&|work| {
+            match work {
+                HalfStepWork::Poses(more) => poses.fetch_add(more, Ordering::Relaxed),
+                HalfStepWork::Search { of } => {
+                    searches.fetch_add(1, Ordering::Relaxed);
+                    all.swap(of, Ordering::Relaxed)
+                }
+            };
+            true
+        });
+        assert_eq!(reported, Ok(result));
+        let expected = model.poses() * model.shapes().len() as u64;
+        assert_eq!(poses.into_inner(), expected);
+        let searches = searches.into_inner();
+        assert!(searches > 0 && searches == all.into_inner());
         // The last call is made for the last imprint that the model does not hold.
         let all = calls.load(Ordering::Relaxed);
         assert_eq!(stop_after(all - 1), Err(TrainingError::Stopped));

@@ -62,7 +62,7 @@ pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings, Pose
 pub use confusion::ConfusionMatrix;
 pub use evaluation::Evaluation;
 pub use given::{GivenDescriptors, GivenError, GivenTable, Rounding, ShapeDescriptor, greedy};
-pub use half_step::HalfStep;
+pub use half_step::{HalfStep, HalfStepWork};
 pub use key::{ImprintKey, KeyTable};
 pub use merge::ModelMerge;
 pub use model::{Model, ModelError, ModelParts, NamedShape, ShapeCount};

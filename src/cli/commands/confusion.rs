@@ -48,7 +48,7 @@ pub(crate) fn confusion(
             shown(asked, &given.evaluate(&model), None, charset)
         }
         Evaluated::Classifier(classifier) => {
-            let reached = classifier.evaluate(&model, &asked.classifiers);
+            let reached = reached(*classifier, &model, asked, charset);
             shown(asked, &reached.evaluation, Some(&reached), charset)
         }
         Evaluated::Greedy => Ok(chosen(&model, asked, charset)),
@@ -99,6 +99,21 @@ fn pairs(model: &Model, as_json: bool, charset: Charset) -> Result<String, CliEr
     Ok(json::ascii(&json!({"labels": labels, "errors": errors})) + "\n")
 }
 
+/// Returns the result of a classifier that is not the best one, and shows the progress meanwhile.
+fn reached(
+    classifier: Classifier,
+    model: &Model,
+    asked: &ConfusionArguments,
+    charset: Charset,
+) -> ClassifierEvaluation {
+    let keys = model.keys().len() as u64;
+    let progress = Progress::counting("imprints", keys, asked.quiet, charset);
+    let add = |keys| progress.add(keys);
+    let reached = classifier.evaluate_with_progress(model, &asked.classifiers, &add);
+    progress.finish();
+    reached
+}
+
 /// Returns the errors of all other classifiers and the limit. Also writes them as comma-separated values if a file is
 /// given.
 ///
@@ -116,7 +131,7 @@ fn all_classifiers(
             expected: ".csv",
         });
     }
-    let all = Classifier::ALL.map(|classifier| classifier.evaluate(model, &asked.classifiers));
+    let all = Classifier::ALL.map(|classifier| reached(classifier, model, asked, charset));
     let limit = Evaluation::of(model);
     if let Some(path) = &asked.export {
         let table = evaluation::classifiers_csv(&all, &limit);

@@ -15,6 +15,7 @@
 //! after `±`. The same seed gives the same numbers with any number of threads.
 
 use std::fmt::Write;
+use std::sync::OnceLock;
 use std::sync::atomic::Ordering;
 
 use serde_json::json;
@@ -36,7 +37,8 @@ use crate::formats::{DrawingFormat, LinePlot, json};
 use crate::memory::MemoryGuard;
 use crate::parameter::number::share;
 use crate::recognition::{
-    GivenDescriptors, MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate, TouchesUntil,
+    GivenDescriptors, HalfStepWork, MOST_TOUCHES, Model, Noise, NoisyTouches, RecognitionRate,
+    TouchesUntil,
 };
 use crate::sensor::{MatrixSize, Sensor};
 
@@ -314,12 +316,25 @@ pub(crate) fn half_step(
     let memory = MemoryGuard::new(None, "test a model of fewer shapes or coarser steps");
     let poses = model.poses() * model.shapes().len() as u64;
     let progress = Progress::new(poses, asked.quiet, charset);
-    let report = |poses: u64| {
-        progress.add(poses);
+    let search = OnceLock::new();
+    let report = |work| {
+        match work {
+            HalfStepWork::Poses(poses) => progress.add(poses),
+            HalfStepWork::Search { of } => {
+                let begun = || {
+                    progress.finish();
+                    Progress::counting("imprints", of, asked.quiet, charset)
+                };
+                search.get_or_init(begun).add(1);
+            }
+        }
         !signals.stopped.load(Ordering::Relaxed) && memory.allows()
     };
     let result = model.half_step(&report);
     progress.finish();
+    if let Some(search) = search.get() {
+        search.finish();
+    }
     let result = result.map_err(|error| signals.training_failure(error, &memory))?;
     if asked.form == EvaluationForm::Json {
         let answer = json!({
