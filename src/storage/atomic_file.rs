@@ -7,7 +7,7 @@
 //! is killed, the next writer removes the file that it left: see [`crate::storage::temporary`] for files from
 //! [`UnfinishedFile::new`]; the name given to [`UnfinishedFile::with_temporary`] is taken over by the next caller.
 
-use std::fs::{self, File, Metadata, TryLockError};
+use std::fs::{self, File, FileType, Metadata, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -200,7 +200,8 @@ fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileErr
     let old = path.symlink_metadata().ok();
     match (existing, &old) {
         (_, Some(found)) if !found.file_type().is_file() => {
-            let error = "not a regular file, and only regular files are replaced";
+            let kind = kind_in_words(found.file_type());
+            let error = format!("it is {kind}, and only regular files are replaced");
             Err(FileError::new("replace it", path, io::Error::other(error)))
         }
         (Existing::Kept, Some(_)) => {
@@ -208,6 +209,21 @@ fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileErr
             Err(FileError::new("create it", path, error))
         }
         _ => Ok(old),
+    }
+}
+
+/// Returns the kind of something that is not a regular file.
+pub(super) fn kind_in_words(kind: FileType) -> &'static str {
+    #[cfg(unix)]
+    if std::os::unix::fs::FileTypeExt::is_fifo(&kind) {
+        return "a FIFO";
+    }
+    if kind.is_symlink() {
+        "a symbolic link"
+    } else if kind.is_dir() {
+        "a folder"
+    } else {
+        "a device or a socket"
     }
 }
 

@@ -7,7 +7,7 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use crate::formats::shape::MAX_BYTES;
-use crate::storage::atomic_file::sync_folder;
+use crate::storage::atomic_file::{kind_in_words, sync_folder};
 use crate::storage::error::{FileError, LibraryError};
 
 /// Returns a hash of a file's content. Two contents with the same stamp count as equal.
@@ -26,16 +26,10 @@ pub(crate) fn regular(path: &Path) -> Result<Metadata, LibraryError> {
 }
 
 fn check_regular(path: &Path, found: &Metadata) -> Result<(), LibraryError> {
-    let kind = found.file_type();
-    let what = if kind.is_file() {
+    if found.is_file() {
         return Ok(());
-    } else if kind.is_symlink() {
-        "a symbolic link"
-    } else if kind.is_dir() {
-        "a folder"
-    } else {
-        "a device, a pipe or a socket"
-    };
+    }
+    let what = kind_in_words(found.file_type());
     Err(in_the_way(path, what, "a regular file"))
 }
 

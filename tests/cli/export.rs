@@ -156,12 +156,26 @@ fn files_are_only_overwritten_with_force() {
     );
     assert!(folder.read("old.svg").starts_with(b"<svg"));
     // Only files are replaced, and no partial file is left.
-    std::fs::create_dir(folder.0.path().join("folder.svg")).expect("made");
-    refused(
-        &folder.run("export washer folder.svg --force"),
-        1,
-        "folder.svg: cannot write: not a regular file, and only regular files are replaced",
-    );
+    let path = |name: &str| folder.0.path().join(name);
+    std::fs::create_dir(path("folder.svg")).expect("made");
+    std::os::unix::fs::symlink("old.svg", path("link.svg")).expect("made");
+    for (name, kind) in [("folder.svg", "a folder"), ("link.svg", "a symbolic link")] {
+        let said = format!("it is {kind}, and only regular files are replaced");
+        refused(
+            &folder.run(&format!("export washer {name} --force")),
+            1,
+            &format!("{name}: cannot write: {said}"),
+        );
+    }
+    std::fs::remove_file(path("link.svg")).expect("removed");
+    if super::wait::fifo(&path("pipe.svg")) {
+        refused(
+            &folder.run("export washer pipe.svg --force"),
+            1,
+            "pipe.svg: cannot write: it is a FIFO, and only regular files are replaced",
+        );
+        std::fs::remove_file(path("pipe.svg")).expect("removed");
+    }
     refused(
         &folder.run("export washer no/such.svg"),
         1,

@@ -42,7 +42,7 @@ fn entries_that_are_not_files_are_reported_and_left_alone() {
         ("link", "a symbolic link"),
         ("dangling", "a symbolic link"),
         ("dir", "a folder"),
-        ("pipe", "a device, a pipe or a socket"),
+        ("pipe", "a FIFO"),
     ] {
         let expected = format!("FOLDER/{name}.json: is {what}, expected a regular file");
         let library = scratch.library.clone();
