@@ -322,7 +322,7 @@ pub enum GridError {
         value: f64,
     },
     /// A figure has zooms other than 1.
-    #[error("zoom_x, zoom_y: a {noun} has none, only pictures have")]
+    #[error("a {noun} has no zoom, only a picture has one")]
     Zoom {
         /// The noun for the shape: "figure".
         noun: &'static str,

@@ -457,7 +457,7 @@ fn impossible_sweeps_are_refused() {
     refused(
         &taxel("sweep hexagon --zoom-x 2", ""),
         1,
-        "zoom_x, zoom_y: a figure has none, only pictures have",
+        "a figure has no zoom, only a picture has one",
     );
     for (line, expected) in [
         ("sweep hexagon --x0 1:2:0", "step 0: expected one above 0"),

@@ -332,7 +332,8 @@ which copies label, time and channel, and frame if it is a number; other keys
 are ignored. An imprint at the rim may be cut off and is never 'certain'. With
 --noise, even an imprint that no shape leaves gets an answer: it is compared
 with every key in every place on the matrix. With --expect, the exit status is 3
-if the answer is another shape, or is tied, rejected or unknown.
+if the answer is another shape, or is tied, rejected or unknown; if some lines
+cannot be answered, it is 1.
 
 Built-in models: 'figures', the seven figures in their default sizes;
 'figures-30', the same at about 30 cells each; 'shapes', those that come with

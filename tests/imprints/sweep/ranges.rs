@@ -145,7 +145,7 @@ fn grids_are_in_range_or_refused() {
     let zoomed = paper.with(Axis::ZoomX, read("1:2:0.5"));
     assert_eq!(
         grid(ring(), zoomed).expect_err("no grid").to_string(),
-        "zoom_x, zoom_y: a figure has none, only pictures have"
+        "a figure has no zoom, only a picture has one"
     );
     assert_eq!(grid(picture("##"), zoomed), Ok(3 * 3_600_000));
     let fine = read("0:0.999999:0.000001");
