@@ -12,6 +12,7 @@ use crate::cli::output::charset::Charset;
 use crate::formats::Name;
 use crate::formats::recording::{RecordingError, RecordingNote};
 use crate::formats::stream::StreamRefusal;
+use crate::formats::value::counted;
 use crate::parameter::ParameterError;
 use crate::parameter::number::short;
 use crate::pose::GridError;
@@ -64,7 +65,7 @@ pub(crate) enum CliError {
         name: String,
     },
     /// Some lines of a batch were wrong. The answer to each of them contains its own message.
-    #[error("{bad} of {lines} lines could not be answered")]
+    #[error("{bad} of {} could not be answered", counted(*lines, "line"))]
     Lines {
         /// The number of wrong lines.
         bad: u64,

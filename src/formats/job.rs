@@ -4,7 +4,7 @@
 use serde::de::{Deserialize, Deserializer, MapAccess};
 
 use crate::formats::framed::{FrameRows, RULE_KEYS, RuleRecord};
-use crate::formats::json::message;
+use crate::formats::json::{WithoutNan, message};
 use crate::formats::record::{
     KeyedObject, KnownKeys, Record, RecordError, keyed_object, once, value_of,
 };
@@ -64,10 +64,18 @@ impl Job {
         sensor: Sensor,
         lookup: &dyn Fn(&str) -> Result<Imprint, String>,
     ) -> Result<Self, JobError> {
-        let line: JobLine<'_> = serde_json::from_slice(line).map_err(|error| JobError::Json {
-            column: error.column().max(1),
-            message: message(&error),
-        })?;
+        let without_nan;
+        let line: JobLine<'_> = match serde_json::from_slice(line) {
+            Ok(line) => line,
+            Err(_) => {
+                without_nan = WithoutNan::new(line);
+                let read = serde_json::from_slice(&without_nan.line);
+                read.map_err(|error| JobError::Json {
+                    column: without_nan.column(error.column().max(1)),
+                    message: message(&error),
+                })?
+            }
+        };
         if let Some(frame) = &line.frame {
             return line.describe(frame).map(Self::Describe);
         }

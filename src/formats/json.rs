@@ -1,5 +1,6 @@
-//! Values as JSON text, and the messages of the parser without positions, which callers report themselves.
+//! Values as JSON text, Python's `NaN`, and the messages of the parser without positions, which callers report themselves.
 
+use std::borrow::Cow;
 #[cfg(feature = "cli")]
 use std::io::{self, Write};
 
@@ -75,6 +76,50 @@ pub(crate) fn pretty(value: &(impl Serialize + ?Sized)) -> String {
 /// not mistaken for an empty answer.
 fn failure(error: &serde_json::Error) -> String {
     format!("{{\"error\":{:?}}}", error.to_string())
+}
+
+/// A line in which each `NaN` is replaced by `null`: Python writes it, although JSON has no such number.
+pub(crate) struct WithoutNan<'a> {
+    /// The line, which is JSON as far as numbers are concerned.
+    pub(crate) line: Cow<'a, [u8]>,
+    /// The positions of the replaced words, which are longer now.
+    replaced: Vec<usize>,
+}
+
+impl<'a> WithoutNan<'a> {
+    /// Replaces the words.
+    pub(crate) fn new(line: &'a [u8]) -> Self {
+        let mut replaced = Vec::new();
+        if !line.windows(3).any(|word| word == b"NaN") {
+            let line = Cow::Borrowed(line);
+            return Self { line, replaced };
+        }
+        let mut own = Vec::with_capacity(line.len() + 64);
+        let (mut in_text, mut escaped) = (false, false);
+        let mut rest = line;
+        while let [byte, after @ ..] = rest {
+            if !in_text && let Some(after) = rest.strip_prefix(b"NaN") {
+                replaced.push(own.len());
+                own.extend_from_slice(b"null");
+                rest = after;
+                continue;
+            }
+            in_text ^= *byte == b'"' && !escaped;
+            escaped = in_text && *byte == b'\\' && !escaped;
+            own.push(*byte);
+            rest = after;
+        }
+        Self {
+            line: Cow::Owned(own),
+            replaced,
+        }
+    }
+
+    /// Converts a column of this line to one of the original line, both from 1.
+    pub(crate) fn column(&self, column: usize) -> usize {
+        let before = self.replaced.iter().filter(|&&start| start + 4 < column);
+        column - before.count()
+    }
 }
 
 /// Returns what is wrong with a JSON text, in words that require no knowledge of the parser, and without the

@@ -271,3 +271,19 @@ fn a_frame_with_a_threshold_is_described() {
         lines[5]
     );
 }
+
+/// Python writes `NaN`, although JSON has no such number.
+#[test]
+fn nan_in_a_frame_is_a_missing_cell() {
+    let frame = |cell: &str| format!("{{\"frame\":[[0,{cell},9]],\"percent\":50}}\n");
+    let run = taxel("batch", frame("NaN"));
+    assert_eq!(run, taxel("batch", frame("null")));
+    assert_eq!(run.status, Some(0), "{}", run.stdout);
+    let run = taxel("batch", "{\"frame\":[[NaN]],x}");
+    assert!(run.stdout.contains("line 1: column 18: "), "{}", run.stdout);
+    let run = taxel("batch", "x\n");
+    assert_eq!(run.stderr, "error: 1 of 1 line could not be answered\n");
+    let recognised = |cell: &str| taxel("recognise - --model figures", frame(cell));
+    let run = recognised("NaN");
+    assert_eq!((run.status, &run), (Some(0), &recognised("null")));
+}

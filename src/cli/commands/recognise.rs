@@ -446,10 +446,12 @@ impl RecogniseLine {
     /// # Errors
     /// Returns what is wrong with the line, with the key and the row.
     fn read(line: &[u8]) -> Result<Self, String> {
+        let without_nan = json::WithoutNan::new(line);
+        let line = &*without_nan.line;
         let keys: LineKeys<'_> = serde_json::from_slice(line).map_err(|error| {
             format!(
                 "column {}: {}",
-                error.column().max(1),
+                without_nan.column(error.column().max(1)),
                 json::message(&error)
             )
         })?;

@@ -170,7 +170,7 @@ impl FrameLine {
         self.values.clear();
         (self.time, self.label, self.channel) = (None, None, None);
         let mut rows = 0;
-        let without_nan = WithoutNan::new(line);
+        let without_nan = json::WithoutNan::new(line);
         let mut content = serde_json::Deserializer::from_slice(&without_nan.line);
         let object = ObjectSeed {
             line: self,
@@ -217,48 +217,6 @@ impl FrameLine {
         }
         self.size = size;
         Ok(())
-    }
-}
-
-/// A line in which each `NaN` is replaced by `null`: Python writes it, although JSON has no such number.
-struct WithoutNan<'a> {
-    line: Cow<'a, [u8]>,
-    /// The positions of the replaced words, which are longer now.
-    replaced: Vec<usize>,
-}
-
-impl<'a> WithoutNan<'a> {
-    fn new(line: &'a [u8]) -> Self {
-        let mut replaced = Vec::new();
-        if !line.windows(3).any(|word| word == b"NaN") {
-            let line = Cow::Borrowed(line);
-            return Self { line, replaced };
-        }
-        let mut own = Vec::with_capacity(line.len() + 64);
-        let (mut in_text, mut escaped) = (false, false);
-        let mut rest = line;
-        while let [byte, after @ ..] = rest {
-            if !in_text && let Some(after) = rest.strip_prefix(b"NaN") {
-                replaced.push(own.len());
-                own.extend_from_slice(b"null");
-                rest = after;
-                continue;
-            }
-            in_text ^= *byte == b'"' && !escaped;
-            escaped = in_text && *byte == b'\\' && !escaped;
-            own.push(*byte);
-            rest = after;
-        }
-        Self {
-            line: Cow::Owned(own),
-            replaced,
-        }
-    }
-
-    /// Converts a column of this line to one of the original line, both from 1.
-    fn column(&self, column: usize) -> usize {
-        let before = self.replaced.iter().filter(|&&start| start + 4 < column);
-        column - before.count()
     }
 }
 
