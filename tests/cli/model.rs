@@ -1075,7 +1075,11 @@ fn impossible_requests_are_refused_with_the_reason() {
     for (line, message) in [
         (
             "model separate parts --pitch 0:2:1",
-            "--pitch 0 is out of range (allowed: above 0)",
+            "--pitch 0 is out of range (allowed: above 0, up to 1000)",
+        ),
+        (
+            "model separate parts --pitch 1000:2000:1000",
+            "--pitch 2000 is out of range (allowed: above 0, up to 1000)",
         ),
         (
             "model confusion parts --noise 0.01 --matrix 3x3",

@@ -308,7 +308,7 @@ fn frames() -> Command {
             .requires("choice")
             .conflicts_with_all(["all", "noise-report"]),
         "export" => arg.requires("choice").help(parameters::wrapped(
-            "Write the imprint, or a drawing of it, with the frame's number in the name",
+            "Write the imprint, or a drawing of it, with the frame's number in the name; with --noise-report the mask",
             52,
         )),
         _ => arg,

@@ -193,12 +193,14 @@ exact. By default, ranges have the paper's resolution: one cell in steps of 0.01
 and every whole degree, 3.6 million poses. Figures start at x0 = y0 = 5, and
 pictures in the cell that they lie in. If the sensor would cut the shape off
 there at any angle, a cell near the middle is used. The sweep prints its ranges.
-Figures are solid without --thickness. A picture keeps its own sensor.
+Figures are solid without --thickness. A picture keeps its own sensor, unless
+flags change it.
 
 Examples:
   taxel sweep rectangle --length 6 --width 3
   taxel sweep ellipse --radius-x 4 --radius-y 4 --thickness 2 --angle 0 --json
-  taxel sweep --picture key --zoom-x 0.8:1.2:0.1 --atlas key.csv
+  taxel sweep --picture key --columns 32 --rows 32 --x0 11:11.9:0.1 \\
+    --y0 11:11.9:0.1 --zoom-x 0.8:1.2:0.1 --atlas key.csv
   taxel sweep hexagon --side 12 --columns 64 --rows 64 --x0 20:20.99:0.01 \\
     --shard 3/40 --atlas hexagon-3.npz --quiet";
 

@@ -58,11 +58,10 @@ pub(crate) fn study() -> String {
     format!("\n```text\n$ {line}\n{}```\n\n", shell(line))
 }
 
-/// The help texts. The commands of `library` are omitted: they are short, and its own help lists them.
+/// The help texts.
 pub(crate) fn help() -> String {
     COMMANDS
         .iter()
-        .filter(|name| !name.starts_with("library "))
         .map(|name| {
             let line = format!("taxel {name}").trim_end().to_owned();
             format!(

@@ -138,7 +138,7 @@ impl SeparateArguments {
         let range = |id: &str| matches.get_one::<DecimalRange>(id).copied();
         for (id, flag, most, allowed) in [
             ("range_scale", "scale", f64::MAX, "above 0"),
-            ("range_pitch", "pitch", f64::MAX, "above 0"),
+            ("range_pitch", "pitch", 1000.0, "above 0, up to 1000"),
             ("range_threshold", "threshold", 1.0, "above 0, up to 1"),
         ] {
             let ends = range(id).map(|range| [range.value(0), range.last()]);
