@@ -236,6 +236,7 @@ fn kind(expected: &str) -> &str {
         "f64" | "f32" => "a number",
         "u8" => "a whole number from 0 to 255",
         "u32" => "a whole number from 0 to 4294967295",
+        "a nonzero u32" => "a whole number from 1 to 4294967295",
         "u16" | "u64" | "usize" => "a whole number, 0 or more",
         "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
         "a borrowed string" => "a string",

@@ -9,6 +9,7 @@
 //! ```
 
 use std::borrow::Cow;
+use std::num::NonZeroU32;
 
 use serde::de::{Deserialize, Deserializer, MapAccess};
 
@@ -114,7 +115,7 @@ pub fn named_shape(line: &[u8], lookup: &ShapeLookup<'_>) -> Result<NamedShape, 
     let name = line.name.ok_or(NamedShapeError::Name)?;
     line.record.no_sensor("shape")?;
     let source = source(line.record, lookup)?;
-    let weight = line.weight.unwrap_or(1);
+    let weight = line.weight.map_or(1, NonZeroU32::get);
     Ok(NamedShape::new(name, source).weighted(weight))
 }
 
@@ -206,7 +207,7 @@ struct Line<'a> {
     /// The name, which the set needs.
     name: Option<String>,
     /// The weight: how often the shape is expected; 1 if not given.
-    weight: Option<u32>,
+    weight: Option<NonZeroU32>,
     /// The shape itself.
     record: Record<'a>,
 }

@@ -285,7 +285,7 @@ pub enum ArchiveError {
     #[error(transparent)]
     Io(#[from] io::Error),
     /// Not a zip, or a broken one.
-    #[error("no archive of arrays: {0}")]
+    #[error("not a readable archive of arrays: {0}")]
     Zip(String),
     /// The archive is too long for the address space of this program.
     #[error("an archive of {}; this {}-bit program reads at most {}", counted(*length, "byte"), usize::BITS, grouped(*longest))]
@@ -359,7 +359,7 @@ mod tests {
         let broken = broken.expect("two bytes are no archive");
         assert_eq!(
             broken.to_string(),
-            "no archive of arrays: cut short, damaged, or a file of another kind"
+            "not a readable archive of arrays: cut short, damaged, or a file of another kind"
         );
         assert!(broken.source().is_none());
     }

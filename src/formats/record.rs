@@ -27,7 +27,7 @@ pub enum RecordError {
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     /// A key that this kind of object does not have.
-    #[error("{key}: not a value of {article} {thing}{expected}", article = article(thing))]
+    #[error("{key}: does not belong to {article} {thing}{expected}", article = article(thing))]
     Foreign {
         /// The key that does not belong here.
         key: &'static str,

@@ -31,7 +31,9 @@ pub struct ArchiveFileError {
 impl From<FileError> for ArchiveFileError {
     fn from(error: FileError) -> Self {
         let path = error.path.clone();
-        Self::new(&path, error.into_io())
+        let error = error.into_io();
+        let text = format!("cannot write: {error}");
+        Self::new(&path, io::Error::new(error.kind(), text))
     }
 }
 

@@ -193,7 +193,7 @@ fn an_imprint_is_not_touched_and_accepts_no_sensor() {
     );
     assert_eq!(
         run.stdout,
-        "{\"error\":\"line 1: sensor: not a value of an imprint\"}\n"
+        "{\"error\":\"line 1: sensor: does not belong to an imprint\"}\n"
     );
     assert_eq!(run.status, Some(1));
 }
@@ -263,7 +263,7 @@ fn a_frame_with_a_threshold_is_described() {
     );
     assert_eq!(
         lines[4],
-        "{\"error\":\"line 5: sensor: not a value of a frame\"}"
+        "{\"error\":\"line 5: sensor: does not belong to a frame\"}"
     );
     assert!(
         lines[5].contains("at_least, percent, low, high, least or a parameter"),

@@ -186,6 +186,11 @@ fn files_are_only_overwritten_with_force() {
 
 #[test]
 fn bad_targets_are_refused_with_what_is_expected() {
+    refused(
+        &taxel("export washer - --format csv --pitch 2", ""),
+        2,
+        "--pitch has no effect on this format: it is for drawings",
+    );
     misused(
         "export washer washer.bmp",
         "'washer.bmp': expected a name that ends in .txt, .pbm, .csv, .npy, .svg or .png, or a '--format'",

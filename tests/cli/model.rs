@@ -689,7 +689,8 @@ fn damaged_models_are_refused() {
         let run = place.run("recognise - --model bad.npz", "#\n");
         assert_eq!(run.status, Some(1));
         assert!(
-            run.stderr.contains("bad.npz: no archive of arrays"),
+            run.stderr
+                .contains("bad.npz: not a readable archive of arrays"),
             "{}",
             run.stderr
         );
@@ -1143,4 +1144,31 @@ fn the_name_of_a_written_file_stays_on_its_line() {
         said.starts_with("written: a\\u{a}right 100 %.npz\n"),
         "{said}"
     );
+}
+
+#[test]
+fn a_folder_and_a_fifo_in_place_of_a_set_are_told_apart() {
+    let place = Place::new();
+    fs::create_dir(place.0.path().join("parts")).expect("made");
+    let train = |what: &str| format!("model train {what} {COARSE} --out m.npz");
+    let said = "no shape is called \"parts\", and the file of this name is a folder";
+    refused(&place.run(&train("parts"), ""), 1, said);
+    let pipe = place.0.path().join("ff");
+    if super::wait::fifo(&pipe) {
+        let writer = std::thread::spawn(move || fs::write(pipe, PARTS));
+        place.done(&train("ff"));
+        writer.join().expect("ended").expect("written");
+    }
+    for weight in ["0", "-1"] {
+        let line = format!("{{\"name\":\"a\",\"imprint\":[\"#\"],\"weight\":{weight}}}\n");
+        place.write("w.jsonl", &line);
+        let run = place.run(&train("w.jsonl"), "");
+        let said = format!(
+            "weight: found the number {weight}, expected a whole number from 1 to 4294967295\n"
+        );
+        assert!(run.stderr.ends_with(&said), "{}", run.stderr);
+    }
+    let run = place.run("sweep rectangle --x0 5 --y0 5 --atlas none/a.npz", "");
+    let said = "none/a.npz: cannot write: No such file or directory (os error 2)";
+    refused(&run, 1, said);
 }

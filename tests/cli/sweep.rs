@@ -432,7 +432,8 @@ fn damaged_archives_are_refused() {
         );
         assert_eq!(run.status, Some(1), "{name}");
         assert!(
-            run.stderr.contains("bad.npz: no archive of arrays"),
+            run.stderr
+                .contains("bad.npz: not a readable archive of arrays"),
             "{name}: {}",
             run.stderr
         );

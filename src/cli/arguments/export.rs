@@ -77,6 +77,11 @@ impl Export {
             existing,
         })
     }
+
+    /// Returns true if it is a drawing.
+    pub(crate) fn is_drawing(&self) -> bool {
+        matches!(self.format, ExportFormat::Drawing(_))
+    }
 }
 
 /// Returns the extension of a file's name in lower case; empty if there is none.

@@ -333,6 +333,11 @@ fn request(
             let pitch = pitch(own, settings)?;
             let to = required::<PathBuf>(own, "to")?;
             let export = export(own, &to, command, "export")?;
+            if pitch.given.is_some() && !export.is_drawing() {
+                let reason = "on this format: it is for drawings".to_owned();
+                let flag = "pitch";
+                return Err(CliError::Unused { flag, reason });
+            }
             Request::Export(what(own)?, export, pitch)
         }
         "watch" => {

@@ -74,14 +74,20 @@ pub(crate) fn read(asked: &SetArguments, shelf: &Shelf) -> Result<Vec<NamedShape
 }
 
 /// Returns the message about an argument that is not the name of a shape. For the name of a figure, it shows how
-/// `--shape` gives one.
+/// `--shape` gives one; a folder of that name is mentioned.
 fn no_shape(error: LibraryError, shelf: &Shelf) -> CliError {
     let kind = match &error {
         LibraryError::Unknown { name } => FigureKind::from_name(name),
         _ => None,
     };
     let Some(kind) = kind else {
-        return shelf.refused(error);
+        return match error {
+            LibraryError::Unknown { name } if Path::new(&name).is_dir() => CliError::NoShape {
+                error: LibraryError::Unknown { name },
+                near: ", and the file of this name is a folder".to_owned(),
+            },
+            error => shelf.refused(error),
+        };
     };
     let figure = Figure::default_of(kind, &Sensor::default());
     let sizes = kind.sizes().iter().filter_map(|&size| {
@@ -114,12 +120,14 @@ fn source_of_lines(what: &OsStr, shelf: &Shelf) -> Option<InputSource> {
     let ending = path
         .extension()
         .is_some_and(|ending| ending == "jsonl" || ending == "json");
+    // A FIFO, too.
+    let is_readable = path.metadata().is_ok_and(|found| !found.is_dir());
     let known = || {
         what.to_str()
             .is_some_and(|name| shelf.imprint(name).is_ok())
     };
     let is_source =
-        what == "-" || ending || path.components().count() > 1 || path.is_file() && !known();
+        what == "-" || ending || path.components().count() > 1 || is_readable && !known();
     is_source.then(|| InputSource::of(path))
 }
 
