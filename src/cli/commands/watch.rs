@@ -39,6 +39,7 @@ use crate::formats::stream::{StreamCounts, StreamRefusal};
 use crate::formats::value::counted;
 use crate::frame::{Frame, FrameError, FrameSize, Processing, SetRule, Tare, TareFrames};
 use crate::tui::live::request::WatchRequest;
+use crate::tui::runtime::check_source;
 
 /// The shortest time between two reports of dropped frames.
 const REPORT: Duration = Duration::from_secs(1);
@@ -234,9 +235,9 @@ fn line_writer(
 /// recording cannot be started.
 pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequest, CliError> {
     let source = FrameSource::new(&asked.source);
-    source.check().map_err(|error| CliError::Frames {
+    check_source(&source).map_err(|message| CliError::Frames {
         name: source.name(),
-        message: error.to_string(),
+        message,
     })?;
     check(&source, asked)?;
     if let Some(path) = &asked.write {

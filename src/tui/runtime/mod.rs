@@ -26,6 +26,7 @@ mod lock;
 
 pub mod mailbox;
 
+pub use crate::tui::runtime::frames::source::check as check_source;
 pub use crate::tui::runtime::work::progress::WorkerEventSink;
 
 use std::collections::VecDeque;

@@ -286,6 +286,27 @@ fn a_device_that_is_not_a_serial_line_is_refused_at_once() {
     program.ends_well(0);
 }
 
+/// Its reader would take half of the keys.
+#[test]
+fn the_terminal_of_the_keys_is_not_watched() {
+    let mut program = Program::start(&Start::default());
+    for (source, name) in [
+        ("-", "standard input"),
+        ("/dev/tty", "/dev/tty"),
+        ("/dev/stdout", "/dev/stdout"),
+    ] {
+        program.types(format!(":watch {source}\r").as_bytes());
+        program.shows(&format!("! {name}: this is your terminal; pipe frames"));
+        program.types(b"\x1b");
+        program.shows("? Help");
+    }
+    program.types(b"q");
+    program.ends_well(0);
+    let folder = tempfile::tempdir().expect("a folder");
+    let said = "error: standard input: this is your terminal; pipe frames into 'taxel watch -'";
+    is_refused(folder.path(), "-", said);
+}
+
 #[test]
 fn frames_are_recorded_while_a_hanging_disk_takes_a_mark() {
     let Some(mut watched) = Watched::start() else {

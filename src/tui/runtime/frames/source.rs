@@ -1,6 +1,11 @@
 //! Finds out what the name of a frame source refers to, and whether it can be watched.
 
 use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::io::{self, IsTerminal};
+use std::os::fd::AsFd;
+use std::os::unix::fs::MetadataExt;
+use std::path::Path;
 
 use crate::acquire::FrameSource;
 use crate::storage::location;
@@ -33,8 +38,43 @@ pub(in crate::tui::runtime) fn readable(
             &"without --allow-outside, a script reads frames only from files",
         ));
     }
-    source.check().map_err(|error| refused(&error))?;
+    check(&source).map_err(|reason| refused(&reason))?;
     Ok(source)
+}
+
+/// Refuses a source that cannot be read even if one waits, and the terminal whose keys control the screen: its reader
+/// would take half of them.
+///
+/// # Errors
+/// Returns the reason, as a sentence without the source's name.
+pub fn check(source: &FrameSource) -> Result<(), String> {
+    let is_own_terminal = match source {
+        FrameSource::Standard => io::stdin().is_terminal(),
+        FrameSource::Serial(path) => is_own_terminal(path),
+        _ => false,
+    };
+    if is_own_terminal {
+        return Err("this is your terminal; pipe frames into 'taxel watch -'".to_owned());
+    }
+    source.check().map_err(|error| error.to_string())
+}
+
+/// Returns true if a device is the controlling terminal, or the terminal of a standard stream.
+fn is_own_terminal(path: &Path) -> bool {
+    let device = |file: fs::Metadata| file.rdev();
+    let Ok(own) = fs::metadata(path).map(device) else {
+        return false;
+    };
+    let (input, output) = (io::stdin(), io::stdout());
+    let mut streams = [input.as_fd(), output.as_fd()].into_iter();
+    let controlling = fs::metadata("/dev/tty").map(device);
+    controlling.is_ok_and(|controlling| controlling == own)
+        || streams.any(|stream| {
+            let metadata = stream
+                .try_clone_to_owned()
+                .and_then(|file| File::from(file).metadata());
+            stream.is_terminal() && metadata.map(device).is_ok_and(|stream| stream == own)
+        })
 }
 
 /// Returns true if the source is a file with content. Files of `/proc`, which may have to be waited for like pipes,
