@@ -142,6 +142,24 @@ fn the_pose_is_shown_with_its_unit() {
     );
 }
 
+/// A hexagon at another threshold leaves the imprint of an ellipse at that of the model.
+#[test]
+fn a_threshold_that_differs_from_that_of_the_model_is_pointed_out() {
+    let note = "trained at threshold 0.5; here it is 0.2";
+    let mut session = session("r:sensor --threshold 0.2<Enter>");
+    hides(&session, &[note]);
+    press(
+        &mut session,
+        ":figure hexagon --side 4 --x0 4 --y0 4<Enter>",
+    );
+    shows(&session, &[note]);
+    press(&mut session, ":sensor --threshold 0.5<Enter>");
+    hides(&session, &[note]);
+    // What is drawn was not made by a threshold.
+    press(&mut session, ":sensor --threshold 0.2<Enter>n<Space>");
+    hides(&session, &["trained at"]);
+}
+
 /// There are few columns beside a large sensor, so long lines are wrapped.
 #[test]
 fn nothing_is_cut_off_beside_a_large_sensor() {

@@ -111,6 +111,8 @@ pub struct Recognition {
     kept: Vec<Imprint>,
     /// The imprint on the matrix.
     present: Imprint,
+    /// The threshold at which a shape touched the matrix; None if no shape does.
+    threshold: Option<f64>,
     /// Whether the last kept touch is the one on the matrix.
     present_kept: bool,
     /// The answer about all touches; None without a model or a touch.
@@ -138,6 +140,7 @@ impl Recognition {
             state: ModelState::Missing,
             kept: Vec::new(),
             present: Imprint::empty(MatrixSize::SMALLEST),
+            threshold: None,
             present_kept: false,
             answer: None,
             searched: None,
@@ -339,6 +342,18 @@ impl Recognition {
             imprint: self.present,
             named: self.named(),
         })
+    }
+
+    /// Returns the threshold at which a shape touched the matrix, if the model was trained at another one: then what it
+    /// knows are other imprints than those of this sensor.
+    pub fn other_threshold(&self) -> Option<f64> {
+        let trained = self.trained()?.model.sensor().threshold();
+        self.threshold.filter(|&threshold| threshold != trained)
+    }
+
+    /// Records the threshold at which a shape touched the matrix; None if no shape does.
+    pub fn note_threshold(&mut self, threshold: Option<f64>) {
+        self.threshold = threshold;
     }
 
     /// Takes over the imprint on the matrix.

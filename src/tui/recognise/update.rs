@@ -390,9 +390,12 @@ pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
 /// Passes the imprint of the matrix to the page. Returns the search that its answer needs, or the request to stop one
 /// that it no longer needs.
 fn look(app: &mut App) -> Option<Effect> {
-    let imprint = app.reading().imprint;
+    let (imprint, document) = (app.reading().imprint, app.shown());
+    let touched = document.source.is_some();
+    let threshold = touched.then(|| document.sensor.threshold());
     let page = topmost!(&mut app.dialogs, Recognition)?;
     page.show(imprint);
+    page.note_threshold(threshold);
     let number = app.works + 1;
     Some(Effect::Work(match page.step_look(number)? {
         LookStep::Begin(search) => {

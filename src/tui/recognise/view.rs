@@ -21,7 +21,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::{counted, decimal, deviation, percent};
 use crate::imprint::Imprint;
-use crate::parameter::number::share;
+use crate::parameter::number::{share, short};
 use crate::pose::{Anchor, Axis};
 use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
 use crate::tui::app::page::{Page, PoseLayer, Slot};
@@ -88,6 +88,9 @@ impl Page for Recognition {
             ModelState::Preparing(preparation) => panel.preparation(preparation),
             ModelState::Ready(trained) => {
                 panel.model(trained);
+                if let Some(threshold) = self.other_threshold() {
+                    panel.threshold(trained, threshold);
+                }
                 panel.gap();
                 panel.answer(self, trained);
                 for text in panel.touches(self) {
@@ -205,6 +208,13 @@ impl Panel<'_> {
             );
             self.text(&text, Role::Quiet);
         }
+    }
+
+    /// Says that the sensor on the matrix has another threshold than the model.
+    fn threshold(&mut self, trained: &TrainedModel, threshold: f64) {
+        let [trained, here] = [trained.model.sensor().threshold(), threshold].map(short);
+        let text = format!("trained at threshold {trained}; here it is {here}");
+        self.text(&text, Role::Text);
     }
 
     /// Writes the answer, every shape that it may be, and the results of the search.
