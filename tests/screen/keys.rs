@@ -265,6 +265,32 @@ fn toggles_that_a_new_touch_drops_are_reported() {
 }
 
 #[test]
+fn only_taxels_set_by_hand_are_counted_as_dropped() {
+    let dropped = "set by hand";
+    // A stored imprint, a frame of a sensor, a random touch.
+    let frame = ":watch examples/recording.csv --at-least 10<Enter>";
+    let mut live = session(frame);
+    live.frames(4);
+    then(&mut live, "<Enter>f<Enter>", &["\nellipse"]);
+    hides(&live, &[dropped]);
+    for keys in [
+        "lkey<Enter>p<Enter>",
+        "lkey<Enter>f<Enter>",
+        "lkey<Enter><Space>p<Enter>",
+        "<Space>sdot<Enter>p<Enter>",
+        "rt<Esc>f<Enter>",
+        "lkey<Enter>S12<Tab>12<Enter>",
+    ] {
+        hides(keys, &[dropped]);
+    }
+    let one = "1 taxel set by hand was dropped; u restores it";
+    for keys in ["lkey<Enter><Space>f<Enter>", "rt<Esc><Space>f<Enter>"] {
+        shows(keys, &[one]);
+    }
+    then(&mut live, "u<Space>f<Enter>", &[one]);
+}
+
+#[test]
 fn tab_selects_the_next_region() {
     let ring = "f<6x:Tab>2<Enter>";
     shows(ring, &["Region 1 of 2: exterior"]);

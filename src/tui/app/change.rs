@@ -136,7 +136,7 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
     if *present == document {
         return;
     }
-    let dropped = present.edits.count().saturating_sub(document.edits.count());
+    let dropped = dropped(app, &document);
     let lost = present
         .source
         .as_ref()
@@ -157,6 +157,22 @@ pub(in crate::tui) fn replace(app: &mut App, document: Document) {
         }
         None => say_dropped(app, dropped),
     }
+}
+
+/// Returns the number of taxels set by hand that are lost if this document replaces the present one. An imprint that
+/// was loaded, or taken from a frame, was not set by hand; a picture of the whole drawing loses nothing.
+fn dropped(app: &App, document: &Document) -> u32 {
+    let (present, begun) = (app.history.present(), app.history.begun());
+    if let (None, Some(Source::Picture(picture))) = (&present.source, &document.source)
+        && *picture.imprint() == present.edits
+    {
+        return 0;
+    }
+    let by_hand = |document: &Document| match (&document.source, &begun.source) {
+        (None, None) => document.edits.differing(&begun.edits).count(),
+        _ => document.edits.count(),
+    };
+    by_hand(present).saturating_sub(by_hand(document))
 }
 
 /// Says how many taxels set by hand were dropped, if any.

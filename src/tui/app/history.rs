@@ -123,6 +123,13 @@ impl History {
             .unwrap_or(&self.origins[0])
     }
 
+    /// Returns the first document of the present origin: what was loaded, taken or begun, before any change of it.
+    pub fn begun(&self) -> &Document {
+        let past = self.past.iter().rev();
+        let own = past.take_while(|state| state.origin == self.present.origin);
+        own.last().map_or(self.present(), |state| &state.document)
+    }
+
     /// Adds a change of the document. A change that changes nothing leaves no trace.
     pub fn push(&mut self, document: Document) {
         if document != self.present.document {
