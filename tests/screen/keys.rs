@@ -245,6 +245,11 @@ fn a_shape_is_moved_and_turned() {
     );
     shows("g", &["nothing to move"]);
     shows("<Space>>", &["a drawing cannot be moved"]);
+    for keys in ["<lt>", "g", "+", "z", "<S-Right>", ":turn 30<Enter>"] {
+        let stored = format!("lkey<Enter>{keys}");
+        shows(&stored, &["a stored imprint moves as a picture: p places it"]);
+    }
+    shows("lkey<Enter>c", &["a stored imprint has none; p places it"]);
     // A hundred steps of 0.01 are exactly 1.
     shows("f<Enter>g<100x:Right>", &["at 5.00, 4.00"]);
 }

@@ -195,6 +195,11 @@ fn say_dropped(app: &mut App, dropped: u32) {
 /// Says that there is nothing to move, and how to get something. A drawing has no position to change, but once it is
 /// stored, it can be placed as a picture.
 fn refuse_to_move(app: &mut App) {
+    if app.loaded_imprint().is_some() {
+        let place = app.key_of(&action::PICTURE);
+        let text = format!("a stored imprint moves as a picture: {place} places it");
+        return refuse(app, text);
+    }
     if !app.reading().imprint.is_empty() {
         let (save, place) = (app.key_of(&action::SAVE), app.key_of(&action::PICTURE));
         let text = format!("a drawing cannot be moved: save it ({save}), then place it ({place})");

@@ -266,9 +266,13 @@ fn edit(app: &mut App, message: &Message) {
         Message::Region(by) => choose_region(app, by),
         Message::Display if app.history.present().source.is_none() => {
             app.display = Display::Imprint;
-            let figure = app.key_of(&action::FIGURE);
-            let text = "no coverage to show: what is drawn by hand has none";
-            refuse(app, format!("{text}; {figure} places a figure"));
+            let (figure, place) = (app.key_of(&action::FIGURE), app.key_of(&action::PICTURE));
+            let why = if app.loaded_imprint().is_some() {
+                format!("a stored imprint has none; {place} places it as a picture")
+            } else {
+                format!("what is drawn by hand has none; {figure} places a figure")
+            };
+            refuse(app, format!("no coverage to show: {why}"));
         }
         Message::Display => next_display(app),
         Message::Layer(layer) => switch_layer(app, layer),
