@@ -50,7 +50,7 @@ pub(in crate::tui) fn begin(app: &mut App, origin: DocumentOrigin, document: Doc
 
 /// Reads the document, and brings everything that depends on it back into range.
 pub(in crate::tui) fn settle(app: &mut App) {
-    app.removed = None;
+    app.removed.clear();
     app.moves = None;
     let present = app.history.present();
     app.cursor.0 = app.cursor.0.min(present.sensor.columns() - 1);

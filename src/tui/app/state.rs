@@ -223,8 +223,9 @@ pub struct App {
     pub(in crate::tui) waiting: Option<String>,
     /// The shapes that are being saved, in the order in which the library answers.
     pub(in crate::tui) saving: VecDeque<UnfinishedSave>,
-    /// The name of the shape that was removed last, until something else is done: undo restores it.
-    pub(in crate::tui) removed: Option<String>,
+    /// The names of the shapes that were removed since the last change of the document, the last one last: undo
+    /// restores them.
+    pub(in crate::tui) removed: Vec<String>,
     /// The results of the last sweep, while their page is closed.
     pub(in crate::tui) results: Option<Box<Results>>,
     /// The page of recognition, while it is closed.
@@ -285,7 +286,7 @@ impl App {
             notice: None,
             waiting: None,
             saving: VecDeque::new(),
-            removed: None,
+            removed: Vec::new(),
             results: None,
             recognition: Some(Box::new(Recognition::new(options.seed))),
             watch_settings: WatchRequest::new(""),

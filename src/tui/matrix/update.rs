@@ -38,8 +38,8 @@ use crate::tui::{explore, live, recognise};
 /// and show this notice if there is none.
 const NO_REGION: &str = "no region: the matrix is empty";
 
-/// Handles a message. A message without an arm here opens a page or edits the matrix. Right after a shape was deleted,
-/// Undo restores that shape, before any step of the drawing.
+/// Handles a message. A message without an arm here opens a page or edits the matrix. Right after shapes were deleted,
+/// Undo restores them, the last one first, before any step of the drawing.
 pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
     let sensor = app.history.present().sensor;
     match message {
@@ -82,8 +82,8 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
         Message::Explore(asked) => return explore::work::act(app, asked),
         Message::Live(asked) => return live::update::act(app, &asked),
         Message::Recognise(asked) => return recognise::update::act(app, asked),
-        Message::Undo if app.removed.is_some() => {
-            let name = app.removed.take();
+        Message::Undo if !app.removed.is_empty() => {
+            let name = app.removed.pop();
             return Some(Effect::Library(LibraryRequest::Restore(name)));
         }
         Message::Request(request) => {
@@ -135,8 +135,8 @@ fn open_page(app: &mut App, message: &Message) -> Option<Effect> {
 
 /// Takes note of what is being saved. Keys may change the matrix before the library answers.
 fn begin_save(app: &mut App, shape: &StoredShape) {
-    // From now on undo is about the drawing again, not about a shape that was deleted before.
-    app.removed = None;
+    // From now on undo is about the drawing again, not about shapes that were deleted before.
+    app.removed.clear();
     let present = app.history.present();
     let own = present.to_shape(shape.name.clone(), &Reading::of(present));
     let document = if own == *shape {

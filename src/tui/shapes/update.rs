@@ -131,12 +131,12 @@ fn on_change(app: &mut App, change: LibraryEvent) {
         LibraryEvent::Removed(name) => {
             // The matrix may show the only copy that is left.
             app.history.removed(&name);
-            let undo = app.key_of(&action::UNDO);
-            inform(app, format!("{name} deleted; {undo} brings it back"));
-            app.removed = Some(name);
+            let how = how_to_restore(app, &name);
+            inform(app, format!("{name} deleted; {how}"));
+            app.removed.push(name);
         }
         LibraryEvent::Restored(name) => {
-            app.removed = None;
+            app.removed.retain(|removed| *removed != name);
             app.history.restored(&name);
             inform(app, format!("{name} is back"));
         }
@@ -149,13 +149,13 @@ fn on_change(app: &mut App, change: LibraryEvent) {
             inform(app, format!("brought back; {save} saves it"));
         }
         LibraryEvent::GivenUp(name, left) => {
-            app.removed = Some(name.clone());
+            app.removed.push(name.clone());
             if let Some(left) = left {
                 offer(app, &format!("{name} is in the trash. "), &left);
             } else {
-                let undo = app.key_of(&action::UNDO);
+                let how = how_to_restore(app, &name);
                 let text = "the unsaved work is in the trash as";
-                inform(app, format!("{text} {name}; {undo} brings it back"));
+                inform(app, format!("{text} {name}; {how}"));
             }
         }
         LibraryEvent::NotGivenUp(reason) => {
@@ -170,6 +170,12 @@ fn on_change(app: &mut App, change: LibraryEvent) {
         | LibraryEvent::Deletable(_)
         | LibraryEvent::Failed(_) => {}
     }
+}
+
+/// Returns how to restore a shape that is in the trash now.
+fn how_to_restore(app: &App, name: &str) -> String {
+    let undo = app.key_of(&action::UNDO);
+    format!("{undo} now, or :restore {name} later, brings it back")
 }
 
 /// Handles a save: the history notes the document as it was when the save was asked for.

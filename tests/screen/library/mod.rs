@@ -137,7 +137,7 @@ fn deleting_asks_and_can_be_undone() {
     then(
         &mut session,
         "nd<Enter>y",
-        &["one deleted; u brings it back"],
+        &["one deleted; u now, or :restore one later, brings it back"],
     );
     then(&mut session, "d", &["there are no shapes of your own"]);
     then(&mut session, "<Esc>u", &["one is back"]);
@@ -147,6 +147,19 @@ fn deleting_asks_and_can_be_undone() {
     // The same after a save, even with the same name.
     let mut session = self::session("<Space><Right><Space>sone<Enter>done<Enter>ysone<Enter>");
     then(&mut session, "<Right>u", &["undone: taxel 9, 8 on"]);
+}
+
+#[test]
+fn deletions_are_undone_one_after_the_other() {
+    let mut session =
+        session("<Space>sone<Enter><Right><Space>stwo<Enter>done<Enter>ydtwo<Enter>y");
+    then(&mut session, "u", &["two is back"]);
+    then(&mut session, "u", &["one is back"]);
+    then(&mut session, "u", &["undone: taxel 9, 8 on"]);
+    // After a change of the matrix, undo is about the matrix.
+    press(&mut session, "done<Enter>y<Space>");
+    then(&mut session, "uu", &["undone: taxel 8, 8 on"]);
+    then(&mut session, ":restore one<Enter>", &["one is back"]);
 }
 
 #[test]

@@ -90,13 +90,13 @@ fn all_unsaved_work_that_is_thrown_away_can_be_restored() {
     then(
         &mut later,
         "n",
-        &["the unsaved work is in the trash as unsaved 2; u brings it back"],
+        &[
+            "the unsaved work is in the trash as unsaved 2; u now, or :restore unsaved 2 later,\nbrings it back",
+        ],
     );
-    then(
-        &mut later,
-        "u:restore unsaved 1<Enter>lunsaved<Enter>",
-        &["unsaved 1 loaded"],
-    );
+    then(&mut later, "u", &["unsaved 2 is back"]);
+    then(&mut later, "u", &["unsaved 1 is back"]);
+    then(&mut later, "lunsaved 1<Enter>", &["unsaved 1 loaded"]);
 }
 
 /// The journal and the question before quitting agree on what is unsaved work.
