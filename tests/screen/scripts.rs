@@ -254,7 +254,7 @@ fn a_script_sets_options_and_shapes() {
     }
     let script = format!(
         "Set leftover {PAIR}\nExpect /unsaved work from last time: pair, 2 taxels/\nKeys y\nExpect /brought back/\n\
-         Expect /NA 2 in all/\nKeys u\nExpect /undone: unsaved work brought back/"
+         Expect /NA 2 in all/\nKeys u\nExpect /nothing to undo/"
     );
     output(&script, false).expect("it holds");
     let both = format!("Set library \"/nowhere\"\nSet shape {PAIR}");

@@ -147,6 +147,15 @@ impl History {
         });
     }
 
+    /// Adds a document that is stored nowhere and comes from an earlier run. If nothing would be lost of the states
+    /// before, they are dropped: undo back to them, and then an end without a question, would lose the document.
+    pub fn resume(&mut self, document: Document, origin: DocumentOrigin) {
+        self.begin(document, origin);
+        if !self.left_unsaved() {
+            self.past.clear();
+        }
+    }
+
     /// Returns the index of the origin of a present or past document; if there is no such document, that of the
     /// present one.
     pub fn origin_of(&self, document: &Document) -> usize {

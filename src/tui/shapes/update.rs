@@ -7,7 +7,7 @@ use crate::imprint::Imprint;
 use crate::picture::Picture;
 use crate::storage::ModelChoice;
 use crate::storage::{Expected, LibraryEntry, LoadedShape, ShapeOrigin};
-use crate::tui::app::change::{begin, compare_with, inform, refuse};
+use crate::tui::app::change::{begin, compare_with, inform, refuse, settle};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::{DocumentOrigin, StoredName};
@@ -144,7 +144,9 @@ fn on_change(app: &mut App, change: LibraryEvent) {
         LibraryEvent::Recovered(shape) => {
             let document = Document::of_shape(&shape);
             let origin = DocumentOrigin::unsaved(&document).called("unsaved work brought back");
-            begin(app, origin, document);
+            app.history.resume(document, origin);
+            app.mode = Mode::Draw;
+            settle(app);
             let save = app.key_of(&action::SAVE);
             inform(app, format!("brought back; {save} saves it"));
         }
