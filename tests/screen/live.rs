@@ -461,6 +461,15 @@ fn a_script_records_each_frame_once() {
     assert_eq!(beside["marks"][0]["number"], 5, "{beside}");
 }
 
+/// The page is not visible then.
+#[test]
+fn the_matrix_says_that_frames_are_recorded() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut page = recording_in(folder.path());
+    then(&mut page, "+<Enter>", &["threshold 0.50 · recording\n"]);
+    then(&mut page, "wr<Enter>", &["threshold 0.50\n"]);
+}
+
 /// A recording that is begun after the end would remain empty; one that is running can still be ended.
 #[test]
 fn a_source_that_has_ended_cannot_be_recorded() {

@@ -3,7 +3,7 @@
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::Message;
 use crate::tui::app::state::{App, RunState};
-use crate::tui::live::update::last_page;
+use crate::tui::live::update::recording;
 
 /// Quits, after a question if work would be lost.
 /// The imprint on the matrix can be saved from the question; an earlier drawing must be brought back first, so there
@@ -21,10 +21,7 @@ pub(in crate::tui) fn quit(app: &mut App) {
             return;
         }
     };
-    // The page of the recording may not be open.
-    let page = last_page(app).filter(|page| !page.stopped());
-    let recording = page.and_then(|page| page.recording().name());
-    let ends = recording.map_or(String::new(), |name| {
+    let ends = recording(app).map_or(String::new(), |name| {
         format!("; the recording in {name} ends")
     });
     let text = format!("{what} not saved{ends}. Quit anyway?");

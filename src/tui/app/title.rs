@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! 32 × 32 · threshold 0.30 · pitch 2.5 mm · washer*      the pitch where one is set; * for changes that are not saved
+//! 16 × 16 · threshold 0.50 · recording                   frames are being recorded
 //! ```
 //! It has no styles, so that it costs few bytes.
 
@@ -9,17 +10,21 @@ use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::tui::app::change::is_other;
 use crate::tui::app::state::App;
+use crate::tui::live::update::recording;
 
 /// Returns the text of the title.
 pub fn title(app: &App) -> String {
     let sensor = &app.shown().sensor;
     let pitch = sensor.pitch_mm();
     let is_set = pitch != sensor.default_value(Parameter::Pitch);
+    // The page of the recording is closed or covered.
+    let is_recording = recording(app).is_some();
     let parts = [
         Some(sensor.size().to_string()),
         Some(format!("threshold {}", threshold(sensor))),
         is_set.then(|| format!("pitch {pitch} mm")),
         name(app),
+        is_recording.then(|| "recording".to_owned()),
     ];
     // In ASCII a dot would be an asterisk, and that is the mark of changes.
     let between = if app.theme().ascii { ", " } else { " · " };

@@ -322,6 +322,12 @@ pub(in crate::tui) fn last_page(app: &App) -> Option<&Live> {
     Some(page)
 }
 
+/// Returns the file in which frames are recorded now, whether the page is open or not; None if nothing is recorded.
+pub(in crate::tui) fn recording(app: &App) -> Option<&str> {
+    let page = last_page(app).filter(|page| !page.stopped())?;
+    page.recording().name()
+}
+
 /// Returns the page of the source that was watched last, open or not, to change it.
 fn page(app: &mut App) -> Option<&mut Live> {
     let page = topmost!(&mut app.dialogs, Live).or(app.live.as_mut())?;
