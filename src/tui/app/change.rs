@@ -274,7 +274,7 @@ pub(in crate::tui) fn zoom(app: &mut App, direction: i8) {
 }
 
 /// Carries out the request of a prompt. The prompt stays open if the request is refused and no other page opens. If
-/// the answer comes later, the prompt opens again if that is a refusal.
+/// the answer comes later, or if there is a question first, the prompt opens again if that is a refusal.
 pub(in crate::tui) fn from_prompt(
     app: &mut App,
     prompt: Dialog,
@@ -287,8 +287,18 @@ pub(in crate::tui) fn from_prompt(
         app.dialogs.push(prompt);
     } else {
         app.prompt = Some(prompt);
+        give_prompt(app);
     }
     effect
+}
+
+/// Gives the prompt to the question that its request has led to, if there is one.
+pub(in crate::tui) fn give_prompt(app: &mut App) {
+    if let Some(Dialog::Question(question)) = app.dialogs.last_mut()
+        && let Some(prompt) = app.prompt.take()
+    {
+        question.prompt = Some(Box::new(prompt));
+    }
 }
 
 /// Rounds to the six decimals that a moved value keeps, so that steps of a hundredth do not drift.

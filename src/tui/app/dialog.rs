@@ -132,6 +132,8 @@ pub struct Question {
     pub yes: Message,
     /// The message that no sends, None for nothing.
     pub no: Option<Message>,
+    /// The prompt whose request led to the question; it opens again without the answer yes.
+    pub prompt: Option<Box<Dialog>>,
     /// Whether the document on the matrix may be saved first.
     pub saves_first: bool,
     /// The meanings of yes and no, in a few words; None if the question says them.
@@ -145,12 +147,13 @@ impl Question {
             text: text.into(),
             yes,
             no: None,
+            prompt: None,
             saves_first: false,
             meanings: None,
         }
     }
 
-    /// Creates the question whether to replace a file that exists; the answer yes sends the message `yes`.
+    /// Creates the question whether to replace a file or a shape that exists; yes sends the message `yes`.
     pub fn replaces(file: &str, yes: Message) -> Self {
         Self::new(format!("{file} already exists. Replace it?"), yes)
     }

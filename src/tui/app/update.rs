@@ -4,7 +4,7 @@
 //! user.
 
 use crate::formats::value::counted;
-use crate::tui::app::change::{inform, refuse};
+use crate::tui::app::change::{from_prompt, give_prompt, inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question};
 use crate::tui::app::message::{FileEvent, Message};
 use crate::tui::app::mouse;
@@ -134,7 +134,10 @@ fn answered(app: &mut App, handle: impl FnOnce(&mut App) -> Option<Effect>) -> O
     let before = app.notice.take();
     let effect = handle(app);
     match app.notice {
-        None => app.notice = before,
+        None => {
+            app.notice = before;
+            give_prompt(app);
+        }
         Some(Notice::Info(_)) => app.prompt = None,
         Some(Notice::Refusal(_)) => app.dialogs.extend(app.prompt.take()),
     }
@@ -186,7 +189,12 @@ fn unknown(app: &mut App, key: Key) {
 fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> {
     let page = dialog.page();
     match message {
-        Message::Cancel | Message::Quit if !page.cancels_itself() => return None,
+        Message::Cancel | Message::Quit if !page.cancels_itself() => {
+            if let Dialog::Question(question) = dialog {
+                app.dialogs.extend(question.prompt.map(|prompt| *prompt));
+            }
+            return None;
+        }
         Message::Help => {
             let help = Help::new(app.context_on(Some(page)));
             app.dialogs.extend([dialog, Dialog::Help(help)]);
@@ -218,7 +226,8 @@ fn in_dialog(app: &mut App, dialog: Dialog, message: Message) -> Option<Effect> 
     }
 }
 
-/// Handles the answer to a question. Any other message leaves the question open.
+/// Handles the answer to a question. Without a yes, the prompt that led to it opens again. Any other message leaves the
+/// question open.
 fn at_question(app: &mut App, question: Question, message: &Message) -> Option<Effect> {
     if *message == Message::Save && question.saves_first {
         let effect = matrix::update::act(app, Message::Save);
@@ -228,14 +237,23 @@ fn at_question(app: &mut App, question: Question, message: &Message) -> Option<E
     if *message == Message::Save {
         refuse(app, "there is nothing to save first");
     }
-    match (message, question.no) {
-        (Message::Accept, _) => matrix::update::act(app, question.yes),
-        (Message::Decline, Some(no)) => matrix::update::act(app, no),
-        (Message::Decline, None) => None,
-        (_, no) => {
-            let question = Question { no, ..question };
+    let Question {
+        yes, no, prompt, ..
+    } = match message {
+        Message::Accept | Message::Decline => question,
+        _ => {
             app.dialogs.push(Dialog::Question(question));
-            None
+            return None;
+        }
+    };
+    match (message, prompt) {
+        (Message::Accept, Some(prompt)) => {
+            from_prompt(app, *prompt, |app| matrix::update::act(app, yes))
+        }
+        (Message::Accept, None) => matrix::update::act(app, yes),
+        (_, prompt) => {
+            app.dialogs.extend(prompt.map(|prompt| *prompt));
+            no.and_then(|no| matrix::update::act(app, no))
         }
     }
 }

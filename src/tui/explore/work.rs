@@ -255,11 +255,16 @@ pub(in crate::tui) fn on_written(app: &mut App, number: u64, name: &str) {
     }
 }
 
-/// Asks whether an existing file is to be replaced.
+/// Asks whether an existing file is to be replaced. If not, the prompt for its name opens again.
 pub(in crate::tui) fn on_existing(app: &mut App, number: u64, name: &str) {
     if let Some(place) = finish(app, number) {
         let yes = ExploreMessage::Write(name.to_owned(), Existing::Replaced);
-        let question = Question::replaces(name, Message::Explore(yes));
+        let kind = app.results_below().map(ExportKind::of);
+        let prompt = kind.map(|kind| Dialog::Export(ExportDialog::new(name, kind)));
+        let question = Question {
+            prompt: prompt.map(Box::new),
+            ..Question::replaces(name, Message::Explore(yes))
+        };
         ask(app, place, Dialog::Question(question));
     }
 }

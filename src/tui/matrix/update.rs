@@ -65,9 +65,10 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             None => inform(app, "nothing to compare with: this is the first state"),
         },
         Message::Replace(shape, stamp) => {
-            let text = format!("Replace {}?", shape.name);
+            let name = format!("{:?}", shape.name.as_str());
             let store = LibraryRequest::Store(shape, Expected::Stamp(stamp));
-            ask(app, text, Message::Request(store));
+            let question = Question::replaces(&name, Message::Request(store));
+            app.dialogs.push(Dialog::Question(question));
         }
         Message::OpenFile(name) => return Some(Effect::File(FileRequest::Open(name))),
         Message::WriteFile(name) => return files::write(app, name),
@@ -169,11 +170,6 @@ fn edit_picture(app: &mut App) -> bool {
     let load = app.key_of(&action::LOAD);
     inform(app, format!("{load} loads another shape"));
     true
-}
-
-/// Asks a question; only the answer yes does something.
-fn ask(app: &mut App, text: String, yes: Message) {
-    app.dialogs.push(Dialog::Question(Question::new(text, yes)));
 }
 
 /// Opens the prompt for a name. It proposes the name of the document if that is a shape of the user's own. A shipped

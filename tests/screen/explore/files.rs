@@ -122,11 +122,14 @@ fn the_program_asks_before_it_replaces_a_file() {
     program.until("pentagon: 600 poses");
     export(&mut program.session, &path);
     program.until("already exists. Replace it?");
+    // Without a yes, the prompt is open again, with the name.
     program.press("n");
+    program.until("mine.csv   (");
+    program.press("<Esc>");
     assert_eq!(std::fs::read(&path).ok().as_deref(), Some(&b"mine"[..]));
     export(&mut program.session, &path);
     program.until("already exists. Replace it?");
-    program.press("n");
+    program.press("n<Esc>");
     // Help that covers the page gives way to the question.
     export(&mut program.session, &path);
     program.press("<F1>");
@@ -184,7 +187,7 @@ fn a_plot_is_exported_as_a_drawing() {
     std::fs::write(&path, "mine").expect("written");
     export(&mut session, &path);
     shows(&session, &["already exists. Replace it?"]);
-    press(&mut session, "n");
+    press(&mut session, "n<Esc>");
     assert_eq!(std::fs::read(&path).ok().as_deref(), Some(&b"mine"[..]));
     export(&mut session, &path);
     press(&mut session, "y");

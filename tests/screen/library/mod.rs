@@ -74,12 +74,15 @@ fn names_are_checked_while_they_are_typed() {
 fn saving_over_another_shape_asks() {
     let mut session = session("<Space>sone<Enter>n<Space><Right><Space>sone<Enter>");
     shows(&session, &["\"one\" already exists. Replace it? (y/n)"]);
-    then(&mut session, "nlone<Enter>", &["NA 1 in all"]);
+    // Without a yes, the prompt is open again, with the name.
+    then(&mut session, "n", &["Save as: one"]);
+    then(&mut session, "<Enter><Esc>", &["Save as: one"]);
+    then(&mut session, "<Esc>lone<Enter>", &["NA 1 in all"]);
     // Replacing the shape's own file also asks, and a name in another case is the same name.
     then(
         &mut session,
         "<Right><Right><Space>s<Enter>",
-        &["· one*\n", "Replace one? (y/n)"],
+        &["· one*\n", "\"one\" already exists. Replace it? (y/n)"],
     );
     then(&mut session, "y", &["saved as one"]);
     then(
@@ -101,7 +104,7 @@ fn two_programs_do_not_overwrite_each_other_unnoticed() {
         "<Down><Space>s<Enter>y",
         &["\"shared\" was changed by another program since it was loaded. Replace it?"],
     );
-    press(&mut first, "n");
+    then(&mut first, "n", &["Save as: shared"]);
     then(&mut second, "nlshared<Enter>", &["NA 2 in all"]);
 }
 
