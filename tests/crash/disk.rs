@@ -12,6 +12,9 @@ use super::state::program;
 use super::state::shape;
 use super::state::taxel;
 use taxel::storage::{Expected, Journal, Library, Orphan, ShapeOrigin};
+use taxel::tui::app::state::Options;
+use taxel::tui::runtime::World;
+use taxel::tui::script::Session;
 
 /// The exit status of a program that is not allowed to mount.
 const NOT_ALLOWED: i32 = 77;
@@ -186,4 +189,25 @@ pub(crate) fn on_read_only_disk(folder: &Path) {
     );
     let list = taxel(&["library", "list"], folder);
     assert_eq!(list.status.code(), Some(0), "{list:?}");
+    on_the_screen(library);
+}
+
+/// The screen says it in its own words, and before a question.
+fn on_the_screen(library: Library) {
+    let world = World::for_script(library);
+    let mut session = Session::new(&Options::plain(false), world, 80, 24);
+    for (keys, said) in [
+        (
+            "<Space>snew<Enter>",
+            "! not saved: the library is read-only; :write FILE saves elsewhere",
+        ),
+        (
+            "<Esc>done<Enter>",
+            "! not deleted: the library is read-only",
+        ),
+    ] {
+        session.keys(keys).expect("the keys of a test are right");
+        let screen = session.screen();
+        assert!(screen.contains(said), "{screen}");
+    }
 }

@@ -270,7 +270,10 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
                 refuse(app, "there is no shape to choose");
             }
         }
-        (Some((name, _)), Purpose::Delete) => ask_removal(app, name),
+        (Some((name, _)), Purpose::Delete) => {
+            let request = LibraryRequest::Deletable(name);
+            return Some(Effect::Library(request));
+        }
         (Some((_, Some(Ok(loaded)))), Purpose::Load) => {
             if let Err(text) = put_on_matrix(app, &loaded) {
                 app.dialogs.push(Dialog::List(list));

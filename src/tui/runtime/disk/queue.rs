@@ -13,6 +13,9 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::{Duration, Instant};
 
+use rustix::fs::{Access, access};
+use rustix::io::Errno;
+
 use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::formats::{Name, StoredShape};
 use crate::storage::{
@@ -185,23 +188,51 @@ fn answer(library: &Library, request: LibraryRequest) -> DiskAnswer {
         }
         LibraryRequest::Store(shape, expected) => return store(library, shape, expected),
         LibraryRequest::Deletable(name) => {
-            LibraryEvent::Deletable(library.deletable(&name).map_err(sentence))
+            let found = library.deletable(&name).map_err(sentence);
+            LibraryEvent::Deletable(match found {
+                Ok(_) if is_read_only(library) => Err(format!("not deleted: {READ_ONLY}")),
+                found => found,
+            })
         }
         LibraryRequest::Remove(name) => {
-            let removed = library.delete(&name).map_err(sentence);
+            let removed = library.delete(&name);
+            let removed = removed.map_err(|error| not_changed(library, "not deleted", &error));
             removed.map_or_else(LibraryEvent::Failed, LibraryEvent::Removed)
         }
         LibraryRequest::Restore(name) => {
-            let restored = restore(library, name).map_err(sentence);
+            let restored = restore(library, name);
+            let restored = restored.map_err(|error| not_changed(library, "not restored", &error));
             restored.map_or_else(LibraryEvent::Failed, LibraryEvent::Restored)
         }
     })
+}
+
+/// Why nothing in the library can be changed.
+const READ_ONLY: &str = "the library is read-only";
+
+/// Returns true if the system lets nobody, or not this user, write in the library's folder.
+fn is_read_only(library: &Library) -> bool {
+    let writable = access(library.folder(), Access::WRITE_OK);
+    matches!(writable, Err(Errno::ACCESS | Errno::PERM | Errno::ROFS))
+}
+
+/// Returns the sentence about a refused change: `what` says what was not done. In a read-only library each file would
+/// be refused, so the file's name would only mislead.
+fn not_changed(library: &Library, what: &str, error: &LibraryError) -> String {
+    match error {
+        LibraryError::System(_) if is_read_only(library) => format!("{what}: {READ_ONLY}"),
+        _ => sentence(library, error),
+    }
 }
 
 /// Saves a shape, or reads the one that is in its way.
 fn store(library: &Library, shape: Box<StoredShape>, expected: Expected) -> DiskAnswer {
     let stored = library.save(&shape, expected);
     let in_the_way = match &stored {
+        Err(LibraryError::System(_)) if is_read_only(library) => {
+            let text = format!("not saved: {READ_ONLY}; :write FILE saves elsewhere");
+            return DiskAnswer::Library(LibraryEvent::NotStored(text));
+        }
         Err(LibraryError::Exists { .. } | LibraryError::Changed { .. }) => {
             library.load(shape.name.as_str()).ok()
         }
