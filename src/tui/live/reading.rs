@@ -47,7 +47,7 @@ pub struct LiveReading {
     pub frame: Arc<Frame>,
     /// The shown values; NaN if there is no cell.
     pub values: Matrix<f64>,
-    /// The sum of the raw values.
+    /// The sum of the shown values.
     pub sum: f64,
     /// The largest shown value, and its column and row; None without cells.
     pub max: Option<(f64, (u8, u8))>,
@@ -89,7 +89,7 @@ impl LiveReading {
             tared_max: largest(processed.tared).map(|(largest, _)| largest),
             least: values.values().iter().copied().fold(0.0, f64::min),
             values: values.clone(),
-            sum: processed.sum,
+            sum: values.values().iter().filter(|value| !value.is_nan()).sum(),
             imprint,
             main: main.map_or_else(empty, |region| *region.taxels()),
             description: main.map(Description::of),
