@@ -54,9 +54,16 @@ impl Examples {
 }
 
 impl Example {
-    /// Describes which shapes leave the imprint, and in how many poses.
-    pub fn in_words<'a>(&self, name: impl Fn(usize) -> &'a str) -> String {
-        let leaves = self.counts.iter().map(|own| {
+    /// Describes which shapes leave the imprint, and in how many poses. The two shapes of its cell come first: there may
+    /// be no room for all.
+    pub fn in_words<'a>(&self, cell: (usize, usize), name: impl Fn(usize) -> &'a str) -> String {
+        let mut counts = self.counts.clone();
+        counts.sort_by_key(|own| match usize::from(own.shape) {
+            shape if shape == cell.0 => 0,
+            shape if shape == cell.1 => 1,
+            _ => 2,
+        });
+        let leaves = counts.iter().map(|own| {
             let name = name(own.shape.into());
             format!("{name} in {}", counted(own.poses, "pose"))
         });
@@ -139,6 +146,15 @@ mod tests {
             assert_eq!(found, most.max(), "{cell:?}");
             let touches = evaluation.confusion.get(touched, named);
             assert_eq!(example.is_some(), touches > 0, "{cell:?}");
+            if let Some(example) = example {
+                let text = example.in_words(cell, |shape| ["a", "b", "c"][shape]);
+                let shapes = text.trim_start_matches("one imprint of it: ").split(", ");
+                let shapes: Vec<&str> = shapes.filter_map(|own| own.get(..1)).collect();
+                let (touching, naming) = (["a", "b", "c"][touched], ["a", "b", "c"][named]);
+                let mut pair = vec![touching, naming];
+                pair.dedup();
+                assert!(shapes.starts_with(&pair), "{text}");
+            }
         }
         assert_eq!(examples.get(&model, (3, 0)), None);
     }

@@ -316,7 +316,7 @@ impl Confusion {
         );
         write::line(buffer, panes.detail, theme, [(text.as_str(), Role::Text)]);
         let Some(example) = &self.example else { return };
-        let text = example.in_words(|shape| self.trained.name(shape));
+        let text = example.in_words(self.cell, |shape| self.trained.name(shape));
         write::line(
             buffer,
             write::row(panes.detail, 1),

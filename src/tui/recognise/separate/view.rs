@@ -244,7 +244,7 @@ impl Separate {
         let text = format!("{place}: {touched} named {named} in {share} of its touches");
         write::line(buffer, line(1), theme, [(text.as_str(), Role::Text)]);
         if let Some(example) = &worst.example {
-            let text = example.in_words(name);
+            let text = example.in_words((worst.touched, worst.named), name);
             write::line(buffer, line(2), theme, [(text.as_str(), Role::Quiet)]);
             if let Some(imprint) = &example.imprint {
                 thumbnail::draw(theme, imprint, buffer, panes.picture);
