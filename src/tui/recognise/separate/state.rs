@@ -21,9 +21,13 @@ const WANTED: [f64; 11] = [
 pub struct SizeWork {
     /// The number of the piece of work.
     pub number: u64,
+    /// The number of touches of a size.
+    touches: u64,
+    /// The number of touches that were done before it began.
+    before: u64,
     /// The number of touches that are done.
     pub done: u64,
-    /// The number of touches of all sizes that it evaluates.
+    /// The number of touches of all sizes.
     pub all: u64,
     /// The wanted error of its search.
     wanted: f64,
@@ -104,12 +108,14 @@ impl Separate {
         if self.work.is_some() || self.searched || self.stopped {
             return None;
         }
-        let left = self.request.values().len() - self.found.len();
+        let [before, all] = [self.found.len(), self.request.values().len()];
         let touches = self.request.separation().map_or(0, |set| set.touches());
         self.work = Some(SizeWork {
             number,
-            done: 0,
-            all: touches * left as u64,
+            touches,
+            before: touches * before as u64,
+            done: touches * before as u64,
+            all: touches * all as u64,
             wanted: self.request.wanted,
             stopping: false,
         });
@@ -124,7 +130,7 @@ impl Separate {
     /// Records the progress of the work with this number.
     pub fn take_progress(&mut self, number: u64, done: u64) {
         if let Some(work) = self.work.as_mut().filter(|work| work.number == number) {
-            work.done = done;
+            work.done = work.before + done;
         }
     }
 
@@ -143,6 +149,10 @@ impl Separate {
     pub fn take_found(&mut self, found: SizesFound) -> Option<String> {
         let work = self.work.filter(|work| work.number == found.number)?;
         self.found.extend(found.sizes);
+        // Progress is reported now and then, results at once.
+        if let Some(work) = &mut self.work {
+            work.done = work.done.max(work.touches * self.found.len() as u64);
+        }
         let end = found.end?;
         self.work = None;
         match end {
@@ -223,5 +233,47 @@ impl Separate {
             .ok_or("expected a name that ends in .csv, .svg or .png")?;
         let plot = drawing(request.axis, &curves, Some(request.wanted));
         plot.content(format).map_err(|error| error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::storage::ModelChoice;
+    use crate::tui::recognise::separate::request::SeparationFlags;
+    use crate::tui::recognise::trained::TrainedModel;
+
+    /// The bar stands beside the number of sizes that are found, perhaps by earlier work.
+    #[test]
+    fn the_progress_is_at_least_that_of_the_sizes_that_are_found() {
+        let trained = Arc::new(TrainedModel::of_a_bar(ModelChoice::Figures));
+        let mut page = Separate::new(SeparationFlags::NONE.request(trained));
+        let request = Arc::clone(page.request());
+        let set = request.separation().expect("a set");
+        let point = set.at(request.axis, 0.5, request.threshold, &|_| true);
+        let size = SizeFound {
+            point: point.expect("not stopped"),
+            worst: None,
+        };
+        let found = |number, end| SizesFound {
+            number,
+            sizes: vec![size.clone()],
+            end,
+        };
+        let done = |page: &Separate| {
+            let work = page.work().expect("in progress");
+            assert_eq!(work.all, 26 * set.touches());
+            work.done / set.touches()
+        };
+        assert!(page.begin(1).is_some());
+        assert_eq!(done(&page), 0);
+        assert_eq!(page.take_found(found(1, None)), None);
+        assert_eq!(done(&page), 1);
+        let stopped = found(1, Some(Err("stopped".to_owned())));
+        assert!(page.take_found(stopped).is_some() && page.go_on());
+        assert!(page.begin(2).is_some());
+        assert_eq!(done(&page), 2);
+        page.take_progress(2, set.touches());
+        assert_eq!(done(&page), 3);
     }
 }

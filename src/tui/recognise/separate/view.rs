@@ -157,6 +157,10 @@ impl Separate {
             (false, false) => format!("searching between sizes; {stop} stops "),
         };
         let end = write::line(buffer, row, theme, [(text.as_str(), Role::Text)]);
+        // Nobody knows how long the search takes.
+        if found == all {
+            return;
+        }
         let place = write::right_of(row, end);
         gauge(theme, work.done.min(work.all), work.all, buffer, place);
     }
