@@ -353,6 +353,27 @@ fn a_narrow_title_mentions_maxima_and_recording() {
 }
 
 #[test]
+fn a_low_screen_says_how_many_lines_it_leaves_out() {
+    let mut page = watched(6, "");
+    hides(&page, &["on a larger screen"]);
+    page.resize(80, 12);
+    shows(&page, &["\nt T tare", "and 8 more on a larger screen"]);
+}
+
+#[test]
+fn the_sum_is_that_of_the_shown_values() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.csv");
+    std::fs::write(&path, "time,r0c0,r0c1\n0.0,5,6\n0.1,7,9\n").expect("written");
+    let mut page = session(&format!(":watch {}<Enter>", path.display()));
+    page.frames(1);
+    then(&mut page, "t", &["tare of the last 1 frame"]);
+    page.frames(1);
+    shows(&page, &["tared", "sum        5", "peak       3 at 1, 0"]);
+    then(&mut page, "vv", &["raw", "sum        16", "peak       9 at 1, 0"]);
+}
+
+#[test]
 fn the_peak_of_each_cell_is_held() {
     let mut page = watched(1, "p");
     page.frames(7);

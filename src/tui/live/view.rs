@@ -451,7 +451,17 @@ fn lost(live: &Live) -> Vec<String> {
 /// Draws the lines from the top; lines that do not fit into the area are left out.
 fn draw_lines(lines: &[PanelLine], theme: &Theme, buffer: &mut Buffer, area: Rect) {
     let room = usize::from(area.width).saturating_sub(LABEL);
-    for (index, line) in lines.iter().enumerate() {
+    let height = usize::from(area.height);
+    let shown = if lines.len() > height {
+        height.saturating_sub(1)
+    } else {
+        lines.len()
+    };
+    if shown < lines.len() {
+        let last = write::row(area, shown);
+        write::left_out(buffer, last, theme, lines.len() - shown);
+    }
+    for (index, line) in lines.iter().take(shown).enumerate() {
         let label = format!("{:LABEL$}", line.label);
         let texts = std::iter::once(&line.text).chain(&line.shorter);
         let texts: Vec<_> = texts.map(|text| theme.text(text)).collect();

@@ -52,18 +52,7 @@ pub fn draw(matrix: &MatrixView<'_>, theme: &Theme, buffer: &mut Buffer, area: R
     let (lines, columns) = columns(&cells, below);
     let missing = cells.len().saturating_sub(lines * columns.len());
     if missing > 0 {
-        let texts = [
-            format!("and {missing} more on a larger screen"),
-            format!("and {missing} more"),
-        ];
-        let texts = texts.each_ref().map(String::as_str);
-        let text = write::first_fitting(&texts, below.width.into());
-        write::line(
-            buffer,
-            write::row(below, lines),
-            theme,
-            [(text, Role::Quiet)],
-        );
+        write::left_out(buffer, write::row(below, lines), theme, missing);
     }
     for (cells, column) in cells.chunks(lines).zip(columns) {
         for (index, cell) in cells.iter().enumerate() {
