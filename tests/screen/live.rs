@@ -370,7 +370,11 @@ fn the_sum_is_that_of_the_shown_values() {
     then(&mut page, "t", &["tare of the last 1 frame"]);
     page.frames(1);
     shows(&page, &["tared", "sum        5", "peak       3 at 1, 0"]);
-    then(&mut page, "vv", &["raw", "sum        16", "peak       9 at 1, 0"]);
+    then(
+        &mut page,
+        "vv",
+        &["raw", "sum        16", "peak       9 at 1, 0"],
+    );
 }
 
 #[test]
@@ -480,6 +484,19 @@ fn a_script_records_each_frame_once() {
     let beside = std::fs::read_to_string(folder.path().join("touch-1.json"));
     let beside: serde_json::Value = serde_json::from_str(&beside.expect("written")).expect("JSON");
     assert_eq!(beside["marks"][0]["number"], 5, "{beside}");
+}
+
+#[test]
+fn the_marks_of_a_recording_are_shown_when_it_is_played() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut page = recording_in(folder.path());
+    then(&mut page, "mr", &["touch-1.npy: 3 frames recorded"]);
+    let again = format!(":watch {}/touch-1.npy<Enter>", folder.path().display());
+    then(&mut page, &format!("<Esc>{again}"), &[]);
+    page.frames(1);
+    shows(&page, &["frame 0 (label 2)", "marked     label 4"]);
+    page.frames(2);
+    shows(&page, &["frame 2 (label 4)", "  marked\n"]);
 }
 
 /// The page is not visible then.

@@ -33,6 +33,11 @@ impl FrameMarks {
         self.recorded = recorded.to_vec();
     }
 
+    /// Returns the marks of the recording.
+    pub(super) fn recorded(&self) -> &[FrameMark] {
+        &self.recorded
+    }
+
     /// Returns true if a frame, given with its number in the history, is marked.
     pub(super) fn has(&self, number: u64, frame: &Frame) -> bool {
         let label = frame.label.and_then(|label| u64::try_from(label).ok());

@@ -247,6 +247,11 @@ impl Live {
         self.marks.own()
     }
 
+    /// Returns the frames that were marked while the recording that is played was made, by their labels.
+    pub fn recorded_marks(&self) -> &[FrameMark] {
+        self.marks.recorded()
+    }
+
     /// Returns threshold, tare and marks if frames are recorded and any of these has changed. They count as written
     /// afterwards.
     pub fn take_changed_view(&mut self) -> Option<RecordedView> {

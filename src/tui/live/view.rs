@@ -11,6 +11,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::description::{Descriptor, Value};
+use crate::formats::recording::FrameMark;
 use crate::formats::value::{self, counted, fitting, grouped, measured};
 use crate::frame::{Rule, RuleOrigin};
 use crate::imprint::Imprint;
@@ -200,16 +201,27 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> 
     if let Some(text) = gaps(live) {
         say("gaps", text);
     }
-    let marks = live.marks();
-    if !marks.is_empty() {
-        let numbers = marks.iter().rev().map(|mark| mark.number.to_string());
-        let numbers: Vec<String> = numbers.take(20).collect();
-        say("marked", format!("frame {}", numbers.join(", ")));
+    if let Some(text) = marked(live) {
+        say("marked", text);
     }
     if let Some(text) = recording(live) {
         say("recording", text);
     }
     lines
+}
+
+/// Returns the last marked frames: those marked by keys, and those that were marked while the recording was made, which
+/// it knows by their labels. None if no frame is marked.
+fn marked(live: &Live) -> Option<String> {
+    let (own, recorded) = (live.marks(), live.recorded_marks());
+    let text = |what, marks: &[FrameMark]| {
+        let numbers = marks.iter().rev().map(|mark| mark.number.to_string());
+        let numbers: Vec<String> = numbers.take(20).collect();
+        (!marks.is_empty()).then(|| format!("{what} {}", numbers.join(", ")))
+    };
+    let texts = [text("frame", &own), text("label", recorded)];
+    let texts: Vec<String> = texts.into_iter().flatten().collect();
+    (!texts.is_empty()).then(|| texts.join("; "))
 }
 
 /// Returns the line of a descriptor of the imprint; a point gets fewer decimals in its shorter forms. An imprint
