@@ -5,10 +5,12 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::Path;
 
+use crate::acquire::FrameSource;
 use crate::formats::recording::may_be_recording;
 use crate::formats::{Content, imprint_file, read_content};
 use crate::storage::{Existing, FinishedFile, location};
 use crate::tui::app::message::{FileEvent, OpenedFile};
+use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::disk::write_access::WriteAccess;
 use crate::tui::runtime::effect::FileRequest;
 use crate::tui::runtime::frames::source;
@@ -30,10 +32,13 @@ pub(in crate::tui) fn perform(request: FileRequest, access: &WriteAccess) -> Fil
             Ok(path) => write(&path, name, content, existing),
             Err(refused) => FileEvent::Failed(refused),
         },
-        FileRequest::Source(request) => match source::readable(&request.source, access) {
-            Ok(_) => FileEvent::Source(request),
-            Err(refused) => FileEvent::Failed(refused),
-        },
+        FileRequest::Source(request) => {
+            let source = source::readable(&request.source, access);
+            match source.and_then(|source| refuse_imprint(&source, &request)) {
+                Ok(()) => FileEvent::Source(request),
+                Err(refused) => FileEvent::Failed(refused),
+            }
+        }
         FileRequest::Paths(start) => FileEvent::Paths(paths(&start)),
     }
 }
@@ -46,11 +51,7 @@ fn open(name: &str) -> Result<OpenedFile, String> {
     if !kind.is_file() {
         return Err("not a regular file".to_owned());
     }
-    let mut bytes = Vec::new();
-    let file = File::open(&path).map_err(sentence)?;
-    file.take(MOST + 1)
-        .read_to_end(&mut bytes)
-        .map_err(sentence)?;
+    let bytes = beginning(&path).map_err(sentence)?;
     match read_content(&bytes) {
         Ok(Content::Shape(shape)) => Ok(OpenedFile::Shape(Box::new(shape))),
         Ok(Content::Imprint(imprint)) => Ok(OpenedFile::Imprint(Box::new(imprint))),
@@ -59,6 +60,33 @@ fn open(name: &str) -> Result<OpenedFile, String> {
         }
         Err(error) => Err(error.to_string()),
     }
+}
+
+/// Returns the content of a file, or its beginning if it is larger than a file that is opened.
+fn beginning(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(MOST + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// Refuses to watch a file with an imprint or a shape. A table of numbers may be both, and is watched.
+fn refuse_imprint(source: &FrameSource, request: &WatchRequest) -> Result<(), String> {
+    let (FrameSource::File(path), None) = (source, request.options.format) else {
+        return Ok(());
+    };
+    let what = match beginning(path) {
+        Ok(bytes) if may_be_recording(&bytes) => return Ok(()),
+        Ok(bytes) => read_content(&bytes),
+        // Reported when the file is watched.
+        Err(_) => return Ok(()),
+    };
+    let what = match what {
+        Ok(Content::Shape(_)) => "a shape",
+        Ok(Content::Imprint(_)) => "an imprint",
+        Err(_) => return Ok(()),
+    };
+    let name = source.name();
+    Err(format!("{name}: {what}, not frames; :open opens it"))
 }
 
 /// Writes a file as a whole or not at all.

@@ -15,6 +15,7 @@ use std::time::Duration;
 use crate::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
 use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
 use crate::formats::stream::{StreamCounts, StreamRefusal};
+use crate::formats::value::counted;
 use crate::frame::Frame;
 use crate::storage::Existing;
 use crate::tui::live::history::bytes_of;
@@ -240,7 +241,8 @@ impl FrameFeed {
                 bytes_per_second,
                 counts,
             } => {
-                let why = silence(counts, bytes_per_second);
+                let source = source::named(&request.source);
+                let why = silence(&source, counts, bytes_per_second);
                 state(SourceState::Silent(why))
             }
             AcquireEvent::Absent(error) => {
@@ -283,8 +285,14 @@ fn reason(error: &AcquireError) -> String {
 
 /// Returns the reason why no frame comes. It stays true while the silence lasts: a page on which nothing changes
 /// sends nothing.
-fn silence(counts: &StreamCounts, bytes_per_second: f64) -> String {
-    let hint = match counts.refusal() {
+fn silence(source: &FrameSource, counts: &StreamCounts, bytes_per_second: f64) -> String {
+    let refusal = counts.refusal();
+    // A file has no baud, and sends nothing.
+    if let (FrameSource::File(_), None, 0, 1..) = (source, refusal, counts.frames, counts.bytes) {
+        let bytes = counted(counts.bytes, "byte");
+        return format!("no frame yet: {bytes}, none of it a frame; rows, columns or format?");
+    }
+    let hint = match refusal {
         Some(StreamRefusal::Unknown) => FORMAT_HINT,
         Some(refusal) if refusal.is_of_size() => SIZE_HINT,
         _ => "",
@@ -370,6 +378,20 @@ mod tests {
             page.take(&batch);
         }
         page.reading().map(|reading| reading.frame.number)
+    }
+
+    #[test]
+    fn a_file_without_a_frame_is_not_asked_for_its_baud() {
+        let file = FrameSource::File("a.txt".into());
+        let counts = StreamCounts {
+            bytes: 272,
+            ..StreamCounts::default()
+        };
+        let said = "no frame yet: 272 bytes, none of it a frame; rows, columns or format?";
+        // It says the same when nothing more comes.
+        for rate in [136.0, 0.0] {
+            assert_eq!(silence(&file, &counts, rate), said);
+        }
     }
 
     #[test]
