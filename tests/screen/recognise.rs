@@ -310,6 +310,14 @@ fn escape_stops_a_training_and_enter_restarts_it() {
 }
 
 #[test]
+fn a_notice_that_the_model_is_not_ready_goes_when_it_is() {
+    let mut program = Beside::new("f<Enter>:recognise shapes<Enter>t");
+    shows(&program.session, &["! the model is not ready yet"]);
+    program.until("the model is ready");
+    hides(&program.session, &["not ready"]);
+}
+
+#[test]
 fn escape_stops_the_sizes_and_keeps_the_results() {
     let mut program = Beside::new("r");
     program.until("best possible error");

@@ -38,6 +38,8 @@ pub struct Preparation {
     pub done: u64,
     /// Whether a stop was requested.
     pub stopping: bool,
+    /// Whether the user has asked for something that needs the model.
+    awaited: bool,
     /// Whether the page was opened for this model.
     opened: bool,
     /// The set to return to if this one cannot be read.
@@ -214,6 +216,7 @@ impl Recognition {
             poses: None,
             done: 0,
             stopping: false,
+            awaited: false,
             opened,
             before,
         });
@@ -252,6 +255,23 @@ impl Recognition {
             }
             _ => false,
         }
+    }
+
+    /// Records that the user has asked for something that needs the model. Returns false if the model is not on its
+    /// way.
+    pub fn await_model(&mut self) -> bool {
+        match &mut self.state {
+            ModelState::Preparing(preparation) => {
+                preparation.awaited = true;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Returns true if the user has asked for something that needs the model, which is on its way.
+    pub fn is_awaited(&self) -> bool {
+        matches!(&self.state, ModelState::Preparing(preparation) if preparation.awaited)
     }
 
     /// Records that the work with this number is no longer waited for.

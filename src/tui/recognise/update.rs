@@ -117,8 +117,13 @@ fn open_confusion(app: &mut App) {
 
 /// Shows that the confusion matrix, the sizes or a quiz needs a model.
 fn not_trained(app: &mut App) {
-    refuse(app, "the model is not trained yet");
+    let is_coming = state(app).is_some_and(Recognition::await_model);
+    let text = ["the model is not trained yet", NOT_READY][usize::from(is_coming)];
+    refuse(app, text);
 }
+
+/// The notice while a model is being trained or read.
+const NOT_READY: &str = "the model is not ready yet";
 
 /// Hides the outlines of poses if they are visible, otherwise shows them. At first the size of the taxels decides, so
 /// this depends on what is visible, not on the setting.
@@ -222,9 +227,13 @@ pub(in crate::tui) fn in_recognition(
 
 /// Prepares the set again after a stop, unless its model is ready or on its way.
 fn prepare_again(app: &mut App) -> Option<Effect> {
-    let text = match state(app)?.state() {
+    let page = state(app)?;
+    let text = match page.state() {
         ModelState::Missing => return open(app, None),
-        ModelState::Preparing(_) => "the model is not ready yet",
+        ModelState::Preparing(_) => {
+            page.await_model();
+            NOT_READY
+        }
         ModelState::Ready(_) => "the model is ready: nothing was stopped",
     };
     inform(app, text);
@@ -333,7 +342,12 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
             inform(app, format!("{what}: stopped waiting"));
         }
         RecognitionEvent::Prepared(prepared) => {
+            let was_awaited = page.is_awaited();
             let failed = page.take_model(*prepared);
+            // The notice that it is not ready would be wrong now.
+            if was_awaited && page.trained().is_some() {
+                inform(app, "the model is ready");
+            }
             without_model(app, failed);
         }
         RecognitionEvent::Looked(number, found) => {
