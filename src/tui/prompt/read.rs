@@ -168,7 +168,13 @@ fn distance(dx: &str, dy: &str) -> Option<Message> {
 fn unexpected(command: &PromptCommand, rest: &str) -> String {
     let words = command.words.iter().map(|(word, _)| *word);
     let mut taken: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
-    taken.extend(command.arguments.map(Arguments::form));
+    let form = command.arguments.map(|arguments| match arguments {
+        Arguments::Degrees => "DEGREES, like 30.5",
+        Arguments::Distance => "DX DY in cells, like 0.5 -1",
+        Arguments::Taxel => "COLUMN ROW, like 3 4",
+        other => other.form(),
+    });
+    taken.extend(form);
     let taken = match taken.split_last() {
         None => "nothing".to_owned(),
         Some((last, [])) => (*last).to_owned(),
