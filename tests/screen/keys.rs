@@ -196,6 +196,16 @@ fn a_form_accepts_the_values_that_a_command_accepts() {
 }
 
 #[test]
+fn a_text_that_is_too_long_for_its_field_is_not_cut_without_a_word() {
+    let mut prompt = session("<Space>s");
+    prompt.send(Message::Paste("a".repeat(5000)));
+    let said = "! the end of the text was left out: 4,928 characters";
+    shows(&prompt, &[said]);
+    then(&mut prompt, "<C-u>b", &["Save as: b"]);
+    hides(&prompt, &[said]);
+}
+
+#[test]
 fn pasted_text_only_goes_into_fields() {
     let mut form = session("f<Tab>");
     form.send(Message::Paste(" 2.5\n".to_owned()));

@@ -4,6 +4,7 @@
 //! matrix, or later by the library. Completion asks the library for names where a command takes one; the answer
 //! completes the word when it arrives.
 
+use crate::formats::value::counted;
 use crate::tui::app::change::{from_prompt, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::library::LibraryRequest;
@@ -16,6 +17,7 @@ use crate::tui::prompt::commands::wants_names;
 use crate::tui::prompt::read::read;
 use crate::tui::prompt::state::{CommandDialog, NameDialog};
 use crate::tui::runtime::effect::{Effect, FileRequest, TerminalEffect};
+use crate::tui::widget::text_field::TextField;
 
 /// Handles a message in the `:` prompt, which stays open until a command was understood.
 pub(in crate::tui) fn in_command(
@@ -56,10 +58,24 @@ pub(in crate::tui) fn in_command(
                 dialog.earlier(&app.commands);
             }
         }
-        other => dialog.edit(&other),
+        other => {
+            dialog.edit(&other);
+            say_left_out(app, &dialog.field);
+        }
     }
     app.dialogs.push(Dialog::Command(dialog));
     None
+}
+
+/// Says how much of a pasted text did not fit into a field.
+fn say_left_out(app: &mut App, field: &TextField) {
+    if field.left_out() > 0 {
+        let characters = counted(field.left_out() as u64, "character");
+        refuse(
+            app,
+            format!("the end of the text was left out: {characters}"),
+        );
+    }
 }
 
 /// Completes the typed line: at once, or when the names that it needs have arrived.
@@ -107,6 +123,7 @@ pub(in crate::tui) fn in_name(
         },
         other => {
             dialog.field.take(&other);
+            say_left_out(app, &dialog.field);
         }
     }
     app.dialogs.push(Dialog::Name(dialog));

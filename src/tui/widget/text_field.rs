@@ -30,6 +30,8 @@ pub struct TextField {
     longest: usize,
     /// Whether the field was just entered, so that the next typed character replaces the text.
     fresh: bool,
+    /// The number of pasted characters that the last message left out, because there was no room for them.
+    left_out: usize,
 }
 
 impl TextField {
@@ -39,6 +41,7 @@ impl TextField {
             input: Input::new(text.into()),
             longest,
             fresh: false,
+            left_out: 0,
         }
     }
 
@@ -56,6 +59,11 @@ impl TextField {
     /// Returns the text of the field.
     pub fn text(&self) -> &str {
         self.input.value()
+    }
+
+    /// Returns the number of pasted characters that the last message left out, because there was no room for them.
+    pub fn left_out(&self) -> usize {
+        self.left_out
     }
 
     /// Returns the position of the cursor, in columns.
@@ -78,6 +86,7 @@ impl TextField {
         if self.fresh && replaces {
             self.set("");
         }
+        self.left_out = 0;
         let taken = self.does(message);
         self.fresh &= !taken;
         taken
@@ -96,7 +105,9 @@ impl TextField {
                 let lines = text.split(['\r', '\n']).map(str::trim);
                 let lines: Vec<&str> = lines.filter(|line| !line.is_empty()).collect();
                 let text = lines.join(" ");
-                text.chars().for_each(|character| self.insert(character));
+                let text = text.chars().filter(|character| !character.is_control());
+                let left_out = text.filter(|&character| !self.insert(character));
+                self.left_out = left_out.count();
                 return true;
             }
             Message::Choose(Arrow::Left) => InputRequest::GoToPrevChar,
@@ -112,11 +123,13 @@ impl TextField {
         true
     }
 
-    /// Inserts a character if there is room; control characters are dropped.
-    fn insert(&mut self, character: char) {
-        if !character.is_control() && self.text().chars().count() < self.longest {
+    /// Inserts a character. Returns false if there is no room for it, or if it is a control character.
+    fn insert(&mut self, character: char) -> bool {
+        let fits = !character.is_control() && self.text().chars().count() < self.longest;
+        if fits {
             self.edit(InputRequest::InsertChar(character));
         }
+        fits
     }
 
     /// Performs a request of the crate `tui_input`.
