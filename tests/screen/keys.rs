@@ -265,6 +265,15 @@ fn a_shape_is_moved_and_turned() {
 }
 
 #[test]
+fn the_history_says_whether_a_taxel_was_switched_on_or_off() {
+    shows("<Space>u", &["undone: taxel 8, 8 on"]);
+    // A figure that covers the taxel does not change the words.
+    shows("f<Enter><Space>u", &["undone: taxel 8, 8 off"]);
+    shows("f<Enter><Space><Space>u", &["undone: taxel 8, 8 on"]);
+    shows("f<Enter><Home><Space>u", &["undone: taxel 0, 8 on"]);
+}
+
+#[test]
 fn toggles_that_a_new_touch_drops_are_reported() {
     shows("f<Enter><Space>", &["+ 1 by hand"]);
     shows(

@@ -5,6 +5,7 @@ use crate::formats::value::counted;
 use crate::parameter::Parameter;
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
+use crate::touch::Plane;
 use crate::tui::app::document::Document;
 
 /// Returns the changes from one document to another, for example "x0 4.00 → 4.31, angle 0 → 15"; empty if they are
@@ -79,12 +80,12 @@ fn of_edits(from: &Document, to: &Document) -> String {
     match (switched.count(), switched.active().next()) {
         (0, _) | (_, None) => String::new(),
         (1, Some((column, row))) => {
-            // Without a source an edited taxel is an active one.
-            let state = match (&to.source, to.edits.get(column, row)) {
-                (Some(_), _) => "switched",
-                (None, true) => "on",
-                (None, false) => "off",
-            };
+            let touched = to.source.as_ref().is_some_and(|source| {
+                let touched = Plane::new(to.sensor).touch(source);
+                touched.get(column, row)
+            });
+            let is_on = touched != to.edits.get(column, row);
+            let state = if is_on { "on" } else { "off" };
             format!("taxel {column}, {row} {state}")
         }
         (count, _) => format!("{} switched", counted(count, "taxel")),

@@ -6,7 +6,7 @@
 //!   0  the start
 //!   1  ellipse rx 4.00 ry 4.00 at 4.00, 4.00, 0°
 //! * 2  x0 4.00 → 4.31                                 the present state
-//! > 3  taxel 8, 8 switched                            the selected row is reversed
+//! > 3  taxel 8, 8 off                                 the selected row is reversed
 //! ```
 
 pub mod page;
