@@ -206,6 +206,15 @@ fn a_text_that_is_too_long_for_its_field_is_not_cut_without_a_word() {
 }
 
 #[test]
+fn equal_imprints_are_compared_in_the_words_of_others() {
+    shows(
+        "lkey<Enter>:compare key<Enter>",
+        &["no taxel differs   A: key"],
+    );
+    shows("lkey<Enter><Space>=", &["1 taxel differs   A: "]);
+}
+
+#[test]
 fn pasted_text_only_goes_into_fields() {
     let mut form = session("f<Tab>");
     form.send(Message::Paste(" 2.5\n".to_owned()));
@@ -257,7 +266,10 @@ fn a_shape_is_moved_and_turned() {
     shows("<Space>>", &["a drawing cannot be moved"]);
     for keys in ["<lt>", "g", "+", "z", "<S-Right>", ":turn 30<Enter>"] {
         let stored = format!("lkey<Enter>{keys}");
-        shows(&stored, &["a stored imprint moves as a picture: p places it"]);
+        shows(
+            &stored,
+            &["a stored imprint moves as a picture: p places it"],
+        );
     }
     shows("lkey<Enter>c", &["a stored imprint has none; p places it"]);
     // A hundred steps of 0.01 are exactly 1.

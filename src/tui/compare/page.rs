@@ -403,7 +403,7 @@ impl Page for Comparison {
         let [first, second] = &self.names;
         // On a narrow screen the names are cut, not the number.
         let differ = match self.differing() {
-            0 => "alike".to_owned(),
+            0 => "no taxel differs".to_owned(),
             1 => "1 taxel differs".to_owned(),
             count => format!("{} differ", counted(count, "taxel")),
         };
