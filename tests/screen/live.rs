@@ -214,7 +214,7 @@ fn a_notice_does_not_hide_a_lost_source() {
         page.send(Message::Worker(WorkerEvent::Live(1, event)));
         shows(&page, &["! lost: Connection reset by peer"]);
         hides(&page, &["tare of the last"]);
-        then(&mut page, "T", &["! no tare; lost: Connection reset"]);
+        then(&mut page, "T", &["no tare; ! lost: Connection reset"]);
     }
 }
 

@@ -196,10 +196,9 @@ fn notice(app: &App, panes: &Panes) -> Option<(String, Role)> {
     let waiting = || Some((app.waiting()?.to_owned(), Role::Key));
     let notice = notice.or_else(waiting);
     match (notice, top.and_then(Page::alarm)) {
-        (Some((text, _)), Some(alarm)) => {
-            let text = text.trim_start_matches("! ");
-            Some((format!("! {text}; {alarm}"), Role::Error))
-        }
+        (Some((text, Role::Error)), Some(alarm)) => Some((format!("{text}; {alarm}"), Role::Error)),
+        // The mark of an error stands before the error alone.
+        (Some((text, _)), Some(alarm)) => Some((format!("{text}; ! {alarm}"), Role::Error)),
         (notice, _) => notice.or(remark),
     }
 }

@@ -156,7 +156,7 @@ fn a_recording_that_fails_replaces_the_notice_of_its_start() {
     assert!(!screen.contains("recording in"), "{screen}");
     // The error remains while there is no recording, and a key does not hide it.
     watched.program.types(b"T");
-    watched.program.shows("! there is no tare; touch-1.npy:");
+    watched.program.shows("there is no tare; ! touch-1.npy:");
     watched.ends();
 }
 
