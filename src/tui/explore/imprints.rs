@@ -96,7 +96,8 @@ pub struct ImprintList {
     pub id: usize,
     /// The number of characters of a number of poses.
     pub poses: usize,
-    /// The axes of the first pose, with the number of characters of their values; empty without room for them.
+    /// The axes of the first pose that have several values, with the number of characters of these; empty without room
+    /// for them.
     pub place: Vec<(Axis, usize)>,
 }
 
@@ -107,10 +108,10 @@ impl ImprintList {
         let grid = &result.grid;
         let id = result.atlas.len().to_string().len().max(2);
         let poses = grouped(result.poses).len().max(6);
-        let place: Vec<(Axis, usize)> = grid
-            .axes()
-            .map(|axis| (axis, results.width_of(axis)))
-            .collect();
+        // A column of equal values would say nothing; the line about the selected imprint gives its whole pose.
+        let varying = grid.axes().filter(|&axis| grid.ranges()[axis].count() > 1);
+        let place: Vec<(Axis, usize)> =
+            varying.map(|axis| (axis, results.width_of(axis))).collect();
         let short = SIGN + id + 1 + poses + 1 + SHARE + 1 + 2 + 1 + 2 + 1 + VALUE;
         let full = short + place.iter().map(|(_, width)| width + 1).sum::<usize>();
         let room = usize::from(page.width);
@@ -213,8 +214,10 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
         write::line(buffer, row, theme, pieces);
         if selected {
             cursor = Some(Position::new(row.x, row.y));
-            let text = detail(theme, results, &entry);
-            write::line(buffer, list.detail, theme, [(text.as_str(), Role::Text)]);
+            let texts = detail(theme, results, &entry);
+            let texts = texts.each_ref().map(String::as_str);
+            let text = write::first_fitting(&texts, list.detail.width.into());
+            write::line(buffer, list.detail, theme, [(text, Role::Text)]);
         }
     }
     if let Some(area) = list.gallery {
@@ -307,19 +310,19 @@ fn number(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     )
 }
 
-/// Describes an imprint in one line.
-fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
+/// Describes an imprint in one line; the shorter form leaves out what its row says too.
+fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> [String; 2] {
     let pose = results.sweep().grid.pose(entry.first_pose);
     let count = |count: u16, noun: &str| counted(count, noun);
-    format!(
-        "imprint {} at {}; {}, {}, {} {}",
-        entry.id,
-        results.pose_text(&pose),
+    let short = format!("imprint {} at {}", entry.id, results.pose_text(&pose));
+    let full = format!(
+        "{short}; {}, {}, {} {}",
         count(entry.summary.pieces, "piece"),
         count(entry.summary.holes, "hole"),
         results.feature().key,
         number(theme, results, entry)
-    )
+    );
+    [full, short]
 }
 
 /// Draws thumbnails of the selected imprint and the ones after it, in lines from left to right.
