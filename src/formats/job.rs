@@ -65,16 +65,15 @@ impl Job {
         lookup: &dyn Fn(&str) -> Result<Imprint, String>,
     ) -> Result<Self, JobError> {
         let without_nan;
-        let line: JobLine<'_> = match serde_json::from_slice(line) {
-            Ok(line) => line,
-            Err(_) => {
-                without_nan = WithoutNan::new(line);
-                let read = serde_json::from_slice(&without_nan.line);
-                read.map_err(|error| JobError::Json {
-                    column: without_nan.column(error.column().max(1)),
-                    message: message(&error),
-                })?
-            }
+        let line: JobLine<'_> = if let Ok(line) = serde_json::from_slice(line) {
+            line
+        } else {
+            without_nan = WithoutNan::new(line);
+            let read = serde_json::from_slice(&without_nan.line);
+            read.map_err(|error| JobError::Json {
+                column: without_nan.column(error.column().max(1)),
+                message: message(&error),
+            })?
         };
         if let Some(frame) = &line.frame {
             return line.describe(frame).map(Self::Describe);
