@@ -260,8 +260,8 @@ impl<'a> TimeArray<'a> {
         found.or_else(|| Self::new(other?, None))
     }
 
-    /// Returns the times in seconds since the first one, and their unit if it was derived from their size and is not
-    /// seconds.
+    /// Returns the times in seconds since the first one, NaN for missing ones, and their unit if it was derived from
+    /// their size and is not seconds.
     ///
     /// # Errors
     /// Returns an error if the array is damaged.
@@ -280,20 +280,21 @@ impl<'a> TimeArray<'a> {
                 let message = format!("ends before its {frames} times");
                 return Err(RecordingError::damaged(message));
             }
-            let value = self.number.value(bytes);
+            let (value, whole) = (self.number.value(bytes), self.number.whole(bytes));
+            let is_none = self.has_none && whole == Some(i128::from(i64::MIN));
+            if is_none || !value.is_finite() {
+                times.push(f64::NAN);
+                continue;
+            }
             // Nanoseconds since 1970 have more digits than a float.
             #[expect(
                 clippy::cast_precision_loss,
                 reason = "the nearest float of a difference"
             )]
-            let time = match self.number.whole(bytes) {
-                Some(whole) if self.has_none && whole == i128::from(i64::MIN) => f64::NAN,
+            let time = match whole {
                 Some(whole) => (whole - *first_whole.get_or_insert(whole)) as f64,
                 None => since(*first.get_or_insert(value), value),
             };
-            if !time.is_finite() {
-                return Ok((Vec::new(), None));
-            }
             let unit = unit.get_or_insert_with(|| TimeUnit::by_size(value));
             times.push(to_nanoseconds(unit.seconds(time)));
         }
@@ -304,8 +305,8 @@ impl<'a> TimeArray<'a> {
     }
 }
 
-/// Returns the times of all `frames`, in seconds since the first one; empty if there are none. Returns their unit,
-/// too, if it was derived from their size and is not seconds.
+/// Returns the times of all `frames`, in seconds since the first one, NaN for missing ones; empty if there are none.
+/// Returns their unit, too, if it was derived from their size and is not seconds.
 ///
 /// # Errors
 /// Returns an error if the array of times is damaged.
@@ -401,11 +402,20 @@ mod tests {
             times_of("time", "<i8", since_1970),
             (both(0.001_000_001), noted)
         );
+    }
+
+    #[test]
+    fn a_missing_time_leaves_the_others() {
         // NaT, numpy's missing time.
-        let without = (vec![None; 2], vec![]);
-        assert_eq!(
-            times_of("time", "<M8[ns]", [since_1970[0], i64::MIN]),
-            without
-        );
+        let (time, none) = (1_714_564_800_123_456_789, i64::MIN);
+        let times = |numbers| times_of("time", "<M8[ns]", numbers).0;
+        assert_eq!(times([time, none]), [Some(0.0), None]);
+        assert_eq!(times([none, time]), [None, Some(0.0)]);
+        let floats = |numbers: [f64; 2]| {
+            let bits = numbers.map(|number| number.to_bits().cast_signed());
+            times_of("time", "<f8", bits).0
+        };
+        assert_eq!(floats([2.0, f64::INFINITY]), [Some(0.0), None]);
+        assert_eq!(floats([f64::NAN, 2.0]), [None, Some(0.0)]);
     }
 }

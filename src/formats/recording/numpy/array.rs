@@ -309,8 +309,13 @@ pub(super) fn end(input: &mut impl Read, layout: &ArrayLayout) -> Result<(), Rec
     Ok(())
 }
 
-/// Reads all frames of an array; returns true if the sink wants no more. `times` are in seconds, one per frame, or
-/// empty.
+/// Returns the time of a frame, if it has one.
+fn time(times: &[f64], number: usize) -> Option<f64> {
+    times.get(number).copied().filter(|time| time.is_finite())
+}
+
+/// Reads all frames of an array; returns true if the sink wants no more. `times` are in seconds, one per frame and
+/// NaN for missing ones, or empty.
 pub(super) fn frames(
     input: &mut impl Read,
     layout: &ArrayLayout,
@@ -349,8 +354,7 @@ pub(super) fn frames(
         }
         frame.time = usize::try_from(frame.number)
             .ok()
-            .and_then(|number| times.get(number))
-            .copied();
+            .and_then(|number| time(times, number));
         if let Some(record) = &layout.record {
             let (time, label) = moment(record, &bytes, &mut start);
             (frame.time, frame.label) = (time, label);
@@ -458,7 +462,7 @@ fn fortran(
                 frame.values_mut()[row * columns + column] = value;
             }
         }
-        frame.time = times.get(number).copied();
+        frame.time = time(times, number);
         if give(&frame, sink)? {
             return Ok(true);
         }
