@@ -81,6 +81,6 @@ pub(crate) fn parameters() -> String {
     };
     let rows: String = PARAMETERS.iter().map(row).collect();
     format!(
-        "\n| key | flag | meaning | range on 16 × 16 | unit | default |\n|---|---|---|---|---|---|\n{rows}\n"
+        "\n| key | flag | meaning | range on 16 × 16 | unit | default on 16 × 16 |\n|---|---|---|---|---|---|\n{rows}\n"
     )
 }
