@@ -330,14 +330,9 @@ fn request(
         }
         "describe" => Request::Describe(what(own)?, form(own, settings)?),
         "export" => {
-            let pitch = pitch(own, settings)?;
             let to = required::<PathBuf>(own, "to")?;
             let export = export(own, &to, command, "export")?;
-            if pitch.given.is_some() && !export.is_drawing() {
-                let reason = "on this format: it is for drawings".to_owned();
-                let flag = "pitch";
-                return Err(CliError::Unused { flag, reason });
-            }
+            let pitch = pitch_of_export(own, settings, &export)?;
             Request::Export(what(own)?, export, pitch)
         }
         "watch" => {
@@ -551,6 +546,26 @@ fn export(
     let format = matches.get_one::<String>("format").map(String::as_str);
     let export = Export::new(path, format, parameters::existing(matches));
     export.map_err(|message| misused(command, name, &message))
+}
+
+/// Returns the pitch for an export.
+///
+/// # Errors
+/// Returns [`CliError::Unused`] if a flag gives one and nothing is drawn.
+fn pitch_of_export(
+    matches: &ArgMatches,
+    settings: &Effective,
+    export: &Export,
+) -> Result<Pitch, CliError> {
+    let pitch = pitch(matches, settings)?;
+    if pitch.given.is_some() && !export.is_drawing() {
+        let reason = "on this format: it is for drawings".to_owned();
+        return Err(CliError::Unused {
+            flag: "pitch",
+            reason,
+        });
+    }
+    Ok(pitch)
 }
 
 /// Reads `--save` with its `--force`.
