@@ -312,13 +312,12 @@ fn unclear_names(lines: &[ListLine]) -> Vec<Finding> {
 /// array of objects, and [`CliError::Shapes`] if a shape is damaged, to be reported after it.
 ///
 /// # Errors
-/// Returns an error if the folder cannot be listed, or if `--library` names one that does not exist.
+/// Returns an error if the folder cannot be listed.
 pub(crate) fn check(
     shelf: &Shelf,
     as_json: bool,
     charset: Charset,
 ) -> Result<(String, Result<(), CliError>), CliError> {
-    shelf.check_named_folder()?;
     let library = shelf.library()?;
     let lines = lines(&library)?;
     let shapes = lines.len();
@@ -338,7 +337,10 @@ pub(crate) fn check(
         json::ascii(&findings) + "\n"
     } else {
         let lines = findings.iter().map(Finding::to_string);
-        let whole = (broken == 0).then(|| format!("{shapes} shapes, all intact"));
+        let missing = shelf.missing_folder().map_or(String::new(), |folder| {
+            format!("; {} does not exist", folder.display())
+        });
+        let whole = (broken == 0).then(|| format!("{shapes} shapes, all intact{missing}"));
         let lines = lines.chain(whole);
         lines
             .map(|line| charset.line(&line).into_owned() + "\n")

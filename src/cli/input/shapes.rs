@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::ErrorKind;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use crate::cli::error::CliError;
@@ -85,23 +85,12 @@ impl Shelf {
         self.asked.then(|| self.library()).transpose()
     }
 
-    /// Checks that the folder that `--library` names exists. A library that was never used, in the default folder or
-    /// in that of the settings, has none yet.
-    ///
-    /// # Errors
-    /// Returns [`CliError::Read`].
-    pub(crate) fn check_named_folder(&self) -> Result<(), CliError> {
-        let (true, Some(folder)) = (self.asked, &self.folder) else {
-            return Ok(());
-        };
-        match folder.metadata() {
-            Err(error) if error.kind() == ErrorKind::NotFound => Err(CliError::Read {
-                name: folder.display().to_string(),
-                error,
-            }),
-            // Other errors are reported where the folder is read.
-            _ => Ok(()),
-        }
+    /// Returns the folder that `--library` names, if it does not exist: it is made when a shape is saved, but its name
+    /// may be mistyped.
+    pub(crate) fn missing_folder(&self) -> Option<&Path> {
+        let folder = self.folder.as_deref().filter(|_| self.asked)?;
+        let is_missing = |error: &std::io::Error| error.kind() == ErrorKind::NotFound;
+        (folder.metadata().as_ref().err().is_some_and(is_missing)).then_some(folder)
     }
 
     /// Looks up a `NAME|FILE` argument and reads it.
