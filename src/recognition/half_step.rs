@@ -29,7 +29,7 @@ pub struct HalfStep {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum HalfStepWork {
-    /// So many poses more were touched.
+    /// This number of further poses was touched.
     Poses(u64),
     /// The nearest imprint is searched for one more imprint that the model does not hold, after all poses.
     Search {

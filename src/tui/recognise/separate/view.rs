@@ -157,7 +157,7 @@ impl Separate {
             (false, false) => format!("searching between sizes; {stop} stops "),
         };
         let end = write::line(buffer, row, theme, [(text.as_str(), Role::Text)]);
-        // Nobody knows how long the search takes.
+        // The number of steps of this search is not known in advance.
         if found == all {
             return;
         }
