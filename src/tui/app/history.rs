@@ -147,8 +147,8 @@ impl History {
         });
     }
 
-    /// Adds a document that is stored nowhere and comes from an earlier run. If nothing would be lost of the states
-    /// before, they are dropped: undo back to them, and then an end without a question, would lose the document.
+    /// Adds a document that is stored nowhere and comes from an earlier run. Drops the states before it if nothing is
+    /// lost by that: undo would go back to them, and quitting there without a question would lose the document.
     pub fn resume(&mut self, document: Document, origin: DocumentOrigin) {
         self.begin(document, origin);
         if !self.left_unsaved() {

@@ -364,8 +364,8 @@ impl Recognition {
         })
     }
 
-    /// Returns the threshold at which a shape touched the matrix, if the model was trained at another one: then what it
-    /// knows are other imprints than those of this sensor.
+    /// Returns the threshold at which a shape touched the matrix, if the model was trained at another one: the imprints
+    /// of the model are then not those of this sensor.
     pub fn other_threshold(&self) -> Option<f64> {
         let trained = self.trained()?.model.sensor().threshold();
         self.threshold.filter(|&threshold| threshold != trained)

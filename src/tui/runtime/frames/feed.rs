@@ -290,7 +290,7 @@ fn silence(source: &FrameSource, counts: &StreamCounts, bytes_per_second: f64) -
     // A file has no baud, and sends nothing.
     if let (FrameSource::File(_), None, 0, 1..) = (source, refusal, counts.frames, counts.bytes) {
         let bytes = counted(counts.bytes, "byte");
-        return format!("no frame yet: {bytes}, none of it a frame; rows, columns or format?");
+        return format!("no frame yet: none in {bytes}; rows, columns or format?");
     }
     let hint = match refusal {
         Some(StreamRefusal::Unknown) => FORMAT_HINT,
@@ -387,8 +387,8 @@ mod tests {
             bytes: 272,
             ..StreamCounts::default()
         };
-        let said = "no frame yet: 272 bytes, none of it a frame; rows, columns or format?";
-        // It says the same when nothing more comes.
+        let said = "no frame yet: none in 272 bytes; rows, columns or format?";
+        // The message stays the same when nothing more comes.
         for rate in [136.0, 0.0] {
             assert_eq!(silence(&file, &counts, rate), said);
         }
