@@ -81,15 +81,11 @@ impl<T: Real> Overlap<T> {
     #[inline(always)]
     fn inside(&mut self, edge: &SlopedEdge<T>, from: Point<T>, to: Point<T>) {
         let ((first, top), (last, _)) = (from.y.cell(), to.y.cell());
-        let (mut line, step) = if first < last {
-            (top + T::ONE, T::ONE)
+        let stride = self.grid.start(1);
+        let (mut line, step, next_row) = if first < last {
+            (top + T::ONE, T::ONE, stride)
         } else {
-            (top, -T::ONE)
-        };
-        let next_row = if first < last {
-            self.grid.start(1)
-        } else {
-            self.grid.start(1).wrapping_neg()
+            (top, -T::ONE, stride.wrapping_neg())
         };
         let mut start = self.grid.start(first) + 1;
         let (mut height, full) = (edge.sign * (line - from.y), edge.sign * step);
