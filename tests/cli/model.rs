@@ -1151,7 +1151,7 @@ fn a_folder_and_a_fifo_in_place_of_a_set_are_told_apart() {
     let place = Place::new();
     fs::create_dir(place.0.path().join("parts")).expect("made");
     let train = |what: &str| format!("model train {what} {COARSE} --out m.npz");
-    let said = "no shape is called \"parts\", and the file of this name is a folder";
+    let said = "no shape is called \"parts\"; there is a folder of this name, but a set is a file";
     refused(&place.run(&train("parts"), ""), 1, said);
     let pipe = place.0.path().join("ff");
     if super::wait::fifo(&pipe) {

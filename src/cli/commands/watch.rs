@@ -2,7 +2,8 @@
 //!
 //! Every frame is recorded before it is answered. A live source that is recorded is never held up: if the reader of the
 //! answers is slow, some frames get no answer, and their number is reported. Otherwise answers wait, as in any
-//! pipeline. If the reader is gone, as in `| head -1`, the recording continues; without one, the command ends.
+//! pipeline. If the reader is gone, as in `| head -1`, a recording continues, and without a recording the command
+//! ends.
 //!
 //! ```text
 //! $ taxel watch /dev/ttyUSB0 --at-least 20 --write grip.npy | jq .na

@@ -84,7 +84,7 @@ fn no_shape(error: LibraryError, shelf: &Shelf) -> CliError {
         return match error {
             LibraryError::Unknown { name } if Path::new(&name).is_dir() => CliError::NoShape {
                 error: LibraryError::Unknown { name },
-                near: ", and the file of this name is a folder".to_owned(),
+                near: "; there is a folder of this name, but a set is a file".to_owned(),
             },
             error => shelf.refused(error),
         };
