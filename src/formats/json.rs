@@ -1,4 +1,5 @@
-//! Values as JSON text, Python's `NaN`, and the messages of the parser without positions, which callers report themselves.
+//! Values as JSON text, Python's `NaN`, and the messages of the parser without positions, which callers report
+//! themselves.
 
 use std::borrow::Cow;
 #[cfg(feature = "cli")]
