@@ -195,7 +195,7 @@ pub(crate) fn naming() -> [Arg; 2] {
         .long("model")
         .value_name("MODEL")
         .value_parser(name_or_path())
-        .help("Name the shape that left the imprint: a model's name\nor file, or 'figures'");
+        .help("Name the shape that left the imprint: name or file of a\nmodel; figures, figures-30, shapes");
     let noise = Arg::new("noise")
         .long("noise")
         .value_name("E")

@@ -342,7 +342,7 @@ Built-in models: 'figures', the seven figures in their default sizes;
 taxel. 'taxel model train' makes others.
 
 Examples:
-  taxel recognise imprint.txt --pose
+  taxel recognise touch.txt --model figures-30 --pose
   taxel recognise washer --model shipped.npz --top 3
   taxel batch < poses.jsonl | taxel recognise - --model parts
   taxel recognise imprint.txt --model parts --expect disc --reject 0.9
@@ -439,7 +439,7 @@ Examples:
   taxel frames recording.csv
   taxel frames recording.csv --peak --at-least 10
   taxel frames recording.csv --all --percent 25 --tare 2 --json
-  taxel frames recording.csv --frame 2 --low 5 --high 20 --heat --ascii
+  taxel frames recording.csv --frame 3 --low 5 --high 20 --heat --ascii
   taxel frames recording.csv --peak --at-least 10 --heat --export touch.svg
   taxel frames recording.csv --peak --at-least 10 --model parts --noise 0.01
   taxel frames recording.csv --noise-report --at-least 10 --export mask.txt
