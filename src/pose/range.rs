@@ -110,7 +110,6 @@ impl DecimalRange {
 
     /// Creates the range of a single number, rounded to some decimals; None if the number has too many digits to be
     /// exact, or is not finite.
-    #[cfg(feature = "recognition")]
     pub(crate) fn rounded(value: f64, places: u32) -> Option<Self> {
         #[expect(clippy::cast_precision_loss, reason = "at most 2^53")]
         let (one, most) = (10_u64.pow(places) as f64, MAX_UNITS as f64);

@@ -156,7 +156,7 @@ fn union(one: Extent, other: Extent) -> Extent {
 /// Returns the ranges of a sweep of `source`, with defaults for those that are not given: for x0 and y0, the cell in
 /// which the shape lies if no pose is cut off there, otherwise one around the middle.
 ///
-/// The shape's own position matters; its angle and zooms matter only if they are in the ranges. Given ranges stay as
+/// A zoom without a range stays that of the shape. Its angle matters only if it is in the ranges. Given ranges stay as
 /// they are.
 ///
 /// # Errors
@@ -172,6 +172,11 @@ fn union(one: Extent, other: Extent) -> Extent {
 /// let ranges = default_ranges(&washer.into(), &sensor, Anchor::Corner, &given)?;
 /// assert_eq!(ranges[Axis::X0].to_string(), "1:1.99:0.01");
 ///
+/// // A picture keeps its zooms.
+/// let bar = Picture::new("###".parse().unwrap()).zoom(0.5, 2.0).on(&sensor)?;
+/// let ranges = default_ranges(&bar.into(), &sensor, Anchor::Centre, &given)?;
+/// assert_eq!((ranges[Axis::ZoomX].to_string(), ranges[Axis::ZoomY].to_string()), ("0.5".into(), "2".into()));
+///
 /// // A square of 10 that lies there is cut off when it turns.
 /// let square = Figure::rectangle(10.0, 10.0).at(1.99, 1.47).on(&sensor)?;
 /// let ranges = default_ranges(&square.into(), &sensor, Anchor::Corner, &given)?;
@@ -185,6 +190,7 @@ pub fn default_ranges(
     given: &GivenRanges,
 ) -> Result<Ranges, GridError> {
     check_given(given, sensor)?;
+    let given = &GivenRanges::from_fn(|axis| given[axis].or_else(|| own_zoom(source, axis)));
     let reach = Reach::of(source, anchor, given)?;
     let (x, y) = own_position(source, anchor);
     let axes = [
@@ -543,6 +549,15 @@ fn own_position(source: &Source, anchor: Anchor) -> (f64, f64) {
             (centre.x, centre.y)
         }
     }
+}
+
+/// Returns the zoom of a shape along the axis of that zoom, as a range; None for other axes and other shapes.
+fn own_zoom(source: &Source, axis: Axis) -> Option<DecimalRange> {
+    let zoom = match axis {
+        Axis::ZoomX | Axis::ZoomY => source.get(axis.parameter()),
+        Axis::X0 | Axis::Y0 | Axis::Angle => None,
+    };
+    DecimalRange::rounded(zoom?, 12)
 }
 
 /// Returns the given ranges, with default ranges for the axes that have none.

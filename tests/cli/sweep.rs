@@ -127,6 +127,14 @@ fn the_default_ranges_are_printed() {
         0,
         "range: x0 2:2.99:0.01, y0 2:2.99:0.01\n",
     );
+    // A corner that is zoomed moves by half a cell, a centre by a whole one.
+    let zoomed = "sweep --picture washer --zoom-x 0.5 --zoom-y 0.5 --angle 0 --json";
+    let noted = "range: x0 2:2.99:0.01, y0 2:2.99:0.01\n\
+         the corner is zoomed, too: it moves by less than a cell; \
+         '--anchor centre' moves the shape by a cell\n";
+    ran(zoomed, ["2:2.99:0.01"; 2], 0, noted);
+    let centred = format!("{zoomed} --anchor centre --quiet");
+    ran(&centred, ["6:6.99:0.01", "5:5.99:0.01"], 0, "");
 }
 
 #[test]

@@ -43,8 +43,8 @@ impl Wanted {
     }
 }
 
-/// Returns the grid to sweep, and notes about it: the ranges of x0 and y0 that were not given, and how many poses are
-/// cut off nevertheless.
+/// Returns the grid to sweep, and notes about it: the ranges of x0 and y0 that were not given, whether they span less than
+/// a cell, and how many poses are cut off nevertheless.
 ///
 /// A figure gets the paper's cell, which starts at 5, if nothing is cut off there; a picture gets the cell that it
 /// lies in.
@@ -78,6 +78,11 @@ pub(crate) fn grid(
         .iter()
         .map(|&axis| format!("{} {}", axis.name(), grid.ranges()[axis]));
     let mut notes = vec![format!("range: {}", taken.collect::<Vec<_>>().join(", "))];
+    let least = [Axis::ZoomX, Axis::ZoomY].map(|axis| grid.ranges()[axis].value(0));
+    if anchor == Anchor::Corner && least.iter().any(|&zoom| zoom < 1.0) {
+        let note = "the corner is zoomed, too: it moves by less than a cell; '--anchor centre' moves the shape by a cell";
+        notes.push(note.to_owned());
+    }
     let cut = grid.poses_beyond_sensor();
     if cut > 0 {
         let noun = grid.source().noun();

@@ -1,8 +1,8 @@
 //! The state of the form of ranges: a field for each axis of the shape, and the anchor.
 //!
-//! A range is `start:end:step` or a single number, as on the command line. The ranges of x0 and y0 are proposed: the
-//! cell that the shape lies in if the sensor cuts nothing off there at any of the angles, otherwise a cell around the
-//! middle. The proposals follow the other fields until they are edited. Each valid grid is sent to a worker once,
+//! A range is `start:end:step` or a single number, as on the command line. The zooms of a picture are proposed, and the
+//! ranges of x0 and y0: the cell that the shape lies in if the sensor cuts nothing off there at any of the angles,
+//! otherwise a cell around the middle. The proposals follow the other fields until they are edited. Each valid grid is sent to a worker once,
 //! which measures how long its sweep would take; an estimate for another grid is ignored.
 
 use std::time::Duration;
@@ -148,9 +148,9 @@ impl RangesForm {
         };
         if earlier.is_none() {
             for field in &mut form.fields {
-                let place = matches!(field.axis, Axis::X0 | Axis::Y0);
-                let place = place && typed.iter().all(|axis| *axis != field.axis);
-                field.proposed = place.then(|| field.input.text().to_owned());
+                let proposed = field.axis != Axis::Angle;
+                let proposed = proposed && typed.iter().all(|axis| *axis != field.axis);
+                field.proposed = proposed.then(|| field.input.text().to_owned());
             }
             form.propose();
         }
