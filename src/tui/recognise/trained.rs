@@ -20,9 +20,9 @@ pub struct TrainedModel {
     pub evaluation: Evaluation,
     /// An imprint for each cell of its confusion matrix.
     pub examples: Examples,
-    /// The share of poses in hundredths of a cell and whole degrees that leave an imprint which the model does not
-    /// know; None if its grid is as fine.
-    pub unknown_between: Option<f64>,
+    /// The number of random poses in hundredths of a cell and whole degrees that leave an imprint which the model does
+    /// not know, and the number that were tried; None if its grid is as fine.
+    pub unknown_between: Option<(u64, u64)>,
 }
 
 impl PartialEq for TrainedModel {
@@ -93,9 +93,9 @@ fn grid_of(model: &Model, shape: usize, ranges: Ranges) -> Option<PoseGrid> {
 /// The number of poses that are tried per shape.
 const TRIED: u32 = 100;
 
-/// Returns the share of random poses in hundredths of a cell and whole degrees whose imprint the model does not know;
-/// None if its own steps are as fine.
-fn unknown_between(model: &Model) -> Option<f64> {
+/// Returns the number of random poses in hundredths of a cell and whole degrees whose imprint the model does not know,
+/// and the number of all that were tried; None if its own steps are as fine.
+fn unknown_between(model: &Model) -> Option<(u64, u64)> {
     let ranges = model.ranges();
     let axes = [(Axis::X0, 0.01), (Axis::Y0, 0.01), (Axis::Angle, 1.0)];
     let mut fine = *ranges;
@@ -106,7 +106,7 @@ fn unknown_between(model: &Model) -> Option<f64> {
         return None;
     }
     let mut random = Pcg64::seed_from_u64(0);
-    let (mut tried, mut unknown) = (0_u32, 0_u32);
+    let (mut tried, mut unknown) = (0, 0);
     let mut plane = Plane::new(*model.sensor());
     for shape in 0..model.shapes().len() {
         let Some(grid) = grid_of(model, shape, fine) else {
@@ -116,10 +116,10 @@ fn unknown_between(model: &Model) -> Option<f64> {
             let pose = grid.pose(below(&mut random, grid.poses()));
             let imprint = plane.touch(&grid.placed(pose));
             tried += 1;
-            unknown += u32::from(model.counts_of(&imprint).is_empty());
+            unknown += u64::from(model.counts_of(&imprint).is_empty());
         }
     }
-    (tried > 0).then(|| f64::from(unknown) / f64::from(tried))
+    (tried > 0).then_some((unknown, tried))
 }
 
 /// Returns a range in smaller steps, which ends just before the value after the range's last one; None if its steps

@@ -19,10 +19,10 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::value::{counted, decimal, deviation, percent};
+use crate::formats::value::{counted, decimal, deviation, grouped, percent};
 use crate::imprint::Imprint;
 use crate::parameter::number::{share, short};
-use crate::pose::{Anchor, Axis};
+use crate::pose::Axis;
 use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
 use crate::tui::app::page::{Page, PoseLayer, Slot};
 use crate::tui::explore::running::gauge;
@@ -201,10 +201,11 @@ impl Panel<'_> {
         let limits = [&*long, &*short, &*long];
         let limit = write::first_fitting(&limits, self.area.width.into());
         self.text(limit, Role::Quiet);
-        if let Some(unknown) = trained.unknown_between {
+        if let Some((unknown, tried)) = trained.unknown_between {
             let text = format!(
-                "between grid points, {} of poses are not in the model",
-                percent(unknown)
+                "between grid points, {} of {} random poses are not in the model",
+                percent_of(unknown.into(), tried.into()),
+                grouped(tried)
             );
             self.text(&text, Role::Quiet);
         }
@@ -288,7 +289,7 @@ impl Panel<'_> {
             // If shapes are tied, the pose is that of the first.
             let is_named = answer.state != AnswerState::Tied && answer.shape == Some(*shape);
             let whose = if is_named { "" } else { trained.name(*shape) };
-            let [mut position, angle, poses] = pose_lines(trained, whose, pose);
+            let [mut position, angle, poses] = pose_lines(whose, pose);
             // If lines are scarce, a line is worth more than the unit.
             let is_scarce = self.gap_lines() == 0 && self.lines_of(&position) > 1;
             if is_scarce {
@@ -382,15 +383,11 @@ const MARKS: [char; 2] = ['+', '-'];
 
 /// Returns the lines about the pose of a shape: mean and spread over the poses that leave the imprint. `whose` is the
 /// name of the shape if the answer does not name it, otherwise empty.
-fn pose_lines(trained: &TrainedModel, whose: &str, pose: &PoseEstimate) -> [String; 3] {
-    let what = match trained.model.anchor() {
-        Anchor::Centre => "centre",
-        Anchor::Corner => "corner",
-    };
+fn pose_lines(whose: &str, pose: &PoseEstimate) -> [String; 3] {
     let [x, y] = pose.position;
     let [dx, dy] = pose.standard_deviation;
     let (dx, dy) = (spread_of(dx, 2), spread_of(dy, 2));
-    let position = format!("{whose} {what} {x:.2} ± {dx}, {y:.2} ± {dy} cells");
+    let position = format!("{whose} centre {x:.2} ± {dx}, {y:.2} ± {dy} cells");
     let position = position.trim_start().to_owned();
     let poses = counted(pose.poses, "pose");
     let any = || ("any angle".to_owned(), poses.clone());
