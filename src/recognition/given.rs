@@ -245,21 +245,28 @@ impl GivenDescriptors {
     fn values(&self, description: Option<&Description>) -> Vec<ExactValue> {
         let value = |&descriptor: &ShapeDescriptor| {
             let rounding = Rounding::of(descriptor, &self.roundings);
-            known(descriptor, rounding, description?)
+            known(descriptor, rounding, description)
         };
         self.descriptors.iter().map(value).collect()
     }
 }
 
-/// Returns the value of one descriptor in a description, in steps if it is rounded.
+/// Returns the value of one descriptor in a description, in steps if it is rounded. An empty imprint has no description;
+/// its counts are 0, so in large steps they equal small ones.
 fn known(
     descriptor: ShapeDescriptor,
     rounding: Option<&Rounding>,
-    description: &Description,
+    description: Option<&Description>,
 ) -> ExactValue {
+    let Descriptor {
+        measure,
+        exact,
+        of_nothing,
+        ..
+    } = descriptor.0;
     match rounding {
-        Some(rounding) => rounding.rounded((descriptor.0.measure)(description)),
-        None => (descriptor.0.exact)(description),
+        Some(rounding) => rounding.rounded(description.map_or(*of_nothing, measure)),
+        None => exact(description?),
     }
 }
 
@@ -324,7 +331,7 @@ impl<'a> GivenTable<'a> {
     ) -> Classes {
         let rounding = Rounding::of(descriptor, roundings);
         let value =
-            |description: &Option<Description>| known(descriptor, rounding, description.as_ref()?);
+            |description: &Option<Description>| known(descriptor, rounding, description.as_ref());
         let mut numbers = HashMap::new();
         let members = classes.iter().zip(&self.descriptions);
         let number = members.map(|(&class, description)| {

@@ -509,6 +509,22 @@ fn a_shape_that_may_leave_an_empty_imprint_is_named_by_its_template() {
     assert_eq!(reached.evaluation.error(), 0.0);
 }
 
+#[test]
+fn in_large_steps_no_taxel_equals_one() {
+    let sensor = sensor(16);
+    let shape = |name: &str, radius: f64| {
+        let figure = Figure::ellipse(radius, radius).on(&sensor);
+        NamedShape::new(name, figure.expect("in range"))
+    };
+    let shapes = vec![shape("small", 0.4), shape("larger", 0.55)];
+    let model = train(shapes, 16, ranges("5:5.9:0.1", "5:5.9:0.1", "0"));
+    let given: GivenDescriptors = "na".parse().expect("a descriptor");
+    assert_eq!(given.evaluate(&model).keys, 2);
+    let rounded = given.rounded(vec!["na=10".parse().expect("a rounding")]);
+    let evaluation = rounded.evaluate(&model);
+    assert_eq!((evaluation.keys, evaluation.error()), (1, 0.5));
+}
+
 /// With more shards than rows, some shards have no pose.
 #[test]
 fn the_evaluation_of_a_shard_without_poses_has_numbers() {
