@@ -2,7 +2,6 @@
 
 use crate::atlas::distinct::Atlas;
 use crate::atlas::feature::Feature;
-use crate::description::Dimension;
 
 /// The number of poses in equal intervals of a value. Each interval includes its lower end; the last one includes both
 /// ends.
@@ -27,7 +26,7 @@ const ARCS: [f64; 12] = [
 
 impl Histogram {
     /// Counts the poses of an atlas in at most `most` intervals, or in the smallest possible number. `values` are those
-    /// of the feature, one per imprint ([`Atlas::values`]).
+    /// of the feature, one per imprint ([`Atlas::values`]). If all are whole, the width is at least 1.
     ///
     /// ```
     /// # use taxel::prelude::*;
@@ -49,9 +48,11 @@ impl Histogram {
         let (start, width, bins) = if feature.circular {
             around(most)
         } else if low <= high {
-            let least = match feature.descriptor.dimension {
-                Dimension::Count => 1.0,
-                _ => 0.0,
+            let mut found = values.iter().flatten();
+            let least = if found.all(|value| value.fract() == 0.0) {
+                1.0
+            } else {
+                0.0
             };
             straight(low, high, least, most)
         } else {
