@@ -29,6 +29,17 @@ fn answer(run: &Run) -> Value {
 }
 
 #[test]
+fn a_shape_touched_at_another_threshold_is_pointed_out() {
+    let place = place();
+    place.done("figure rectangle --length 6 --width 3 --threshold 0.2 --save low");
+    let run = place.run("recognise low --model r", "");
+    let note = "low: touched at threshold 0.2, but the model was trained at 0.5\n";
+    assert_eq!((run.status, &*run.stderr), (Some(0), note));
+    // A drawn imprint was touched by nothing.
+    assert_eq!(place.run("recognise square.txt --model r", "").stderr, "");
+}
+
+#[test]
 fn an_answer_has_its_keys_in_the_documented_order() {
     let place = place();
     let text = place.done("recognise square.txt --model r --json");

@@ -174,6 +174,22 @@ fn every_threshold_has_its_curve() {
 }
 
 #[test]
+fn what_differs_from_the_model_is_said() {
+    let place = Place::new();
+    place.done("model train washer --zoom-x 0.8:1.2:0.2 --x0 8 --y0 8 --angle 0 --out zooms.npz");
+    let separate = "model separate zooms.npz --scale 1 --csv";
+    let run = place.run(separate, "");
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+    for note in [
+        "the zooms of the model are left out",
+        "the positions of the model are not one cell; here they are 100 × 100 in a cell",
+    ] {
+        assert!(run.stderr.contains(note), "{note}: {}", run.stderr);
+    }
+    assert_eq!(place.run(&format!("{separate} --quiet"), "").stderr, "");
+}
+
+#[test]
 fn sizes_that_fit_on_no_sensor_are_omitted() {
     let place = Place::new();
     let coarse = "--positions 2 --angle 0 --quiet --json";

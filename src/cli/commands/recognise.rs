@@ -28,6 +28,7 @@ use crate::cli::output::answer::{AnswerJson, AnswerText};
 use crate::cli::output::charset::Charset;
 use crate::cli::output::pose::PoseReport;
 use crate::cli::output::progress::Progress;
+use crate::formats::Content;
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::framed::{FrameRows, RuleRecord};
 use crate::formats::json;
@@ -37,6 +38,7 @@ use crate::imprint::Imprint;
 use crate::memory::MemoryGuard;
 use crate::quote::{did_you_mean, shortened_message};
 use crate::recognition::{Answer, AnswerState, Evidence, Model, NamedShape, Noise};
+use crate::sensor::Sensor;
 
 /// Answers the given imprint or lines on `output`.
 ///
@@ -63,7 +65,12 @@ pub(crate) fn recognise(
         noise,
     };
     match input {
-        RecogniseInput::Imprint(imprint) => recogniser.answer_imprint(&imprint, charset, output),
+        RecogniseInput::Touch(content) => {
+            if let Some(note) = recogniser.other_threshold(&content) {
+                crate::cli::note(&note, charset);
+            }
+            recogniser.answer_imprint(content.imprint(), charset, output)
+        }
         RecogniseInput::Lines(input) => recogniser.answer_lines(input, output),
     }
 }
@@ -94,6 +101,20 @@ struct Recogniser<'a> {
 }
 
 impl Recogniser<'_> {
+    /// Returns a note if a stored shape touched a sensor with another threshold than that of the model.
+    fn other_threshold(&self, content: &Content) -> Option<String> {
+        let Content::Shape(shape) = content else {
+            return None;
+        };
+        let [trained, own] = [self.model.sensor(), &shape.sensor].map(Sensor::threshold);
+        (shape.source.is_some() && own != trained).then(|| {
+            format!(
+                "{}: touched at threshold {own}, but the model was trained at {trained}",
+                shape.name
+            )
+        })
+    }
+
     /// Answers one imprint, as text or JSON.
     ///
     /// # Errors
@@ -279,8 +300,8 @@ fn noise(asked: &RecogniseArguments, shelf: &Shelf) -> Result<Option<Noise>, Cli
 /// The input to recognise.
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
 enum RecogniseInput {
-    /// One touch.
-    Imprint(Imprint),
+    /// One touch: an imprint, or a stored shape.
+    Touch(Content),
     /// Lines of JSON that are not read yet.
     Lines(LineInput),
 }
@@ -288,7 +309,7 @@ enum RecogniseInput {
 /// Decides what the argument means: a stored shape, a file or standard input; and whether its content is lines.
 fn input(what: &OsStr, shelf: &Shelf) -> Result<RecogniseInput, CliError> {
     let (name, input): (String, Box<dyn Read + Send>) = match shelf.locate(what)? {
-        Located::Shape(shape) => return Ok(RecogniseInput::Imprint(shape.imprint)),
+        Located::Shape(shape) => return Ok(RecogniseInput::Touch(Content::Shape(shape))),
         Located::File(path, file) => (path.to_string_lossy().into_owned(), Box::new(file)),
         Located::Standard => {
             let name = InputSource::Standard.name();
@@ -332,8 +353,9 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<RecogniseInput, CliError> {
         let read = Box::new(whole);
         return Ok(RecogniseInput::Lines(LineInput { name, read }));
     }
-    let content = content::read_from(whole).map_err(refused)?;
-    Ok(RecogniseInput::Imprint(*content.imprint()))
+    Ok(RecogniseInput::Touch(
+        content::read_from(whole).map_err(refused)?,
+    ))
 }
 
 /// Reads a line, but no more than the longest line. Returns its length; 0 at the end.

@@ -192,8 +192,13 @@ fn set(
     {
         let model = model::find(what, shelf)?;
         let model = model.ready(&|poses| Progress::new(poses, asked.quiet, charset))?;
+        let positions = asked.positions.or_else(|| positions_of(&model));
+        let positions = positions.unwrap_or(CellPositions::FINE);
+        for note in departures(&model, asked) {
+            crate::cli::note(&note, charset);
+        }
         let separation = Separation::new(model.shapes().to_vec())?
-            .positions(asked.positions.unwrap_or_else(|| positions(&model)))
+            .positions(positions)
             .angles(asked.angles.unwrap_or(model.ranges()[Axis::Angle]));
         return Ok((separation, model.sensor().threshold()));
     }
@@ -219,8 +224,34 @@ fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
     ending(Path::new(what)) == "npz" || model::is_kept(&name, shelf) || built_in()
 }
 
-/// Returns a model's positions per cell along x and y, such as 5 for `7:7.8:0.2`; 100 if its grid is not one cell.
-fn positions(model: &Model) -> CellPositions {
+/// Returns notes about what is different from the model, even at scale 1 and its threshold; none if they are not wanted.
+fn departures(model: &Model, asked: &SeparateArguments) -> Vec<String> {
+    let mut notes = Vec::new();
+    if asked.quiet {
+        return notes;
+    }
+    let unzoomed = DecimalRange::whole(1);
+    let zooms = [Axis::ZoomX, Axis::ZoomY].map(|axis| model.ranges()[axis]);
+    if zooms != [unzoomed; 2] {
+        notes.push("the zooms of the model are left out".to_owned());
+    }
+    if model.cut().iter().any(|&cut| cut > 0) {
+        notes.push(
+            "the model's sensor cuts poses off; each size here has a sensor that does not"
+                .to_owned(),
+        );
+    }
+    if asked.positions.is_none() && positions_of(model).is_none() {
+        notes.push(
+            "the positions of the model are not one cell; here they are 100 × 100 in a cell"
+                .to_owned(),
+        );
+    }
+    notes
+}
+
+/// Returns a model's positions per cell along x and y, such as 5 for `7:7.8:0.2`; None if its grid is not one cell.
+fn positions_of(model: &Model) -> Option<CellPositions> {
     let of = |range: &DecimalRange| {
         let count = u8::try_from(range.count()).ok()?;
         let whole = (range.step() * f64::from(count) - 1.0).abs() < 1e-9;
@@ -228,8 +259,6 @@ fn positions(model: &Model) -> CellPositions {
         positions.filter(|_| whole)
     };
     let ranges = model.ranges();
-    match (of(&ranges[Axis::X0]), of(&ranges[Axis::Y0])) {
-        (Some(x), Some(y)) if x == y => x,
-        _ => CellPositions::FINE,
-    }
+    let (x, y) = (of(&ranges[Axis::X0])?, of(&ranges[Axis::Y0])?);
+    (x == y).then_some(x)
 }
