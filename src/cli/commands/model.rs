@@ -31,7 +31,7 @@ use crate::cli::output::evaluation::{self, NamedBy};
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
 use crate::cli::threads;
-use crate::formats::value::{counted, percent};
+use crate::formats::value::{counted, grouped, percent};
 use crate::formats::{Name, json};
 use crate::memory::MemoryGuard;
 use crate::pose::{Anchor, Axis, Ranges};
@@ -327,7 +327,7 @@ pub(crate) fn show(
     }
     let cut: u64 = model.cut().iter().sum();
     if cut > 0 {
-        text += &format!(", {cut} of all cut off by the sensor");
+        text += &format!(", {} of all cut off by the sensor", grouped(cut));
     }
     text.push('\n');
     // In an empty shard there is nothing to say about touches.
