@@ -303,7 +303,7 @@ pub(in crate::formats::recording) fn read(
 pub(super) fn end(input: &mut impl Read, layout: &ArrayLayout) -> Result<(), RecordingError> {
     if fill(input, &mut [0])? > 0 {
         let frames = counted(layout.frames, "frame");
-        let message = format!("more bytes than {frames} of the header take");
+        let message = format!("the file has more bytes than its header states for {frames}");
         return Err(RecordingError::damaged(message));
     }
     Ok(())
