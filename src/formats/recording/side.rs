@@ -15,6 +15,16 @@ pub(in crate::formats) fn frame_size<T: TryInto<u16>>(columns: T, rows: T) -> Op
     FrameSize::of_sides(side(columns), side(rows))
 }
 
+/// Returns the rows and columns of an array with these sizes: the first two, if all others are 1.
+pub(in crate::formats) fn matrix_size(sizes: &[u32]) -> Option<FrameSize> {
+    match *sizes {
+        [rows, columns, ref rest @ ..] if rest.iter().all(|&size| size == 1) => {
+            frame_size(columns, rows)
+        }
+        _ => None,
+    }
+}
+
 /// Returns the rows and columns of a message with this number of values: the `named` ones if they have that many
 /// cells, otherwise those that the message states. Many programs publish a layout of one row, or none.
 pub(in crate::formats) fn arranged(

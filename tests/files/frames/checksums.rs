@@ -134,24 +134,19 @@ fn mcap_of(arrays: &[Vec<u8>], of_chunk: u32, of_data: u32) -> Vec<u8> {
     [data, record(15, &sum), record(2, &[0; 20]), magic.to_vec()].concat()
 }
 
-/// Returns an array of ones, with a layout that gives rows and columns.
-fn laid_out(rows: u8, columns: u8) -> Vec<u8> {
-    let side = |side: u8| [1, 0, 0, 0, 0, 0, 0, 0, side, 0, 0, 0, 0, 0, 0, 0];
-    let (offset, cells) = ([0; 4], rows * columns);
+/// Returns an array of ones, with a layout of dimensions of these sizes.
+fn laid_out(sizes: &[u8]) -> Vec<u8> {
+    let dimension = |&size: &u8| [1, 0, 0, 0, 0, 0, 0, 0, size, 0, 0, 0, 0, 0, 0, 0];
+    let dimensions: Vec<u8> = sizes.iter().flat_map(dimension).collect();
+    let count = u8::try_from(sizes.len()).expect("few");
+    let (offset, cells) = ([0; 4], sizes.iter().product::<u8>());
     let values = [vec![cells, 0, 0, 0], vec![1; cells.into()]].concat();
-    [
-        &[2, 0, 0, 0][..],
-        &side(rows),
-        &side(columns),
-        &offset,
-        &values,
-    ]
-    .concat()
+    [&[count, 0, 0, 0][..], &dimensions, &offset, &values].concat()
 }
 
 #[test]
 fn given_rows_and_columns_replace_a_layout_with_the_same_number_of_cells() {
-    let bytes = mcap_of(&[laid_out(1, 20), laid_out(1, 20)], 0, 0);
+    let bytes = mcap_of(&[laid_out(&[1, 20]), laid_out(&[1, 20])], 0, 0);
     for (named, found) in [
         (None, (1, 20)),
         (Some((4, 5)), (4, 5)),
@@ -166,8 +161,31 @@ fn given_rows_and_columns_replace_a_layout_with_the_same_number_of_cells() {
 }
 
 #[test]
+fn dimensions_of_size_1_after_rows_and_columns_do_not_count() {
+    for sizes in [&[2, 2][..], &[2, 2, 1], &[2, 2, 1, 1]] {
+        let mcap = recorded(&mcap_of(&[laid_out(sizes)], 0, 0), None);
+        let strides = (1..=sizes.len()).map(|count| {
+            let stride: u8 = sizes[count - 1..].iter().product();
+            format!(",{},{stride},", sizes[count - 1])
+        });
+        let echo = recorded(
+            format!("{}0,1,1,1,1\n", strides.collect::<String>()).as_bytes(),
+            None,
+        );
+        for found in [mcap, echo] {
+            assert_eq!((error(&found), found.frames.len()), (None, 1), "{sizes:?}");
+            assert_eq!(channel_shape(&found.channels[0]), Some((2, 2)), "{sizes:?}");
+        }
+    }
+}
+
+#[test]
 fn a_channel_whose_frames_change_their_size_is_reported_as_damaged() {
-    let bytes = mcap_of(&[laid_out(4, 5), laid_out(3, 5), laid_out(4, 5)], 0, 0);
+    let bytes = mcap_of(
+        &[[4, 5], [3, 5], [4, 5]].map(|sizes| laid_out(&sizes)),
+        0,
+        0,
+    );
     let read = recorded(&bytes, None);
     let expected = "/pad: found 3 rows of 5, expected 4 of 5 as before";
     assert_eq!(

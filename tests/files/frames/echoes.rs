@@ -39,6 +39,18 @@ fn values_before_the_offset_of_a_layout_are_not_cells() {
 }
 
 #[test]
+fn an_array_may_continue_with_a_negative_number() {
+    for text in [
+        "data: [1, 2,\n-3, 4]\n---\n",
+        "data: [1, 2\n, -3,\n  -4\n]\n---\n",
+    ] {
+        let found = recorded(text.as_bytes(), Some((2, 2)));
+        assert!(found.error.is_none(), "{text}: {:?}", found.error);
+        assert_eq!(found.frames[0].values()[2], -3.0, "{text}");
+    }
+}
+
+#[test]
 fn given_rows_and_columns_replace_a_layout_with_the_same_number_of_cells() {
     let text = b"rows,1,4,columns,4,4,0,1,2,3,4\n";
     for (named, found) in [

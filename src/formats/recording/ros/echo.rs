@@ -22,7 +22,7 @@ use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
-use crate::formats::recording::side::{arranged, changed, frame_size};
+use crate::formats::recording::side::{arranged, changed, matrix_size};
 use crate::formats::recording::text::lines::TextLines;
 use crate::formats::recording::text::row::{self, Field};
 use crate::frame::{Frame, FrameSize, MAX_FRAME_CELLS};
@@ -150,7 +150,7 @@ impl RosMessage {
         let bracket = line.iter().position(|&byte| byte == b'[');
         match bracket {
             Some(start) => self.list(&line[start + 1..]),
-            None if self.open && line[0] != b'-' => self.list(line),
+            None if self.open && line != b"-" => self.list(line),
             None if is_csv(line) || is_csv_without_dimensions(line) => self.csv(line),
             None => RosLine::More,
         }
@@ -204,12 +204,7 @@ impl RosMessage {
 
     /// Returns the rows and columns of the layout, if it has these two dimensions.
     pub(in crate::formats) fn size(&self) -> Option<FrameSize> {
-        let &[rows, columns, ref rest @ ..] = &self.sizes[..] else {
-            return None;
-        };
-        rest.iter()
-            .all(|&size| size == 1)
-            .then(|| frame_size(columns, rows))?
+        matrix_size(&self.sizes)
     }
 }
 

@@ -29,9 +29,9 @@ use crate::formats::recording::event::{
 };
 use crate::formats::recording::ros::cdr::CdrReader;
 use crate::formats::recording::ros::message::{
-    ImageFrame, MessageKind, header, image, matrix_shape, multi_array,
+    ImageFrame, MessageKind, header, image, multi_array,
 };
-use crate::formats::recording::side::{arranged, changed};
+use crate::formats::recording::side::{arranged, changed, matrix_size};
 use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
 use crate::index::wide;
 use crate::parameter::number::counted;
@@ -484,7 +484,7 @@ impl McapState<'_, '_> {
         match kind {
             MessageKind::Array(kind, size) => {
                 let sizes = multi_array(&mut cdr, kind, size, &mut self.values)?;
-                let stated = matrix_shape(&sizes);
+                let stated = matrix_size(&sizes);
                 let size = arranged(self.values.len(), stated, self.options.size);
                 Some(self.give(topic, size))
             }

@@ -2,7 +2,7 @@
 //!
 //! | message | its frames |
 //! |---|---|
-//! | `std_msgs/*MultiArray` | a frame; rows and columns from the layout's first two sizes, if it has them |
+//! | `std_msgs/*MultiArray` | a frame; rows and columns from the layout's first two sizes, if all others are 1 |
 //! | `sensor_msgs/Image` | a frame; `mono8`, `mono16`, and types of `OpenCV` with one channel, such as `16UC1` and `32FC1` |
 //! | `tactile_msgs/TactileState` | for each of its sensors a frame |
 //!
@@ -70,14 +70,6 @@ pub(super) fn multi_array(
     cdr.numbers(kind, size, values)?;
     values.drain(..offset.min(values.len()));
     Some(sizes)
-}
-
-/// Returns the rows and columns of an array with these sizes, if they are those of a matrix.
-pub(super) fn matrix_shape(sizes: &[u32]) -> Option<FrameSize> {
-    match *sizes {
-        [rows, columns] | [rows, columns, 1] => frame_size(columns, rows),
-        _ => None,
-    }
 }
 
 /// Skips a `std_msgs/Header`.
