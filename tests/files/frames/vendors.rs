@@ -76,6 +76,21 @@ fn the_last_unit_of_tekscan_is_used_and_metres_are_converted() {
     );
 }
 
+#[test]
+fn frames_that_are_left_out_are_gaps_in_time() {
+    let tekscan = "DATA_TYPE MOVIE\nROWS 1\nCOLS 2\nSECONDS_PER_FRAME 0.02\nASCII_DATA @@\n\
+                   Frame 1\n1,2\n\nFrame 3\n1,2\n\nFrame 5\n1,2\n\n@@\n";
+    let emed: String = [1, 3, 5].map(|label| emed_header(label) + LEFT).concat();
+    let zebris = zebris(&["Data1", "Data3", "Data5"]);
+    for text in [tekscan, &emed, &zebris] {
+        let found = recorded(text.as_bytes(), None);
+        let times = found.frames.iter().map(|frame| (frame.label, frame.time));
+        let expected = [(1, 0.0), (3, 0.04), (5, 0.08)];
+        let expected = expected.map(|(label, time)| (Some(label), Some(time)));
+        assert_eq!(times.collect::<Vec<_>>(), expected, "{text}");
+    }
+}
+
 /// Returns the header of a page of emed.
 fn emed_header(label: i64) -> String {
     format!(

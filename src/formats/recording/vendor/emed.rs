@@ -19,8 +19,8 @@
 //! Force    0.00    0.00    0.38    …
 //! ```
 //! `Matrix` counts columns × rows of the whole sensor, of which only the loaded part is printed. Values are in kPa;
-//! the forces of rows, of columns and of all cells are in N, and are checked. The time is the number of the picture
-//! times `Time/picture`. Source: exports of novel's emed software.
+//! the forces of rows, of columns and of all cells are in N, and are checked. The time counts
+//! from the first picture: the difference of their numbers times `Time/picture`. Source: exports of novel's emed software.
 
 use std::io::BufRead;
 
@@ -31,7 +31,7 @@ use crate::formats::recording::text::lines::{TextLines, text};
 use crate::formats::recording::text::number;
 use crate::formats::recording::text::row::{self, Field};
 use crate::formats::recording::text::separator::Separator;
-use crate::formats::seconds::to_nanoseconds;
+use crate::formats::seconds::of_label;
 use crate::frame::{FirstCell, Frame, MAX_FRAME_SIDE};
 
 /// The force in N of a pressure of 1 kPa on 1 cm².
@@ -63,6 +63,8 @@ struct EmedState {
     has_row_forces: bool,
     /// The number of pictures that have been reported.
     frames: u64,
+    /// The `Pict-No.` of the first of them.
+    first_label: Option<i64>,
 }
 
 /// Reads a recording.
@@ -443,9 +445,7 @@ impl EmedState {
                 return Ok(true);
             }
         }
-        #[expect(clippy::cast_precision_loss, reason = "fewer than 2^52 pictures")]
-        let number = self.frames as f64;
-        frame.time = self.seconds.map(|seconds| to_nanoseconds(seconds * number));
+        frame.time = of_label(first.label, &mut self.first_label, self.seconds);
         self.frames += 1;
         for note in self.odd_sums(&frame, &pages) {
             if sink(RecordingEvent::Note(&note)).is_break() {

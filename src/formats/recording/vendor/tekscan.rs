@@ -32,7 +32,7 @@ use crate::formats::recording::text::lines::{TextLines, is_blank, text, unpadded
 use crate::formats::recording::text::number;
 use crate::formats::recording::text::row::{self, Field};
 use crate::formats::recording::text::separator::Separator;
-use crate::formats::seconds::to_nanoseconds;
+use crate::formats::seconds::of_label;
 use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::{counted, to_decimals};
 use crate::quote::shortened;
@@ -168,7 +168,8 @@ fn frames(
     let mut frame = Frame::new(size);
     let is_raw = |unit: &String| unit.eq_ignore_ascii_case("raw");
     let is_raw = info.unit.as_ref().is_some_and(is_raw);
-    for number in 0_u32.. {
+    let mut first = None;
+    for number in 0.. {
         if !lines.advance_to_content()? {
             let message = "ends here, expected another frame or '@@'";
             return Err(RecordingError::in_line(lines.number() + 1, message));
@@ -178,12 +179,10 @@ fn frames(
         }
         let title = title(lines.line(), lines.number())?;
         frame.reset(size);
-        frame.number = number.into();
+        frame.number = number;
         frame.label = Some(title.label);
-        let by_number = info
-            .seconds_per_frame
-            .map(|step| to_nanoseconds(step * f64::from(number)));
-        frame.time = title.time.or(by_number);
+        let by_label = of_label(title.label, &mut first, info.seconds_per_frame);
+        frame.time = title.time.or(by_label);
         values(lines, &mut frame)?;
         if let Some(note) = title
             .sum

@@ -30,7 +30,7 @@ use crate::formats::recording::text::lines::{TextLines, text};
 use crate::formats::recording::text::number;
 use crate::formats::recording::text::row::{self, Field};
 use crate::formats::recording::text::separator::Separator;
-use crate::formats::seconds::to_nanoseconds;
+use crate::formats::seconds::{of_label, to_nanoseconds};
 use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::counted;
 
@@ -197,16 +197,13 @@ pub(in crate::formats::recording) fn read(
         values(&mut lines, &mut frame)?;
         let next = next_section(&mut lines, size.rows());
         let is_only = frame.number == 0 && !matches!(next, Ok(Some(_)));
-        #[expect(clippy::cast_precision_loss, reason = "fewer than 2^52 pictures")]
         let given = match section {
             ZebrisSection::Data if !is_only => sink(RecordingEvent::Note(&RecordingNote::Maximum)),
             _ => {
                 frame.label = Some(1);
                 if let ZebrisSection::Picture(label) = section {
-                    let steps = label.saturating_sub(*first.get_or_insert(label)) as f64;
-                    let time = |step: f64| to_nanoseconds(steps * step);
                     frame.label = Some(label);
-                    frame.time = info.seconds_per_frame.map(time);
+                    frame.time = of_label(label, &mut first, info.seconds_per_frame);
                 }
                 let given = sink(RecordingEvent::Frame(&frame));
                 frame.number += 1;
