@@ -61,7 +61,7 @@ fn recognised_with(start: &[u8], options: ReadOptions) -> Option<RecordingFormat
         [b'P', b'K', 3 | 5, 4 | 6, ..] => RecordingFormat::Npz,
         _ if is_blank(trimmed) || start.contains(&0) => return None,
         _ if trimmed.starts_with(b"{") => {
-            if has(b"\"snapshots\"") || has(b"_columns\"") && !has(b"\"frame\"") {
+            if (has(b"\"snapshots\"") || has(b"_columns\"")) && !has(b"\"frame\"") {
                 RecordingFormat::Popu
             } else {
                 RecordingFormat::JsonLines

@@ -506,6 +506,14 @@ fn a_list_of_objects_is_refused_with_a_hint() {
 }
 
 #[test]
+fn a_line_of_json_with_a_frame_may_have_any_other_keys() {
+    for key in ["snapshots", "pad_columns"] {
+        let text = format!("{{\"frame\":[[1,2],[3,4]],\"{key}\":1}}\n");
+        assert_eq!(values(&text, None), [[1.0, 2.0, 3.0, 4.0]], "{key}");
+    }
+}
+
+#[test]
 fn the_nan_of_python_is_a_cell_without_a_value_in_json() {
     let text = "{\"t\":NaN,\"frame\":[[1,NaN],[NaN,3]],\"note\":\"a \\\"NaN\"}\n{\"frame\":[[1,2],[3,4]]}\n";
     let found = frames(text, None);
