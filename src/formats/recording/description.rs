@@ -9,7 +9,8 @@
 //! `ended` is false while frames are recorded, and stays false if the program is killed. `ended_by` gives the reason
 //! if an error ended the recording, such as a full disk.
 //!
-//! Every key except `format` may be missing. The array holds the values as the sensor sent them, in f64: rule and
+//! Every key except `format` may be missing. Without `tare_frames`, a tare counts as one of a single frame, so its
+//! noise is unknown. The array holds the values as the sensor sent them, in f64: rule and
 //! tare are applied again when they are read, unless flags say otherwise.
 
 use std::io;
@@ -202,17 +203,18 @@ impl RecordingMetadata {
             }),
         };
         let positive = |value: &f64| *value > 0.0 && *value <= LARGEST_VALUE;
-        let tare = match (described.tare, described.tare_frames) {
-            (Some(rows), Some(frames)) if frames > 0 => {
+        let tare = match described.tare {
+            Some(rows) => {
+                let frames = described.tare_frames.filter(|&frames| frames > 0);
                 let baseline = matrix(&rows).map_err(MetadataError::of_key("tare"))?;
                 let spread = described.tare_spread.as_ref();
                 let spread = spread.map(|rows| matrix(rows)).transpose();
                 let spread = spread.map_err(MetadataError::of_key("tare_spread"))?;
                 let step = described.tare_step.filter(positive);
-                let tare = Tare::from_parts(baseline, spread, step, frames);
+                let tare = Tare::from_parts(baseline, spread, step, frames.unwrap_or(1));
                 Some(tare.map_err(MetadataError::of_key("tare"))?)
             }
-            _ => None,
+            None => None,
         };
         Ok(Self {
             source: shortened_message(&described.source),
@@ -319,6 +321,19 @@ mod tests {
             assert_eq!(
                 (read.ended, read.ended_by.as_deref()),
                 (Some(true), Some("no room"))
+            );
+        }
+    }
+
+    #[test]
+    fn a_tare_without_a_number_of_frames_is_of_one_frame() {
+        for key in ["", "\"tare_frames\":0,"] {
+            let text = format!("{{\"format\":\"{FORMAT}\",{key}\"tare\":[[0.5,2]]}}");
+            let read = RecordingMetadata::read(text.as_bytes()).expect("a description");
+            let tare = read.expect("a right one").tare.expect("a tare");
+            assert_eq!(
+                (tare.frames(), tare.baseline().values()),
+                (1, &[0.5, 2.0][..])
             );
         }
     }
