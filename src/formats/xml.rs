@@ -1,7 +1,7 @@
 //! Escapes text for XML.
 
-/// Escapes the characters that have a meaning in XML, and replaces those that XML does not allow. For the content of
-/// an element and for values in double quotes.
+/// Escapes the characters that have a meaning in XML, and replaces control characters and those that XML does not
+/// allow. For the content of an element and for values in double quotes.
 pub(crate) fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for character in text.chars() {

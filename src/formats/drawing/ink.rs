@@ -1,6 +1,6 @@
 //! Draws the elements of a page on grey pixels: upright rectangles, lines, and the pixels of letters. A library for
 //! paths would be the natural choice, but each of the two candidates made the program larger by a tenth, 280 and 230
-//! KB, instead of these 230 lines.
+//! KB.
 //!
 //! A pixel's share of a rectangle is the product of two overlaps. Its share of a line depends on its distance: within
 //! half a pixel of the edge it falls from 1 to 0, so ends and corners are round.

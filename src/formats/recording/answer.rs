@@ -1,10 +1,4 @@
 //! A frame with its imprint and descriptors as JSON: a line of `taxel frames --json` and of `taxel watch`.
-//! ```text
-//! {"frame":65,"label":66,"time":6.5,"channel":null,"sum":42,"max":9,
-//!  "rule":{"at_least":10,"from":"flag"},"imprint":[".###.",…],"na":5,"regions":[{"kind":"exterior",…}]}
-//! ```
-//! Sum and maximum are those of the recorded values, in the recording's unit, before tare and gain; the imprint is
-//! made after both.
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
@@ -12,10 +6,14 @@ use crate::description::{Description, regions};
 use crate::formats::described::{RegionRecord, Rows};
 use crate::frame::{Frame, Processed, Rule, SetRule};
 
-/// An answer that serialises as
-/// `{"frame":65,"label":66,"time":6.5,"channel":null,"sum":…,"max":…,"rule":{…},"imprint":[…],"na":…,
-/// "regions":[…]}`; rule, imprint and NA are null without a rule. With a tare, the answer says of how many frames it
-/// was made.
+/// An answer that serialises as an object:
+/// ```text
+/// {"frame":65,"label":66,"time":6.5,"channel":null,"sum":42,"max":9,
+///  "rule":{"at_least":10,"from":"flag"},"imprint":[".###.",…],"na":5,"regions":[{"kind":"exterior",…}]}
+/// ```
+/// `sum` and `max` are those of the recorded values, in the recording's unit, before tare and gain; the imprint is
+/// made after both. Without a rule, `rule`, `imprint` and `na` are null. With a tare, `tare` is the number of frames
+/// of which it was made.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct FrameAnswer<'a> {

@@ -84,7 +84,7 @@ pub(super) struct JsonDecoder {
 }
 
 impl JsonDecoder {
-    /// Prepares for a stream; `shape` is for lists of cells without rows.
+    /// Prepares for a stream; `named` is the size of a frame, if it was given.
     pub(super) fn new(
         named: Option<FrameSize>,
         mut channels: JsonChannels,

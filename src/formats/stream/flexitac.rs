@@ -20,7 +20,7 @@ pub(super) const MARKER: [u8; 2] = [0xaa, 0x55];
 /// A decoder of frames after markers.
 #[derive(Debug)]
 pub(super) struct FlexitacDecoder {
-    /// The number of rows in a frame.
+    /// The size of a frame.
     size: FrameSize,
     /// The bytes that are not decoded yet: at most a few frames.
     bytes: Vec<u8>,

@@ -39,7 +39,7 @@ use crate::frame::{Frame, FrameSize};
 use crate::parameter::number::{counted, to_decimals};
 
 /// The most sensors in a file; each has a name of its own.
-const MOST_CHANNELS: usize = 64;
+const MOST_SENSORS: usize = 64;
 
 /// The most bytes of a line with a key.
 const LONGEST_KEY: usize = 1 << 12;
@@ -256,8 +256,8 @@ impl XsensorState {
         let known = self.channels.iter().position(|own| own.name == name);
         let channel = match known {
             Some(channel) => channel,
-            None if self.channels.len() == MOST_CHANNELS => {
-                let message = format!("more than {MOST_CHANNELS} sensors");
+            None if self.channels.len() == MOST_SENSORS => {
+                let message = format!("more than {MOST_SENSORS} sensors");
                 return Err(RecordingError::in_line(line, message));
             }
             None => {
