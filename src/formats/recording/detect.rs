@@ -9,7 +9,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::foreign;
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ReadOptions, RecordingFormat, Sink};
+use crate::formats::recording::event::{ReadOptions, RecordingFormat, RecordingSink, until_enough};
 use crate::formats::recording::json::{lines as json_lines, popu};
 use crate::formats::recording::numpy::{archive, array};
 use crate::formats::recording::ros::echo;
@@ -217,7 +217,7 @@ fn start_of(input: impl Read) -> io::Result<Vec<u8>> {
     Ok(start)
 }
 
-/// Reads a recording from beginning to end, and reports its events to `sink`, which may stop the reading.
+/// Reads a recording from beginning to end, and reports its events to `consumer`, which may end the reading.
 ///
 /// # Errors
 /// Returns an error if the input cannot be read, is not a recording, is damaged, or does not say how its values are
@@ -225,11 +225,11 @@ fn start_of(input: impl Read) -> io::Result<Vec<u8>> {
 pub fn read(
     mut input: impl Read + Seek,
     options: ReadOptions,
-    sink: &mut Sink<'_>,
+    consumer: &mut RecordingSink<'_>,
 ) -> Result<RecordingFormat, RecordingError> {
     input.seek(SeekFrom::Start(0))?;
     let format = format_of(&mut input, options)?;
-    read_as(format, &mut input, options, sink)?;
+    read_as(format, &mut input, options, consumer)?;
     Ok(format)
 }
 
@@ -244,11 +244,11 @@ pub(crate) fn read_as(
     format: RecordingFormat,
     input: &mut dyn RecordingInput,
     options: ReadOptions,
-    sink: &mut Sink<'_>,
+    consumer: &mut RecordingSink<'_>,
 ) -> Result<(), RecordingError> {
     input.seek(SeekFrom::Start(0))?;
     let mut input = BufReader::with_capacity(CHUNK, input);
-    match format {
+    until_enough(consumer, |sink| match format {
         RecordingFormat::Tekscan => tekscan::read(input, sink),
         RecordingFormat::Xsensor => xsensor::read(input, sink),
         RecordingFormat::Emed => emed::read(input, sink),
@@ -265,8 +265,9 @@ pub(crate) fn read_as(
         #[cfg(not(feature = "mcap"))]
         RecordingFormat::Mcap => Err(RecordingError::damaged(
             "an MCAP file, which this build does not read: it was built without the feature mcap",
-        )),
-    }
+        )
+        .into()),
+    })
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::formats::recording::description::{FrameMark, RecordingMetadata};
+use crate::formats::recording::error::RecordingError;
 use crate::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule, Tare, View};
 use crate::parameter::named;
 use crate::parameter::number::counted;
@@ -319,8 +320,44 @@ pub enum RecordingEvent<'a> {
     Note(&'a RecordingNote),
 }
 
-/// A function that takes the events of a reader; `Break` ends the reading without an error.
-pub(super) type Sink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a;
+/// A function that takes the events of a recording; `Break` ends the reading without an error.
+pub(super) type RecordingSink<'a> = dyn FnMut(RecordingEvent<'_>) -> ControlFlow<()> + 'a;
+
+/// A function to which the reader of a format reports events.
+pub(super) type Sink<'a> = dyn FnMut(RecordingEvent<'_>) -> Result<(), EarlyEnd> + 'a;
+
+/// The reason why a reader ends before the end of its file.
+#[derive(Debug)]
+pub(super) enum EarlyEnd {
+    /// The consumer wants no more.
+    Enough,
+    /// The rest cannot be read.
+    Failed(RecordingError),
+}
+
+impl<E: Into<RecordingError>> From<E> for EarlyEnd {
+    fn from(error: E) -> Self {
+        Self::Failed(error.into())
+    }
+}
+
+/// Runs the reader of a format until the consumer wants no more.
+///
+/// # Errors
+/// Returns the error of the reader.
+pub(super) fn until_enough(
+    consumer: &mut RecordingSink<'_>,
+    read: impl FnOnce(&mut Sink<'_>) -> Result<(), EarlyEnd>,
+) -> Result<(), RecordingError> {
+    let read = read(&mut |event| match consumer(event) {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(EarlyEnd::Enough),
+    });
+    match read {
+        Ok(()) | Err(EarlyEnd::Enough) => Ok(()),
+        Err(EarlyEnd::Failed(error)) => Err(error),
+    }
+}
 
 #[cfg(test)]
 mod tests {

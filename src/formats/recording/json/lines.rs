@@ -23,7 +23,8 @@ use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Vis
 use crate::formats::json;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
-    ChannelInfo, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, RecordingNote, Sink,
+    ChannelInfo, EarlyEnd, LONGEST_NAME, MOST_CHANNELS, ReadOptions, RecordingEvent, RecordingNote,
+    Sink,
 };
 use crate::formats::recording::json::cells::CellsSeed;
 use crate::formats::recording::json::clock::{JsonClock, TimeCandidates};
@@ -38,7 +39,7 @@ pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     options: ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), EarlyEnd> {
     let mut lines = TextLines::new(input);
     let mut line = FrameLine::new(options.size);
     let (mut clock, mut start) = (JsonClock::default(), None);
@@ -53,18 +54,16 @@ pub(in crate::formats::recording) fn read(
         if known.is_none() {
             if channels.len() == MOST_CHANNELS {
                 let message = format!("more than {MOST_CHANNELS} channels");
-                return Err(RecordingError::in_line(number, message));
+                return Err(RecordingError::in_line(number, message).into());
             }
             channels.push((line.channel.clone(), line.size, 0));
-            if sink(RecordingEvent::Channel(&line.channel_info())).is_break() {
-                break;
-            }
+            sink(RecordingEvent::Channel(&line.channel_info()))?;
         }
         frame.channel = known.unwrap_or(channels.len() - 1);
         let (_, size, count) = &mut channels[frame.channel];
         if *size != line.size {
             let message = changed(line.size, *size);
-            return Err(RecordingError::in_line(number, message));
+            return Err(RecordingError::in_line(number, message).into());
         }
         frame.number = *count;
         *count += 1;
@@ -76,13 +75,9 @@ pub(in crate::formats::recording) fn read(
         frame.label = line.label;
         if let Some(unit) = clock.take_assumed() {
             let note = RecordingNote::TimeUnit { unit: unit.name() };
-            if sink(RecordingEvent::Note(&note)).is_break() {
-                break;
-            }
+            sink(RecordingEvent::Note(&note))?;
         }
-        if sink(RecordingEvent::Frame(&frame)).is_break() {
-            break;
-        }
+        sink(RecordingEvent::Frame(&frame))?;
     }
     Ok(())
 }

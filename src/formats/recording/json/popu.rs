@@ -17,14 +17,11 @@ use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Vis
 use crate::formats::byte_order_mark::BYTE_ORDER_MARK;
 use crate::formats::json;
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink};
+use crate::formats::recording::event::{ChannelInfo, EarlyEnd, RecordingEvent, Sink};
 use crate::formats::recording::json::cells::CellsSeed;
 use crate::formats::recording::side::side;
 use crate::frame::{Frame, FrameSize, MAX_FRAME_SIDE};
 use crate::parameter::number::counted;
-
-/// The message of the serde error that stops the parser when the sink wants no more.
-const ENOUGH: &str = "no more is wanted";
 
 /// Reads a recording.
 ///
@@ -34,7 +31,7 @@ const ENOUGH: &str = "no more is wanted";
 pub(in crate::formats::recording) fn read(
     mut input: impl BufRead,
     sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), EarlyEnd> {
     if input.fill_buf()?.starts_with(BYTE_ORDER_MARK) {
         input.consume(BYTE_ORDER_MARK.len());
     }
@@ -42,7 +39,7 @@ pub(in crate::formats::recording) fn read(
     let mut state = PopuState {
         sheets: Vec::new(),
         begun: false,
-        enough: false,
+        ended: None,
         label: None,
         values: Vec::new(),
         sink,
@@ -50,22 +47,20 @@ pub(in crate::formats::recording) fn read(
     let read = PopuSeed(&mut state)
         .deserialize(&mut content)
         .and_then(|()| content.end());
-    match read {
-        Err(error) if error.is_io() => Err(RecordingError::Io(error.into())),
-        Err(_) if state.enough => Ok(()),
-        Err(error) => {
-            let message = json::message(&error);
-            Err(RecordingError::in_field(
-                error.line() as u64,
-                error.column(),
-                message,
-            ))
-        }
-        Ok(()) if !state.begun => Err(RecordingError::damaged(
-            "no snapshots, expected a key \"snapshots\" with frames",
-        )),
-        Ok(()) => Ok(()),
+    if let Some(end) = state.ended {
+        return Err(end);
     }
+    read.map_err(|error| {
+        if error.is_io() {
+            return RecordingError::Io(error.into());
+        }
+        RecordingError::in_field(error.line() as u64, error.column(), json::message(&error))
+    })?;
+    if !state.begun {
+        let message = "no snapshots, expected a key \"snapshots\" with frames";
+        return Err(RecordingError::damaged(message).into());
+    }
+    Ok(())
 }
 
 /// The most sheets in a file.
@@ -89,8 +84,8 @@ struct PopuState<'a, 'b> {
     sheets: Vec<PopuSheet>,
     /// Whether the channels have been reported.
     begun: bool,
-    /// Whether the sink wants no more, so that the error that stops the parser is not reported.
-    enough: bool,
+    /// The reason why the sink ended the reading, which the parser's own error cannot hold.
+    ended: Option<EarlyEnd>,
     /// The key of a snapshot, if it is a number.
     label: Option<i64>,
     /// The cells of a snapshot, in memory that is reused.
@@ -118,13 +113,12 @@ impl PopuState<'_, '_> {
         Ok(&mut self.sheets[index])
     }
 
-    /// Reports an event; returns an error if the sink wants no more.
+    /// Reports an event; returns an error if the sink ends the reading.
     fn report<E: Error>(&mut self, event: RecordingEvent<'_>) -> Result<(), E> {
-        if (self.sink)(event).is_break() {
-            self.enough = true;
-            return Err(E::custom(ENOUGH));
-        }
-        Ok(())
+        (self.sink)(event).map_err(|end| {
+            self.ended = Some(end);
+            E::custom("the sink ended the reading")
+        })
     }
 
     /// Reports the sheets as channels.

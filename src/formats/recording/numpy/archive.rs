@@ -10,7 +10,6 @@
 //! as they are read, then the error: to check it first would take twice the time and lose all frames that are right.
 
 use std::io::{ErrorKind, Read, Seek};
-use std::ops::ControlFlow;
 
 use zip::ZipArchive;
 use zip::result::ZipError;
@@ -18,7 +17,7 @@ use zip::result::ZipError;
 use crate::formats::npy::{Header, NumberType};
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
-    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
+    ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
 use crate::formats::recording::numpy::array::{self, ArrayLayout};
 use crate::formats::recording::time::field_role::{FieldRole, role};
@@ -78,12 +77,11 @@ pub(in crate::formats::recording) fn read(
     input: impl Read + Seek,
     options: ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), EarlyEnd> {
     let mut archive = ZipArchive::new(input).map_err(damaged)?;
     if is_office_document(&archive) {
-        return Err(RecordingError::Foreign {
-            kind: "a spreadsheet or another office document (save the sheet as CSV)",
-        });
+        let kind = "a spreadsheet or another office document (save the sheet as CSV)";
+        return Err(RecordingError::Foreign { kind }.into());
     }
     let arrays = arrays(&mut archive)?;
     let channels: Vec<&ArchiveArray> = arrays
@@ -95,9 +93,8 @@ pub(in crate::formats::recording) fn read(
         })
         .collect();
     if channels.is_empty() {
-        return Err(RecordingError::damaged(
-            "no array of two or three axes, expected frames, rows and columns",
-        ));
+        let message = "no array of two or three axes, expected frames, rows and columns";
+        return Err(RecordingError::damaged(message).into());
     }
     let channels = with_layouts(channels, options)?;
     for (array, layout) in &channels {
@@ -106,11 +103,9 @@ pub(in crate::formats::recording) fn read(
             size: Some(layout.size()),
             ..ChannelInfo::default()
         };
-        if sink(RecordingEvent::Channel(&info)).is_break() {
-            return Ok(());
-        }
-        if noted(layout.note(), sink).is_break() {
-            return Ok(());
+        sink(RecordingEvent::Channel(&info))?;
+        if let Some(note) = layout.note() {
+            sink(RecordingEvent::Note(note))?;
         }
     }
     let mut noted_unit = None;
@@ -119,16 +114,17 @@ pub(in crate::formats::recording) fn read(
         // Channels with as many frames have the same times.
         let news = assumed.filter(|_| assumed != noted_unit);
         noted_unit = news.or(noted_unit);
-        let note = news.map(|unit| RecordingNote::TimeUnit { unit: unit.name() });
-        if noted(note.as_ref(), sink).is_break() {
-            break;
+        if let Some(unit) = news {
+            let note = RecordingNote::TimeUnit { unit: unit.name() };
+            sink(RecordingEvent::Note(&note))?;
         }
         let mut file = archive.by_index(array.index).map_err(damaged)?;
         let named = |error| in_array(&array.name, error);
         array::header(&mut file).map_err(named)?;
-        if array::frames(&mut file, layout, channel, &times, sink).map_err(named)? {
-            break;
-        }
+        array::frames(&mut file, layout, channel, &times, sink).map_err(|end| match end {
+            EarlyEnd::Failed(error) => named(error).into(),
+            EarlyEnd::Enough => end,
+        })?;
         array::end(&mut file, layout).map_err(named)?;
     }
     Ok(())
@@ -139,13 +135,6 @@ fn is_office_document(archive: &ZipArchive<impl Read + Seek>) -> bool {
     let is_office = |name: &str| matches!(name, "[Content_Types].xml" | "content.xml");
     let mut names = archive.file_names();
     names.any(|name| name.is_ok_and(|name| is_office(&name)))
-}
-
-/// Reports a note, if there is one.
-fn noted(note: Option<&RecordingNote>, sink: &mut Sink<'_>) -> ControlFlow<()> {
-    note.map_or(ControlFlow::Continue(()), |note| {
-        sink(RecordingEvent::Note(note))
-    })
 }
 
 /// Returns all arrays with their headers.
@@ -365,7 +354,7 @@ mod tests {
                 RecordingEvent::Note(note) => notes.push(note.to_string()),
                 RecordingEvent::Channel(_) => {}
             }
-            ControlFlow::Continue(())
+            Ok(())
         });
         assert!(read.is_ok(), "{read:?}");
         let (left, right) = found.split_at(2);

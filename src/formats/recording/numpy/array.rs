@@ -21,7 +21,7 @@ use crate::formats::npy;
 use crate::formats::npy::{Header, NumberType};
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
-    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
+    ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
 use crate::formats::recording::side::frame_size;
 use crate::formats::seconds::since;
@@ -275,22 +275,18 @@ pub(in crate::formats::recording) fn read(
     input: &mut impl Read,
     options: ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), EarlyEnd> {
     let layout = ArrayLayout::of(&header(input)?, options)?;
     let info = ChannelInfo {
         size: Some(layout.size()),
         ..ChannelInfo::default()
     };
-    if sink(RecordingEvent::Channel(&info)).is_break() {
-        return Ok(());
+    sink(RecordingEvent::Channel(&info))?;
+    if let Some(note) = layout.note() {
+        sink(RecordingEvent::Note(note))?;
     }
-    if let Some(note) = layout.note()
-        && sink(RecordingEvent::Note(note)).is_break()
-    {
-        return Ok(());
-    }
-    let ended = frames(input, &layout, 0, &[], sink)?;
-    if !ended && layout.record.is_none() {
+    frames(input, &layout, 0, &[], sink)?;
+    if layout.record.is_none() {
         end(input, &layout)?;
     }
     Ok(())
@@ -314,15 +310,14 @@ fn time(times: &[f64], number: usize) -> Option<f64> {
     times.get(number).copied().filter(|time| time.is_finite())
 }
 
-/// Reads all frames of an array; returns true if the sink wants no more. `times` are in seconds, one per frame and
-/// NaN for missing ones, or empty.
+/// Reads all frames of an array. `times` are in seconds, one per frame and NaN for missing ones, or empty.
 pub(super) fn frames(
     input: &mut impl Read,
     layout: &ArrayLayout,
     channel: usize,
     times: &[f64],
     sink: &mut Sink<'_>,
-) -> Result<bool, RecordingError> {
+) -> Result<(), EarlyEnd> {
     let mut frame = Frame::new(layout.size);
     frame.channel = channel;
     if layout.fortran {
@@ -336,12 +331,15 @@ pub(super) fn frames(
         let length = fill(input, &mut bytes)?;
         if length < size {
             let Some(record) = &layout.record else {
-                return Err(short(frame.number, layout.frames));
+                return Err(short(frame.number, layout.frames).into());
             };
             // A recording that is being written, or that was cut off, may end anywhere.
             let (records, counted) = (frame.number, record.counted);
-            let note = RecordingNote::Cut { records, counted };
-            return Ok(records < counted && sink(RecordingEvent::Note(&note)).is_break());
+            if records < counted {
+                let note = RecordingNote::Cut { records, counted };
+                sink(RecordingEvent::Note(&note))?;
+            }
+            return Ok(());
         }
         let values = layout.record.as_ref().map_or(0, |record| record.values);
         let values = &bytes[values..values + cells];
@@ -359,12 +357,10 @@ pub(super) fn frames(
             let (time, label) = moment(record, &bytes, &mut start);
             (frame.time, frame.label) = (time, label);
         }
-        if give(&frame, sink)? {
-            return Ok(true);
-        }
+        give(&frame, sink)?;
         frame.number += 1;
     }
-    Ok(false)
+    Ok(())
 }
 
 /// Returns the time of a record, in seconds since the first record, and its label.
@@ -392,11 +388,11 @@ fn short(frame: u64, frames: u64) -> RecordingError {
     ))
 }
 
-/// Reports a frame if all its values are finite or NaN; returns true if the sink wants no more.
+/// Reports a frame if all its values are finite or NaN.
 ///
 /// # Errors
 /// Returns an error with row and column if a value is infinite or too large.
-fn give(frame: &Frame, sink: &mut Sink<'_>) -> Result<bool, RecordingError> {
+fn give(frame: &Frame, sink: &mut Sink<'_>) -> Result<(), EarlyEnd> {
     let wrong = frame
         .values()
         .iter()
@@ -405,11 +401,12 @@ fn give(frame: &Frame, sink: &mut Sink<'_>) -> Result<bool, RecordingError> {
         let columns = usize::from(frame.columns());
         let (number, row, column) = (frame.number, index / columns, index % columns);
         let found = too_large(frame.values()[index]);
-        return Err(RecordingError::damaged(format!(
+        let message = format!(
             "frame {number}, row {row}, column {column}: {found}, or NaN where there is no cell"
-        )));
+        );
+        return Err(RecordingError::damaged(message).into());
     }
-    Ok(sink(RecordingEvent::Frame(frame)).is_break())
+    sink(RecordingEvent::Frame(frame))
 }
 
 /// Fills the bytes as far as the input reaches; returns the number of bytes read.
@@ -433,19 +430,19 @@ fn fortran(
     mut frame: Frame,
     times: &[f64],
     sink: &mut Sink<'_>,
-) -> Result<bool, RecordingError> {
+) -> Result<(), EarlyEnd> {
     let size = layout.number.size();
     let frame_bytes = layout.size.cells() * size;
     let expected = (frame_bytes as u64).checked_mul(layout.frames);
     let Some(expected) = expected.filter(|&bytes| bytes <= LARGEST_FORTRAN) else {
-        return Err(RecordingError::damaged(
-            "an array of more than 256 MiB in Fortran order: save numpy.ascontiguousarray of it",
-        ));
+        let message =
+            "an array of more than 256 MiB in Fortran order: save numpy.ascontiguousarray of it";
+        return Err(RecordingError::damaged(message).into());
     };
     let mut bytes = Vec::new();
     input.by_ref().take(expected).read_to_end(&mut bytes)?;
     if (bytes.len() as u64) < expected {
-        return Err(short(0, layout.frames));
+        return Err(short(0, layout.frames).into());
     }
     let [rows, columns] = [layout.size.rows(), layout.size.columns()].map(usize::from);
     let frames = bytes.len() / frame_bytes;
@@ -463,10 +460,8 @@ fn fortran(
             }
         }
         frame.time = time(times, number);
-        if give(&frame, sink)? {
-            return Ok(true);
-        }
+        give(&frame, sink)?;
         frame.number += 1;
     }
-    Ok(false)
+    Ok(())
 }

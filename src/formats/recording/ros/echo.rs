@@ -21,7 +21,7 @@
 use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, ReadOptions, RecordingEvent, Sink};
+use crate::formats::recording::event::{ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::side::{arranged, changed, matrix_size};
 use crate::formats::recording::text::lines::TextLines;
 use crate::formats::recording::text::row::{self, Field};
@@ -327,7 +327,7 @@ pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     options: ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), EarlyEnd> {
     let mut lines = TextLines::new(input);
     let mut message = RosMessage::default();
     let mut frame = Frame::default();
@@ -345,16 +345,16 @@ pub(in crate::formats::recording) fn read(
             RosLine::Whole if ended && !message.begun() => return Ok(()),
             RosLine::Whole if message.is_open() && ended => {
                 let text = "ends inside a message, expected '---'";
-                return Err(RecordingError::in_line(number + 1, text));
+                return Err(RecordingError::in_line(number + 1, text).into());
             }
             RosLine::Whole => {}
             RosLine::Cut => {
                 let text = "the echo leaves out values ('...'): record it with --full-length";
-                return Err(RecordingError::in_line(number, text));
+                return Err(RecordingError::in_line(number, text).into());
             }
             RosLine::Wrong(column) => {
                 let text = "found something other than a number";
-                return Err(RecordingError::in_field(number, column, text));
+                return Err(RecordingError::in_field(number, column, text).into());
             }
         }
         let size = size(&message, options.size, number)?;
@@ -363,20 +363,19 @@ pub(in crate::formats::recording) fn read(
                 size: Some(size),
                 ..ChannelInfo::default()
             };
-            if sink(RecordingEvent::Channel(&info)).is_break() {
-                return Ok(());
-            }
+            sink(RecordingEvent::Channel(&info))?;
         }
         if let Some(first) = first.replace(size)
             && first != size
         {
             let message = changed(size, first);
-            return Err(RecordingError::in_line(number, message));
+            return Err(RecordingError::in_line(number, message).into());
         }
         frame.reset(size);
         frame.values_mut().copy_from_slice(message.cells());
         message.clear();
-        if sink(RecordingEvent::Frame(&frame)).is_break() || ended {
+        sink(RecordingEvent::Frame(&frame))?;
+        if ended {
             return Ok(());
         }
         frame.number += 1;

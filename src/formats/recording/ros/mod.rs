@@ -3,7 +3,8 @@
 //! ```text
 //! cdr       the encoding of messages
 //! message   the messages that have frames
-//! mcap      the records of a file
+//! records   the records of an MCAP file
+//! mcap      its topics and their frames
 //! echo      messages as text
 //! ```
 
@@ -12,6 +13,9 @@ mod cdr;
 
 #[cfg(feature = "mcap")]
 mod message;
+
+#[cfg(feature = "mcap")]
+mod records;
 
 #[cfg(feature = "mcap")]
 pub(super) mod mcap;

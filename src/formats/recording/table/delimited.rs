@@ -23,12 +23,13 @@
 //! padded, since a missing value in the middle would shift all later ones.
 
 use std::io::{BufRead, Seek};
-use std::ops::ControlFlow;
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
-    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
+    ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
+#[cfg(feature = "cli")]
+use crate::formats::recording::event::{RecordingSink, until_enough};
 #[cfg(feature = "cli")]
 use crate::formats::recording::side::side;
 use crate::formats::recording::table::clock::{TableClock, TimeText};
@@ -47,7 +48,7 @@ pub(in crate::formats::recording) fn read(
     mut input: impl BufRead + Seek,
     options: ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), EarlyEnd> {
     let layout = layout(&mut input, options)?;
     input.rewind()?;
     let info = ChannelInfo {
@@ -56,13 +57,9 @@ pub(in crate::formats::recording) fn read(
         start: layout.start.clone(),
         ..ChannelInfo::default()
     };
-    if sink(RecordingEvent::Channel(&info)).is_break() {
-        return Ok(());
-    }
-    if let Some(note) = &layout.note
-        && sink(RecordingEvent::Note(note)).is_break()
-    {
-        return Ok(());
+    sink(RecordingEvent::Channel(&info))?;
+    if let Some(note) = &layout.note {
+        sink(RecordingEvent::Note(note))?;
     }
     let mut lines = TextLines::new(input);
     match &layout.lines {
@@ -80,7 +77,10 @@ pub(in crate::formats::recording) fn read(
 /// Returns [`RecordingError::Unknown`] if the text does not begin with a line of numbers or is larger than a frame,
 /// and an error if a row has another number of values than the first, or anything other than numbers.
 #[cfg(feature = "cli")]
-pub(crate) fn read_rows(text: &[u8], sink: &mut Sink<'_>) -> Result<(), RecordingError> {
+pub(crate) fn read_rows(
+    text: &[u8],
+    consumer: &mut RecordingSink<'_>,
+) -> Result<(), RecordingError> {
     let mut lines = TextLines::new(text);
     while lines.advance_to_content()? && is_comment(lines.line()) {}
     let first = lines.line();
@@ -95,7 +95,8 @@ pub(crate) fn read_rows(text: &[u8], sink: &mut Sink<'_>) -> Result<(), Recordin
         rows += usize::from(!is_comment(lines.line()));
     }
     let size = FrameSize::of_sides(columns, side(rows)).ok_or(RecordingError::Unknown)?;
-    RowBlock::new(separator, size, false).read(&mut TextLines::new(text), sink)
+    let block = RowBlock::new(separator, size, false);
+    until_enough(consumer, |sink| block.read(&mut TextLines::new(text), sink))
 }
 
 /// Reads frames of one line each.
@@ -104,7 +105,7 @@ fn frames(
     layout: &TableLayout,
     fields: &FrameFields,
     sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), EarlyEnd> {
     // The index of the cell in each field; None if the field is not a cell.
     let mut slots = vec![None; fields.count];
     for (slot, &field) in fields.cells.iter().enumerate() {
@@ -126,9 +127,7 @@ fn frames(
         }
         for _ in 0..std::mem::take(&mut without_cells) {
             frame.values_mut().fill(f64::NAN);
-            if sink(RecordingEvent::Frame(&frame)).is_break() {
-                return Ok(());
-            }
+            sink(RecordingEvent::Frame(&frame))?;
             frame.number += 1;
         }
         let time = fields.fill(&slots, &mut frame, layout.separator, (line, number))?;
@@ -138,13 +137,9 @@ fn frames(
             && unit != TimeUnit::Seconds
         {
             let note = RecordingNote::TimeUnit { unit: unit.name() };
-            if sink(RecordingEvent::Note(&note)).is_break() {
-                break;
-            }
+            sink(RecordingEvent::Note(&note))?;
         }
-        if sink(RecordingEvent::Frame(&frame)).is_break() {
-            break;
-        }
+        sink(RecordingEvent::Frame(&frame))?;
         frame.number += 1;
     }
     Ok(())
@@ -238,50 +233,43 @@ impl RowBlock {
         mut self,
         lines: &mut TextLines<impl BufRead>,
         sink: &mut Sink<'_>,
-    ) -> Result<(), RecordingError> {
-        loop {
-            let ended = !lines.advance()?;
+    ) -> Result<(), EarlyEnd> {
+        while lines.advance()? {
             let (line, number) = (lines.line(), lines.number());
-            let given = if ended || is_blank(line) {
-                self.end(number + u64::from(ended), sink)?
-            } else if is_comment(line) {
-                continue;
-            } else {
+            if is_blank(line) {
+                self.end(number, sink)?;
+            } else if !is_comment(line) {
                 self.row(line, number)?;
                 // Without empty lines, frames are separated by their number of rows alone.
-                if self.parted {
-                    continue;
+                if !self.parted {
+                    self.give(sink)?;
                 }
-                self.give(sink)
-            };
-            if ended || given.is_break() {
-                return Ok(());
             }
         }
+        self.end(lines.number() + 1, sink)
     }
 
     /// Ends the frame at an empty line or at the end of the file. There may be any number of empty lines between
     /// frames.
-    fn end(&mut self, number: u64, sink: &mut Sink<'_>) -> Result<ControlFlow<()>, RecordingError> {
-        let given = self.give(sink);
-        if given.is_break() || self.found == 0 {
-            return Ok(given);
+    fn end(&mut self, number: u64, sink: &mut Sink<'_>) -> Result<(), EarlyEnd> {
+        self.give(sink)?;
+        if self.found == 0 {
+            return Ok(());
         }
         let (found, rows) = (self.found, self.frame.rows());
         let found = counted(found, "row");
         let message = format!("the frame ends after {found}, expected {rows}");
-        Err(RecordingError::in_line(number, message))
+        Err(RecordingError::in_line(number, message).into())
     }
 
     /// Reports the frame if all its rows have been read.
-    fn give(&mut self, sink: &mut Sink<'_>) -> ControlFlow<()> {
-        if self.found < self.frame.rows() {
-            return ControlFlow::Continue(());
+    fn give(&mut self, sink: &mut Sink<'_>) -> Result<(), EarlyEnd> {
+        if self.found == self.frame.rows() {
+            sink(RecordingEvent::Frame(&self.frame))?;
+            self.frame.number += 1;
+            self.found = 0;
         }
-        sink(RecordingEvent::Frame(&self.frame))?;
-        self.frame.number += 1;
-        self.found = 0;
-        ControlFlow::Continue(())
+        Ok(())
     }
 
     /// Reads the next row.

@@ -25,7 +25,9 @@
 use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, RecordingEvent, RecordingNote, Sink};
+use crate::formats::recording::event::{
+    ChannelInfo, EarlyEnd, RecordingEvent, RecordingNote, Sink,
+};
 use crate::formats::recording::side::{frame_size, side};
 use crate::formats::recording::text::lines::{TextLines, text};
 use crate::formats::recording::text::number;
@@ -75,17 +77,16 @@ struct EmedState {
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), EarlyEnd> {
     let mut lines = TextLines::new(input);
     let mut state = EmedState::default();
     let ended = match state.pages(&mut lines, sink) {
-        Ok(true) => return Ok(()),
-        Ok(false) if state.lacks_pages() => {
+        Err(EarlyEnd::Enough) => return Err(EarlyEnd::Enough),
+        Ok(()) if state.lacks_pages() => {
             let message = "ends before the last page of a picture";
-            Err(RecordingError::in_line(lines.number() + 1, message))
+            Err(RecordingError::in_line(lines.number() + 1, message).into())
         }
-        Ok(false) => Ok(()),
-        Err(error) => Err(error),
+        ended => ended,
     };
     if !state.lacks_pages() {
         state.give(sink)?;
@@ -310,12 +311,12 @@ fn after(line: &str, word: &str) -> Option<f64> {
 }
 
 impl EmedState {
-    /// Reads all pages; returns true if the sink wants no more.
+    /// Reads all pages.
     fn pages(
         &mut self,
         lines: &mut TextLines<impl BufRead>,
         sink: &mut Sink<'_>,
-    ) -> Result<bool, RecordingError> {
+    ) -> Result<(), EarlyEnd> {
         while lines.advance_to_content()? {
             let line = text(lines.line());
             if line.contains("Page") {
@@ -333,15 +334,13 @@ impl EmedState {
             let Some(label) = self.label.filter(|_| is_window) else {
                 continue;
             };
-            if self.window(lines, label, sink)? {
-                return Ok(true);
-            }
+            self.window(lines, label, sink)?;
         }
         if self.in_header || self.label.is_some() {
             let message = "ends before the values of a picture";
-            return Err(RecordingError::in_line(lines.number() + 1, message));
+            return Err(RecordingError::in_line(lines.number() + 1, message).into());
         }
-        Ok(false)
+        Ok(())
     }
 
     /// Reads a line of the header, which may hold several values.
@@ -370,8 +369,7 @@ impl EmedState {
         }
     }
 
-    /// Reads the window below the line of column numbers, and reports the picture before it; returns true if the sink
-    /// wants no more.
+    /// Reads the window below the line of column numbers, and reports the picture before it.
     ///
     /// # Errors
     /// Returns an error if columns or rows are not numbered consecutively, or if the window ends before the line of
@@ -381,7 +379,7 @@ impl EmedState {
         lines: &mut TextLines<impl BufRead>,
         label: i64,
         sink: &mut Sink<'_>,
-    ) -> Result<bool, RecordingError> {
+    ) -> Result<(), EarlyEnd> {
         let heading = EmedHeading::of(lines.line(), lines.number())?;
         let has_forces = self.has_forces || heading.has_force;
         let mut window = EmedWindow::read(&heading, lines, label, has_forces)?;
@@ -398,15 +396,15 @@ impl EmedState {
         // The values are complete even if the line of forces is not.
         self.label = None;
         let joins = |own: &EmedWindow| own.label == label && !own.overlaps(&window);
-        if !self.picture.iter().all(joins) && self.give(sink)? {
-            return Ok(true);
+        if !self.picture.iter().all(joins) {
+            self.give(sink)?;
         }
         if self.picture.len() == MOST_PAGES {
             let message = format!("picture {label} has more than {MOST_PAGES} pages");
-            return Err(RecordingError::in_line(lines.number(), message));
+            return Err(RecordingError::in_line(lines.number(), message).into());
         }
         self.picture.push(window);
-        forces.map(|()| false)
+        Ok(forces?)
     }
 
     /// Returns true if the last picture lacks a page where the file ends or is damaged: the damaged page itself, or
@@ -420,14 +418,14 @@ impl EmedState {
         label.is_some() && (self.label == label || self.has_row_forces && !has_row_forces)
     }
 
-    /// Reports the last picture, if there is one; returns true if the sink wants no more.
+    /// Reports the last picture, if there is one.
     ///
     /// # Errors
     /// Returns an error if its pages leave out cells, or are larger than a frame.
-    fn give(&mut self, sink: &mut Sink<'_>) -> Result<bool, RecordingError> {
+    fn give(&mut self, sink: &mut Sink<'_>) -> Result<(), EarlyEnd> {
         let pages = std::mem::take(&mut self.picture);
         let Some(first) = pages.first() else {
-            return Ok(false);
+            return Ok(());
         };
         let mut frame = joined(first, &pages)?;
         self.has_row_forces |= pages.iter().any(|page| !page.row_forces.is_empty());
@@ -441,18 +439,14 @@ impl EmedState {
                 pitch_mm: self.pitch_mm,
                 ..ChannelInfo::default()
             };
-            if sink(RecordingEvent::Channel(&info)).is_break() {
-                return Ok(true);
-            }
+            sink(RecordingEvent::Channel(&info))?;
         }
         frame.time = of_label(first.label, &mut self.first_label, self.seconds);
         self.frames += 1;
         for note in self.odd_sums(&frame, &pages) {
-            if sink(RecordingEvent::Note(&note)).is_break() {
-                return Ok(true);
-            }
+            sink(RecordingEvent::Note(&note))?;
         }
-        Ok(sink(RecordingEvent::Frame(&frame)).is_break())
+        sink(RecordingEvent::Frame(&frame))
     }
 
     /// Returns notes about the forces of rows, of columns and of all cells that differ from those of the values. The

@@ -4,13 +4,12 @@
 //! and columns; if the caller does not either, the error says how many cells the first frame has. Torn frames are
 //! dropped and counted in a note, as no checksum could show what is wrong with them.
 
-use std::cell::Cell;
+use std::cell::RefCell;
 use std::io::{ErrorKind, Read};
-use std::ops::ControlFlow;
 
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{
-    ChannelInfo, ReadOptions, RecordingEvent, RecordingNote, Sink,
+    ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, RecordingNote, Sink,
 };
 use crate::formats::stream::{StreamDecoder, StreamEvent, StreamFormat, StreamOptions};
 
@@ -25,35 +24,34 @@ pub(in crate::formats::recording) fn read(
     input: &mut impl Read,
     options: ReadOptions,
     sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), EarlyEnd> {
     let Some(size) = options.size else {
         let mut start = Vec::new();
         input.take(CHUNK as u64).read_to_end(&mut start)?;
         let marker = |at: &usize| start.get(*at..at + 2) == Some(&[0xaa, 0x55]);
         let next = (3..start.len()).find(marker).unwrap_or(start.len());
         let values = next.saturating_sub(2) as u64;
-        return Err(RecordingError::Shape { values });
+        return Err(RecordingError::Shape { values }.into());
     };
     let info = ChannelInfo {
         size: options.size,
         ..ChannelInfo::default()
     };
-    if sink(RecordingEvent::Channel(&info)).is_break() {
-        return Ok(());
-    }
+    sink(RecordingEvent::Channel(&info))?;
     let stream = StreamOptions::default()
         .with_format(StreamFormat::Flexitac)
         .with_size(size)
         .from_start();
     let mut decoder = StreamDecoder::new(stream);
-    let state = Cell::new(ControlFlow::Continue(()));
+    let ended = RefCell::new(Ok(()));
     let mut give = |event: StreamEvent<'_>| {
-        if let (StreamEvent::Frame(frame), ControlFlow::Continue(())) = (event, state.get()) {
-            state.set(sink(RecordingEvent::Frame(frame)));
+        let mut ended = ended.borrow_mut();
+        if let (StreamEvent::Frame(frame), Ok(())) = (event, &*ended) {
+            *ended = sink(RecordingEvent::Frame(frame));
         }
     };
     let mut bytes = vec![0; CHUNK];
-    while state.get().is_continue() {
+    while ended.borrow().is_ok() {
         // Read only the bytes that are there: a full read would wait for the end of a growing file.
         let length = match input.read(&mut bytes) {
             Ok(0) => break,
@@ -64,9 +62,10 @@ pub(in crate::formats::recording) fn read(
         decoder.push(&bytes[..length], &mut give);
     }
     decoder.finish(&mut give);
+    ended.into_inner()?;
     let frames = decoder.counts().dropped;
-    if state.get().is_continue() && frames > 0 {
-        let _ = sink(RecordingEvent::Note(&RecordingNote::Garbled { frames }));
+    if frames > 0 {
+        sink(RecordingEvent::Note(&RecordingNote::Garbled { frames }))?;
     }
     Ok(())
 }

@@ -26,7 +26,9 @@
 use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, RecordingEvent, RecordingNote, Sink};
+use crate::formats::recording::event::{
+    ChannelInfo, EarlyEnd, RecordingEvent, RecordingNote, Sink,
+};
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text::lines::{TextLines, is_blank, text, unpadded};
 use crate::formats::recording::text::number;
@@ -120,14 +122,13 @@ fn spacing(value: &[u8]) -> Option<f64> {
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), EarlyEnd> {
     let mut lines = TextLines::new(input);
     let mut header = TekscanHeader::default();
     loop {
         if !lines.advance()? {
-            return Err(RecordingError::damaged(
-                "the header has no end, expected a line 'ASCII_DATA @@'",
-            ));
+            let message = "the header has no end, expected a line 'ASCII_DATA @@'";
+            return Err(RecordingError::damaged(message).into());
         }
         let line = unpadded(lines.line());
         let rest = line.strip_prefix(b"ASCII_DATA");
@@ -137,10 +138,8 @@ pub(in crate::formats::recording) fn read(
         header.line(line, lines.number())?;
     }
     let Some(size) = FrameSize::of_sides(header.columns, header.rows) else {
-        return Err(RecordingError::in_line(
-            lines.number(),
-            "the header has no ROWS or no COLS",
-        ));
+        let message = "the header has no ROWS or no COLS";
+        return Err(RecordingError::in_line(lines.number(), message).into());
     };
     let mut info = header.info;
     info.size = Some(size);
@@ -148,9 +147,7 @@ pub(in crate::formats::recording) fn read(
         .column_spacing
         .zip(header.row_spacing)
         .map(|(x, y)| [x, y]);
-    if sink(RecordingEvent::Channel(&info)).is_break() {
-        return Ok(());
-    }
+    sink(RecordingEvent::Channel(&info))?;
     frames(&mut lines, size, &info, sink)
 }
 
@@ -164,7 +161,7 @@ fn frames(
     size: FrameSize,
     info: &ChannelInfo,
     sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), EarlyEnd> {
     let mut frame = Frame::new(size);
     let is_raw = |unit: &String| unit.eq_ignore_ascii_case("raw");
     let is_raw = info.unit.as_ref().is_some_and(is_raw);
@@ -172,7 +169,7 @@ fn frames(
     for number in 0.. {
         if !lines.advance_to_content()? {
             let message = "ends here, expected another frame or '@@'";
-            return Err(RecordingError::in_line(lines.number() + 1, message));
+            return Err(RecordingError::in_line(lines.number() + 1, message).into());
         }
         if lines.line().trim_ascii_start().starts_with(b"@@") {
             break;
@@ -184,17 +181,11 @@ fn frames(
         let by_label = of_label(title.label, &mut first, info.seconds_per_frame);
         frame.time = title.time.or(by_label);
         values(lines, &mut frame)?;
-        if let Some(note) = title
-            .sum
-            .filter(|_| is_raw)
-            .and_then(|sum| odd_sum(&frame, sum))
-            && sink(RecordingEvent::Note(&note)).is_break()
-        {
-            break;
+        let sum = title.sum.filter(|_| is_raw);
+        if let Some(note) = sum.and_then(|sum| odd_sum(&frame, sum)) {
+            sink(RecordingEvent::Note(&note))?;
         }
-        if sink(RecordingEvent::Frame(&frame)).is_break() {
-            break;
-        }
+        sink(RecordingEvent::Frame(&frame))?;
     }
     Ok(())
 }

@@ -26,7 +26,7 @@
 use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, RecordingEvent, Sink};
+use crate::formats::recording::event::{ChannelInfo, EarlyEnd, RecordingEvent, Sink};
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text::lines::{TextLines, text};
 use crate::formats::recording::text::number;
@@ -101,7 +101,7 @@ struct XsensorState {
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), EarlyEnd> {
     let mut lines = TextLines::new(input);
     let mut state = XsensorState::default();
     let mut frame = Frame::default();
@@ -113,9 +113,7 @@ pub(in crate::formats::recording) fn read(
                     continue;
                 };
                 state.matrix(&mut lines, &mut frame)?;
-                if state.give(name, &mut frame, sink, lines.number())? {
-                    return Ok(());
-                }
+                state.give(name, &mut frame, sink, lines.number())?;
             }
             _ => state.line(&key, &value, lines.number())?,
         }
@@ -126,7 +124,7 @@ pub(in crate::formats::recording) fn read(
         _ if state.sensors < state.expected => "ends inside a FRAME, expected SENSOR",
         _ => return Ok(()),
     };
-    Err(RecordingError::in_line(lines.number() + 1, message))
+    Err(RecordingError::in_line(lines.number() + 1, message).into())
 }
 
 /// Returns the key of a line in capital letters, without the colon after it, and its value.
@@ -238,7 +236,7 @@ impl XsensorState {
         Ok(())
     }
 
-    /// Reports the frame, and before its first one the channel; returns true if the sink wants no more.
+    /// Reports the frame, and before its first one the channel.
     ///
     /// # Errors
     /// Returns an error if there are more sensors than any file has: names that change with every frame would fill
@@ -249,7 +247,7 @@ impl XsensorState {
         frame: &mut Frame,
         sink: &mut Sink<'_>,
         line: u64,
-    ) -> Result<bool, RecordingError> {
+    ) -> Result<(), EarlyEnd> {
         let moment = self.moment();
         let start = self.start.or(moment);
         self.start = start;
@@ -258,7 +256,7 @@ impl XsensorState {
             Some(channel) => channel,
             None if self.channels.len() == MOST_SENSORS => {
                 let message = format!("more than {MOST_SENSORS} sensors");
-                return Err(RecordingError::in_line(line, message));
+                return Err(RecordingError::in_line(line, message).into());
             }
             None => {
                 let info = ChannelInfo {
@@ -273,9 +271,7 @@ impl XsensorState {
                     ..ChannelInfo::default()
                 };
                 self.channels.push(XsensorChannel { name, frames: 0 });
-                if sink(RecordingEvent::Channel(&info)).is_break() {
-                    return Ok(true);
-                }
+                sink(RecordingEvent::Channel(&info))?;
                 self.channels.len() - 1
             }
         };
@@ -290,7 +286,7 @@ impl XsensorState {
                 since(first_seconds, days + seconds)
             });
         self.sensors += 1;
-        Ok(sink(RecordingEvent::Frame(frame)).is_break())
+        sink(RecordingEvent::Frame(frame))
     }
 
     /// Returns the time of the frame as it is written; only the day, if the time is in seconds.

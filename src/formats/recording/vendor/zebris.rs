@@ -24,7 +24,9 @@
 use std::io::BufRead;
 
 use crate::formats::recording::error::RecordingError;
-use crate::formats::recording::event::{ChannelInfo, RecordingEvent, RecordingNote, Sink};
+use crate::formats::recording::event::{
+    ChannelInfo, EarlyEnd, RecordingEvent, RecordingNote, Sink,
+};
 use crate::formats::recording::side::stated;
 use crate::formats::recording::text::lines::{TextLines, text};
 use crate::formats::recording::text::number;
@@ -180,38 +182,31 @@ impl ZebrisSection {
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     sink: &mut Sink<'_>,
-) -> Result<(), RecordingError> {
+) -> Result<(), EarlyEnd> {
     let mut lines = TextLines::new(input);
     let (header, mut section) = ZebrisHeader::read(&mut lines)?;
     let info = header.info();
     let Some(size) = info.size else {
         let message = "no SensCountX or no SensCountY before the values";
-        return Err(RecordingError::in_line(lines.number(), message));
+        return Err(RecordingError::in_line(lines.number(), message).into());
     };
-    if sink(RecordingEvent::Channel(&info)).is_break() {
-        return Ok(());
-    }
+    sink(RecordingEvent::Channel(&info))?;
     let mut frame = Frame::new(size);
     let mut first = None;
     loop {
         values(&mut lines, &mut frame)?;
         let next = next_section(&mut lines, size.rows());
         let is_only = frame.number == 0 && !matches!(next, Ok(Some(_)));
-        let given = match section {
-            ZebrisSection::Data if !is_only => sink(RecordingEvent::Note(&RecordingNote::Maximum)),
-            _ => {
-                frame.label = Some(1);
-                if let ZebrisSection::Picture(label) = section {
-                    frame.label = Some(label);
-                    frame.time = of_label(label, &mut first, info.seconds_per_frame);
-                }
-                let given = sink(RecordingEvent::Frame(&frame));
-                frame.number += 1;
-                given
+        if matches!(section, ZebrisSection::Data) && !is_only {
+            sink(RecordingEvent::Note(&RecordingNote::Maximum))?;
+        } else {
+            frame.label = Some(1);
+            if let ZebrisSection::Picture(label) = section {
+                frame.label = Some(label);
+                frame.time = of_label(label, &mut first, info.seconds_per_frame);
             }
-        };
-        if given.is_break() {
-            return Ok(());
+            sink(RecordingEvent::Frame(&frame))?;
+            frame.number += 1;
         }
         match next? {
             Some(next) => section = next,
@@ -219,7 +214,7 @@ pub(in crate::formats::recording) fn read(
         }
     }
     if let Some(note) = header.cut(frame.number).filter(|_| first.is_some()) {
-        let _ = sink(RecordingEvent::Note(&note));
+        sink(RecordingEvent::Note(&note))?;
     }
     Ok(())
 }
