@@ -3,8 +3,10 @@
 //! A cell holds a number of touches and its share of the row; the larger the share, the darker the cell. The numbers
 //! are there for readers who cannot tell the shades apart.
 
-use crate::formats::drawing::page::{DrawingPage, MARGIN, TEXT, width};
-use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
+use crate::formats::drawing::page::{CELLS, DrawingPage, MARGIN, TEXT, cut, upright_title, width};
+use crate::formats::drawing::scene::{
+    Element, Position, Stroke, TextAnchor, label, path_of, rectangle,
+};
 use crate::formats::value::percent;
 use crate::parameter::number::share;
 
@@ -16,13 +18,6 @@ const LONGEST: usize = 30;
 
 /// The grey of a cell that holds its whole row: black text on it is still readable.
 const DARKEST: f64 = 160.0;
-
-/// The lines between cells.
-const CELL: Stroke = Stroke {
-    width: 0.4,
-    grey: 150,
-    dash: None,
-};
 
 /// A confusion matrix to draw.
 ///
@@ -59,7 +54,7 @@ impl ConfusionMap {
     /// Adds a title above; only its first 100 characters are kept.
     #[must_use]
     pub fn with_title(mut self, title: &str) -> Self {
-        self.title = Some(title.chars().take(100).collect());
+        self.title = Some(cut(title));
         self
     }
 
@@ -138,12 +133,7 @@ impl MapLayout<'_> {
     }
 
     fn text(&mut self, text: &str, place: Position, anchor: TextAnchor) {
-        self.marks.push(Element::Text {
-            text: text.to_owned(),
-            place,
-            anchor,
-            upright: false,
-        });
+        self.marks.push(label(text, place, anchor));
     }
 
     /// Draws the cells: shades first, then lines, then numbers.
@@ -182,7 +172,7 @@ impl MapLayout<'_> {
                 numbers.extend(said);
             }
         }
-        self.line("cells", lines, CELL);
+        self.marks.push(path_of("cells", lines, CELLS));
         // The diagonal, where touches are named correctly, has a frame.
         let right = (0..shapes).flat_map(|shape| {
             rectangle(
@@ -190,20 +180,12 @@ impl MapLayout<'_> {
                 self.position(shape + 1, shape + 1),
             )
         });
-        let right: Vec<Segment> = right.collect();
-        self.line("diagonal", right, Stroke::black(1.1));
+        let stroke = Stroke::black(1.1);
+        self.marks
+            .push(path_of("diagonal", right.collect(), stroke));
         for (text, place) in numbers {
             self.text(&text, place, TextAnchor::Middle);
         }
-    }
-
-    fn line(&mut self, what: &'static str, steps: Vec<Segment>, line: Stroke) {
-        self.marks.push(Element::Line {
-            what,
-            steps,
-            line,
-            clipped: false,
-        });
     }
 
     /// Draws the names of rows and columns, and the titles of both axes.
@@ -230,12 +212,8 @@ impl MapLayout<'_> {
         let title = map.title.as_ref().map_or(0.0, |_| TEXT + 6.0);
         let middle = f64::midpoint(self.corner.0, end.0);
         self.text("named", (middle, MARGIN + title + TEXT), TextAnchor::Middle);
-        self.marks.push(Element::Text {
-            text: "true shape".to_owned(),
-            place: (MARGIN + TEXT, f64::midpoint(self.corner.1, end.1)),
-            anchor: TextAnchor::Middle,
-            upright: true,
-        });
+        let middle = f64::midpoint(self.corner.1, end.1);
+        self.marks.push(upright_title("true shape", middle));
     }
 }
 

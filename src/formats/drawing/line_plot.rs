@@ -2,8 +2,10 @@
 
 use crate::formats::drawing::axis::Ticks;
 use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, width};
-use crate::formats::drawing::plane::{axes, label, path_of};
-use crate::formats::drawing::scene::{Position, Segment, Stroke, TextAnchor, circle};
+use crate::formats::drawing::plane::axes;
+use crate::formats::drawing::scene::{
+    Position, Segment, Stroke, TextAnchor, circle, label, path_of,
+};
 
 /// The width and height of the plane, in points.
 const PLANE: Position = (324.0, 200.0);

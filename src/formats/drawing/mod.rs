@@ -65,15 +65,12 @@ pub use confusion_map::ConfusionMap;
 pub use format::DrawingFormat;
 use format::written;
 pub use line_plot::LinePlot;
-use page::{DrawingPage, Subject};
+use page::{DrawingPage, Subject, cut};
 pub use point_plot::PointPlot;
 pub use pose_map::PoseMap;
 use scene::Segment;
 
 written!(Drawing, ConfusionMap, LinePlot, PointPlot, PoseMap);
-
-/// The most characters of a title; more would make the page wider than paper.
-const LONGEST_TITLE: usize = 100;
 
 /// The least pitch in mm: smaller than any atom.
 const LEAST_PITCH: f64 = 1e-9;
@@ -139,7 +136,7 @@ impl Drawing {
     /// Adds a title above; only its first 100 characters are kept.
     #[must_use]
     pub fn with_title(mut self, title: &str) -> Self {
-        self.title = Some(title.chars().take(LONGEST_TITLE).collect());
+        self.title = Some(cut(title));
         self
     }
 

@@ -15,7 +15,7 @@ use crate::description::{Description, RegionKind, Value};
 use crate::formats::drawing::axis::Ticks;
 use crate::formats::drawing::heat;
 use crate::formats::drawing::scene::{
-    Element, Position, Segment, Stroke, TextAnchor, circle, rectangle,
+    Element, Position, Segment, Stroke, TextAnchor, circle, label, path_of, rectangle,
 };
 use crate::formats::value;
 use crate::imprint::Imprint;
@@ -33,6 +33,8 @@ const LARGEST_CELL: f64 = 24.0;
 pub(super) const MARGIN: f64 = 8.0;
 /// The height of a line of the title or the legend.
 pub(super) const ROW: f64 = 13.0;
+/// The most characters of a title; more would make the page wider than paper.
+const LONGEST: usize = 100;
 /// The width of a sign in the legend.
 const SWATCH: f64 = 16.0;
 
@@ -41,7 +43,7 @@ const DESCRIBED: u8 = 168;
 /// The grey of taxels of other regions.
 const OTHER: u8 = 220;
 /// The lines between cells.
-const CELLS: Stroke = Stroke {
+pub(super) const CELLS: Stroke = Stroke {
     width: 0.4,
     grey: 150,
     dash: None,
@@ -148,6 +150,21 @@ impl DrawingPage {
     }
 }
 
+/// Returns as much of a text as fits onto a page.
+pub(super) fn cut(text: &str) -> String {
+    text.chars().take(LONGEST).collect()
+}
+
+/// Makes the title of the upright axis; `y` is the middle of the axis.
+pub(super) fn upright_title(title: &str, y: f64) -> Element {
+    Element::Text {
+        text: title.to_owned(),
+        place: (MARGIN + TEXT, y),
+        anchor: TextAnchor::Middle,
+        upright: true,
+    }
+}
+
 /// Returns the width of a text of that many characters.
 #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 characters")]
 pub(super) fn width(characters: usize) -> f64 {
@@ -166,12 +183,7 @@ impl PageLayout<'_> {
             let end = place.0 + width(text.chars().count());
             self.end.0 = self.end.0.max(end);
         }
-        self.marks.push(Element::Text {
-            text: text.to_owned(),
-            place,
-            anchor,
-            upright: false,
-        });
+        self.marks.push(label(text, place, anchor));
     }
 
     /// Adds rectangles in one grey; `what` is the class of the group in SVG.
@@ -185,12 +197,7 @@ impl PageLayout<'_> {
 
     /// Adds a path with a line of that width, grey and dashes.
     fn line(&mut self, what: &'static str, steps: Vec<Segment>, line: Stroke) {
-        self.marks.push(Element::Line {
-            what,
-            steps,
-            line,
-            clipped: false,
-        });
+        self.marks.push(path_of(what, steps, line));
     }
 
     /// Draws the active taxels, darker in the described region; or the values of all cells and the edge of the active
@@ -277,12 +284,8 @@ impl PageLayout<'_> {
             (middle.0, above),
             TextAnchor::Middle,
         );
-        self.marks.push(Element::Text {
-            text: format!("y / {unit}"),
-            place: (MARGIN + TEXT, middle.1),
-            anchor: TextAnchor::Middle,
-            upright: true,
-        });
+        self.marks
+            .push(upright_title(&format!("y / {unit}"), middle.1));
     }
 
     /// Draws the outline of the shape, cut off at the edge of the plane; nothing if the shape is not known.

@@ -1,8 +1,10 @@
-//! The plane of a plot: its frame, its axes with their marks, and the elements of which plots are made.
+//! The plane of a plot: its frame, and its axes with their marks.
 
 use crate::formats::drawing::axis::Ticks;
-use crate::formats::drawing::page::{MARGIN, TEXT};
-use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
+use crate::formats::drawing::page::{TEXT, upright_title};
+use crate::formats::drawing::scene::{
+    Element, Position, Segment, Stroke, TextAnchor, label, path_of, rectangle,
+};
 
 /// The lines at the marks of both axes.
 const GRID: Stroke = Stroke {
@@ -35,31 +37,6 @@ pub(super) fn axes(
     let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
     let below = (middle.0, to.1 + TEXT * 2.0 + 6.0);
     marks.push(label(labels[0], below, TextAnchor::Middle));
-    marks.push(Element::Text {
-        text: labels[1].to_owned(),
-        place: (MARGIN + TEXT, middle.1),
-        anchor: TextAnchor::Middle,
-        upright: true,
-    });
+    marks.push(upright_title(labels[1], middle.1));
     marks
-}
-
-/// Makes a line on the page; `what` is the kind of line.
-pub(super) fn path_of(what: &'static str, steps: Vec<Segment>, line: Stroke) -> Element {
-    Element::Line {
-        what,
-        steps,
-        line,
-        clipped: false,
-    }
-}
-
-/// Makes a text on the page.
-pub(super) fn label(text: &str, place: Position, anchor: TextAnchor) -> Element {
-    Element::Text {
-        text: text.to_owned(),
-        place,
-        anchor,
-        upright: false,
-    }
 }

@@ -3,18 +3,17 @@
 use std::collections::BTreeSet;
 
 use crate::formats::drawing::axis::{Ticks, axis_ends};
-use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, width};
-use crate::formats::drawing::plane::{axes, label, path_of};
-use crate::formats::drawing::scene::{Position, Segment, Stroke, TextAnchor, circle};
+use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, cut, width};
+use crate::formats::drawing::plane::axes;
+use crate::formats::drawing::scene::{
+    Position, Segment, Stroke, TextAnchor, circle, label, path_of,
+};
 
 /// The width and height of the plane, in points.
 const PLANE: Position = (324.0, 243.0);
 
 /// The most steps between the marks of an axis.
 const STEPS: f64 = 8.0;
-
-/// The most characters of a text; longer ones are cut.
-const LONGEST: usize = 100;
 
 /// The fineness of the plane's width: points closer than one part in this many are drawn once.
 const RASTER: f64 = 1000.0;
@@ -154,11 +153,6 @@ impl PointPlot {
         }
         specks
     }
-}
-
-/// Returns as much of a text as fits onto a page.
-fn cut(text: &str) -> String {
-    text.chars().take(LONGEST).collect()
 }
 
 /// Returns true if a point can be drawn.

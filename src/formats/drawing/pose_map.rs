@@ -3,9 +3,10 @@
 //! Borders separate the areas; greys only help the eye, and a bad printer may lose them.
 
 use crate::formats::drawing::axis::Ticks;
-use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, width};
-use crate::formats::drawing::plane::{label, path_of};
-use crate::formats::drawing::scene::{Element, Position, Segment, Stroke, TextAnchor, rectangle};
+use crate::formats::drawing::page::{DrawingPage, MARGIN, ROW, TEXT, cut, upright_title, width};
+use crate::formats::drawing::scene::{
+    Element, Position, Segment, Stroke, TextAnchor, label, path_of, rectangle,
+};
 use crate::formats::value::decimal;
 
 /// The larger side of the plane, in points.
@@ -69,7 +70,7 @@ impl PoseMap {
     /// Adds a title above; only its first 100 characters are kept.
     #[must_use]
     pub fn with_title(mut self, title: &str) -> Self {
-        self.title = title.chars().take(100).collect();
+        self.title = cut(title);
         self
     }
 
@@ -221,12 +222,7 @@ impl PoseMap {
         let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
         let above = (middle.0, from.1 - 5.0 - TEXT * 1.5);
         marks.push(label(X_TITLE, above, TextAnchor::Middle));
-        marks.push(Element::Text {
-            text: Y_TITLE.to_owned(),
-            place: (MARGIN + TEXT, middle.1),
-            anchor: TextAnchor::Middle,
-            upright: true,
-        });
+        marks.push(upright_title(Y_TITLE, middle.1));
     }
 }
 

@@ -131,3 +131,23 @@ pub(super) enum Element {
         upright: bool,
     },
 }
+
+/// Makes a line on the page; `what` is the kind of line.
+pub(super) fn path_of(what: &'static str, steps: Vec<Segment>, line: Stroke) -> Element {
+    Element::Line {
+        what,
+        steps,
+        line,
+        clipped: false,
+    }
+}
+
+/// Makes a text on the page.
+pub(super) fn label(text: &str, place: Position, anchor: TextAnchor) -> Element {
+    Element::Text {
+        text: text.to_owned(),
+        place,
+        anchor,
+        upright: false,
+    }
+}
