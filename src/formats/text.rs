@@ -21,85 +21,47 @@ pub enum TextError {
         /// The byte that was found.
         byte: u8,
     },
-    /// A character that is not a taxel.
-    Character {
-        /// The line number.
-        line: usize,
-        /// The character in the line.
-        column: usize,
-        /// The character that was found.
-        found: char,
-    },
-    /// A line of another length than the first.
-    Ragged {
-        /// The line number.
-        line: usize,
-        /// The column of the first taxel too many, or after the end of a shorter line.
-        column: usize,
-        /// The length of the line.
-        found: usize,
-        /// The length of the first line.
-        expected: u8,
-    },
-    /// An empty line, or a line with too many taxels.
-    Columns {
-        /// The line number.
-        line: usize,
-        /// The column of the first taxel too many, or 1 in an empty line.
-        column: usize,
-        /// The length of the line.
-        found: usize,
-    },
     /// No lines, or too many.
     Lines {
         /// The number of lines.
         found: usize,
     },
+    /// A line that is not a row of an imprint; the row is the number of the line.
+    Row(ImprintError),
 }
 
 impl fmt::Display for TextError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Byte { line, column, byte } => write!(
-                f,
-                "line {line}, column {column}: found byte 0x{byte:02x}, expected '#' or '.'"
-            ),
-            Self::Character {
-                line,
-                column,
-                found,
-            } => write!(
-                f,
-                "line {line}, column {column}: found {found:?}, expected '#' or '.'"
-            ),
-            Self::Ragged {
-                line,
-                column,
+        // In a line of another length, the column of the first taxel too many, or after the end of a shorter line.
+        let behind = |found: usize, most: usize| found.min(most) + 1;
+        let (line, column, message) = match *self {
+            Self::Byte { line, column, byte } => {
+                let message = format!("found byte 0x{byte:02x}, expected '#' or '.'");
+                (line, column, message)
+            }
+            Self::Row(ImprintError::Character { row, column, found }) => {
+                (row, column, format!("found {found:?}, expected '#' or '.'"))
+            }
+            Self::Row(ImprintError::Ragged {
+                row,
                 found,
                 expected,
-            } => {
-                let found = counted(*found as u64, "taxel");
-                write!(
-                    f,
-                    "line {line}, column {column}: found {found}, expected {expected} as in line 1"
-                )
+            }) => {
+                let taxels = counted(found as u64, "taxel");
+                let message = format!("found {taxels}, expected {expected} as in line 1");
+                (row, behind(found, expected.into()), message)
             }
-            Self::Columns {
-                line,
-                column,
-                found,
-            } => write!(
-                f,
-                "line {line}, column {column}: found {found} taxels, expected 1 to 64"
-            ),
+            Self::Row(ImprintError::Columns { row, found }) => {
+                let message = format!("found {found} taxels, expected 1 to 64");
+                (row, behind(found, 64), message)
+            }
+            Self::Row(ImprintError::Rows) => return ImprintError::Rows.fmt(f),
             Self::Lines { found } => {
-                write!(
-                    f,
-                    "found {}, expected 1 to 64",
-                    counted(*found as u64, "line")
-                )
+                let lines = counted(found as u64, "line");
+                return write!(f, "found {lines}, expected 1 to 64");
             }
-        }
+        };
+        write!(f, "line {line}, column {column}: {message}")
     }
 }
 
@@ -128,26 +90,7 @@ pub fn read(bytes: &[u8]) -> Result<Imprint, TextError> {
     }
     Imprint::from_rows(rows.iter().copied()).map_err(|error| match error {
         ImprintError::Rows => TextError::Lines { found: rows.len() },
-        ImprintError::Columns { row, found } => TextError::Columns {
-            line: row,
-            column: found.min(64) + 1,
-            found,
-        },
-        ImprintError::Ragged {
-            row,
-            found,
-            expected,
-        } => TextError::Ragged {
-            line: row,
-            column: found.min(usize::from(expected)) + 1,
-            found,
-            expected,
-        },
-        ImprintError::Character { row, column, found } => TextError::Character {
-            line: row,
-            column,
-            found,
-        },
+        error => TextError::Row(error),
     })
 }
 
@@ -181,11 +124,11 @@ fn no_text(bytes: &[u8], end: usize) -> TextError {
     let line = before.split('\n').count();
     let column = 1 + before.rsplit('\n').next().unwrap_or("").chars().count();
     match stray {
-        Some((_, found)) => TextError::Character {
-            line,
+        Some((_, found)) => TextError::Row(ImprintError::Character {
+            row: line,
             column,
             found,
-        },
+        }),
         None => TextError::Byte {
             line,
             column,
