@@ -43,42 +43,50 @@ pub(super) struct LinesDecoder {
     size: StreamSize,
     /// Whether a boundary was seen, so that a frame may begin.
     begun: bool,
-    /// The values of the current frame so far.
-    values: Vec<f64>,
-    /// The number of its rows so far.
-    rows: u16,
-    /// The timestamp at the beginning of its first line, in seconds.
-    time: Option<f64>,
+    /// The rows of the current frame so far.
+    current: Block,
     /// The clock that turns timestamps into seconds since the first frame.
     pub(super) clock: SourceClock,
-    /// Whether a row of the frame is invalid.
-    broken: bool,
-    /// The beginning of that row, or of the first row if none is invalid.
-    broken_row: Vec<u8>,
-    /// The number of numbers in that row; None if it has anything else, or is not invalid.
-    broken_count: Option<usize>,
     /// Whether there was an empty line.
     parted: bool,
     /// The content of lines, as far as it is known.
     kind: LineKind,
     /// The first blocks of a stream that is read from its beginning, until it is known whether the first one is a
     /// frame.
-    held: Option<Vec<HeldBlock>>,
+    held: Option<Vec<Block>>,
     /// The frame that is reported.
     frame: Frame,
 }
 
-/// A block of rows that an empty line has ended.
-#[derive(Debug)]
-struct HeldBlock {
-    /// The rows and columns.
-    size: FrameSize,
+/// A block of rows, which an empty line ends.
+#[derive(Debug, Default)]
+struct Block {
     /// The values, row by row.
     values: Vec<f64>,
-    /// The timestamp of the block, in seconds.
+    /// The number of rows.
+    rows: u16,
+    /// The timestamp at the beginning of the first line, in seconds.
     time: Option<f64>,
-    /// The beginning of its first row.
+    /// Whether a row is invalid.
+    broken: bool,
+    /// The beginning of that row, or of the first row if none is invalid.
     sample: Vec<u8>,
+    /// The number of numbers in that row; None if it has anything else, or is not invalid.
+    broken_count: Option<usize>,
+}
+
+impl Block {
+    /// Returns the rows and columns; None if the block is not a frame.
+    fn size(&self) -> Option<FrameSize> {
+        let columns = self.values.len().checked_div(self.rows.into())?;
+        frame_size(columns, self.rows.into()).filter(|_| !self.broken)
+    }
+
+    /// Prepares for the next block, in the same memory.
+    fn clear(&mut self) {
+        self.values.clear();
+        (self.rows, self.broken) = (0, false);
+    }
 }
 
 /// Returns true if the first of two blocks may be the end of one like the second: its last rows, or the end of its
@@ -95,13 +103,8 @@ impl LinesDecoder {
         Self {
             size: StreamSize::new(named),
             begun: from_start,
-            values: Vec::new(),
-            rows: 0,
-            time: None,
+            current: Block::default(),
             clock,
-            broken: false,
-            broken_row: Vec::new(),
-            broken_count: None,
             parted: false,
             kind: match named {
                 Some(size) if size.rows() == 1 => LineKind::Frame,
@@ -142,10 +145,11 @@ impl LinesDecoder {
         counts: &mut StreamCounts,
         sink: &mut StreamSink<'_>,
     ) {
-        let before = self.values.len();
+        let before = self.current.values.len();
         let room = MAX_FRAME_CELLS.saturating_sub(before);
-        let read = numbers::read(line, &mut self.values, room);
-        let count = self.values.len() - before;
+        let read = numbers::read(line, &mut self.current.values, room);
+        let count = self.current.values.len() - before;
+        let found = read.and(Some(count));
         // A line with all cells is a boundary itself. Frames of one row must be given as such: otherwise a line
         // before the frames, such as the numbers of their columns, would make each of their rows a frame.
         let is_frame = |size: FrameSize| size.rows() > 1 && count == size.cells();
@@ -153,16 +157,15 @@ impl LinesDecoder {
         if read.is_some()
             && (self.size.present().is_some_and(is_frame) || self.size.named().is_some_and(is_row))
         {
-            self.values.drain(..before);
-            self.time = moment;
+            self.current.values.drain(..before);
+            self.current.time = moment;
             self.give_line(counts, sink);
             return;
         }
-        if self.kind == LineKind::Frame && self.rows == 0 && !self.may_be_row(read.and(Some(count)))
-        {
-            self.values.truncate(before);
+        if self.kind == LineKind::Frame && self.current.rows == 0 && !self.may_be_row(found) {
+            self.current.values.truncate(before);
             self.size.pass_torn();
-            self.broken_count = read.and(Some(count));
+            self.current.broken_count = found;
             if std::mem::replace(&mut self.begun, true) {
                 self.lose(1, line, counts);
             }
@@ -170,42 +173,42 @@ impl LinesDecoder {
         }
         let expected = match self.size.named() {
             Some(size) => usize::from(size.columns()),
-            _ if self.rows > 0 => before / usize::from(self.rows),
+            _ if self.current.rows > 0 => before / usize::from(self.current.rows),
             _ => count,
         };
-        if self.rows == 0 {
-            self.time = moment;
+        if self.current.rows == 0 {
+            self.current.time = moment;
         }
-        self.rows = self.rows.saturating_add(1);
-        if self.broken || read.is_none() || count != expected || self.rows > MAX_FRAME_SIDE {
-            self.values.truncate(before);
-            if !self.broken {
-                self.note_row(line, read.and(Some(count)));
+        self.current.rows = self.current.rows.saturating_add(1);
+        if self.current.broken || found != Some(expected) || self.current.rows > MAX_FRAME_SIDE {
+            self.current.values.truncate(before);
+            if !self.current.broken {
+                self.note_row(line, found);
             }
-            self.broken = true;
+            self.current.broken = true;
             // No frame of a known size has that many rows.
-            if self.size.present().is_none() && self.rows > MAX_FRAME_SIDE {
+            if self.size.present().is_none() && self.current.rows > MAX_FRAME_SIDE {
                 counts.unshaped = Some(count as u64);
             }
             self.give_up(line, counts);
-        } else if self.rows == 1 {
+        } else if self.current.rows == 1 {
             self.note_row(line, None);
         }
     }
 
     /// Reports the values of a line as a frame. The rows before it do not belong to a frame.
     fn give_line(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
-        if self.rows > 0 && self.begun {
+        if self.current.rows > 0 && self.begun {
             // If there was no empty line so far, those rows were frames, too.
-            let lost = if self.parted { 1 } else { self.rows };
-            self.lose(lost.into(), &self.broken_row, counts);
+            let lost = if self.parted { 1 } else { self.current.rows };
+            self.lose(lost.into(), &self.current.sample, counts);
         }
         self.kind = LineKind::Frame;
         self.size.pass_torn();
         // The line before this one was complete.
         self.begun = true;
         self.give(counts, sink);
-        self.clear();
+        self.current.clear();
     }
 
     /// Returns true if a line with that many numbers may begin a frame of several rows, which an empty line ends.
@@ -216,16 +219,16 @@ impl LinesDecoder {
 
     /// Keeps the beginning of a row, and the number of its numbers if that is wrong.
     fn note_row(&mut self, line: &[u8], wrong: Option<usize>) {
-        self.broken_row.clear();
-        self.broken_row.extend(line.iter().take(64));
-        self.broken_count = wrong;
+        self.current.sample.clear();
+        self.current.sample.extend(line.iter().take(64));
+        self.current.broken_count = wrong;
     }
 
     /// Counts dropped frames, with a sample; and with the reason, if rows and columns were given and a line has
     /// another number of numbers.
     fn lose(&self, frames: u64, sample: &[u8], counts: &mut StreamCounts) {
         counts.drop_frames(frames, sample);
-        let named = self.size.named().zip(self.broken_count);
+        let named = self.size.named().zip(self.current.broken_count);
         counts.reason = named.map(|(size, found)| {
             let found = counted(found as u64, "number");
             let (columns, cells) = (size.columns(), size.cells());
@@ -241,12 +244,12 @@ impl LinesDecoder {
 
     /// Counts an invalid line at once if, as far as is known, no empty line separates frames.
     fn give_up(&mut self, line: &[u8], counts: &mut StreamCounts) {
-        let is_full = |size: FrameSize| self.rows > size.rows();
-        if self.size.named().is_some_and(is_full) || self.rows > MAX_FRAME_SIDE {
+        let is_full = |size: FrameSize| self.current.rows > size.rows();
+        if self.size.named().is_some_and(is_full) || self.current.rows > MAX_FRAME_SIDE {
             if self.begun {
                 self.lose(1, line, counts);
             }
-            self.clear();
+            self.current.clear();
             self.begun = true;
         }
     }
@@ -254,54 +257,48 @@ impl LinesDecoder {
     /// Ends a frame at an empty line.
     fn boundary(&mut self, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         self.parted = true;
-        if !std::mem::replace(&mut self.begun, true) || self.rows == 0 {
-            self.clear();
+        if !std::mem::replace(&mut self.begun, true) || self.current.rows == 0 {
+            self.current.clear();
             return;
         }
-        let columns = self.values.len() / usize::from(self.rows.max(1));
-        let own = frame_size(columns, self.rows.into()).filter(|_| !self.broken);
-        match own {
+        match self.current.size() {
             Some(own) if self.held.is_some() => self.hold(own, counts, sink),
             Some(own) => self.block(own, counts, sink),
             None => {
                 self.size.pass_torn();
-                self.lose(1, &self.broken_row, counts);
+                self.lose(1, &self.current.sample, counts);
             }
         }
-        self.clear();
+        self.current.clear();
     }
 
     /// Takes a block of rows that is whole.
     fn block(&mut self, own: FrameSize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
         if self.size.admits(own) {
-            if self.rows > 1 {
+            if self.current.rows > 1 {
                 self.kind = LineKind::Row;
             }
             self.give(counts, sink);
         } else {
-            counts.drop_frames(1, &self.broken_row);
+            counts.drop_frames(1, &self.current.sample);
         }
     }
 
     /// Holds a block until it is known whether the first one is a frame. It is, if the second is not larger, or if
     /// the third differs from the second, which may be two frames that lost the empty line between them.
     fn hold(&mut self, own: FrameSize, counts: &mut StreamCounts, sink: &mut StreamSink<'_>) {
+        if self.held.as_ref().is_some_and(Vec::is_empty) {
+            self.fill(own, counts);
+            sink(StreamEvent::Provisional(&self.frame));
+        }
         let held = self.held.get_or_insert_default();
-        held.push(HeldBlock {
-            size: own,
-            values: self.values.clone(),
-            time: self.time,
-            sample: self.broken_row.clone(),
-        });
-        let sizes: Vec<FrameSize> = held.iter().map(|block| block.size).collect();
+        held.push(std::mem::take(&mut self.current));
+        let sizes: Vec<FrameSize> = held.iter().filter_map(Block::size).collect();
         match sizes[..] {
-            [first] => {
-                self.fill(first, counts);
-                sink(StreamEvent::Provisional(&self.frame));
-            }
+            [] | [_] => {}
             [first, second] if may_be_end(first, second) => {}
             [_, second, third] if second == third => self.release(second, counts, sink),
-            _ => self.release(sizes[0], counts, sink),
+            [first, ..] => self.release(first, counts, sink),
         }
     }
 
@@ -311,15 +308,15 @@ impl LinesDecoder {
             return;
         };
         self.size.begin(size);
-        if held.first().is_some_and(|first| first.size != size) {
+        let differs = |first: &Block| first.size() != Some(size);
+        if held.first().is_some_and(differs) {
             sink(StreamEvent::Withdrawn);
         }
         for block in held {
-            self.rows = block.size.rows();
-            self.values = block.values;
-            self.time = block.time;
-            self.broken_row = block.sample;
-            self.block(block.size, counts, sink);
+            self.current = block;
+            if let Some(own) = self.current.size() {
+                self.block(own, counts, sink);
+            }
         }
     }
 
@@ -337,16 +334,11 @@ impl LinesDecoder {
     fn fill(&mut self, size: FrameSize, counts: &StreamCounts) {
         self.frame.reset(size);
         self.frame.number = counts.frames;
-        let time = self.time;
+        let time = self.current.time;
         self.frame.time = time.map(|time| self.clock.since_first(time));
-        self.frame.values_mut().copy_from_slice(&self.values);
-    }
-
-    /// Forgets the current frame.
-    fn clear(&mut self) {
-        self.values.clear();
-        self.rows = 0;
-        self.broken = false;
+        self.frame
+            .values_mut()
+            .copy_from_slice(&self.current.values);
     }
 
     /// Ends the input: the last frame may lack its empty line. An incomplete frame is dropped.
@@ -357,20 +349,20 @@ impl LinesDecoder {
         sink: &mut StreamSink<'_>,
     ) {
         if !torn.trim_ascii().is_empty() {
-            self.rows = self.rows.saturating_add(1);
-            self.broken = true;
-            self.broken_count = None;
-            self.broken_row = torn.iter().take(64).copied().collect();
+            self.current.rows = self.current.rows.saturating_add(1);
+            self.current.broken = true;
+            self.current.broken_count = None;
+            self.current.sample = torn.iter().take(64).copied().collect();
         }
         // Only lines and no empty one: they are frames, or the rows of a single frame.
-        if self.size.present().is_none() && !self.parted && self.rows > 0 {
-            counts.unshaped = Some(self.values.len() as u64 / u64::from(self.rows));
-            self.clear();
+        if self.size.present().is_none() && !self.parted && self.current.rows > 0 {
+            counts.unshaped = Some(self.current.values.len() as u64 / u64::from(self.current.rows));
+            self.current.clear();
             return;
         }
         self.boundary(counts, sink);
         let first = self.held.as_ref().and_then(|held| held.first());
-        if let Some(size) = first.map(|first| first.size) {
+        if let Some(size) = first.and_then(Block::size) {
             self.release(size, counts, sink);
         }
     }
