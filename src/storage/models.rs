@@ -136,7 +136,8 @@ impl ModelFolder {
     /// # Errors
     /// Returns the system's error, except if the folder does not exist.
     pub fn names(&self) -> Result<Vec<Name>, ArchiveFileError> {
-        let files = folder::names(&self.0)?;
+        let files = folder::names(&self.0)
+            .map_err(|error| ArchiveFileError::doing(error.doing, &error.path, &error.error))?;
         let name = |file: &OsString| {
             let path = Path::new(file);
             let stem = path.file_stem().and_then(|stem| stem.to_str())?;
@@ -311,6 +312,16 @@ mod tests {
         assert_eq!(models.names().expect("one").len(), 1);
         models.delete(&name).expect("it is there");
         assert!(models.delete(&name).is_err());
+    }
+
+    #[test]
+    fn a_file_in_place_of_the_folder_cannot_be_read_as_a_folder() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let models = ModelFolder::beside(&folder.path().join("library"));
+        fs::write(models.path(), "").expect("written");
+        let refused = models.names().expect_err("a file").to_string();
+        let expected = format!("{}: cannot read the folder: ", models.path().display());
+        assert!(refused.starts_with(&expected), "{refused}");
     }
 
     #[test]

@@ -29,11 +29,10 @@ pub struct ArchiveFileError {
 }
 
 impl From<FileError> for ArchiveFileError {
+    /// Converts the error of a file or folder that is written.
     fn from(error: FileError) -> Self {
         let path = error.path.clone();
-        let error = error.into_io();
-        let text = format!("cannot write: {error}");
-        Self::new(&path, io::Error::new(error.kind(), text))
+        Self::doing("write", &path, &error.into_io())
     }
 }
 
@@ -44,6 +43,12 @@ impl ArchiveFileError {
             name: path.to_string_lossy().into_owned(),
             error: error.into(),
         }
+    }
+
+    /// Creates the error for an operation that the system refused, in words that follow "cannot".
+    pub(crate) fn doing(doing: &str, path: &Path, error: &io::Error) -> Self {
+        let text = format!("cannot {doing}: {error}");
+        Self::new(path, io::Error::new(error.kind(), text))
     }
 
     /// Returns true if there is no such file.
@@ -172,10 +177,7 @@ pub fn open_archive(path: &Path) -> Result<File, ArchiveFileError> {
             Err(io::Error::other("not a regular file"))
         }
     });
-    opened.map_err(|error| {
-        let error = io::Error::new(error.kind(), format!("cannot read: {error}"));
-        ArchiveFileError::new(path, error)
-    })
+    opened.map_err(|error| ArchiveFileError::doing("read", path, &error))
 }
 
 /// Returns true if a file of that name can hold the atlas number of every pose: it ends in `.npy`, in upper or lower
