@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::frame::size::{FrameSize, FrameSizeError};
 use crate::matrix::Matrix;
-use crate::parameter::number::counted;
+use crate::parameter::number::{counted, short};
 use crate::sensor::MatrixSize;
 
 /// The error for a frame that cannot be processed, or for settings that do not fit it.
@@ -112,7 +112,10 @@ impl fmt::Display for FrameError {
                 what,
                 found,
                 allowed,
-            } => write!(f, "{what}: {found} is out of range (allowed: {allowed})"),
+            } => {
+                let found = short(*found);
+                write!(f, "{what}: {found} is out of range (allowed: {allowed})")
+            }
             Self::Tare { frames, wanted } => {
                 write!(f, "frames for the tare: found {frames}, expected {wanted}")
             }

@@ -37,13 +37,20 @@ pub enum Rule {
     Noise(f64),
 }
 
+/// Returns a threshold in the sensor's unit.
+///
+/// # Errors
+/// Returns an error if the threshold is not finite, or beyond ±[`LARGEST_VALUE`].
+fn pressure(what: &'static str, value: f64) -> Result<f64, FrameError> {
+    checked(what, value, value.abs() <= LARGEST_VALUE, "-1e300 to 1e300")
+}
+
 fn checked(
     what: &'static str,
     value: f64,
     fits: bool,
     allowed: &'static str,
 ) -> Result<f64, FrameError> {
-    let fits = fits && value.abs() <= LARGEST_VALUE;
     fits.then_some(value).ok_or(FrameError::Rule {
         what,
         found: value,
@@ -62,8 +69,7 @@ impl Rule {
     /// # Errors
     /// Returns an error if the threshold is not finite, or beyond ±1e300.
     pub fn at_least(threshold: f64) -> Result<Self, FrameError> {
-        let value = checked("at_least", threshold, true, "-1e300 to 1e300")?;
-        Ok(Self::AtLeast(value))
+        Ok(Self::AtLeast(pressure("at_least", threshold)?))
     }
 
     /// Creates a rule with a threshold in percent of the largest value.
@@ -81,9 +87,8 @@ impl Rule {
     /// # Errors
     /// Returns an error if a threshold is not finite or beyond ±1e300, or `low` is above `high`.
     pub fn hysteresis(low: f64, high: f64) -> Result<Self, FrameError> {
-        let high = checked("high", high, true, "-1e300 to 1e300")?;
-        let allowed = "at most high";
-        let low = checked("low", low, low <= high, allowed)?;
+        let (low, high) = (pressure("low", low)?, pressure("high", high)?);
+        let low = checked("low", low, low <= high, "at most high")?;
         Ok(Self::Hysteresis { low, high })
     }
 
@@ -334,6 +339,26 @@ mod tests {
             Rule::noise(-1.0),
         ] {
             assert!(matches!(rule, Err(FrameError::Rule { .. })), "{rule:?}");
+        }
+    }
+
+    #[test]
+    fn the_message_about_two_thresholds_names_the_one_out_of_range() {
+        for (low, high, expected) in [
+            (
+                -1e301,
+                5.0,
+                "low: -1e301 is out of range (allowed: -1e300 to 1e300)",
+            ),
+            (
+                5.0,
+                1e301,
+                "high: 1e301 is out of range (allowed: -1e300 to 1e300)",
+            ),
+            (5.0, 3.0, "low: 5 is out of range (allowed: at most high)"),
+        ] {
+            let refused = Rule::hysteresis(low, high).map_err(|error| error.to_string());
+            assert_eq!(refused, Err(expected.to_owned()));
         }
     }
 

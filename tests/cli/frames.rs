@@ -648,6 +648,14 @@ fn a_threshold_out_of_range_names_what_is_allowed() {
             "--low 5 --high 3",
             "error: --low 5 is out of range (allowed: at most high)\n",
         ),
+        (
+            "--low=-1e301 --high 5",
+            "error: --low -1e301 is out of range (allowed: -1e300 to 1e300)\n",
+        ),
+        (
+            "--low 5 --high 1e301",
+            "error: --high 1e301 is out of range (allowed: -1e300 to 1e300)\n",
+        ),
     ] {
         refused("tekscan.asf", &format!("--all {flags}"), message);
     }

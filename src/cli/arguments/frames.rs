@@ -20,6 +20,7 @@ use crate::cli::error::CliError;
 use crate::cli::settings::sensors::SensorSettings;
 use crate::frame::{Crop, FrameError, FrameSize, Rule, RuleOrigin, SetRule};
 use crate::imprint::Imprint;
+use crate::parameter::number;
 use crate::recognition::Noise;
 
 /// The frames that are answered.
@@ -404,7 +405,7 @@ impl ProcessingArguments {
 fn rule(matches: &ArgMatches) -> Result<Option<Rule>, CliError> {
     let value = |id: &str| matches.get_one::<f64>(id).copied();
     let out_of_range = |flag: &str, value: f64| {
-        let (flag, text) = (flag.to_owned(), value.to_string());
+        let (flag, text) = (flag.to_owned(), number::short(value));
         move |error: FrameError| {
             let complaint = match error {
                 FrameError::Rule { allowed, .. } => {
@@ -423,9 +424,15 @@ fn rule(matches: &ArgMatches) -> Result<Option<Rule>, CliError> {
         value(flag).map(|value| make(value).map_err(out_of_range(flag, value)))
     };
     if let Some((low, high)) = value("low").zip(value("high")) {
-        return Rule::hysteresis(low, high)
-            .map(Some)
-            .map_err(out_of_range("low", low));
+        return Rule::hysteresis(low, high).map(Some).map_err(|error| {
+            let is_high = matches!(error, FrameError::Rule { what: "high", .. });
+            let (flag, value) = if is_high {
+                ("high", high)
+            } else {
+                ("low", low)
+            };
+            out_of_range(flag, value)(error)
+        });
     }
     made("at-least", Rule::at_least)
         .or_else(|| made("percent", Rule::percent))
