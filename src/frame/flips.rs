@@ -8,6 +8,9 @@
 //! A taxel is stuck on if it is active whenever none of its neighbours is. It is stuck off, or dead, if it is never
 //! active when three quarters of its neighbours are. There must be at least ten such frames, and one in a hundred may
 //! be an exception. A hole of one taxel that never moves looks like a dead taxel.
+//!
+//! A taxel with fewer than three neighbours is never called dead, because the straight edge of a contact at rest may
+//! cover all of them. On a sensor of one row or one column two neighbours suffice, one on either side.
 
 use crate::imprint::Imprint;
 
@@ -102,6 +105,8 @@ impl FlipCounter {
 
     fn count_neighbours(&mut self, imprint: &Imprint) {
         let columns = usize::from(imprint.columns());
+        let is_line = imprint.columns() == 1 || imprint.rows() == 1;
+        let least = if is_line { 2 } else { 3 };
         for (index, counts) in self.taxels.iter_mut().enumerate() {
             let (Ok(column), Ok(row)) =
                 (u8::try_from(index % columns), u8::try_from(index / columns))
@@ -124,7 +129,7 @@ impl FlipCounter {
             if active == 0 {
                 counts.alone.0 += 1;
                 counts.alone.1 += own;
-            } else if 4 * active >= 3 * there && there >= 3 {
+            } else if 4 * active >= 3 * there && there >= least {
                 counts.amid.0 += 1;
                 counts.amid.1 += own;
             }
@@ -316,6 +321,14 @@ mod tests {
         // It has three neighbours.
         let report = shown([([".##", "###", "###"], 10)]);
         assert_eq!(report.stuck_off.to_string(), "#..\n...\n...");
+    }
+
+    #[test]
+    fn a_taxel_between_two_others_of_a_single_row_may_be_dead_but_not_one_at_its_end() {
+        let imprint = |row: &str| Imprint::from_rows([row].iter().copied()).expect("a row");
+        let mut counter = FlipCounter::new(imprint("#####"));
+        (0..10).for_each(|_| counter.add(&imprint(".#.#.")));
+        assert_eq!(counter.finish().stuck_off.to_string(), "..#..");
     }
 
     #[test]
