@@ -2,10 +2,11 @@
 //! sweeps and models.
 //!
 //! **Nothing is lost.** A file is written under another name, synced, renamed into its place, and the folder is
-//! synced. So at every moment, whatever fails, either the old file or the new one is there as a whole. Deleting moves
-//! into a trash inside the folder. Writers hold the folder's lock while they write, so that two programs see each
-//! other's work. A half-written file for which nobody holds a lock was left by a program that died, and is removed.
-//! Reading needs neither a lock nor a folder that can be written to.
+//! synced. So at every moment, whatever fails, either the old file or the new one is there as a whole; of the two files
+//! of a sweep, the second may be missing ([`persist_pair`]). Deleting moves into a trash inside the folder. Writers hold
+//! the folder's lock while they write, so that two programs see each other's work. A half-written file for which nobody
+//! holds a lock was left by a program that died, and is removed. Reading needs neither a lock nor a folder that can be
+//! written to.
 //!
 //! ```text
 //! FOLDER/washer.json                    a shape
@@ -13,8 +14,10 @@
 //! FOLDER/.recognise                     the set of shapes that was recognised last
 //! FOLDER/.forms                         the values that forms were accepted with, a line each
 //! FOLDER/.lock                          held while writing
-//! FOLDER/.taxel-tmp                     being written
+//! FOLDER/.taxel-tmp                     being written by the holder of the lock
+//! FOLDER/.taxel-4fQx0Z                  being written, or a file that is being replaced; the ending is random
 //! FOLDER/.trash/0000000007 washer.json  deleted
+//! FOLDER/.trash/.taxel-tmp              being written
 //! FOLDER/.journal/4711-0.json           unsaved work of a running program, or of one that died
 //! FOLDER/.journal/4711-0.lock           held as long as that program runs
 //! FOLDER/.journal/4711-0.tmp            being written
