@@ -64,7 +64,6 @@ impl<T: Copy> Matrix<T> {
     }
 
     /// Changes the size and sets every cell to `value`. Allocates only if there are more cells than ever before.
-    /// Sides are clamped to 1 to 64.
     pub fn reset(&mut self, size: MatrixSize, value: T) {
         self.size = size;
         self.values.clear();
@@ -121,7 +120,7 @@ impl<T: Copy> Matrix<T> {
     }
 }
 
-/// The error for sides or values that do not make a matrix.
+/// The error for a number of values that is not the number of cells.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MatrixError {

@@ -92,8 +92,8 @@ impl Frame {
         Ok(())
     }
 
-    /// Changes the size, clamped to 1 to 512 on each side, and removes all values; everything else stays. Allocates
-    /// only if there are more cells than ever before.
+    /// Changes the size and removes all values; everything else stays. Allocates only if there are more cells than ever
+    /// before.
     pub fn reset(&mut self, size: FrameSize) {
         self.size = size;
         self.values.clear();

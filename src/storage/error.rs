@@ -106,7 +106,7 @@ pub enum LibraryError {
     #[error("the trash is empty")]
     TrashEmpty,
     /// The shape comes with the program and cannot be changed.
-    #[error("{name:?} comes with the program; it can be copied under another name")]
+    #[error("{name:?} is shipped with taxel; it can be copied under another name")]
     Shipped {
         /// The name of the shape.
         name: String,

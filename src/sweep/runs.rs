@@ -44,9 +44,9 @@ const REPORT_EVERY: u64 = 4_000;
 /// often.
 const EDGES: usize = 64;
 
-/// Sweeps the rows of a task. `progress` receives the number of poses done since the last call, of all orientations;
-/// if it returns `false`, the sweep stops and the result is None. Otherwise there is a result for each group of the
-/// task.
+/// Sweeps the rows of a task. `progress` receives the number of poses done since the last call, counted over all
+/// orientations of the task; if it returns `false`, the sweep stops and the result is None. Otherwise there is a result
+/// for each group of the task.
 pub(crate) fn go(
     grid: &PoseGrid,
     layout: &Layout,
