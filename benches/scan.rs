@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use taxel::prelude::*;
-use taxel::recognition::{Model, ModelParts, NamedShape, Noise, ShapeCount};
+use taxel::recognition::{Model, ModelHead, NamedShape, Noise, ShapeCount};
 use taxel::sweep::Shard;
 
 /// A simple random generator that gives the same templates on every machine.
@@ -28,10 +28,11 @@ fn model(keys: usize) -> Model {
         Figure::rectangle(6.0, 5.0).on(&sensor).expect("in range"),
     );
     let poses = (Anchor::Centre, Ranges::default());
-    let mut parts = ModelParts::new(vec![shape], sensor, poses, (Shard::WHOLE, keys as u64));
+    let head = ModelHead::new(vec![shape], sensor, poses, (Shard::WHOLE, keys as u64));
+    let mut keys_and_counts = Vec::with_capacity(keys);
     let mut state = 1;
     let mut seen = std::collections::HashSet::new();
-    while parts.keys.len() < keys {
+    while keys_and_counts.len() < keys {
         let mut imprint = Imprint::empty(MatrixSize::new(6, 6).expect("1 to 64"));
         for row in 0..6 {
             // Three in four taxels are active.
@@ -42,12 +43,10 @@ fn model(keys: usize) -> Model {
         let whole =
             bounds.is_some_and(|bounds| bounds.columns() == (0..6) && bounds.rows() == (0..6));
         if whole && seen.insert(imprint) {
-            parts
-                .keys
-                .push((Some(imprint), vec![ShapeCount::new(0, 1)]));
+            keys_and_counts.push((Some(imprint), vec![ShapeCount::new(0, 1)]));
         }
     }
-    Model::from_parts(parts).expect("a model")
+    Model::from_parts(head, &keys_and_counts).expect("a model")
 }
 
 /// Returns a touch like one of the templates, with some taxels flipped.

@@ -24,7 +24,7 @@ use crate::imprint::Imprint;
 use crate::index::index;
 use crate::pose::Axis;
 use crate::recognition::{
-    ImprintKey, KeyTable, Model, ModelError, ModelParts, NamedShape, ShapeCount,
+    ImprintKey, KeyTable, Model, ModelError, ModelHead, NamedShape, ShapeCount,
 };
 use crate::sensor::{MatrixSize, Sensor};
 
@@ -178,13 +178,13 @@ pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
     ];
     let poses = (anchor(&header.anchor)?, ranges(texts.map(String::as_str))?);
     let part = (header.shard.parse()?, header.poses);
-    let mut parts = ModelParts::new(shapes, sensor, poses, part);
-    parts.cut = header.shapes.iter().map(|shape| shape.cut).collect();
+    let mut head = ModelHead::new(shapes, sensor, poses, part);
+    head.cut = header.shapes.iter().map(|shape| shape.cut).collect();
     let keys = keys(&mut archive)?;
     let counts = counts(&mut archive, keys.len())?;
     archive.finish()?;
     let counts_of = |key: usize| counts[key].iter().copied();
-    Ok(Model::of_table(parts, &keys, counts_of)?)
+    Ok(Model::of_table(head, &keys, counts_of)?)
 }
 
 /// Reads the keys in the order of the file. A duplicate is refused at once, so the table never takes much more memory than

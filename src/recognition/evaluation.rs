@@ -223,7 +223,7 @@ mod tests {
     use super::*;
     use crate::figure::Figure;
     use crate::pose::{Anchor, Axis, Ranges};
-    use crate::recognition::model::ModelParts;
+    use crate::recognition::model::ModelHead;
     use crate::sensor::Sensor;
     use crate::sweep::Shard;
 
@@ -241,15 +241,15 @@ mod tests {
                 all.with(axis, at.parse().expect("a range"))
             });
         let poses = (Anchor::Centre, ranges);
-        let mut parts = ModelParts::new(
+        let head = ModelHead::new(
             shapes.collect(),
             Sensor::default(),
             poses,
             (Shard::WHOLE, 1),
         );
         let counts = (0..SHAPES).map(|shape| ShapeCount::new(shape, 1));
-        parts.keys = vec![("####\n####".parse().ok(), counts.collect())];
-        let limit = Evaluation::of(&Model::from_parts(parts).expect("a model"));
+        let keys = [("####\n####".parse().ok(), counts.collect())];
+        let limit = Evaluation::of(&Model::from_parts(head, &keys).expect("a model"));
         assert_eq!((limit.touches, limit.right), (SHAPES.into(), 1));
         assert_eq!(limit.worst_pairs().len(), usize::from(SHAPES) - 1);
         assert_eq!(limit.worst_pairs()[0], (0, 1, 1));

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::recognition::model::{Gathered, Model, ModelError, ModelParts, ShapeCount};
+use crate::recognition::model::{Gathered, Model, ModelError, ModelHead, ShapeCount};
 use crate::sweep::Shard;
 
 impl Model {
@@ -26,7 +26,7 @@ impl Model {
 #[derive(Debug, Default)]
 pub struct ModelMerge {
     /// The training as the first shard describes it, with the poses so far and the last shard.
-    head: Option<ModelParts>,
+    head: Option<ModelHead>,
     gathered: Gathered,
 }
 
@@ -40,7 +40,7 @@ impl ModelMerge {
         let (shard, of) = (model.shard(), model.shard().of());
         // Everything is checked before anything changes: after a refusal, the right shard can still be added.
         if let Some(head) = &self.head
-            && !model.same_training(head)
+            && !model.head().same_training(head)
         {
             return Err(ModelError::Foreign { shard });
         }
@@ -52,7 +52,7 @@ impl ModelMerge {
             Ordering::Equal => {}
         }
         match &mut self.head {
-            None => self.head = Some(model.head()),
+            None => self.head = Some(model.head().clone()),
             Some(head) => {
                 let poses = head.poses.checked_add(model.poses());
                 head.poses = poses.ok_or(ModelError::Parts("counts beyond any number of poses"))?;

@@ -65,7 +65,7 @@ pub use given::{GivenDescriptors, GivenError, GivenTable, Rounding, ShapeDescrip
 pub use half_step::{HalfStep, HalfStepWork};
 pub use key::{ImprintKey, KeyTable};
 pub use merge::ModelMerge;
-pub use model::{Model, ModelError, ModelParts, NamedShape, ShapeCount};
+pub use model::{Model, ModelError, ModelHead, NamedShape, ShapeCount};
 pub use nearest::Nearest;
 pub use noise::{Distances, Method, Noise, NoiseError, UnexplainedDifference};
 pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};

@@ -64,15 +64,7 @@ impl ShapeCount {
 /// A model is made by [`Training`](crate::recognition::Training), or read from a file.
 #[derive(Clone, Debug)]
 pub struct Model {
-    shapes: Vec<NamedShape>,
-    sensor: Sensor,
-    anchor: Anchor,
-    ranges: Ranges,
-    shard: Shard,
-    /// The number of poses of each shape; the same for all.
-    poses: u64,
-    /// The number of poses of each shape that reach beyond the sensor.
-    cut: Vec<u64>,
+    head: ModelHead,
     /// The keys, sorted.
     keys: KeyTable,
     /// The index of each key's first count, and at the end the number of counts.
@@ -91,10 +83,10 @@ struct ScanTables {
     poses: Vec<u64>,
 }
 
-/// The parts of a model, as its file holds them.
+/// The shapes of a model and the poses in which they were touched: everything except the keys.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct ModelParts {
+pub struct ModelHead {
     /// The shapes, at least one.
     pub shapes: Vec<NamedShape>,
     /// The sensor that they were touched with.
@@ -109,12 +101,10 @@ pub struct ModelParts {
     pub poses: u64,
     /// The number of poses of each shape that reach beyond the sensor.
     pub cut: Vec<u64>,
-    /// An imprint of each key (None for the key of an empty touch) and its counts; in any order.
-    pub keys: Vec<(Option<Imprint>, Vec<ShapeCount>)>,
 }
 
-impl ModelParts {
-    /// Creates parts without keys.
+impl ModelHead {
+    /// Creates a head for shapes that are nowhere cut off.
     pub fn new(
         shapes: Vec<NamedShape>,
         sensor: Sensor,
@@ -129,8 +119,16 @@ impl ModelParts {
             ranges,
             shard,
             poses,
-            keys: Vec::new(),
         }
+    }
+
+    /// Returns true if both are parts of one training.
+    pub(super) fn same_training(&self, other: &Self) -> bool {
+        self.shapes == other.shapes
+            && self.sensor == other.sensor
+            && self.anchor == other.anchor
+            && self.ranges == other.ranges
+            && self.shard.of() == other.shard.of()
     }
 }
 
@@ -240,29 +238,29 @@ pub(super) fn check_shapes(shapes: &[NamedShape]) -> Result<(), ModelError> {
 }
 
 impl Model {
-    /// Assembles a model.
+    /// Assembles a model from an imprint of each key (None for the key of an empty touch) and its counts, in any order.
     ///
     /// # Errors
     /// Returns an error if a name or weight is invalid, if a key is given twice, or if numbers contradict each other,
     /// such as counts that do not add up to the poses of a shape.
-    pub fn from_parts(mut parts: ModelParts) -> Result<Self, ModelError> {
-        let keys = std::mem::take(&mut parts.keys);
+    pub fn from_parts(
+        head: ModelHead,
+        keys: &[(Option<Imprint>, Vec<ShapeCount>)],
+    ) -> Result<Self, ModelError> {
         let mut table = KeyTable::default();
-        let mut counted = Vec::with_capacity(keys.len());
         let mut key = ImprintKey::of(&Imprint::empty(MatrixSize::SMALLEST));
-        for (imprint, counts) in &keys {
+        for (imprint, _) in keys {
             key.set(&imprint.unwrap_or(Imprint::empty(MatrixSize::SMALLEST)));
             if !table.add(&key) {
                 return Err(ModelError::TWICE);
             }
-            counted.push(counts.as_slice());
         }
-        Self::of_table(parts, &table, |index| counted[index].iter().copied())
+        Self::of_table(head, &table, |index| keys[index].1.iter().copied())
     }
 
     /// Builds a model from the keys of a table, in any order, and the counts of each key, by shape.
     pub(crate) fn of_table<I: IntoIterator<Item = ShapeCount>>(
-        head: ModelParts,
+        head: ModelHead,
         table: &KeyTable,
         counts_of: impl Fn(usize) -> I,
     ) -> Result<Self, ModelError> {
@@ -307,13 +305,7 @@ impl Model {
             "more poses cut off than there are",
         )?;
         Ok(Self {
-            shapes: head.shapes,
-            sensor: head.sensor,
-            anchor: head.anchor,
-            ranges: head.ranges,
-            shard: head.shard,
-            poses: head.poses,
-            cut: head.cut,
+            head,
             keys,
             starts,
             counts,
@@ -321,62 +313,44 @@ impl Model {
         })
     }
 
-    /// Returns true if both are parts of one training.
-    pub(super) fn same_training(&self, other: &ModelParts) -> bool {
-        self.shapes == other.shapes
-            && self.sensor == other.sensor
-            && self.anchor == other.anchor
-            && self.ranges == other.ranges
-            && self.shard.of() == other.shard.of()
-    }
-
-    /// Returns all parts except the keys.
-    pub(super) fn head(&self) -> ModelParts {
-        ModelParts {
-            shapes: self.shapes.clone(),
-            sensor: self.sensor,
-            anchor: self.anchor,
-            ranges: self.ranges,
-            shard: self.shard,
-            poses: self.poses,
-            cut: self.cut.clone(),
-            keys: Vec::new(),
-        }
+    /// Returns everything except the keys.
+    pub(super) fn head(&self) -> &ModelHead {
+        &self.head
     }
 
     /// Returns the shapes, in the order of the set.
     pub fn shapes(&self) -> &[NamedShape] {
-        &self.shapes
+        &self.head.shapes
     }
 
     /// Returns the sensor that the shapes were touched with.
     pub fn sensor(&self) -> &Sensor {
-        &self.sensor
+        &self.head.sensor
     }
 
     /// Returns the point of the shape that x0 and y0 locate.
     pub fn anchor(&self) -> Anchor {
-        self.anchor
+        self.head.anchor
     }
 
     /// Returns the poses in which each shape was touched.
     pub fn ranges(&self) -> &Ranges {
-        &self.ranges
+        &self.head.ranges
     }
 
     /// Returns the part of the poses that the model holds. Only a model with [`Shard::WHOLE`] should answer touches.
     pub fn shard(&self) -> Shard {
-        self.shard
+        self.head.shard
     }
 
     /// Returns the number of poses of each shape.
     pub fn poses(&self) -> u64 {
-        self.poses
+        self.head.poses
     }
 
     /// Returns how many poses of each shape the sensor cuts off, in the order of the set.
     pub fn cut(&self) -> &[u64] {
-        &self.cut
+        &self.head.cut
     }
 
     /// Returns the keys in their order.
@@ -426,7 +400,7 @@ impl Model {
         if counts.is_empty() {
             return None;
         }
-        let mut posterior = vec![0.0; self.shapes.len()];
+        let mut posterior = vec![0.0; self.head.shapes.len()];
         let total: u128 = counts.iter().map(|&count| self.weighted(count)).sum();
         for &count in counts {
             posterior[usize::from(count.shape)] = share(self.weighted(count), total);
@@ -441,14 +415,15 @@ impl Model {
 
     /// Iterates over the boxes of the index: the number of poses in which each shape leaves a key of that box.
     pub(super) fn poses_by_box(&self) -> impl Iterator<Item = &[u64]> {
-        self.scan_tables().poses.chunks(self.shapes.len())
+        self.scan_tables().poses.chunks(self.head.shapes.len())
     }
 
     fn scan_tables(&self) -> &ScanTables {
         self.scan.get_or_init(|| {
             let index = KeyIndex::new(&self.keys);
-            let mut poses = vec![0; index.boxes().len() * self.shapes.len()];
-            for (own, sums) in (index.boxes().iter()).zip(poses.chunks_mut(self.shapes.len())) {
+            let mut poses = vec![0; index.boxes().len() * self.head.shapes.len()];
+            for (own, sums) in (index.boxes().iter()).zip(poses.chunks_mut(self.head.shapes.len()))
+            {
                 for count in own.keys.clone().flat_map(|key| self.counts(key)) {
                     sums[usize::from(count.shape)] += count.poses;
                 }
@@ -459,7 +434,7 @@ impl Model {
 
     /// Returns a count times the weight of its shape.
     pub(super) fn weighted(&self, count: ShapeCount) -> u128 {
-        u128::from(count.poses) * u128::from(self.shapes[usize::from(count.shape)].weight)
+        u128::from(count.poses) * u128::from(self.head.shapes[usize::from(count.shape)].weight)
     }
 
     /// Iterates over the shapes of some counts, each with its count times its weight.
@@ -473,13 +448,17 @@ impl Model {
 
     /// Returns ln w of each shape, in the order of the set.
     pub(super) fn log_weights(&self) -> Vec<f64> {
-        let weights = self.shapes.iter().map(|shape| f64::from(shape.weight));
+        let weights = self.head.shapes.iter().map(|shape| f64::from(shape.weight));
         weights.map(libm::log).collect()
     }
 
     /// Returns the sum of all weights.
     pub(super) fn weights(&self) -> u128 {
-        let weights = self.shapes.iter().map(|shape| u128::from(shape.weight));
+        let weights = self
+            .head
+            .shapes
+            .iter()
+            .map(|shape| u128::from(shape.weight));
         weights.sum()
     }
 }

@@ -8,7 +8,7 @@ use crate::parameter::number::grouped;
 use crate::pose::{Anchor, GridError, PoseGrid, Ranges};
 use crate::recognition::key::{ImprintKey, KeyTable};
 use crate::recognition::model::{
-    Gathered, Model, ModelError, ModelParts, NamedShape, ShapeCount, check_shapes,
+    Gathered, Model, ModelError, ModelHead, NamedShape, ShapeCount, check_shapes,
 };
 use crate::sensor::Sensor;
 use crate::sweep::{CountedImprints, Shard, Sweep};
@@ -213,7 +213,7 @@ impl<'a> Training<'a> {
         }
         let grid = &self.grids[0];
         let poses_of = (grid.anchor(), *grid.ranges());
-        let mut head = ModelParts::new(self.shapes, *grid.sensor(), poses_of, (self.shard, poses));
+        let mut head = ModelHead::new(self.shapes, *grid.sensor(), poses_of, (self.shard, poses));
         head.cut = cut;
         let counts = |index: usize| gathered.counts[index].iter().copied();
         Ok(Model::of_table(head, &gathered.keys, counts)?)

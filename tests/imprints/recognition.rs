@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use taxel::prelude::*;
 use taxel::recognition::{
     AnswerState, Classifier, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
-    ImprintKey, Method, Model, ModelError, ModelMerge, ModelParts, NamedShape, Rounding,
-    ShapeCount, ShapeDescriptor, SizeAxis, Training, TrainingError, greedy,
+    ImprintKey, Method, Model, ModelError, ModelHead, ModelMerge, NamedShape, Rounding, ShapeCount,
+    ShapeDescriptor, SizeAxis, Training, TrainingError, greedy,
 };
 use taxel::sweep::Shard;
 
@@ -549,17 +549,16 @@ fn the_evaluation_of_a_shard_without_poses_has_numbers() {
 #[test]
 fn a_model_with_another_number_of_poses_than_its_ranges_is_refused() {
     let disc = Figure::ellipse(2.0, 2.0).on(&sensor(16)).expect("in range");
-    let parts = |poses| {
+    let model = |poses| {
         let grid = (Anchor::Corner, ranges("5:5.1:0.1", "5", "0"));
         let shapes = vec![NamedShape::new("disc", disc)];
-        let mut parts = ModelParts::new(shapes, sensor(16), grid, (Shard::WHOLE, poses));
+        let head = ModelHead::new(shapes, sensor(16), grid, (Shard::WHOLE, poses));
         let key = "#".parse().expect("an imprint");
-        parts.keys = vec![(Some(key), vec![ShapeCount::new(0, poses)])];
-        parts
+        Model::from_parts(head, &[(Some(key), vec![ShapeCount::new(0, poses)])])
     };
-    assert!(Model::from_parts(parts(2)).is_ok());
+    assert!(model(2).is_ok());
     for poses in [1, 3, u64::MAX] {
-        assert!(Model::from_parts(parts(poses)).is_err(), "{poses}");
+        assert!(model(poses).is_err(), "{poses}");
     }
 }
 
