@@ -7,6 +7,7 @@
 use crate::atlas::counter::ImprintCounter;
 use crate::atlas::packing::Layout;
 use crate::imprint::Imprint;
+use crate::index::wide;
 use crate::sensor::{MAX_SIDE, MatrixSize};
 
 /// Counts distinct imprints up to shifts, and up to shifts, quarter turns and mirror images.
@@ -127,7 +128,7 @@ impl Block {
         for (index, &row) in self.rows[..self.height].iter().enumerate() {
             let mut rest = row;
             while rest != 0 {
-                turned.rows[rest.trailing_zeros() as usize] |= 1 << index;
+                turned.rows[wide(rest.trailing_zeros())] |= 1 << index;
                 rest &= rest - 1;
             }
         }

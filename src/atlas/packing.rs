@@ -10,6 +10,7 @@ use std::hash::{BuildHasher, RandomState};
 use std::sync::OnceLock;
 
 use crate::imprint::Imprint;
+use crate::index::wide;
 use crate::sensor::MatrixSize;
 
 /// The seed of the random numbers. The whole run has a single one, because hashes of one sweep are compared with those
@@ -124,7 +125,7 @@ impl Layout {
         let numbers = self.numbers(row);
         let mut hash = 0;
         while taxels != 0 {
-            hash ^= numbers[taxels.trailing_zeros() as usize];
+            hash ^= numbers[wide(taxels.trailing_zeros())];
             taxels &= taxels - 1;
         }
         hash

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use crate::atlas::ImprintSummary;
 use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, ExactValue, Value};
 use crate::imprint::Imprint;
+use crate::index::narrow;
 use crate::parameter::number::share;
 use crate::quote::{did_you_mean, shortened};
 use crate::recognition::evaluation::Evaluation;
@@ -335,7 +336,7 @@ impl<'a> GivenTable<'a> {
         let mut numbers = HashMap::new();
         let members = classes.iter().zip(&self.descriptions);
         let number = members.map(|(&class, description)| {
-            let next = u32::try_from(numbers.len()).expect("no more classes than keys");
+            let next = narrow(numbers.len());
             *numbers.entry((class, value(description))).or_insert(next)
         });
         number.collect()

@@ -5,6 +5,7 @@ use std::hash::BuildHasher;
 use hashbrown::{DefaultHashBuilder, HashTable};
 
 use crate::imprint::Imprint;
+use crate::index::{narrow, wide};
 use crate::sensor::MatrixSize;
 
 /// The key of an imprint: its active taxels, of all its pieces, cropped to their bounding box. The key of an empty
@@ -93,7 +94,7 @@ fn words(width: u8, height: u8) -> usize {
 pub(super) fn or_bits(bits: &mut [u64], place: usize, row: u64) {
     let (word, shift) = (place / 64, place % 64);
     bits[word] |= row << shift;
-    let rest = row.unbounded_shr(u32::try_from(64 - shift).expect("at most 64"));
+    let rest = row.unbounded_shr(narrow(64 - shift));
     if rest != 0 {
         bits[word + 1] |= rest;
     }
@@ -121,8 +122,7 @@ impl KeyRef<'_> {
             let (word, shift) = (place / 64, place % 64);
             let low = self.bits[word] >> shift;
             let high = self.bits.get(word + 1).copied().unwrap_or_default();
-            let rest = u32::try_from(64 - shift).expect("at most 64");
-            (low | high.unbounded_shl(rest)) & mask
+            (low | high.unbounded_shl(narrow(64 - shift))) & mask
         })
     }
 
@@ -182,8 +182,8 @@ impl KeyTable {
 
     pub(super) fn find_ref(&self, key: KeyRef<'_>) -> Option<usize> {
         let hash = self.hash(key);
-        let same = |&index: &u32| self.get(index as usize) == key;
-        self.index.find(hash, same).map(|&index| index as usize)
+        let same = |&index: &u32| self.get(wide(index)) == key;
+        self.index.find(hash, same).map(|&index| wide(index))
     }
 
     /// Adds a key. Returns false if the table has it already.
@@ -195,12 +195,12 @@ impl KeyTable {
     /// Adds a key unless the table has it; returns its number.
     pub(super) fn intern(&mut self, key: KeyRef<'_>) -> usize {
         let hash = self.hash(key);
-        let same = |&index: &u32| self.get(index as usize) == key;
+        let same = |&index: &u32| self.get(wide(index)) == key;
         if let Some(&index) = self.index.find(hash, same) {
-            return index as usize;
+            return wide(index);
         }
         let index = self.len();
-        let number = u32::try_from(index).expect("2³² keys take more memory than there is");
+        let number = narrow(index);
         self.sizes.push((key.height, key.width));
         self.starts.push(self.bits.len());
         self.bits.extend_from_slice(key.bits);
@@ -212,7 +212,7 @@ impl KeyTable {
             hasher,
         } = self;
         table.insert_unique(hash, number, |&index| {
-            let ((height, width), start) = (sizes[index as usize], starts[index as usize]);
+            let ((height, width), start) = (sizes[wide(index)], starts[wide(index)]);
             hash_of(
                 hasher,
                 KeyRef {

@@ -1,6 +1,7 @@
 //! Estimates where a shape lay and how it was turned, given the imprint that it left.
 
 use crate::imprint::Imprint;
+use crate::index::narrow;
 use crate::pose::{Axis, PoseGrid, exact_period};
 use crate::recognition::key::ImprintKey;
 use crate::recognition::model::{Model, float};
@@ -338,8 +339,7 @@ fn fewest(degrees: &[u64], all: u64) -> (u32, u32) {
         }
         held -= u128::from(degrees[start]);
     }
-    let number = |index: usize| u32::try_from(index).expect("at most 360 degrees");
-    (number(best.0), number(best.1))
+    (narrow(best.0), narrow(best.1))
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 use crate::imprint::Imprint;
+use crate::index::{index, lower_word};
 use crate::parameter::number::share;
 use crate::recognition::key::ImprintKey;
 use crate::recognition::model::{Model, add_log_counts, first_of_most, float};
@@ -156,7 +157,7 @@ fn generator(seed: u64, task: u64) -> Pcg64 {
 /// Draws a number from 0 to below `end`, each as likely as any other to within 2⁻⁶⁴.
 pub(crate) fn below(random: &mut Pcg64, end: u64) -> u64 {
     let product = u128::from(random.next_u64()) * u128::from(end);
-    u64::try_from(product >> 64).expect("below `end`")
+    lower_word(product >> 64)
 }
 
 /// Draws a number from 0 to below 1, in steps of 2⁻⁵³.
@@ -360,7 +361,7 @@ impl Model {
         let key = self.keys().get(key);
         let mut touch = Imprint::empty(size);
         let column = below(random, u64::from(columns - key.width) + 1);
-        let row = crate::index::index(below(random, u64::from(rows - key.height) + 1));
+        let row = index(below(random, u64::from(rows - key.height) + 1));
         for (index, word) in key.rows().enumerate() {
             touch.set_word(row + index, word << column);
         }

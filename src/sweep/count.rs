@@ -3,6 +3,7 @@
 
 use crate::atlas::{ImprintCounter, Layout};
 use crate::imprint::Imprint;
+use crate::index::wide;
 use crate::sweep::run::Sweep;
 
 /// The distinct imprints of a grid, counted.
@@ -116,7 +117,7 @@ impl Sweep<'_> {
                 for (row, y) in found.rows.clone().enumerate() {
                     let mut first = (found.orientations[0] * height + y) * width;
                     for &(index, length) in found.runs.row(row) {
-                        if wanted[index as usize] {
+                        if wanted[wide(index)] {
                             runs.push(PoseRun {
                                 first,
                                 poses: u64::from(length),
