@@ -74,18 +74,11 @@ impl Description {
 
     /// Returns CD, the centre of the upright rectangle.
     pub fn cd(&self) -> DVec2 {
-        let middle = |low: u8, high: u8| f64::from(u16::from(low) + u16::from(high)) / 2.0;
-        DVec2::new(
-            middle(self.rect.left, self.rect.right),
-            middle(self.rect.top, self.rect.bottom),
-        )
+        DVec2::from(self.doubled_centre().map(f64::from)) / 2.0
     }
 
     fn sides(&self) -> DVec2 {
-        DVec2::new(
-            f64::from(self.rect.right) - f64::from(self.rect.left),
-            f64::from(self.rect.bottom) - f64::from(self.rect.top),
-        )
+        DVec2::from(self.whole_sides().map(f64::from))
     }
 
     /// Returns P, the length of the outline.
@@ -127,10 +120,10 @@ impl Description {
     }
 
     /// Returns the width and the height of the upright rectangle.
-    fn whole_sides(&self) -> [i64; 2] {
+    fn whole_sides(&self) -> [i32; 2] {
         let rect = self.rect;
         [(rect.left, rect.right), (rect.top, rect.bottom)]
-            .map(|(low, high)| i64::from(high) - i64::from(low))
+            .map(|(low, high)| i32::from(high) - i32::from(low))
     }
 
     /// Returns `NumX` and `NumY`, doubled so that they are whole.
@@ -143,16 +136,16 @@ impl Description {
     }
 
     /// Returns the coordinates of CD, doubled so that they are whole.
-    fn doubled_centre(&self) -> [i64; 2] {
+    fn doubled_centre(&self) -> [i32; 2] {
         let rect = self.rect;
         [(rect.left, rect.right), (rect.top, rect.bottom)]
-            .map(|(low, high)| i64::from(low) + i64::from(high))
+            .map(|(low, high)| i32::from(low) + i32::from(high))
     }
 
     /// Returns the vector from CG to CD, in units of 1/(2 NA).
     fn exact_cg_to_cd(&self) -> [i64; 2] {
         let (sums, centre) = (self.doubled_sums(), self.doubled_centre());
-        [0, 1].map(|axis| (i64::from(self.na) * centre[axis]).saturating_sub(sums[axis]))
+        [0, 1].map(|axis| (i64::from(self.na) * i64::from(centre[axis])).saturating_sub(sums[axis]))
     }
 
     /// Returns P²/NAE exactly, as the ratios a and b of a + b√2.
@@ -541,7 +534,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         "rectangle's centre",
         Dimension::Length,
         |d| Value::Point(d.cd()),
-        |d| Some(ratios(d.doubled_centre(), 2)),
+        |d| Some(ratios(d.doubled_centre().map(i64::from), 2)),
     )
     .of_place(),
     Descriptor::new(
@@ -559,7 +552,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         "its diagonals",
         Dimension::Direction,
         |d| Value::Pair(d.diagonals()),
-        |d| direction(d.whole_sides()),
+        |d| direction(d.whole_sides().map(i64::from)),
     )
     .of_orientation(false),
     Descriptor::new(
@@ -569,7 +562,7 @@ pub const DESCRIPTORS: &[Descriptor] = &[
         Dimension::Ratio,
         |d| Value::Number(d.side_ratio()),
         |d| {
-            let [width, height] = d.whole_sides();
+            let [width, height] = d.whole_sides().map(i64::from);
             direction([width.max(height), width.min(height)])
         },
     ),

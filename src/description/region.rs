@@ -90,7 +90,7 @@ impl<'a> Region<'a> {
 
     /// Returns the number of taxels of [`Self::filled`].
     pub(crate) fn area(&self) -> u32 {
-        let words = rows(self.filled(), self.bounds).iter();
+        let words = self.bounds.words(self.filled()).iter();
         words.map(|word| word.count_ones()).sum()
     }
 
@@ -138,7 +138,7 @@ pub fn each_region(imprint: &Imprint, mut visit: impl FnMut(&Region)) {
             let bounds = piece.bounds;
             let holes = holes.get_or_insert_with(|| Imprint::empty(imprint.size()));
             let holes = rows_mut(holes, bounds).iter_mut();
-            let inside = rows(filled, bounds).iter().zip(rows(imprint, bounds));
+            let inside = bounds.words(filled).iter().zip(bounds.words(imprint));
             for (hole, (filled, active)) in holes.zip(inside) {
                 *hole |= filled & !active;
             }
@@ -176,11 +176,6 @@ pub(crate) fn is_main(area: u32, best: Option<u32>) -> bool {
     best.is_none_or(|best| area > best)
 }
 
-/// Returns the rows within the bounds.
-fn rows(matrix: &Imprint, bounds: Bounds) -> &[u64] {
-    &matrix.words()[usize::from(bounds.top)..usize::from(bounds.bottom)]
-}
-
 /// Returns the rows within the bounds for writing.
 fn rows_mut(matrix: &mut Imprint, bounds: Bounds) -> &mut [u64] {
     &mut matrix.words_mut()[usize::from(bounds.top)..usize::from(bounds.bottom)]
@@ -190,8 +185,8 @@ fn rows_mut(matrix: &mut Imprint, bounds: Bounds) -> &mut [u64] {
 fn components(matrix: &Imprint, bounds: Bounds, kind: RegionKind, mut visit: impl FnMut(&Region)) {
     let diagonal = kind == RegionKind::Exterior;
     let none = || Imprint::empty(matrix.size());
-    if hangs_together(rows(matrix, bounds), diagonal) {
-        if rows(matrix, bounds).iter().all(|&word| is_run(word)) {
+    if hangs_together(bounds.words(matrix), diagonal) {
+        if bounds.words(matrix).iter().all(|&word| is_run(word)) {
             visit(&Region::borrowed(kind, matrix, None, bounds));
         } else {
             show_filled(kind, matrix, bounds, &mut none(), visit);
@@ -366,7 +361,7 @@ impl Wave {
 /// Writes a component and the background that it encloses (background that does not reach the rim) into `filled`, which
 /// is empty and has the same size. Returns true if the component encloses anything.
 fn fill(piece: &Imprint, bounds: Bounds, filled: &mut Imprint) -> bool {
-    let words = rows(piece, bounds);
+    let words = bounds.words(piece);
     let filled = rows_mut(filled, bounds);
     // Everything left of a row's first taxel or right of its last one is outside. Other inactive taxels are outside if
     // they are next to the outside, and so on. Everything above the first row and below the last one is outside.

@@ -124,7 +124,7 @@ impl PoseGrid {
     }
 
     /// Returns the number of orientations: angles times zooms.
-    fn orientations(&self) -> u64 {
+    pub(super) fn orientations(&self) -> u64 {
         let [_, _, angles, zooms_x, zooms_y] = self.counts().into_array();
         angles * zooms_x * zooms_y
     }
@@ -172,17 +172,16 @@ impl PoseGrid {
 
     /// Returns the shape in a pose. A value beyond the range of its parameter is ignored.
     pub fn placed(&self, pose: Pose) -> Placed {
-        let corner = match self.anchor {
-            Anchor::Corner => pose,
-            Anchor::Centre => pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0),
-        };
         match self.anchor {
-            Anchor::Corner => Placed::at_corner(self.source_in(corner)),
-            Anchor::Centre => Placed::at_centre(
-                self.source_in(corner),
-                self.source_in(corner.with(Axis::Angle, 0.0)),
-                (pose[Axis::X0], pose[Axis::Y0]),
-            ),
+            Anchor::Corner => Placed::at_corner(self.source_in(pose)),
+            Anchor::Centre => {
+                let at_origin = pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0);
+                Placed::at_centre(
+                    self.source_in(at_origin),
+                    self.source_in(at_origin.with(Axis::Angle, 0.0)),
+                    (pose[Axis::X0], pose[Axis::Y0]),
+                )
+            }
         }
     }
 
@@ -274,7 +273,7 @@ impl PoseGrid {
     }
 
     /// Returns the first pose of an orientation.
-    fn first_pose(&self, orientation: u64) -> Pose {
+    pub(super) fn first_pose(&self, orientation: u64) -> Pose {
         self.pose(orientation * self.rows_per_orientation() * self.row_length())
     }
 

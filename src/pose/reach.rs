@@ -92,8 +92,7 @@ impl PoseGrid {
 
     /// Iterates over the extents of the shape in each orientation, with its anchor at the origin.
     fn extents(&self) -> impl Iterator<Item = Option<Extent>> + '_ {
-        let orientations = 0..self.rows() / self.rows_per_orientation();
-        orientations.map(|orientation| self.boundary::<f64>(orientation).extent())
+        (0..self.orientations()).map(|orientation| self.boundary::<f64>(orientation).extent())
     }
 
     /// Returns the indices of x0 at which the shape reaches beyond neither the left nor the right side of the sensor.
@@ -377,14 +376,10 @@ impl Reach {
             }
         }
         let grid = PoseGrid::new(source.clone(), Sensor::LARGEST, anchor, ranges)?;
-        let still = ranges
-            .with(Axis::X0, DecimalRange::whole(0))
-            .with(Axis::Y0, DecimalRange::whole(0));
-        let grid = PoseGrid::new(source.clone(), *grid.sensor(), anchor, still)?;
         let mut reaches: Vec<(Extent, [f64; 2])> = Vec::new();
         for (orientation, extent) in (0..).zip(grid.extents()) {
             let Some(extent) = extent else { continue };
-            let pose = grid.pose(orientation);
+            let pose = grid.first_pose(orientation);
             let zooms = match (anchor, source) {
                 (Anchor::Corner, Source::Picture(_)) => [pose[Axis::ZoomX], pose[Axis::ZoomY]],
                 _ => [1.0; 2],
