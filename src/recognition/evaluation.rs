@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::parameter::number::share;
 use crate::recognition::confusion::ConfusionMatrix;
-use crate::recognition::model::{Model, NamedShape, ShapeCount, first_of_most};
+use crate::recognition::model::{Model, ShapeCount, first_of_most};
 
 /// The result of the best classifier of one touch, over every touch of a model.
 ///
@@ -80,7 +80,7 @@ impl Evaluation {
             tied: 0,
             right_in_top_two: 0,
             information_bits: 0.0,
-            prior_bits: prior_bits(shapes),
+            prior_bits: prior_bits(model),
             keys: 0,
             keys_of_one_shape: 0,
             confusion: ConfusionMatrix::new(shapes.len()),
@@ -166,10 +166,10 @@ impl Evaluation {
 }
 
 /// Returns H(S), in bits.
-fn prior_bits(shapes: &[NamedShape]) -> f64 {
-    let sum: u128 = shapes.iter().map(|shape| u128::from(shape.weight)).sum();
-    let bits = shapes.iter().map(|shape| {
-        let prior = share(u128::from(shape.weight), sum);
+fn prior_bits(model: &Model) -> f64 {
+    let weights = model.weights();
+    let bits = model.shapes().iter().map(|shape| {
+        let prior = share(u128::from(shape.weight), weights);
         // 0 − x, since a negative zero would be shown as −0.
         0.0 - prior * libm::log2(prior)
     });
@@ -223,7 +223,7 @@ mod tests {
     use super::*;
     use crate::figure::Figure;
     use crate::pose::{Anchor, Axis, Ranges};
-    use crate::recognition::model::ModelHead;
+    use crate::recognition::model::{ModelHead, NamedShape};
     use crate::sensor::Sensor;
     use crate::sweep::Shard;
 

@@ -292,8 +292,7 @@ impl std::fmt::Display for GivenDescriptors {
 }
 
 /// The descriptions of all keys of a model, which descriptors divide into classes.
-#[derive(Debug)]
-pub struct GivenTable<'a> {
+pub(super) struct GivenTable<'a> {
     model: &'a Model,
     /// The description of the main region of each key; None for the empty key.
     descriptions: Vec<Option<Description>>,
@@ -304,7 +303,7 @@ type Classes = Vec<u32>;
 
 impl<'a> GivenTable<'a> {
     /// Describes the keys of a model.
-    pub fn new(model: &'a Model) -> Self {
+    pub(super) fn new(model: &'a Model) -> Self {
         let describe = |key| ImprintSummary::of(&model.keys().imprint(key)?).description;
         let keys = (0..model.keys().len()).into_par_iter();
         Self {

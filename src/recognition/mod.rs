@@ -61,7 +61,7 @@ pub use answer::{Answer, AnswerState, Evidence};
 pub use classifiers::{Classifier, ClassifierEvaluation, ClassifierSettings, PoseSample};
 pub use confusion::ConfusionMatrix;
 pub use evaluation::Evaluation;
-pub use given::{GivenDescriptors, GivenError, GivenTable, Rounding, ShapeDescriptor, greedy};
+pub use given::{GivenDescriptors, GivenError, Rounding, ShapeDescriptor, greedy};
 pub use half_step::{HalfStep, HalfStepWork};
 pub use key::{ImprintKey, KeyTable};
 pub use merge::ModelMerge;

@@ -121,13 +121,8 @@ impl<'a> Training<'a> {
                 }
             })
         };
-        Ok(Self {
-            grids: shapes.iter().map(grid).collect::<Result<_, _>>()?,
-            shapes,
-            allow_cut: false,
-            shard: Shard::WHOLE,
-            progress: &|_| true,
-        })
+        let grids = shapes.iter().map(grid).collect::<Result<_, _>>()?;
+        Ok(Self::of_grids(shapes, grids))
     }
 
     /// Creates a training in which each shape has its own grid, all with the same number of poses. Its model has the
