@@ -67,11 +67,11 @@ impl Processing {
     /// # Errors
     /// Returns an error if the view, the tare or the gain does not fit the frame.
     pub fn values(&mut self, frame: &Frame) -> Result<[&Matrix<f64>; 2], FrameError> {
-        self.view.of(frame, &mut self.raw)?;
+        self.view.apply_to(frame, &mut self.raw)?;
         self.tared.reset(self.raw.size(), 0.0);
         self.tared.values_mut().copy_from_slice(self.raw.values());
         if let Some(tare) = &self.tare {
-            tare.take_off(&mut self.tared)?;
+            tare.subtract_from(&mut self.tared)?;
         }
         if let Some(gain) = &self.gain {
             multiply(&mut self.tared, gain)?;

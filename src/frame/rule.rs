@@ -115,18 +115,18 @@ impl Rule {
         gain: Option<&Matrix<f64>>,
     ) -> Result<Imprint, FrameError> {
         Ok(match *self {
-            Self::AtLeast(threshold) => from(values, threshold),
+            Self::AtLeast(threshold) => at_or_above(values, threshold),
             Self::Percent(percent) => {
                 let max = values.values().iter().copied().fold(f64::NAN, f64::max);
                 if max > 0.0 {
-                    from(values, Self::share(percent, max))
+                    at_or_above(values, Self::share(percent, max))
                 } else {
                     Imprint::empty(values.size())
                 }
             }
             Self::Hysteresis { low, high } => {
                 let mut imprint = Imprint::empty(values.size());
-                let (weak, strong) = (from(values, low), from(values, high));
+                let (weak, strong) = (at_or_above(values, low), at_or_above(values, high));
                 each_region(&weak, |region| {
                     let piece = region.taxels();
                     let has_strong = piece
@@ -158,7 +158,7 @@ impl Rule {
 }
 
 /// Returns the cells at a threshold or above.
-fn from(values: &Matrix<f64>, threshold: f64) -> Imprint {
+fn at_or_above(values: &Matrix<f64>, threshold: f64) -> Imprint {
     active(values, |_, value| value >= threshold)
 }
 
@@ -282,7 +282,7 @@ mod tests {
         let tare = tare.finish().expect("three frames");
         let rule = Rule::noise(3.0).expect("in range");
         let mut values = matrix(&[&[6.0, 6.0]]);
-        tare.take_off(&mut values).expect("of one size");
+        tare.subtract_from(&mut values).expect("of one size");
         let imprint = rule.imprint(&values, Some(&tare), None).expect("a tare");
         assert_eq!(imprint.to_string(), "#.");
         assert_eq!(rule.imprint(&values, None, None), Err(FrameError::NoTare));
@@ -302,7 +302,7 @@ mod tests {
         let rule = Rule::noise(3.0).expect("in range");
         let imprint = |frame: [f64; 5]| {
             let mut values = matrix(&[&frame]);
-            tare.take_off(&mut values).expect("of one size");
+            tare.subtract_from(&mut values).expect("of one size");
             for (value, gain) in values.values_mut().iter_mut().zip(gain.values()) {
                 *value *= gain;
             }

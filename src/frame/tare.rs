@@ -90,7 +90,7 @@ impl TareFrames {
     pub fn add_frame(&mut self, frame: &Frame, view: &View) -> Result<(), FrameError> {
         let mut visible = std::mem::take(&mut self.visible);
         let added = view
-            .of(frame, &mut visible)
+            .apply_to(frame, &mut visible)
             .and_then(|()| self.add(&visible));
         self.visible = visible;
         added
@@ -216,7 +216,7 @@ impl Tare {
     ///
     /// # Errors
     /// Returns an error if the values are of another size.
-    pub fn take_off(&self, values: &mut Matrix<f64>) -> Result<(), FrameError> {
+    pub fn subtract_from(&self, values: &mut Matrix<f64>) -> Result<(), FrameError> {
         check_size("tare", &self.baseline, values)?;
         for (value, baseline) in values.values_mut().iter_mut().zip(self.baseline.values()) {
             *value -= baseline;
@@ -249,7 +249,7 @@ mod tests {
         assert_eq!(tare.margin(0, 2.0), 2.0 * MAD_TO_DEVIATION * 1.5);
         assert_eq!(tare.margin(1, 0.1), 1.0);
         let mut values = Matrix::filled(MatrixSize::of(2, 1), 10.0);
-        tare.take_off(&mut values).expect("of its size");
+        tare.subtract_from(&mut values).expect("of its size");
         assert_eq!(values.values(), [6.5, 2.0]);
     }
 

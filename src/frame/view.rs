@@ -43,7 +43,7 @@ impl View {
     /// # Errors
     /// Returns an error if the crop reaches beyond the frame, more than 64 × 64 cells are left, or the mask is of
     /// another size.
-    pub fn of(&self, frame: &Frame, seen: &mut Matrix<f64>) -> Result<(), FrameError> {
+    pub fn apply_to(&self, frame: &Frame, seen: &mut Matrix<f64>) -> Result<(), FrameError> {
         let crop = self.part(frame.size())?;
         let left = matrix_size(FrameSize::new(crop.columns, crop.rows)?)?;
         let size = if self.keeps_sides() {
@@ -53,7 +53,7 @@ impl View {
         };
         seen.reset(size, f64::NAN);
         self.copy(frame, crop, left, seen);
-        self.hide(seen)
+        self.apply_mask(seen)
     }
 
     /// Returns the size of the visible part of a frame of size `frame`. It may be larger than a matrix can be.
@@ -136,7 +136,7 @@ impl View {
         }
     }
 
-    fn hide(&self, seen: &mut Matrix<f64>) -> Result<(), FrameError> {
+    fn apply_mask(&self, seen: &mut Matrix<f64>) -> Result<(), FrameError> {
         let Some(mask) = &self.mask else {
             return Ok(());
         };
@@ -175,7 +175,7 @@ mod tests {
             .values_mut()
             .copy_from_slice(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         let mut seen = Matrix::default();
-        view.of(&frame, &mut seen)?;
+        view.apply_to(&frame, &mut seen)?;
         let row = |row| {
             seen.row(row)
                 .iter()
@@ -233,7 +233,7 @@ mod tests {
     fn a_crop_leaves_at_most_64_cells_a_side() {
         let mut matrix = Matrix::default();
         let frame = Frame::new(FrameSize::of(65, 2));
-        let large = View::default().of(&frame, &mut matrix);
+        let large = View::default().apply_to(&frame, &mut matrix);
         assert_eq!(
             large,
             Err(FrameError::Large {
@@ -249,9 +249,9 @@ mod tests {
             }),
             ..View::default()
         };
-        assert_eq!(crop(1, 64).of(&frame, &mut matrix), Ok(()));
+        assert_eq!(crop(1, 64).apply_to(&frame, &mut matrix), Ok(()));
         assert!(matches!(
-            crop(2, 64).of(&frame, &mut matrix),
+            crop(2, 64).apply_to(&frame, &mut matrix),
             Err(FrameError::Crop { .. })
         ));
     }

@@ -45,7 +45,7 @@ impl Scan {
                     scan.channels.push(ListedChannel::new(info, view));
                 }
                 RecordingEvent::Frame(frame) => {
-                    let values = match view.of(frame, &mut seen) {
+                    let values = match view.apply_to(frame, &mut seen) {
                         Ok(()) => seen.values(),
                         Err(error) => {
                             if view.crop.is_some() {

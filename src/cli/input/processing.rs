@@ -45,7 +45,7 @@ fn gain(path: &std::path::Path) -> Result<Matrix<f64>, CliError> {
         if let RecordingEvent::Frame(frame) = event {
             // Of a second frame, only its existence matters.
             is_recording = found.is_some();
-            found.get_or_insert_with(|| View::default().of(frame, &mut gain));
+            found.get_or_insert_with(|| View::default().apply_to(frame, &mut gain));
         }
         if is_recording {
             ControlFlow::Break(())

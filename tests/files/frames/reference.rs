@@ -67,7 +67,7 @@ fn every_reference_frame_has_the_same_answer() {
             let mut frames = TareFrames::new(tare);
             for frame in &found.frames {
                 let mut seen = Matrix::default();
-                processing.view.of(frame, &mut seen).expect("it fits");
+                processing.view.apply_to(frame, &mut seen).expect("it fits");
                 frames.add(&seen).expect("it fits");
             }
             processing.tare = Some(frames.finish().expect("enough frames"));
