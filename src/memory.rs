@@ -212,7 +212,7 @@ fn expected(grid: &PoseGrid) -> MemorySize {
         clippy::cast_sign_loss,
         reason = "an estimate, and it saturates"
     )]
-    let bytes = (found as f64 * sample.times * (BYTES_BESIDE + taxels / 8) as f64) as u64;
+    let bytes = (found as f64 * sample.factor * (BYTES_BESIDE + taxels / 8) as f64) as u64;
     MemorySize(bytes)
 }
 

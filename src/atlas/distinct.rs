@@ -48,16 +48,16 @@ impl Atlas {
         &self.layout
     }
 
-    /// Adds the imprints of a counter, with their counts times `times`. Returns the number that each imprint has in
+    /// Adds the imprints of a counter, with their counts times `multiplicity`. Returns the number that each imprint has in
     /// this atlas.
-    pub(crate) fn add(&mut self, other: &ImprintCounter, times: u64) -> Vec<u32> {
+    pub(crate) fn add(&mut self, other: &ImprintCounter, multiplicity: u64) -> Vec<u32> {
         let tallies = other.tallies().iter().enumerate();
         tallies
             .map(|(index, tally)| {
                 let (key, hash) = (other.key(index), other.hash(index));
                 let id = self
                     .counter
-                    .add(key, hash, tally.count * times, tally.first);
+                    .add(key, hash, tally.count * multiplicity, tally.first);
                 narrow(id)
             })
             .collect()

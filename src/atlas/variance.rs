@@ -17,21 +17,25 @@ pub(crate) struct OrientationSums {
     /// The number of poses, with or without a value.
     poses: u64,
     /// The number of orientations with the same imprints, including this one.
-    times: u64,
+    multiplicity: u64,
     sums: Vec<Sum>,
 }
 
 impl OrientationSums {
     /// Computes the sums over imprints; `counted` gives each imprint with the number of poses in one orientation that
     /// leave it.
-    pub(crate) fn of(table: &Table, times: u64, counted: impl Iterator<Item = (u32, u64)>) -> Self {
+    pub(crate) fn of(
+        table: &Table,
+        multiplicity: u64,
+        counted: impl Iterator<Item = (u32, u64)>,
+    ) -> Self {
         let mut rows = RowSums::new();
         for (id, count) in counted {
             rows.add(table.row(wide(id)), count);
         }
         Self {
             poses: rows.poses(),
-            times,
+            multiplicity,
             sums: rows.sums(),
         }
     }
@@ -43,7 +47,7 @@ impl OrientationSums {
             let most = u128::from(sum.poses) << 58;
             sum.poses <= self.poses && sum.x.unsigned_abs() <= most && sum.y.unsigned_abs() <= most
         };
-        self.poses <= full && self.times <= MAX_VALUES && self.sums.iter().all(sound)
+        self.poses <= full && self.multiplicity <= MAX_VALUES && self.sums.iter().all(sound)
     }
 }
 
@@ -106,7 +110,7 @@ impl VarianceParts {
         };
         let mut words: Vec<u64> = self.between.iter().flat_map(|sum| sum.words()).collect();
         for (&orientation, sums) in &self.open {
-            words.extend([orientation, sums.poses, sums.times]);
+            words.extend([orientation, sums.poses, sums.multiplicity]);
             for sum in &sums.sums {
                 words.push(sum.poses);
                 words.extend(halves(sum.x));
@@ -135,7 +139,7 @@ impl VarianceParts {
             };
             let sums = OrientationSums {
                 poses: words[1],
-                times: words[2],
+                multiplicity: words[2],
                 sums: words[3..].chunks_exact(5).map(sum).collect(),
             };
             sums.is_sound(full).then_some((words[0], sums))
@@ -169,6 +173,6 @@ fn close(between: &mut [Wide], orientation: &OrientationSums) {
         } else {
             Wide::square_over(sum.total(), sum.poses)
         };
-        *between += part.times(orientation.times);
+        *between += part.times(orientation.multiplicity);
     }
 }

@@ -66,12 +66,12 @@ impl<T: Real> Arcs<T> {
         if top >= end {
             return;
         }
-        grid.draws(
+        grid.include_extent(
             Point::new(curve.left.x, curve.top.y),
             Point::new(curve.right.x, curve.bottom.y),
         );
         let farthest = curve.left.x.abs().max(curve.right.x.abs());
-        grid.weighs(farthest * (curve.bottom.y - curve.top.y) * T::HALF);
+        grid.include_moment(farthest * (curve.bottom.y - curve.top.y) * T::HALF);
         let (leftmost, mut line) = grid.locate(curve.left.x);
         let (rightmost, _) = grid.locate(curve.right.x);
         for vertical in &mut self.vertical[leftmost..rightmost] {

@@ -226,12 +226,12 @@ impl<T: Real> CellGrid<T> {
     }
 
     /// Notes that an ellipse with this moment is drawn.
-    pub(crate) fn weighs(&mut self, moment: T) {
+    pub(crate) fn include_moment(&mut self, moment: T) {
         self.moment = self.moment.max(moment);
     }
 
     /// Notes that something is drawn within a rectangle.
-    pub(crate) fn draws(&mut self, low: Point<T>, high: Point<T>) {
+    pub(crate) fn include_extent(&mut self, low: Point<T>, high: Point<T>) {
         self.low = Point::new(self.low.x.min(low.x), self.low.y.min(low.y));
         self.high = Point::new(self.high.x.max(high.x), self.high.y.max(high.y));
     }

@@ -238,7 +238,7 @@ impl<T: Real> Pen<T> for Overlap<T> {
             Point::new(from.x.min(to.x), from.y.min(to.y)),
             Point::new(from.x.max(to.x), from.y.max(to.y)),
         );
-        self.grid.draws(low, high);
+        self.grid.include_extent(low, high);
         self.side(from, to, T::ONE, self.grid.encloses(low, high));
     }
 
@@ -256,7 +256,7 @@ impl<T: Real> Pen<T> for Overlap<T> {
             low = Point::new(low.x.min(point.x), low.y.min(point.y));
             high = Point::new(high.x.max(point.x), high.y.max(point.y));
         }
-        self.grid.draws(low, high);
+        self.grid.include_extent(low, high);
         let sign = match material {
             Side::Inside => T::ONE,
             Side::Outside => -T::ONE,

@@ -12,7 +12,7 @@
 use crate::geometry::{Ellipse, Side};
 use crate::sensor::MAX_SIDE;
 use crate::sweep::ellipse_band::EllipseBand;
-use crate::sweep::isolate::Ring;
+use crate::sweep::isolate::HollowEllipse;
 use crate::sweep::span::{DOUBT, Level, NEAR, Spans};
 use crate::sweep::track::Track;
 
@@ -23,7 +23,7 @@ type Tracks = [Track; 4];
 #[derive(Clone, Debug)]
 pub(crate) struct Elliptic {
     /// The ellipses, cut to the band at hand.
-    ring: Ring,
+    ellipse: HollowEllipse,
     /// For each row of the sensor, where the passages were in the previous rows of the grid.
     tracks: Box<[Tracks]>,
 }
@@ -39,7 +39,7 @@ impl Elliptic {
             _ => return None,
         };
         Some(Self {
-            ring: Ring {
+            ellipse: HollowEllipse {
                 threshold: 1.0,
                 outer: EllipseBand::new(outer),
                 inner,
@@ -52,28 +52,28 @@ impl Elliptic {
     /// row of the sensor: the previous passages of the same row predict where to look.
     pub(crate) fn band(&mut self, top: f64, row: usize, threshold: f64, spans: &mut Spans) {
         spans.clear();
-        self.ring.threshold = threshold;
-        let outer = &mut self.ring.outer;
+        self.ellipse.threshold = threshold;
+        let outer = &mut self.ellipse.outer;
         // If no section is high enough, no cell is covered enough.
         if !outer.cut(top) || outer.highest() < threshold - 2.0 * DOUBT {
             return;
         }
-        if let Some(inner) = &mut self.ring.inner {
+        if let Some(inner) = &mut self.ellipse.inner {
             inner.cut(top);
         }
         let Some(tracks) = self.tracks.get_mut(row) else {
-            return self.ring.isolate_all(spans);
+            return self.ellipse.isolate_all(spans);
         };
-        let Some(found) = follow(&self.ring, tracks) else {
-            self.ring.isolate_all(spans);
+        let Some(found) = follow(&self.ellipse, tracks) else {
+            self.ellipse.isolate_all(spans);
             return learn(spans, tracks);
         };
-        spans.turn(found.from, Level::Above);
+        spans.set_level(found.from, Level::Above);
         if let Some((hole, end)) = found.hole {
-            spans.turn(hole, Level::Below);
-            spans.turn(end, Level::Above);
+            spans.set_level(hole, Level::Below);
+            spans.set_level(end, Level::Above);
         }
-        spans.turn(found.to, Level::Below);
+        spans.set_level(found.to, Level::Below);
     }
 }
 
@@ -88,9 +88,9 @@ struct Passages {
 }
 
 /// Follows the passages from the previous rows; None if something is not certain.
-fn follow(ring: &Ring, tracks: &mut Tracks) -> Option<Passages> {
+fn follow(ellipse: &HollowEllipse, tracks: &mut Tracks) -> Option<Passages> {
     let [from, to, hole, end] = tracks;
-    let (outer, threshold) = (&ring.outer, ring.threshold);
+    let (outer, threshold) = (&ellipse.outer, ellipse.threshold);
     let (from, to) = (
         from.follow(outer, threshold, true)?,
         to.follow(outer, threshold, false)?,
@@ -100,7 +100,7 @@ fn follow(ring: &Ring, tracks: &mut Tracks) -> Option<Passages> {
         to,
         hole: None,
     };
-    let Some(inner) = ring.inner.as_ref().filter(|inner| inner.is_here()) else {
+    let Some(inner) = ellipse.inner.as_ref().filter(|inner| inner.is_here()) else {
         return Some(solid);
     };
     // Between these places the cell reaches the hole.

@@ -121,7 +121,7 @@ impl RowEvents<'_, '_> {
 
     /// Marks that a taxel switches at a step, from 1 to the last.
     #[inline]
-    pub(crate) fn turn_over(&mut self, column: usize, step: u32) {
+    pub(crate) fn flip(&mut self, column: usize, step: u32) {
         let events = &mut *self.events;
         let step = wide(step);
         let event = narrow(events.list.len());

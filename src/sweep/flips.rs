@@ -81,7 +81,7 @@ impl FlipWriter<'_, '_, '_> {
             if step > 0 {
                 first = first.or(Some(column));
                 if step < self.steps.count {
-                    self.events.turn_over(column, step.unsigned_abs());
+                    self.events.flip(column, step.unsigned_abs());
                 }
             }
             column += 1;
@@ -178,7 +178,7 @@ impl Taxel {
         if step == 0 {
             events.start(1 << self.column);
         } else {
-            events.turn_over(self.column, step.unsigned_abs());
+            events.flip(self.column, step.unsigned_abs());
         }
     }
 }

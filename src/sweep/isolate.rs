@@ -18,7 +18,7 @@ const NARROW: f64 = 1e-6;
 
 /// An ellipse and perhaps a hole, both cut to the band.
 #[derive(Clone, Debug)]
-pub(crate) struct Ring {
+pub(crate) struct HollowEllipse {
     /// The coverage from which on a taxel is active, above 0, up to 1.
     pub(crate) threshold: f64,
     /// The ellipse.
@@ -30,13 +30,13 @@ pub(crate) struct Ring {
 /// A place, and the coverage there minus the threshold.
 type Sample = (f64, f64);
 
-impl Ring {
+impl HollowEllipse {
     /// Notes the levels of the whole band.
     pub(crate) fn isolate_all(&self, spans: &mut Spans) {
         let (left, right) = self.outer.reach();
         let ends = ((left - 1.0, -self.threshold), (right, -self.threshold));
         self.isolate(ends.0, ends.1, spans);
-        spans.turn(right, Level::Below);
+        spans.set_level(right, Level::Below);
     }
 
     /// Returns the coverage at a place, minus the threshold.
@@ -82,12 +82,12 @@ impl Ring {
             let meeting = (from.1 - to.1 + far * width) / (far - near);
             let extreme = from.1 + near * meeting;
             if Level::of(extreme) == before {
-                return spans.turn(from.0, before);
+                return spans.set_level(from.0, before);
             }
         }
         if width < NARROW {
-            spans.turn(from.0, Level::Doubtful);
-            return spans.turn(to.0, after);
+            spans.set_level(from.0, Level::Doubtful);
+            return spans.set_level(to.0, after);
         }
         let middle = from.0 + width / 2.0;
         let middle = (middle, self.excess(middle));
@@ -98,7 +98,7 @@ impl Ring {
     /// Notes the levels between two places where the slope keeps its sign.
     fn passage(&self, from: Sample, to: Sample, spans: &mut Spans) {
         let (before, after) = (Level::of(from.1), Level::of(to.1));
-        spans.turn(from.0, before);
+        spans.set_level(from.0, before);
         if before == after {
             return;
         }
@@ -108,16 +108,16 @@ impl Ring {
             let certain = |u: f64, level: Level| Level::of(self.excess(u)) == level;
             let (left, right) = (at - 0.5 * NEAR, at + 0.5 * NEAR);
             if left > from.0 && right < to.0 && certain(left, before) && certain(right, after) {
-                return spans.turn(at, after);
+                return spans.set_level(at, after);
             }
         }
         if before != Level::Doubtful {
             let at = self.solve(from, to, -sense * DOUBT, 1e-13);
-            spans.turn(at, Level::Doubtful);
+            spans.set_level(at, Level::Doubtful);
         }
         if after != Level::Doubtful {
             let at = self.solve(from, to, sense * DOUBT, 1e-13);
-            spans.turn(at, after);
+            spans.set_level(at, after);
         }
     }
 

@@ -27,11 +27,11 @@ use crate::sweep::result::SweepResult;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Default)]
-pub struct SweepMerge(Option<Begun>);
+pub struct SweepMerge(Option<Merged>);
 
 /// The merged result of the first shards.
 #[derive(Debug)]
-struct Begun {
+struct Merged {
     grid: PoseGrid,
     /// The number of shards.
     of: u32,
@@ -43,7 +43,7 @@ struct Begun {
     partly_off: u64,
 }
 
-impl Begun {
+impl Merged {
     /// Creates an empty merge for the sweep that this shard belongs to.
     fn of(first: &SweepResult) -> Self {
         let (grid, sensor) = (first.grid.clone(), first.grid.sensor());
@@ -68,12 +68,12 @@ impl SweepMerge {
     pub fn add(&mut self, result: SweepResult) -> Result<(), MergeError> {
         let (shard, of) = (result.shard, result.shard.of());
         // Everything is checked before anything changes: after a refusal, the right shard can still be added.
-        if let Some(begun) = &self.0
-            && (result.grid != begun.grid || of != begun.of)
+        if let Some(merged) = &self.0
+            && (result.grid != merged.grid || of != merged.of)
         {
             return Err(MergeError::Foreign { shard });
         }
-        let number = self.0.as_ref().map_or(1, |begun| begun.last + 1);
+        let number = self.0.as_ref().map_or(1, |merged| merged.last + 1);
         match shard.number().cmp(&number) {
             Ordering::Less => return Err(MergeError::Twice { shard }),
             Ordering::Greater => return Err(MergeError::Missing { number, of }),
@@ -82,12 +82,12 @@ impl SweepMerge {
         if !result.complete() {
             return Err(MergeError::Incomplete { shard });
         }
-        let begun = self.0.get_or_insert_with(|| Begun::of(&result));
-        begun.last = number;
-        begun.atlas.add_all(&result.atlas);
-        begun.variance_parts.merge(result.variance_parts);
-        begun.poses += result.poses;
-        begun.partly_off += result.partly_off;
+        let merged = self.0.get_or_insert_with(|| Merged::of(&result));
+        merged.last = number;
+        merged.atlas.add_all(&result.atlas);
+        merged.variance_parts.merge(result.variance_parts);
+        merged.poses += result.poses;
+        merged.partly_off += result.partly_off;
         Ok(())
     }
 
@@ -96,7 +96,7 @@ impl SweepMerge {
     /// # Errors
     /// Returns an error if some are missing.
     pub fn finish(self) -> Result<SweepResult, MergeError> {
-        let Begun {
+        let Merged {
             grid,
             of,
             last,

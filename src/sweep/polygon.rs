@@ -251,7 +251,7 @@ impl Polygonal {
             let excess = right - left - threshold;
             let safe = u + excess.abs() - 2.0 * DOUBT;
             if safe > next {
-                spans.turn(u, Level::of(excess));
+                spans.set_level(u, Level::of(excess));
                 while near < end && self.stretches[near].right <= safe {
                     near += 1;
                 }
@@ -269,7 +269,7 @@ impl Polygonal {
                 (low, left) = behind.at(next);
                 (high, right) = ahead.at(next + 1.0);
                 if certain && near == far && behind.flat && behind.from > 0.5 {
-                    spans.turn(u, Level::Above);
+                    spans.set_level(u, Level::Above);
                 } else {
                     quadratic(from, (next, right - left - threshold, high - low), spans);
                 }
@@ -286,7 +286,7 @@ impl Polygonal {
                 (high, right) = (ahead.from, ahead.area);
             }
         }
-        spans.turn(u, Level::Below);
+        spans.set_level(u, Level::Below);
     }
 }
 
@@ -320,10 +320,10 @@ fn quadratic(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
     // The usual case: on one side of the threshold throughout.
     let extreme = turning.map_or(first, |(_, extreme, _)| extreme);
     if Real::min(Real::min(first, last), extreme) > DOUBT {
-        return spans.turn(start, Level::Above);
+        return spans.set_level(start, Level::Above);
     }
     if Real::max(Real::max(first, last), extreme) < -DOUBT {
-        return spans.turn(start, Level::Below);
+        return spans.set_level(start, Level::Below);
     }
     match turning {
         Some(extreme) => {
@@ -338,7 +338,7 @@ fn quadratic(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
 fn monotone(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
     let ((start, first, slope), (end, last, final_slope)) = (from, to);
     let (before, after) = (Level::of(first), Level::of(last));
-    spans.turn(start, before);
+    spans.set_level(start, before);
     if before == after {
         return;
     }
@@ -357,14 +357,14 @@ fn monotone(from: (f64, f64, f64), to: (f64, f64, f64), spans: &mut Spans) {
     if before != Level::Doubtful && after != Level::Doubtful {
         let (at, steepness) = passage(0.0);
         if steepness >= STEEP * way && 8.0 * bend.abs() * DOUBT <= steepness * steepness {
-            return spans.turn(at, after);
+            return spans.set_level(at, after);
         }
     }
     // Through the doubtful levels, which are entered at one height and left at another.
     if before != Level::Doubtful {
-        spans.turn(passage(-sense * DOUBT).0, Level::Doubtful);
+        spans.set_level(passage(-sense * DOUBT).0, Level::Doubtful);
     }
     if after != Level::Doubtful {
-        spans.turn(passage(sense * DOUBT).0, after);
+        spans.set_level(passage(sense * DOUBT).0, after);
     }
 }

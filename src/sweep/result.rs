@@ -107,7 +107,7 @@ impl SweepResult {
             groups: Arc::from([Arc::from([0])]),
             rows: 0..rows,
         };
-        let found = runs::go(&part, self.atlas.layout(), &task, true, |_| true);
+        let found = runs::sweep_task(&part, self.atlas.layout(), &task, true, |_| true);
         let Some(found) = found.as_deref().and_then(<[_]>::first) else {
             return Vec::new();
         };

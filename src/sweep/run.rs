@@ -17,7 +17,7 @@ use crate::index::{index, wide};
 use crate::pose::{Axis, PoseGrid};
 use crate::sweep::plan::{Shard, Task, tasks};
 use crate::sweep::result::SweepResult;
-use crate::sweep::runs::{self, Found};
+use crate::sweep::runs::{self, GroupResult};
 
 /// A function that takes a row: its number in the grid, and the atlas number of each of its poses.
 pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
@@ -95,7 +95,7 @@ impl<'a> Sweep<'a> {
     pub fn run(mut self) -> SweepResult {
         let (grid, shard) = (self.grid, self.shard);
         let sensor = grid.sensor();
-        let mut done = Done {
+        let mut done = Accumulator {
             grid,
             atlas: Atlas::new(sensor.size()),
             table: Table::default(),
@@ -147,7 +147,7 @@ impl<'a> Sweep<'a> {
         };
         let found = |task: Task| {
             (!stopped.load(Ordering::Relaxed))
-                .then(|| runs::go(grid, layout, &task, keep_runs, go_on))
+                .then(|| runs::sweep_task(grid, layout, &task, keep_runs, go_on))
                 .flatten()
         };
         let block_rows = grid.ranges()[Axis::Angle].count() * grid.rows_per_orientation();
@@ -160,7 +160,8 @@ impl<'a> Sweep<'a> {
                 take(&before);
                 return true;
             }
-            let sweep = || -> Option<Vec<Vec<Found>>> { next.into_par_iter().map(found).collect() };
+            let sweep =
+                || -> Option<Vec<Vec<GroupResult>>> { next.into_par_iter().map(found).collect() };
             let (swept, ()) = rayon::join(sweep, || take(&before));
             match swept {
                 Some(swept) => before = swept.into_iter().flatten().collect(),
@@ -171,7 +172,7 @@ impl<'a> Sweep<'a> {
 }
 
 /// The results of the groups of some tasks.
-pub(super) type Portion = Vec<Found>;
+pub(super) type Portion = Vec<GroupResult>;
 
 /// Takes the next tasks that run side by side: enough to keep all threads busy to the end, few enough for the memory
 /// that their results take. `width` is the number of poses in a row.
@@ -189,7 +190,7 @@ fn portion(tasks: &mut impl Iterator<Item = Task>, width: u64) -> Vec<Task> {
 }
 
 /// The results of a sweep so far.
-struct Done<'a, 'w> {
+struct Accumulator<'a, 'w> {
     grid: &'a PoseGrid,
     atlas: Atlas,
     table: Table,
@@ -199,7 +200,7 @@ struct Done<'a, 'w> {
     rows: Option<&'w mut TakeRow<'w>>,
 }
 
-impl Done<'_, '_> {
+impl Accumulator<'_, '_> {
     fn add(&mut self, portion: &Portion) {
         let width = self.grid.row_length();
         let ids: Vec<Vec<u32>> = portion
@@ -222,10 +223,10 @@ impl Done<'_, '_> {
             })
             .collect();
         for ((found, ids), sums) in portion.iter().zip(&ids).zip(sums) {
-            let times = found.orientations.len() as u64;
+            let multiplicity = found.orientations.len() as u64;
             self.variance_parts.add(found.orientations[0], sums);
-            self.poses += (found.rows.end - found.rows.start) * width * times;
-            self.partly_off += found.partly_off * times;
+            self.poses += (found.rows.end - found.rows.start) * width * multiplicity;
+            self.partly_off += found.partly_off * multiplicity;
             if let Some(rows) = &mut self.rows {
                 show_rows(self.grid, found, ids, rows);
             }
@@ -234,7 +235,7 @@ impl Done<'_, '_> {
 }
 
 /// Calls `show` for each row of a group, in each of its orientations.
-fn show_rows(grid: &PoseGrid, found: &Found, ids: &[u32], show: &mut TakeRow<'_>) {
+fn show_rows(grid: &PoseGrid, found: &GroupResult, ids: &[u32], show: &mut TakeRow<'_>) {
     let (width, height) = (grid.row_length(), grid.rows_per_orientation());
     let mut row = Vec::with_capacity(index(width));
     for (nth, y) in found.rows.clone().enumerate() {

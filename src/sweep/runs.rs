@@ -25,7 +25,7 @@ use crate::touch::DOUBTFUL;
 
 /// The result of a task for one of its groups.
 #[derive(Debug)]
-pub(crate) struct Found {
+pub(crate) struct GroupResult {
     /// The orientations of the group.
     pub(crate) orientations: Arc<[u64]>,
     /// The indices of the values of y0.
@@ -47,26 +47,27 @@ const EDGES: usize = 64;
 /// Sweeps the rows of a task. `progress` receives the number of poses done since the last call, counted over all
 /// orientations of the task; if it returns `false`, the sweep stops and the result is None. Otherwise there is a result
 /// for each group of the task.
-pub(crate) fn go(
+pub(crate) fn sweep_task(
     grid: &PoseGrid,
     layout: &Layout,
     task: &Task,
     keep_runs: bool,
     progress: impl Fn(u64) -> bool,
-) -> Option<Vec<Found>> {
+) -> Option<Vec<GroupResult>> {
     let mut sweeper = Sweeper::new(grid, layout, task, keep_runs);
-    let (width, times) = (grid.row_length(), task.orientations());
+    let (width, orientations) = (grid.row_length(), task.orientations());
     let mut unreported = 0;
     for y in task.rows.clone() {
         sweeper.row(y);
         unreported += width;
-        if unreported >= sweeper.report_every && !progress(std::mem::take(&mut unreported) * times)
+        if unreported >= sweeper.report_every
+            && !progress(std::mem::take(&mut unreported) * orientations)
         {
             return None;
         }
     }
     let found = sweeper.finish(keep_runs);
-    progress(unreported * times).then_some(found)
+    progress(unreported * orientations).then_some(found)
 }
 
 /// A shape prepared for sweeping, by kind.
@@ -190,9 +191,9 @@ impl<'a> Sweeper<'a> {
     }
 
     /// Returns what was found, for each group.
-    fn finish(self, keep_runs: bool) -> Vec<Found> {
+    fn finish(self, keep_runs: bool) -> Vec<GroupResult> {
         let groups = self.groups.into_iter();
-        let found = groups.map(|group| Found {
+        let found = groups.map(|group| GroupResult {
             runs: if keep_runs {
                 group.found.runs
             } else {
@@ -221,7 +222,7 @@ struct Group<'a> {
     images: Option<ReflectedRows<'a>>,
     /// Whether runs are kept, for the caller or for images.
     keep_runs: bool,
-    found: Found,
+    found: GroupResult,
 }
 
 impl<'a> Group<'a> {
@@ -255,7 +256,7 @@ impl<'a> Group<'a> {
             exact: Exact::new(grid, orientation),
             images: half_turn.map(|half_turn| ReflectedRows::new(layout, half_turn)),
             keep_runs: keep_runs || half_turn.is_some(),
-            found: Found {
+            found: GroupResult {
                 orientations: Arc::clone(orientations),
                 rows: rows.clone(),
                 counter: ImprintCounter::new(layout.words()),
@@ -287,7 +288,7 @@ impl<'a> Group<'a> {
         });
         self.due = known.is_none();
         if let Some((images, source)) = known {
-            let Found { counter, runs, .. } = &mut self.found;
+            let GroupResult { counter, runs, .. } = &mut self.found;
             images.add(counter, runs, source, first);
         }
         self.due
@@ -319,7 +320,7 @@ impl<'a> Group<'a> {
         } else {
             self.grid.row_length()
         };
-        let Found { counter, runs, .. } = &mut self.found;
+        let GroupResult { counter, runs, .. } = &mut self.found;
         self.events.play(|key, hash, from, to| {
             let index = counter.add(key, hash, to - from, first + from);
             if self.keep_runs {

@@ -16,7 +16,7 @@ pub struct TimingSample {
     /// The number of poses of the whole grid, as a multiple of those of the part. Only angles at which the shape looks
     /// different count. The time of the whole grid is less than this multiple of the part's time: mirror images are
     /// swept together, and known imprints are not described again.
-    pub times: f64,
+    pub factor: f64,
 }
 
 impl TimingSample {
@@ -31,7 +31,7 @@ impl TimingSample {
         let part = part.unwrap_or_else(|| grid.clone());
         let distinct = distinct_angles(grid) as f64 / angles as f64;
         Self {
-            times: grid.poses() as f64 * distinct / part.poses() as f64,
+            factor: grid.poses() as f64 * distinct / part.poses() as f64,
             grid: part,
         }
     }
@@ -59,7 +59,7 @@ mod tests {
         let source = Source::Figure(Figure::default_of(kind, &Sensor::default()));
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
         let sample = TimingSample::of(&grid.expect("in range"));
-        (sample.grid.poses(), sample.times)
+        (sample.grid.poses(), sample.factor)
     }
 
     #[test]

@@ -67,9 +67,9 @@ impl Spans {
         self.level = None;
     }
 
-    /// Notes the level from `at` on. Places come in ascending order.
+    /// Sets the level from `at` on. Places come in ascending order.
     #[inline]
-    pub(crate) fn turn(&mut self, at: f64, level: Level) {
+    pub(crate) fn set_level(&mut self, at: f64, level: Level) {
         if level != self.level.map_or(Level::Below, |(_, level)| level) {
             self.change(at, level);
         }

@@ -292,7 +292,7 @@ fn measure(grid: &PoseGrid, stop: &AtomicBool) -> Option<Duration> {
             return None;
         }
     }
-    Duration::try_from_secs_f64(best * sample.times).ok()
+    Duration::try_from_secs_f64(best * sample.factor).ok()
 }
 
 /// Sweeps a grid and returns the event with the results, also after a stop.
