@@ -4,7 +4,7 @@ use crate::imprint::Imprint;
 use crate::parameter::named;
 use crate::recognition::model::{Model, add_log_counts};
 use crate::recognition::nearest::Nearest;
-use crate::recognition::noise::{Method, NEGLIGIBLE, Noise};
+use crate::recognition::noise::{NEGLIGIBLE, Noise, SearchMethod};
 
 /// The state of an answer: how far it can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -102,7 +102,7 @@ pub struct Answer {
     /// noise, a shape may be missing if its probability is below 1e-9.
     pub ranking: Vec<(usize, f64)>,
     /// The keys that were compared; for several touches, those of the touch that needed the most.
-    pub method: Method,
+    pub method: SearchMethod,
 }
 
 /// Two probabilities that differ by at most this share of the larger one count as equal: multiplying the same whole
@@ -137,10 +137,10 @@ impl Model {
         let at_rim = evidence.touches.iter().any(reaches_rim);
         let Some(noise) = evidence.noise else {
             let posterior = self.possible(evidence.touches);
-            return judged(posterior, at_rim, evidence.reject_below);
+            return decide(posterior, at_rim, evidence.reject_below);
         };
-        let (posterior, method) = self.possible_under(noise, evidence.touches);
-        let mut answer = judged(posterior, at_rim, evidence.reject_below);
+        let (posterior, method) = self.posterior_of_touches(noise, evidence.touches);
+        let mut answer = decide(posterior, at_rim, evidence.reject_below);
         if answer.state == AnswerState::Certain && noise.flip() > 0.0 {
             answer.state = AnswerState::Likely;
         }
@@ -148,7 +148,11 @@ impl Model {
     }
 
     /// Returns the probabilities of the shapes under a noise, and which keys were compared.
-    fn possible_under(&self, noise: &Noise, touches: &[Imprint]) -> (Posterior, Method) {
+    fn posterior_of_touches(
+        &self,
+        noise: &Noise,
+        touches: &[Imprint],
+    ) -> (Posterior, SearchMethod) {
         let mut further = 0;
         loop {
             let (odds, method) = self.odds_under(noise, touches, further);
@@ -174,10 +178,10 @@ impl Model {
         noise: &Noise,
         touches: &[Imprint],
         further: u32,
-    ) -> (Vec<[f64; 2]>, Method) {
+    ) -> (Vec<[f64; 2]>, SearchMethod) {
         let weights = self.log_weights().into_iter();
         let mut odds: Vec<[f64; 2]> = weights.map(|weight| [weight; 2]).collect();
-        let mut method = Method::Exact;
+        let mut method = SearchMethod::Exact;
         for touch in touches {
             let Some(distances) = self.distances_further(touch, noise, further) else {
                 odds.fill([f64::NEG_INFINITY; 2]);
@@ -263,7 +267,7 @@ impl Posterior {
 }
 
 /// Returns the answer that a posterior gives.
-fn judged(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answer {
+fn decide(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answer {
     let Posterior { ranking, possible } = posterior;
     let mut answer = Answer {
         state: AnswerState::Unknown,
@@ -271,7 +275,7 @@ fn judged(posterior: Posterior, at_rim: bool, reject_below: Option<f64>) -> Answ
         tied: Vec::new(),
         at_rim,
         ranking,
-        method: Method::Exact,
+        method: SearchMethod::Exact,
     };
     let Some(&(first, most)) = answer.ranking.first() else {
         return answer;
@@ -302,7 +306,7 @@ mod tests {
     fn shapes_whose_odds_differ_by_a_rounding_error_are_tied() {
         let answer = |other: f64| {
             let odds = [0.0, f64::NEG_INFINITY, other];
-            let answer = judged(Posterior::of_logarithms(&odds), false, None);
+            let answer = decide(Posterior::of_logarithms(&odds), false, None);
             (answer.state, answer.shape, answer.tied)
         };
         assert_eq!(answer(-1e-14), (AnswerState::Tied, Some(0), vec![0, 2]));

@@ -67,7 +67,7 @@ pub use key::{ImprintKey, KeyTable};
 pub use merge::ModelMerge;
 pub use model::{Model, ModelError, ModelHead, NamedShape, ShapeCount};
 pub use nearest::Nearest;
-pub use noise::{Distances, Method, Noise, NoiseError, UnexplainedDifference};
+pub use noise::{Distances, Noise, NoiseError, SearchMethod, UnexplainedDifference};
 pub use pose_estimate::{AngleEstimate, PlacedSource, PoseEstimate};
 pub use separation::{Separation, SeparationPoint, SizeAxis, SmallestSize};
 pub use sets::{CellPositions, GridSteps, GridStepsError, default_figures, equal_figures};

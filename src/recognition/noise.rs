@@ -168,7 +168,7 @@ impl Noise {
 /// The keys that were compared for an answer, the fewest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
-pub enum Method {
+pub enum SearchMethod {
     /// The key of the imprint itself.
     Exact,
     /// The keys of all imprints that differ from it by one taxel at most.
@@ -177,7 +177,7 @@ pub enum Method {
     Scan,
 }
 
-impl Method {
+impl SearchMethod {
     /// All methods.
     pub const ALL: [Self; 3] = [Self::Exact, Self::OneFlip, Self::Scan];
 
@@ -191,7 +191,7 @@ impl Method {
     }
 }
 
-named!(Method, "method", &Method::ALL);
+named!(SearchMethod, "method", &SearchMethod::ALL);
 
 /// The number of touches of each shape at each distance from an imprint.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -202,7 +202,7 @@ pub struct Distances {
     /// For each shape, the number of touches at each distance from `least` on.
     pub touches: Vec<Vec<u64>>,
     /// The keys that were compared.
-    pub method: Method,
+    pub method: SearchMethod,
 }
 
 impl Model {
@@ -370,7 +370,7 @@ impl Model {
         Some(Distances {
             least,
             touches: self.histogram(&observed, least, least + reach),
-            method: Method::Scan,
+            method: SearchMethod::Scan,
         })
     }
 
@@ -397,7 +397,7 @@ impl Model {
             return exact.then(|| Distances {
                 least: 0,
                 touches: transposed(&sums[..1]),
-                method: Method::Exact,
+                method: SearchMethod::Exact,
             });
         }
         if !exact {
@@ -415,7 +415,7 @@ impl Model {
         Some(Distances {
             least: 0,
             touches: transposed(&sums),
-            method: Method::OneFlip,
+            method: SearchMethod::OneFlip,
         })
     }
 
@@ -572,7 +572,7 @@ mod tests {
             let distances = Distances {
                 least: 0,
                 touches: vec![touches.to_vec()],
-                method: Method::Scan,
+                method: SearchMethod::Scan,
             };
             model.log_likelihoods(&touch, &distances, &noise)[0]
         };

@@ -152,7 +152,7 @@ impl Model {
             }
             if let Some(period) = period {
                 let angle = first[Axis::Angle].rem_euclid(period);
-                sums.turn(weight, angle / period);
+                sums.add_direction(weight, angle / period);
                 degrees[whole(angle, period)] += weight;
             }
         }
@@ -280,7 +280,7 @@ impl PoseMoments {
     }
 
     /// Adds an angle, given as a part of a full turn.
-    fn turn(&mut self, weight: u64, part: f64) {
+    fn add_direction(&mut self, weight: u64, part: f64) {
         let (sine, cosine) = libm::sincos(part * std::f64::consts::TAU);
         self.cosine += float(weight) * cosine;
         self.sine += float(weight) * sine;

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 use taxel::prelude::*;
-use taxel::recognition::{AnswerState, Evidence, Method, Model, NamedShape, Noise, NoisyTouches};
+use taxel::recognition::{
+    AnswerState, Evidence, Model, NamedShape, Noise, NoisyTouches, SearchMethod,
+};
 
 use crate::common::size;
 use crate::recognition::{float, published, ranges, s1, s4, sensor, train};
@@ -326,9 +328,9 @@ fn low_noise_uses_lookups_and_higher_noise_a_scan() {
             .expect("keys fit")
             .method
     };
-    assert_eq!(method(0.0), Method::Exact);
-    assert_eq!(method(1e-11), Method::OneFlip);
-    assert_eq!(method(0.01), Method::Scan);
+    assert_eq!(method(0.0), SearchMethod::Exact);
+    assert_eq!(method(1e-11), SearchMethod::OneFlip);
+    assert_eq!(method(0.01), SearchMethod::Scan);
     let nothing: Imprint = "#...#\n.....\n.....\n.....\n#...#"
         .parse()
         .expect("an imprint");
@@ -355,7 +357,10 @@ fn lookup_and_scan_count_the_empty_imprint_alike() {
         model.distances(&nothing, &noise).expect("keys fit")
     };
     let (near, far) = (distances(1e-8), distances(0.01));
-    assert_eq!((near.method, far.method), (Method::OneFlip, Method::Scan));
+    assert_eq!(
+        (near.method, far.method),
+        (SearchMethod::OneFlip, SearchMethod::Scan)
+    );
     assert!(near.touches[1].iter().all(|&touches| touches > 0));
     for (near, far) in near.touches.iter().zip(&far.touches) {
         assert_eq!(near[..2], far[..2]);

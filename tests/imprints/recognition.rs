@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use taxel::prelude::*;
 use taxel::recognition::{
     AnswerState, Classifier, ClassifierSettings, Evaluation, Evidence, GivenDescriptors,
-    ImprintKey, Method, Model, ModelError, ModelHead, ModelMerge, NamedShape, Rounding, ShapeCount,
-    ShapeDescriptor, SizeAxis, Training, TrainingError, greedy,
+    ImprintKey, Model, ModelError, ModelHead, ModelMerge, NamedShape, Rounding, SearchMethod,
+    ShapeCount, ShapeDescriptor, SizeAxis, Training, TrainingError, greedy,
 };
 use taxel::sweep::Shard;
 
@@ -611,7 +611,7 @@ fn names_of_classifiers_states_and_methods_read_back() {
             .all(|one| one.to_string().parse().ok() == Some(*one))
     }
     assert!(is_read(&Classifier::ALL) && is_read(&AnswerState::ALL));
-    assert!(is_read(&Method::ALL) && is_read(&SizeAxis::ALL));
+    assert!(is_read(&SearchMethod::ALL) && is_read(&SizeAxis::ALL));
     assert!(is_read(&ShapeDescriptor::all().collect::<Vec<_>>()));
     let rounding: Rounding = "cg_cd=0.01".parse().expect("a step");
     assert_eq!(rounding.to_string(), "cg_cd=0.01");

@@ -13,7 +13,7 @@ use crate::formats::described::Rows;
 use crate::formats::value::percent;
 use crate::imprint::Imprint;
 use crate::parameter::number::short;
-use crate::recognition::{Answer, AnswerState, Evidence, Method, Model, Nearest, Noise};
+use crate::recognition::{Answer, AnswerState, Evidence, Model, Nearest, Noise, SearchMethod};
 
 /// The number of shapes that a text shows by default.
 const SHOWN: usize = 8;
@@ -223,11 +223,11 @@ impl AnswerText<'_> {
 }
 
 /// Returns in words what the imprint was compared with.
-fn compared(method: Method) -> &'static str {
+fn compared(method: SearchMethod) -> &'static str {
     match method {
-        Method::Exact => "only the key of the imprint is looked up",
-        Method::OneFlip => "keys that differ by one taxel at most are looked up",
-        Method::Scan => "every key in every place is compared",
+        SearchMethod::Exact => "only the key of the imprint is looked up",
+        SearchMethod::OneFlip => "keys that differ by one taxel at most are looked up",
+        SearchMethod::Scan => "every key in every place is compared",
     }
 }
 

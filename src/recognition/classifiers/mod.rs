@@ -70,13 +70,6 @@ impl Classifier {
             Self::Template => "template",
         }
     }
-
-    /// Returns the classifier of that name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL
-            .into_iter()
-            .find(|classifier| classifier.name() == name)
-    }
 }
 
 named!(Classifier, "classifier", &Classifier::ALL);

@@ -313,7 +313,7 @@ impl Evaluated {
             return Self::HalfStep;
         }
         if let Some(name) = matches.get_one::<String>("classifier") {
-            return Classifier::from_name(name).map_or(Self::AllClassifiers, Self::Classifier);
+            return name.parse().map_or(Self::AllClassifiers, Self::Classifier);
         }
         if let Some(&noise) = matches.get_one::<DecimalRange>("noise") {
             return Self::Noise(NoiseArguments::of(matches, noise));
