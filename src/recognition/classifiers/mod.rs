@@ -182,11 +182,10 @@ impl Classifier {
                 (evaluate(&|key| templates.scores(model, key)), None)
             }
         };
-        let (features, dropped) = match table {
-            Some(table) => (table.names, table.dropped),
-            // Imprints are compared, not features.
-            None => (Vec::new(), Vec::new()),
-        };
+        // For templates, imprints are compared, not features.
+        let (features, dropped) = table
+            .map(|table| (table.names, table.dropped))
+            .unwrap_or_default();
         ClassifierEvaluation {
             classifier: self,
             evaluation,
