@@ -132,7 +132,7 @@ fn an_existing_shape_is_only_replaced_with_force() {
     assert!(shelf.does("library|show|one", "").contains("NA 6 in all"));
     shelf.does(&format!("library|save|ONE|{other}|--force"), "");
     assert!(shelf.does("library|show|one", "").contains("NA 1 in all"));
-    let shipped = "\"washer\" comes with the program; it can be copied under another name";
+    let shipped = "\"washer\" is shipped with taxel; it can be copied under another name";
     shelf.refuses("library|save|washer|key|--force", shipped);
     shelf.refuses("figure|hexagon|--save|washer|--force", shipped);
     let undeletable = "\"washer\" is shipped with taxel and cannot be deleted";
