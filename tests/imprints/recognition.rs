@@ -509,6 +509,21 @@ fn a_shape_that_may_leave_an_empty_imprint_is_named_by_its_template() {
     assert_eq!(reached.evaluation.error(), 0.0);
 }
 
+/// CG and CD are the same distance apart wherever an imprint lies, but only up to a rounding error.
+#[test]
+fn nearest_neighbours_with_equal_features_vote_together() {
+    let model = train(s4(), 32, ranges("10:10.9:0.1", "10:10.9:0.1", "0:350:10"));
+    for descriptors in ["cg_cd", "cg_cd,cg_cd_direction"] {
+        let given: GivenDescriptors = descriptors.parse().expect("descriptors");
+        let mut settings = ClassifierSettings::default();
+        settings.descriptors = Some(given.descriptors().to_vec());
+        settings.sample = usize::MAX;
+        let reached = Classifier::Knn.evaluate(&model, &settings).evaluation;
+        let (reached, limit) = (reached.right, given.evaluate(&model).right);
+        assert!(reached <= limit, "{descriptors}: {reached} of {limit}");
+    }
+}
+
 #[test]
 fn in_large_steps_no_taxel_equals_one() {
     let sensor = sensor(16);

@@ -1,7 +1,9 @@
 //! The features that classifiers see: numbers of the main region of each key.
 
+use std::collections::HashMap;
+
 use crate::atlas::{feature_values, features};
-use crate::description::{Description, Descriptor, Value};
+use crate::description::{Description, Descriptor, ExactValue, Value};
 use crate::parameter::number::share;
 use crate::recognition::given::{GivenTable, ShapeDescriptor};
 use crate::recognition::model::Model;
@@ -86,6 +88,9 @@ fn columns(
             feature_values(description, |feature, value| columns[feature][key] = value);
         }
     }
+    for (feature, column) in features().iter().zip(&mut columns) {
+        equalise(column, descriptions, feature.descriptor);
+    }
     let all = features().iter().zip(columns);
     all.flat_map(|(feature, column)| {
         let descriptor = feature.descriptor;
@@ -105,6 +110,23 @@ fn columns(
         };
         vec![part("cos", libm::cos), part("sin", libm::sin)]
     })
+}
+
+/// Makes the values of a feature equal where its descriptor is exactly equal: computed from other sums, they differ by a
+/// rounding error, and nearest neighbours would then not be equally near.
+fn equalise(
+    column: &mut [f64],
+    descriptions: &[Option<Description>],
+    descriptor: &'static Descriptor,
+) {
+    let mut known: HashMap<ExactValue, f64> = HashMap::new();
+    for (value, description) in column.iter_mut().zip(descriptions) {
+        if let Some(description) = description {
+            *value = *known
+                .entry((descriptor.exact)(description))
+                .or_insert(*value);
+        }
+    }
 }
 
 /// Returns mean and population variance of a feature over all touches of all shapes.
