@@ -115,6 +115,8 @@ pub enum ExploreMessage {
     Point(u64, u64),
     /// Choose the angle of the map this many further on; negative goes back.
     Angle(i16),
+    /// Choose the angle of the map by its index.
+    ToAngle(u64),
     /// Go to the pose this many steps further on along an axis; negative goes back.
     Along(Axis, i8),
     /// Ask for the name of a file to export to.

@@ -434,6 +434,11 @@ impl Results {
         self.pose_index[Axis::Angle] = (now + step) % count;
     }
 
+    /// Shows an angle, by index; an index too large means the last one.
+    pub fn to_angle(&mut self, index: u64) {
+        self.pose_index[Axis::Angle] = index.min(self.sweep().grid.counts()[Axis::Angle] - 1);
+    }
+
     /// Moves the map's cursor along an axis by a number of poses; at the ends it stays.
     pub fn move_along(&mut self, axis: Axis, by: i64) {
         let last = self.sweep().grid.counts()[axis] - 1;

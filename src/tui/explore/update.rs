@@ -130,6 +130,7 @@ fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
             Some(text) => refuse(app, text),
             None => results.turn(by),
         },
+        ExploreMessage::ToAngle(index) => results.to_angle(index),
         ExploreMessage::Along(axis, by) => match only_one(app, results, axis) {
             Some(text) => refuse(app, text),
             None => results.move_along(axis, by.into()),

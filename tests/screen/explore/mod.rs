@@ -384,6 +384,17 @@ fn keys_of_explore_that_can_do_nothing_say_so() {
     shows(&session(&format!("{one}-")), &["this is the whole range"]);
 }
 
+#[test]
+fn a_click_reaches_every_angle_of_a_fine_sweep() {
+    let mut session = session("f<Enter>:explore --x0 5 --y0 5 --angle 0:359.99:0.01<Enter>6");
+    shows(&session, &["angle 0°:"]);
+    for kind in [MouseKind::Press, MouseKind::Release] {
+        let (column, row) = (75, 10);
+        session.send(Message::Mouse(Mouse { kind, column, row }));
+    }
+    shows(&session, &["angle 35"]);
+}
+
 /// The form of ranges leaves no line empty while a field is hidden.
 #[test]
 fn all_ranges_are_visible_on_a_small_screen() {

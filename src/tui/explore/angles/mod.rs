@@ -74,9 +74,7 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
     let nearest = spread
         .iter()
         .min_by(|one, other| far(one).total_cmp(&far(other)))?;
-    let now = results.pose_index()[Axis::Angle];
-    let by = i16::try_from(nearest.index.cast_signed() - now.cast_signed()).ok()?;
-    Some(Message::Explore(ExploreMessage::Angle(by)))
+    Some(Message::Explore(ExploreMessage::ToAngle(nearest.index)))
 }
 
 /// Returns the title: the descriptor, and which part of the positions it is computed from.
