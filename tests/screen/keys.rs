@@ -480,6 +480,14 @@ fn a_shape_that_is_put_back_leaves_no_step_to_undo() {
 }
 
 #[test]
+fn putting_back_overwrites_no_step_but_that_of_the_last_move() {
+    let put_back = "f<Enter>g<Right><Space><Right><Esc>";
+    shows(put_back, &["put back", "at 4.00, 4.00"]);
+    shows(&format!("{put_back}u"), &["at 4.02, 4.00"]);
+    shows(&format!("{put_back}uu"), &["at 4.01, 4.00", "by hand"]);
+}
+
+#[test]
 fn a_figure_that_a_smaller_sensor_does_not_allow_becomes_a_drawing() {
     let smaller = ":figure rectangle --length 10<Enter>:sensor --columns 4 --rows 4<Enter>";
     shows(

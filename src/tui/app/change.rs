@@ -105,7 +105,8 @@ pub(in crate::tui) fn put_back(app: &mut App) {
         return;
     };
     // If the shape was only moved, no trace is left. Other changes made meanwhile can still be undone.
-    if app.moves.take() == Some(MoveKind::Held) {
+    let only_moved = app.moves.take() == Some(MoveKind::Held);
+    if only_moved && app.history.before() == Some(&*before) {
         app.history.amend(*before);
         settle(app);
     } else {
