@@ -227,10 +227,20 @@ fn pasted_text_only_goes_into_fields() {
     shows(&form, &["no kind is called \"nut\": ellipse, rectangle"]);
     form.send(Message::Paste("2.5".to_owned()));
     shows(&form, &["side 2.50"]);
-    let mut matrix = session("");
-    matrix.send(Message::Paste("qqq f".to_owned()));
-    assert!(!matrix.app().ended());
-    shows(&matrix, &["pasted text goes into fields only"]);
+    for page in [
+        "",
+        "f<Enter>g",
+        "?",
+        "<Space>H",
+        "lkey<Enter><Space>=",
+        ":watch tests/scripts/touch.csv<Enter>",
+        "f<Enter>:explore --x0 5:5.9:0.1 --y0 5 --angle 0<Enter>",
+    ] {
+        let mut session = session(page);
+        session.send(Message::Paste("qqq f".to_owned()));
+        assert!(!session.app().ended());
+        shows(&session, &["! pasted text goes into fields only"]);
+    }
 }
 
 #[test]

@@ -154,10 +154,19 @@ fn perform(app: &mut App, message: Message) -> Option<Effect> {
     if !message.moves_shape() && app.mode != Mode::Grab {
         app.moves = None;
     }
+    if matches!(message, Message::Paste(_)) && !has_field(app.context()) {
+        refuse(app, "pasted text goes into fields only");
+        return None;
+    }
     match app.dialogs.pop() {
         Some(dialog) => in_dialog(app, dialog, message),
         None => matrix::update::act(app, message),
     }
+}
+
+/// Returns true if there is a field that takes text. A quiz and a mark take single letters.
+fn has_field(here: Context) -> bool {
+    here.takes_text() && !matches!(here, Context::Quiz | Context::Mark)
 }
 
 /// Explains that a key does nothing here, once per key. Names the key that lists all keys or, in that list, the keys

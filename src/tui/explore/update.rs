@@ -44,7 +44,6 @@ pub(crate) fn in_results(
             compare(app, results);
             return None;
         }
-        Message::Paste(_) => inform(app, "pasted text goes into fields only"),
         Message::Explore(ExploreMessage::Export) => {
             let dialog = export_of(&results);
             app.dialogs.push(Dialog::Results(results));

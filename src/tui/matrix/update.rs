@@ -296,7 +296,6 @@ fn edit(app: &mut App, message: &Message) {
         Message::NudgeStep(direction) if movable(app).is_some() => {
             app.step = app.step.other(direction);
         }
-        Message::Paste(_) => refuse(app, "pasted text goes into fields only"),
         _ => {}
     }
 }
