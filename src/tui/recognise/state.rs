@@ -283,19 +283,25 @@ impl Recognition {
 
     /// Takes over a prepared model. Returns the reason if there is none.
     pub fn take_model(&mut self, prepared: Prepared) -> Option<NoModel> {
-        let preparation = self.preparation(prepared.number)?;
-        let (before, opened) = (preparation.before.take(), preparation.opened);
+        self.preparation(prepared.number)?;
         self.stored = prepared.stored;
-        let reason = match prepared.trained {
+        match prepared.trained {
             Ok(trained) => {
                 // What was given as the name of a stored model may be that of a file.
                 self.choice = trained.choice.clone();
                 self.state = ModelState::Ready(trained);
                 self.ask();
-                return None;
+                None
             }
-            Err(reason) => reason,
-        };
+            Err(reason) => self.fail(prepared.number, reason),
+        }
+    }
+
+    /// Ends the preparation by the work with this number without a model. Returns the reason if that is the present
+    /// preparation.
+    pub fn fail(&mut self, number: u64, reason: String) -> Option<NoModel> {
+        let preparation = self.preparation(number)?;
+        let (before, opened) = (preparation.before.take(), preparation.opened);
         self.state = ModelState::Missing;
         let closes = opened && before.is_some();
         if let Some(before) = before {
@@ -526,6 +532,16 @@ mod tests {
         assert!(page.step_look(6).is_none(), "the new one is in progress");
         assert_eq!(page.take_look(5, Ok(found())), None);
         assert!(page.look().is_some());
+    }
+
+    #[test]
+    fn a_preparation_that_fails_forgets_no_stored_model() {
+        let mut page = Recognition::new(0);
+        page.stored = vec![Name::new("mine").expect("a name")];
+        page.prepare(ModelChoice::Shipped, 1, false);
+        assert!(page.fail(1, "a thread panicked".to_owned()).is_some());
+        let sets: Vec<ModelChoice> = (0..10).map(|by| page.other(by)).collect();
+        assert!(sets.contains(&ModelChoice::Stored(page.stored[0].clone())));
     }
 
     #[test]

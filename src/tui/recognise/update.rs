@@ -16,7 +16,7 @@ use crate::tui::keys::action;
 use crate::tui::matrix;
 use crate::tui::matrix::layers::Layers;
 use crate::tui::recognise::confusion::Confusion;
-use crate::tui::recognise::message::{Prepared, RecogniseMessage, RecognitionEvent};
+use crate::tui::recognise::message::{RecogniseMessage, RecognitionEvent};
 use crate::tui::recognise::quiz::Quiz;
 use crate::tui::recognise::reach::{put, state};
 use crate::tui::recognise::separate;
@@ -363,12 +363,7 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
 /// waits for other work ignores it.
 pub(in crate::tui) fn on_failure(app: &mut App, number: u64, reason: &str) {
     separate::update::on_failure(app, number, reason);
-    let prepared = Prepared {
-        number,
-        stored: Vec::new(),
-        trained: Err(reason.to_owned()),
-    };
-    let failed = state(app).and_then(|page| page.take_model(prepared));
+    let failed = state(app).and_then(|page| page.fail(number, reason.to_owned()));
     without_model(app, failed);
 }
 
