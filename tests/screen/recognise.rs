@@ -336,6 +336,14 @@ fn escape_stops_the_sizes_and_keeps_the_results() {
     program.until("stopped; V goes on");
     press(&mut program.session, "<Esc>");
     shows(&program.session, &["Recognise: model figures"]);
+    // A second Esc does not wait for the work to stop.
+    let begin = ":separate --scale 0.5:3:0.01 --positions 20<Enter>";
+    press(&mut program.session, begin);
+    shows(&program.session, &["of 251 sizes; Esc stops"]);
+    press(&mut program.session, "<Esc><Esc>");
+    shows(&program.session, &["Recognise: model figures"]);
+    press(&mut program.session, begin);
+    program.until("3 of 251 sizes; Esc stops");
 }
 
 #[test]

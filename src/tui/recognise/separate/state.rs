@@ -145,6 +145,11 @@ impl Separate {
         work.is_some_and(|work| !std::mem::replace(&mut work.stopping, true))
     }
 
+    /// Gives up the work in progress, for when the page closes: its further results are dropped.
+    pub fn leave(&mut self) {
+        self.stopped |= self.work.take().is_some();
+    }
+
     /// Takes over results. Returns the reason if the work ended early.
     pub fn take_found(&mut self, found: SizesFound) -> Option<String> {
         let work = self.work.filter(|work| work.number == found.number)?;

@@ -37,7 +37,8 @@ pub(in crate::tui::recognise) fn next_work(app: &mut App) -> Option<Effect> {
     Some(Effect::Work(Work::Separate(number, request, known)))
 }
 
-/// Handles a message over the page.
+/// Handles a message over the page. During the work, Cancel and Quit first stop it and leave the page open; a second
+/// time they close it.
 pub(in crate::tui) fn in_separate(
     app: &mut App,
     mut page: Box<Separate>,
@@ -49,7 +50,8 @@ pub(in crate::tui) fn in_separate(
             if page.stop() {
                 inform(app, "stopping");
                 effect = Some(Effect::Work(Work::StopSeparating));
-            } else if page.work().is_none() {
+            } else {
+                page.leave();
                 if let Some(state) = state(app) {
                     state.separate = Some(page);
                 }
