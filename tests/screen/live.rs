@@ -132,8 +132,8 @@ fn a_tare_is_set_and_given_up() {
         &watched(6, "t"),
         &["tare of the last 6 frames", "tare       6 frames"],
     );
-    shows(&watched(6, "tT"), &["tare       none"]);
-    shows(&watched(6, "T"), &["there is no tare"]);
+    shows(&watched(6, "tT"), &["tare       none", "tare removed"]);
+    shows(&watched(6, "T"), &["! there is no tare"]);
     shows(&watched(0, "t"), &["! no frame yet"]);
 }
 
@@ -159,7 +159,7 @@ fn the_progress_of_a_tare_is_shown() {
     then(&mut page, "<Esc>w", &["tare: 0 of 4 frames"]);
     // A key makes the tare from the frames so far, or gives it up.
     page.frames(2);
-    then(&mut page, "T", &["tare       none", "no tare"]);
+    then(&mut page, "T", &["tare       none", "tare removed"]);
     hides(&page, &["tare:"]);
     then(&mut page, "T", &["there is no tare"]);
 }
@@ -214,7 +214,7 @@ fn a_notice_does_not_hide_a_lost_source() {
         page.send(Message::Worker(WorkerEvent::Live(1, event)));
         shows(&page, &["! lost: Connection reset by peer"]);
         hides(&page, &["tare of the last"]);
-        then(&mut page, "T", &["no tare; ! lost: Connection reset"]);
+        then(&mut page, "T", &["tare removed; ! lost: Connection reset"]);
     }
 }
 
@@ -373,7 +373,7 @@ fn the_sum_is_that_of_the_shown_values() {
     then(
         &mut page,
         "vv",
-        &["raw", "sum        16", "peak       9 at 1, 0"],
+        &["raw", "sum        256", "peak       9 at 1, 0"],
     );
 }
 
@@ -802,7 +802,7 @@ fn a_sensor_larger_than_the_screen_is_seen_in_parts() {
     );
     then(&mut page, "#", &["\n 5 ", "\n23 "]);
     then(&mut page, "<S-Down>", &["\n14 ", "\n32 "]);
-    then(&mut page, "c", &["the taxels of the contact", "\n30 "]);
+    then(&mut page, "c", &["the view follows the contact", "\n30 "]);
     then(
         &mut page,
         "i<S-Up>",

@@ -182,14 +182,8 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             }
             Err(refused) => refuse(app, refused.to_string()),
         },
-        LiveMessage::NoTare => {
-            let text = if page.drop_tare() {
-                "no tare"
-            } else {
-                "there is no tare"
-            };
-            inform(app, text);
-        }
+        LiveMessage::NoTare if page.drop_tare() => inform(app, "tare removed"),
+        LiveMessage::NoTare => refuse(app, "there is no tare"),
         LiveMessage::Threshold(direction) => page.step_threshold(*direction),
         LiveMessage::Percent => page.switch_unit(),
         LiveMessage::Freeze => {
@@ -208,7 +202,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         LiveMessage::Window(towards) => look_further(app, page, *towards),
         LiveMessage::FollowContact => {
             page.display.looked_at = None;
-            inform(app, "the taxels of the contact");
+            inform(app, "the view follows the contact");
         }
         LiveMessage::Record => match record(page) {
             Ok(effect) => return Some(effect),

@@ -156,7 +156,7 @@ fn a_recording_that_fails_replaces_the_notice_of_its_start() {
     assert!(!screen.contains("recording in"), "{screen}");
     // The error remains while there is no recording, and a key does not hide it.
     watched.program.types(b"T");
-    watched.program.shows("there is no tare; ! touch-1.npy:");
+    watched.program.shows("! there is no tare; touch-1.npy:");
     watched.ends();
 }
 
@@ -597,7 +597,7 @@ fn the_notice_of_a_connection_gap_stays_until_a_key_is_pressed() {
     program.shows(" s of frames are missing");
     program.shows("gaps       1, 1");
     program.types(b"T");
-    program.shows("no tare");
+    program.shows("tare removed");
     program.until("no gap", |program| {
         let screen = program.screen().contents();
         !screen.contains("are missing") && screen.contains("gaps       1, 1")
