@@ -10,7 +10,9 @@ use taxel::recognition::Noise;
 use taxel::sensor::MatrixSize;
 use taxel::tui::app::message::Message;
 use taxel::tui::app::worker_event::WorkerEvent;
-use taxel::tui::live::message::{FrameBatch, LiveEvent, LiveMessage, SourceState};
+use taxel::tui::live::message::{
+    FrameBatch, LiveEvent, LiveMessage, ProvisionalChange, SourceState,
+};
 use taxel::tui::live::request::WatchRequest;
 use taxel::tui::script::Session;
 
@@ -298,6 +300,47 @@ fn the_history_can_be_viewed_while_frames_arrive() {
     then(&mut page, "<Left><End>", &["frame 5"]);
 }
 
+/// A frame is shown before the marker after it has come.
+#[test]
+fn a_frozen_frame_is_the_shown_one_even_if_it_is_not_confirmed() {
+    let frame = |value| {
+        let mut frame = Frame::new(FrameSize::new(16, 16).expect("in range"));
+        frame.number = 2;
+        frame.values_mut().fill(value);
+        Arc::new(frame)
+    };
+    let report = |page: &mut Session, frames: &[f64], provisional| {
+        let batch = FrameBatch {
+            frames: frames.iter().copied().map(frame).collect(),
+            provisional,
+            ..FrameBatch::default()
+        };
+        let event = LiveEvent::Arrived(Arc::new(batch));
+        page.send(Message::Worker(WorkerEvent::Live(1, event)));
+    };
+    let frozen = || {
+        let mut page = watched(2, "");
+        report(&mut page, &[], ProvisionalChange::Shown(frame(1.0)));
+        then(
+            &mut page,
+            "<Space>",
+            &["frame 2", "frozen", "sum        256"],
+        );
+        page
+    };
+    let mut confirmed = frozen();
+    report(&mut confirmed, &[1.0], ProvisionalChange::Gone);
+    shows(&confirmed, &["frame 2", "frozen", "sum        256"]);
+    let mut replaced = frozen();
+    report(&mut replaced, &[2.0], ProvisionalChange::Gone);
+    shows(&replaced, &["frame 2", "frozen", "sum        512"]);
+    let mut withdrawn = frozen();
+    report(&mut withdrawn, &[], ProvisionalChange::Gone);
+    shows(&withdrawn, &["frame 1", "frozen"]);
+    then(&mut frozen(), "<Left>", &["frame 1", "frozen"]);
+    then(&mut frozen(), "t", &["tare of the last 2 frames"]);
+}
+
 #[test]
 fn a_narrow_title_keeps_unusual_states() {
     let mut page = watched(6, "p<Left>m");
@@ -373,7 +416,7 @@ fn the_sum_is_that_of_the_shown_values() {
     then(
         &mut page,
         "vv",
-        &["raw", "sum        256", "peak       9 at 1, 0"],
+        &["raw", "sum        16", "peak       9 at 1, 0"],
     );
 }
 

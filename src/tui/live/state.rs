@@ -192,8 +192,8 @@ impl Live {
 
     /// Returns the number of frames from the shown one to the newest; None if the page follows the source.
     pub fn frozen(&self) -> Option<u64> {
-        let newest = self.history.newest()?;
-        self.frozen.map(|shown| newest - shown.min(newest))
+        let later = |shown: u64| self.history.next_number().saturating_sub(shown + 1);
+        self.frozen.map(later)
     }
 
     /// Returns how the tare was made; None without one.
@@ -400,6 +400,9 @@ impl Live {
             if !present.is_some_and(|present| is_same(present, before)) {
                 // The frame was withdrawn: another frame has its number, or will have it.
                 self.marks.take_off(number);
+                if self.frozen == Some(number) {
+                    self.frozen = self.confirmed();
+                }
             }
         }
         before.is_some() || self.provisional.is_some()
@@ -450,8 +453,7 @@ impl Live {
     /// Returns an error before the first frame, for a frame that has left the history, and if the frames are of
     /// different sizes.
     pub fn tare_now(&mut self) -> Result<u64, LiveRefusal> {
-        let shown = self.frozen.or(self.history.newest());
-        let shown = shown.ok_or(LiveRefusal::NoFrame)?;
+        let shown = self.confirmed().ok_or(LiveRefusal::NoFrame)?;
         let frames: Vec<_> = self.history.back_from(shown, TARED).cloned().collect();
         if frames.is_empty() {
             return Err(LiveRefusal::LeftHistory);
@@ -512,7 +514,7 @@ impl Live {
     pub fn freeze(&mut self) -> bool {
         self.frozen = match self.frozen {
             Some(_) => None,
-            None => self.history.newest(),
+            None => self.position(),
         };
         self.read();
         self.frozen.is_some()
@@ -521,8 +523,9 @@ impl Live {
     /// Shows the frame that is `by` frames later in the history, or earlier if `by` is negative, and stays there.
     pub fn scrub(&mut self, by: i64) {
         if let (Some(oldest), Some(newest)) = (self.history.oldest(), self.history.newest()) {
-            let shown = self.frozen.unwrap_or(newest).saturating_add_signed(by);
-            self.frozen = Some(shown.clamp(oldest, newest));
+            let shown = self.position().unwrap_or(newest);
+            let next = shown.saturating_add_signed(by);
+            self.frozen = Some(next.clamp(oldest, newest.max(shown)));
             self.read();
         }
     }
@@ -546,8 +549,8 @@ impl Live {
             None
         } else {
             // Not of a frame that may be withdrawn.
-            let confirmed = self.frozen.or_else(|| self.history.newest());
-            confirmed.and_then(|number| self.history.get(number).cloned())
+            self.confirmed()
+                .and_then(|number| self.history.get(number).cloned())
         };
         self.read();
         self.held.is_some()
@@ -609,6 +612,18 @@ impl Live {
         self.name_by(choice, number);
     }
 
+    /// Returns the number in the history of the shown frame; None before the first one.
+    fn position(&self) -> Option<u64> {
+        self.frozen.or_else(|| Some(self.shown()?.0))
+    }
+
+    /// Returns the number in the history of the shown frame, or of the newest one if the shown one is not confirmed
+    /// yet; None before the first one.
+    fn confirmed(&self) -> Option<u64> {
+        let newest = self.history.newest()?;
+        Some(self.frozen.unwrap_or(newest).min(newest))
+    }
+
     /// Returns the shown frame, unprocessed, and its number in the history; a frame that is not confirmed yet has the
     /// number that it will have.
     fn shown(&self) -> Option<(u64, Arc<Frame>)> {
@@ -620,9 +635,11 @@ impl Live {
             let number = self.history.newest()?;
             return Some((number, Arc::clone(self.history.get(number)?)));
         };
+        let next = self.provisional.as_ref();
+        let next = next.filter(|_| number == self.history.next_number());
         // A frame that has left the history stays as long as it is shown.
         let looked_at = || self.reading.as_ref().map(|reading| &reading.frame);
-        let frame = self.history.get(number).or_else(looked_at)?;
+        let frame = self.history.get(number).or(next).or_else(looked_at)?;
         Some((number, Arc::clone(frame)))
     }
 
