@@ -25,7 +25,7 @@ use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::live::state::Live;
 use crate::tui::live::view;
-use crate::tui::runtime::effect::{Effect, FileRequest, Work};
+use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork};
 
 /// Handles a request over the matrix. Requests about the open page, such as a tare, do nothing here, because no page
 /// is open.
@@ -68,7 +68,7 @@ fn watch(app: &mut App, request: &Arc<WatchRequest>) -> Effect {
 
 /// Watches the source of a page. Its imprints are named as the page says.
 fn watch_source(page: &Live, write: Option<(PathBuf, Existing)>) -> Effect {
-    Effect::Work(Work::Watch {
+    Effect::Frames(FrameWork::Watch {
         number: page.number(),
         request: Arc::clone(page.request()),
         write,
@@ -110,7 +110,7 @@ pub(in crate::tui) fn in_live(
         Message::Cancel | Message::Quit => {
             page.stop();
             app.live = Some(page);
-            return Some(Effect::Work(Work::StopWatching));
+            return Some(Effect::Frames(FrameWork::StopWatching));
         }
         Message::Accept => match document(&page) {
             Some(document) => {
@@ -218,7 +218,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
                 None => "shapes are not named".to_owned(),
             };
             inform(app, text);
-            return Some(Effect::Work(Work::NameBy(page.number(), naming)));
+            return Some(Effect::Frames(FrameWork::NameBy(page.number(), naming)));
         }
         LiveMessage::Source(source) => return Some(look(app, source)),
         LiveMessage::Open | LiveMessage::Watch(_) => {}
@@ -275,10 +275,10 @@ fn mark(app: &mut App, page: &mut Live) {
 pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
     let page = page(app).filter(|page| !page.stopped())?;
     if let Some(view) = page.take_changed_view() {
-        return Some(Effect::Work(Work::Describe(Box::new(view))));
+        return Some(Effect::Frames(FrameWork::Describe(Box::new(view))));
     }
     let imprint = page.ask_name()?;
-    Some(Effect::Work(Work::Name(Box::new(imprint))))
+    Some(Effect::Frames(FrameWork::Name(Box::new(imprint))))
 }
 
 /// Begins a recording, or ends it. The frames are written as they come, without view, tare or threshold; the
@@ -289,7 +289,7 @@ pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
 fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
     if page.recording().name().is_some() {
         page.set_recording(None);
-        return Ok(Effect::Work(Work::StopRecording));
+        return Ok(Effect::Frames(FrameWork::StopRecording));
     }
     if page.status().state.is_final() {
         return Err(LiveRefusal::SourceEnded);
@@ -307,7 +307,7 @@ fn record(page: &mut Live) -> Result<Effect, LiveRefusal> {
         ended: None,
         ended_by: None,
     };
-    Ok(Effect::Work(Work::Record(Box::new(metadata))))
+    Ok(Effect::Frames(FrameWork::Record(Box::new(metadata))))
 }
 
 /// Returns the page of the source that was watched last, open or not.

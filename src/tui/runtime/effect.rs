@@ -29,6 +29,8 @@ pub enum Effect {
     File(FileRequest),
     /// Work for a worker.
     Work(Work),
+    /// Work about a source of frames.
+    Frames(FrameWork),
     /// Something that only the terminal can do.
     Terminal(TerminalEffect),
 }
@@ -80,6 +82,16 @@ pub enum Work {
     Separate(u64, Arc<SeparationRequest>, Vec<SeparationPoint>),
     /// Stop computing the limits.
     StopSeparating,
+    /// Search a model for the nearest imprint, and for the poses of the named shape, or of the nearest imprint's
+    /// shape.
+    Look(u64, Box<PoseSearch>),
+    /// Stop the search.
+    StopLooking,
+}
+
+/// Work about a source of frames.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FrameWork {
     /// Watch a source of frames, recorded from the start or not, and name their imprints or not.
     Watch {
         /// The number of this work.
@@ -104,9 +116,4 @@ pub enum Work {
     NameBy(u64, Option<Box<NamingRequest>>),
     /// Name an imprint.
     Name(Box<Imprint>),
-    /// Search a model for the nearest imprint, and for the poses of the named shape, or of the nearest imprint's
-    /// shape.
-    Look(u64, Box<PoseSearch>),
-    /// Stop the search.
-    StopLooking,
 }

@@ -59,7 +59,7 @@ use crate::tui::app::update::{next_work, update};
 use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::keys::key::Key;
 use crate::tui::live::message::LiveEvent;
-use crate::tui::runtime::effect::{Effect, FileRequest, TerminalEffect, Work};
+use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork, TerminalEffect};
 
 /// The outside world: a library, unsaved work that crashed programs left in it, this program's journal, and workers.
 #[derive(Debug)]
@@ -256,7 +256,8 @@ impl World {
                         self.change(DiskRequest::File(request))
                     }
                     Effect::File(request) => self.read(app, DiskRequest::File(request)),
-                    Effect::Work(work) => self.work(work),
+                    Effect::Work(work) => self.workers.perform(work).map(Message::Worker),
+                    Effect::Frames(work) => self.frames(work),
                 };
             }
         }
@@ -300,32 +301,50 @@ impl World {
         self.later.extend(given_up.map(Message::Worker));
     }
 
-    /// Begins a piece of work. Returns its event if it is known already.
-    fn work(&mut self, work: Work) -> Option<Message> {
-        match work {
-            Work::Record(metadata) => {
-                return match self.workers.frames.start_recording() {
-                    Ok(number) => self.change(DiskRequest::BeginRecording(number, metadata)),
-                    Err(refused) => Some(Message::Worker(WorkerEvent::Refused(refused.to_owned()))),
-                };
+    /// Begins work about a source of frames. Returns its event if it is known already.
+    fn frames(&mut self, work: FrameWork) -> Option<Message> {
+        let event = match work {
+            FrameWork::Watch {
+                number,
+                request,
+                write,
+                naming,
+            } => {
+                self.stop_watching();
+                self.workers.watch(number, request, write, naming)
             }
-            Work::Describe(view) => {
-                let (number, recording) = self.workers.frames.recording()?;
-                return self.change(DiskRequest::DescribeRecording(number, recording, view));
+            FrameWork::StopWatching => {
+                self.stop_watching();
+                self.workers.namer.end();
+                None
             }
-            Work::StopRecording => {
+            FrameWork::Record(metadata) => match self.workers.frames.start_recording() {
+                Ok(number) => return self.change(DiskRequest::BeginRecording(number, metadata)),
+                Err(refused) => Some(WorkerEvent::Refused(refused.to_owned())),
+            },
+            FrameWork::StopRecording => {
                 let (number, recording) = self.workers.frames.end_recording()?;
                 return self.change(DiskRequest::EndRecording(number, recording));
             }
-            Work::Watch { .. } | Work::StopWatching => {
-                if let Some((number, recording)) = self.workers.frames.stop() {
-                    let ended = self.change(DiskRequest::EndRecording(number, recording));
-                    self.later.extend(ended);
-                }
+            FrameWork::Describe(view) => {
+                let (number, recording) = self.workers.frames.recording()?;
+                return self.change(DiskRequest::DescribeRecording(number, recording, view));
             }
-            _ => {}
+            FrameWork::NameBy(number, naming) => {
+                self.workers.name_by(number, naming);
+                None
+            }
+            FrameWork::Name(imprint) => self.workers.namer.name(&imprint),
+        };
+        event.map(Message::Worker)
+    }
+
+    /// Stops watching, and finishes the recording.
+    fn stop_watching(&mut self) {
+        if let Some((number, recording)) = self.workers.frames.stop() {
+            let ended = self.change(DiskRequest::EndRecording(number, recording));
+            self.later.extend(ended);
         }
-        self.workers.perform(work).map(Message::Worker)
     }
 
     /// Returns true if frames have come, or other news about their source.

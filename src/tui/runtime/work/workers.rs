@@ -24,6 +24,7 @@ use crate::tui::app::worker_event::WorkerEvent;
 use crate::tui::explore::angles::curve::AngleCurve;
 use crate::tui::explore::message::Findings;
 use crate::tui::live::naming::NamingRequest;
+use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::disk::files::absolute;
 use crate::tui::runtime::disk::write_access::WriteAccess;
 use crate::tui::runtime::effect::Work;
@@ -62,7 +63,7 @@ pub(in crate::tui) struct Workers {
     /// The watcher of a source of frames.
     pub(in crate::tui::runtime) frames: FrameWatcher,
     /// The namer of the imprints of its frames.
-    namer: ShapeNamer,
+    pub(in crate::tui::runtime) namer: ShapeNamer,
     /// The rule for where files may be written.
     pub(in crate::tui::runtime) access: Arc<WriteAccess>,
 }
@@ -101,7 +102,7 @@ impl Workers {
     }
 
     /// Begins a piece of work. Without threads, does it and returns its last event.
-    pub(in crate::tui) fn perform(&mut self, work: Work) -> Option<WorkerEvent> {
+    pub(in crate::tui::runtime) fn perform(&mut self, work: Work) -> Option<WorkerEvent> {
         threads::prepare();
         match work {
             Work::Stop => {
@@ -140,37 +141,29 @@ impl Workers {
                 self.looking.stop();
                 None
             }
-            work => self.perform_live(work),
         }
     }
 
-    /// Begins work about a source of frames.
-    fn perform_live(&mut self, work: Work) -> Option<WorkerEvent> {
-        match work {
-            Work::Watch {
-                number,
-                request,
-                write,
-                naming,
-            } => {
-                self.name_by(number, naming);
-                self.frames.watch(number, request, write, &self.execution)
-            }
-            Work::NameBy(number, naming) => {
-                self.name_by(number, naming);
-                None
-            }
-            Work::Name(imprint) => self.namer.name(&imprint),
-            Work::StopWatching => {
-                self.namer.end();
-                None
-            }
-            _ => None,
-        }
+    /// Watches a source of frames, recorded from the start or not, and names its imprints or not. The source before
+    /// has to be stopped first.
+    pub(in crate::tui::runtime) fn watch(
+        &mut self,
+        number: u64,
+        request: Arc<WatchRequest>,
+        write: Option<(PathBuf, Existing)>,
+        naming: Option<Box<NamingRequest>>,
+    ) -> Option<WorkerEvent> {
+        self.name_by(number, naming);
+        self.frames.watch(number, request, write, &self.execution)
     }
 
-    /// Prepares the model that names the imprints of frames; without a request, stops naming.
-    fn name_by(&mut self, number: u64, naming: Option<Box<NamingRequest>>) {
+    /// Prepares the model that names the imprints of the source of that number; without a request, stops naming.
+    pub(in crate::tui::runtime) fn name_by(
+        &mut self,
+        number: u64,
+        naming: Option<Box<NamingRequest>>,
+    ) {
+        threads::prepare();
         match naming {
             Some(naming) => {
                 let store = self.models.store.clone();
