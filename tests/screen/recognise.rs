@@ -352,10 +352,10 @@ fn a_search_for_poses_is_stopped_when_its_page_or_imprint_changes() {
     let mut app = started(world(), "fr<Enter>r").app().clone();
     let begun = after(&mut app, Message::Toggle);
     assert!(
-        matches!(begun, Some(Effect::Work(Work::Look(..)))),
+        matches!(begun, Some(Effect::Work(Work::FindPoses(..)))),
         "{begun:?}"
     );
-    let stop = Some(Effect::Work(Work::StopLooking));
+    let stop = Some(Effect::Work(Work::StopFindingPoses));
     let mut drawn_on = app.clone();
     assert_eq!(after(&mut drawn_on, Message::Undo), stop);
     assert_eq!(after(&mut drawn_on, Message::Toggle), None, "once");

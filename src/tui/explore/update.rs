@@ -72,7 +72,7 @@ pub(crate) fn in_results(
         }
         message => {
             if let Message::Explore(asked) = &message {
-                look(app, &mut results, asked);
+                change_view(app, &mut results, asked);
             }
             let page = page_area(app, &results);
             let before = results.closer();
@@ -115,7 +115,7 @@ fn export_of(results: &Results) -> ExportDialog {
 }
 
 /// Handles messages that change only what is shown, not the document, so that there is nothing to undo.
-fn look(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
+fn change_view(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
     match *asked {
         ExploreMessage::Page(page) => results.turn_to(page),
         ExploreMessage::NextPage(by) => results.next_page(by),

@@ -32,14 +32,14 @@ use crate::tui::runtime::effect::{Effect, FileRequest, FrameWork};
 pub(in crate::tui) fn act(app: &mut App, asked: &LiveMessage) -> Option<Effect> {
     match asked {
         LiveMessage::Watch(request) => Some(watch(app, request)),
-        LiveMessage::Source(source) => Some(look(app, source)),
+        LiveMessage::Source(source) => Some(check_source(app, source)),
         LiveMessage::Open => open(app),
         _ => None,
     }
 }
 
 /// Requests a check of a source; it is watched if it can be read.
-fn look(app: &App, source: &NamedSource) -> Effect {
+fn check_source(app: &App, source: &NamedSource) -> Effect {
     let request = source.request(&app.watch_settings);
     Effect::File(FileRequest::Source(Arc::new(request)))
 }
@@ -220,7 +220,7 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
             inform(app, text);
             return Some(Effect::Frames(FrameWork::NameBy(page.number(), naming)));
         }
-        LiveMessage::Source(source) => return Some(look(app, source)),
+        LiveMessage::Source(source) => return Some(check_source(app, source)),
         LiveMessage::Open | LiveMessage::Watch(_) => {}
     }
     None

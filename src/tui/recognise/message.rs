@@ -54,7 +54,7 @@ pub struct PoseSearch {
 
 /// The result of a search.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Look {
+pub struct PoseSearchResult {
     /// The nearest imprint that a shape of the set leaves.
     pub nearest: Option<Nearest>,
     /// The index of the named shape, or of the nearest imprint's shape if none is named, and the poses in which it
@@ -107,7 +107,7 @@ pub enum RecognitionEvent {
     /// A model is ready, or there is none.
     Prepared(Box<Prepared>),
     /// The search with this number has ended: its result, or the reason why it failed.
-    Looked(u64, Result<Box<Look>, String>),
+    Searched(u64, Result<Box<PoseSearchResult>, String>),
     /// Some sizes were evaluated.
     Sizes(Box<SizesFound>),
 }

@@ -11,7 +11,7 @@ use crate::recognition::{Answer, Evidence};
 use crate::sensor::MatrixSize;
 use crate::storage::ModelChoice;
 use crate::tui::explore::message::SweepProgress;
-use crate::tui::recognise::message::{Look, PoseSearch, Prepared};
+use crate::tui::recognise::message::{PoseSearch, PoseSearchResult, Prepared};
 use crate::tui::recognise::separate::state::Separate;
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::number::around;
@@ -81,7 +81,7 @@ pub struct Score {
 
 /// A search in progress.
 #[derive(Clone, Debug)]
-struct Looking {
+struct RunningSearch {
     /// The number of the piece of work.
     number: u64,
     /// The model and the imprint to search for.
@@ -92,7 +92,7 @@ struct Looking {
 
 /// The next step for the search that the page needs.
 #[derive(Clone, Debug)]
-pub enum LookStep {
+pub enum SearchStep {
     /// Begin the search.
     Begin(Box<PoseSearch>),
     /// Stop the search in progress, which is for something else. The next one begins after that one has ended, so
@@ -120,9 +120,9 @@ pub struct Recognition {
     /// The answer about all touches; None without a model or a touch.
     answer: Option<Answer>,
     /// The last search and its result; None if it failed.
-    searched: Option<(PoseSearch, Option<Box<Look>>)>,
+    searched: Option<(PoseSearch, Option<Box<PoseSearchResult>>)>,
     /// The search in progress.
-    looking: Option<Looking>,
+    running: Option<RunningSearch>,
     /// Whether outlines of poses are shown; None shows them if taxels are large.
     outlines: Option<bool>,
     /// The page of sizes, while it is closed.
@@ -146,7 +146,7 @@ impl Recognition {
             present_kept: false,
             answer: None,
             searched: None,
-            looking: None,
+            running: None,
             outlines: None,
             separate: None,
             score: Score::default(),
@@ -221,7 +221,7 @@ impl Recognition {
             before,
         });
         self.searched = None;
-        self.looking = None;
+        self.running = None;
         self.ask();
     }
 
@@ -354,10 +354,10 @@ impl Recognition {
 
     /// Returns the result of the search for the imprint on the matrix, once it is known. Keeping or forgetting
     /// touches may change the name; then a new search for its poses begins.
-    pub fn look(&self) -> Option<&Look> {
-        let (search, look) = self.searched.as_ref()?;
+    pub fn found(&self) -> Option<&PoseSearchResult> {
+        let (search, found) = self.searched.as_ref()?;
         let is_present = self.search().as_ref() == Some(search);
-        look.as_deref().filter(|_| is_present)
+        found.as_deref().filter(|_| is_present)
     }
 
     /// Returns the search that the page needs; None without a model or a touch.
@@ -438,30 +438,30 @@ impl Recognition {
 
     /// Returns the next step for the search that the page needs, and records it; None if there is nothing to do. A
     /// search that begins gets this number.
-    pub fn step_look(&mut self, number: u64) -> Option<LookStep> {
+    pub fn step_search(&mut self, number: u64) -> Option<SearchStep> {
         let search = self.search();
-        if let Some(looking) = &self.looking {
-            let is_needed = search.as_ref() == Some(&looking.search);
-            return (!is_needed && self.stop_look()).then_some(LookStep::Stop);
+        if let Some(running) = &self.running {
+            let is_needed = search.as_ref() == Some(&running.search);
+            return (!is_needed && self.stop_search()).then_some(SearchStep::Stop);
         }
         let search = search?;
         // A search that failed is not begun again.
         if (self.searched.as_ref()).is_some_and(|(searched, _)| *searched == search) {
             return None;
         }
-        self.looking = Some(Looking {
+        self.running = Some(RunningSearch {
             number,
             search: search.clone(),
             stopping: false,
         });
-        Some(LookStep::Begin(Box::new(search)))
+        Some(SearchStep::Begin(Box::new(search)))
     }
 
     /// Requests that the search in progress stops; returns false if there is none, or if a stop was requested
     /// already.
-    pub fn stop_look(&mut self) -> bool {
-        let looking = self.looking.as_mut();
-        looking.is_some_and(|looking| !std::mem::replace(&mut looking.stopping, true))
+    pub fn stop_search(&mut self) -> bool {
+        let running = self.running.as_mut();
+        running.is_some_and(|running| !std::mem::replace(&mut running.stopping, true))
     }
 
     /// Returns whether outlines of poses are shown; None shows them if taxels are large.
@@ -476,14 +476,18 @@ impl Recognition {
 
     /// Takes over the result of the search with this number. Returns the reason if it failed or is incomplete. The
     /// result of a search that was stopped or forgotten is dropped.
-    pub fn take_look(&mut self, number: u64, found: Result<Box<Look>, String>) -> Option<String> {
-        let looking = self.looking.take_if(|looking| looking.number == number);
-        let looking = looking.filter(|looking| !looking.stopping)?;
+    pub fn take_result(
+        &mut self,
+        number: u64,
+        found: Result<Box<PoseSearchResult>, String>,
+    ) -> Option<String> {
+        let running = self.running.take_if(|running| running.number == number);
+        let running = running.filter(|running| !running.stopping)?;
         let refused = match &found {
-            Ok(look) => look.refused.clone(),
+            Ok(found) => found.refused.clone(),
             Err(reason) => Some(reason.clone()),
         };
-        self.searched = Some((looking.search, found.ok()));
+        self.searched = Some((running.search, found.ok()));
         refused
     }
 }
@@ -509,8 +513,8 @@ mod tests {
             .expect("an imprint")
     }
 
-    fn found() -> Box<Look> {
-        Box::new(Look {
+    fn found() -> Box<PoseSearchResult> {
+        Box::new(PoseSearchResult {
             nearest: None,
             pose: None,
             poses: Vec::new(),
@@ -523,15 +527,15 @@ mod tests {
         let mut page = Recognition::new(0);
         page.show(touch());
         with_model(&mut page, ModelChoice::Figures, 1);
-        assert!(matches!(page.step_look(2), Some(LookStep::Begin(_))));
-        assert!(page.step_look(3).is_none(), "it is in progress");
+        assert!(matches!(page.step_search(2), Some(SearchStep::Begin(_))));
+        assert!(page.step_search(3).is_none(), "it is in progress");
         with_model(&mut page, ModelChoice::Shipped, 4);
-        assert!(matches!(page.step_look(5), Some(LookStep::Begin(_))));
-        assert_eq!(page.take_look(2, Ok(found())), None);
-        assert!(page.look().is_none(), "that was another model");
-        assert!(page.step_look(6).is_none(), "the new one is in progress");
-        assert_eq!(page.take_look(5, Ok(found())), None);
-        assert!(page.look().is_some());
+        assert!(matches!(page.step_search(5), Some(SearchStep::Begin(_))));
+        assert_eq!(page.take_result(2, Ok(found())), None);
+        assert!(page.found().is_none(), "that was another model");
+        assert!(page.step_search(6).is_none(), "the new one is in progress");
+        assert_eq!(page.take_result(5, Ok(found())), None);
+        assert!(page.found().is_some());
     }
 
     #[test]
@@ -549,17 +553,17 @@ mod tests {
         let mut page = Recognition::new(0);
         page.show(touch());
         with_model(&mut page, ModelChoice::Figures, 1);
-        assert!(matches!(page.step_look(2), Some(LookStep::Begin(_))));
+        assert!(matches!(page.step_search(2), Some(SearchStep::Begin(_))));
         let mut other = touch();
         other.set(0, 0, true);
         page.show(other);
-        assert!(matches!(page.step_look(3), Some(LookStep::Stop)));
-        assert!(page.step_look(3).is_none(), "it was stopped");
+        assert!(matches!(page.step_search(3), Some(SearchStep::Stop)));
+        assert!(page.step_search(3).is_none(), "it was stopped");
         // The result of a stopped search is incomplete, even if the same imprint is on the matrix again.
         page.show(touch());
-        assert_eq!(page.take_look(2, Ok(found())), None);
-        assert!(page.look().is_none());
-        assert!(matches!(page.step_look(3), Some(LookStep::Begin(_))));
+        assert_eq!(page.take_result(2, Ok(found())), None);
+        assert!(page.found().is_none());
+        assert!(matches!(page.step_search(3), Some(SearchStep::Begin(_))));
     }
 
     #[test]
@@ -567,10 +571,10 @@ mod tests {
         let mut page = Recognition::new(0);
         page.show(touch());
         with_model(&mut page, ModelChoice::Figures, 1);
-        assert!(matches!(page.step_look(2), Some(LookStep::Begin(_))));
-        let failed = page.take_look(2, Err("no thread".to_owned()));
+        assert!(matches!(page.step_search(2), Some(SearchStep::Begin(_))));
+        let failed = page.take_result(2, Err("no thread".to_owned()));
         assert_eq!(failed.as_deref(), Some("no thread"));
-        assert!(page.look().is_none(), "nothing is known of the imprint");
-        assert!(page.step_look(3).is_none());
+        assert!(page.found().is_none(), "nothing is known of the imprint");
+        assert!(page.step_search(3).is_none());
     }
 }

@@ -21,7 +21,7 @@ use crate::tui::recognise::quiz::Quiz;
 use crate::tui::recognise::reach::{put, state};
 use crate::tui::recognise::separate;
 use crate::tui::recognise::separate::request::SeparationFlags;
-use crate::tui::recognise::state::{LookStep, ModelState, NoModel, Recognition};
+use crate::tui::recognise::state::{ModelState, NoModel, Recognition, SearchStep};
 use crate::tui::runtime::effect::{Effect, Work};
 
 /// Handles a request over the matrix, whether the page is open or not.
@@ -132,7 +132,7 @@ fn show_poses(app: &mut App) {
     let Some(page) = state(app) else { return };
     let seen = Layers::shown(page.outlines(), &grid);
     page.show_outlines(!seen);
-    let none = page.look().is_none_or(|look| look.poses.is_empty());
+    let none = page.found().is_none_or(|found| found.poses.is_empty());
     inform(
         app,
         match (seen, none) {
@@ -242,11 +242,11 @@ fn prepare_again(app: &mut App) -> Option<Effect> {
 
 /// Keeps the page, which is no longer on the stack, until it is opened again. A search in progress is stopped.
 fn close(app: &mut App, mut page: Box<Recognition>) -> Option<Effect> {
-    let stops = page.stop_look();
+    let stops = page.stop_search();
     app.recognition = Some(page);
     app.page = NarrowPage::Matrix;
     let_go(app);
-    stops.then_some(Effect::Work(Work::StopLooking))
+    stops.then_some(Effect::Work(Work::StopFindingPoses))
 }
 
 /// Handles a message in the quiz. Enter or a digit names the shape; closing the page means giving up, which counts as
@@ -350,8 +350,8 @@ pub(in crate::tui) fn on_worker(app: &mut App, event: RecognitionEvent) {
             }
             without_model(app, failed);
         }
-        RecognitionEvent::Looked(number, found) => {
-            if let Some(reason) = page.take_look(number, found) {
+        RecognitionEvent::Searched(number, found) => {
+            if let Some(reason) = page.take_result(number, found) {
                 refuse(app, reason);
             }
         }
@@ -393,12 +393,12 @@ pub(in crate::tui) fn on_progress(app: &mut App, number: u64, progress: SweepPro
 
 /// Returns the next work for the page of sizes, or for the answer about the imprint on the matrix.
 pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
-    separate::update::next_work(app).or_else(|| look(app))
+    separate::update::next_work(app).or_else(|| search(app))
 }
 
 /// Passes the imprint of the matrix to the page. Returns the search that its answer needs, or the request to stop one
 /// that it no longer needs.
-fn look(app: &mut App) -> Option<Effect> {
+fn search(app: &mut App) -> Option<Effect> {
     let (imprint, document) = (app.reading().imprint, app.shown());
     let touched = document.source.is_some();
     let threshold = touched.then(|| document.sensor.threshold());
@@ -406,11 +406,11 @@ fn look(app: &mut App) -> Option<Effect> {
     page.show(imprint);
     page.note_threshold(threshold);
     let number = app.works + 1;
-    Some(Effect::Work(match page.step_look(number)? {
-        LookStep::Begin(search) => {
+    Some(Effect::Work(match page.step_search(number)? {
+        SearchStep::Begin(search) => {
             app.works = number;
-            Work::Look(number, search)
+            Work::FindPoses(number, search)
         }
-        LookStep::Stop => Work::StopLooking,
+        SearchStep::Stop => Work::StopFindingPoses,
     }))
 }

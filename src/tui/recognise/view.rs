@@ -29,7 +29,7 @@ use crate::tui::explore::running::gauge;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::recognise::message::Look;
+use crate::tui::recognise::message::PoseSearchResult;
 use crate::tui::recognise::state::{ModelState, Preparation, Recognition};
 use crate::tui::recognise::trained::TrainedModel;
 use crate::tui::widget::number::narrow;
@@ -103,13 +103,13 @@ impl Page for Recognition {
     }
 
     fn compared_with(&self) -> Option<&Imprint> {
-        let nearest = self.look()?.nearest.as_ref()?;
+        let nearest = self.found()?.nearest.as_ref()?;
         (nearest.distance > 0).then_some(&nearest.imprint)
     }
 
     fn poses(&self) -> PoseLayer<'_> {
         PoseLayer {
-            sources: self.look().map_or(&[], |look| &look.poses),
+            sources: self.found().map_or(&[], |found| &found.poses),
             shown: self.outlines(),
         }
     }
@@ -231,12 +231,12 @@ impl Panel<'_> {
         let names = answer.ranking.iter().map(|&(shape, _)| trained.name(shape));
         let name = names.map(write::width).fold(0, usize::max).min(NAME);
         // Lines about the touch take precedence over the list.
-        let look = page.look().into_iter();
-        let look: Vec<_> = look
-            .flat_map(|look| self.look_lines(page.present(), look, answer, trained))
+        let found = page.found().into_iter();
+        let found: Vec<_> = found
+            .flat_map(|found| self.search_lines(page.present(), found, answer, trained))
             .collect();
         let kept = self.touches(page);
-        let texts = look.iter().map(|(text, _)| text);
+        let texts = found.iter().map(|(text, _)| text);
         let lines = texts.chain(&kept).map(|text| self.lines_of(text));
         let gaps = (1 + kept.len()) * self.gap_lines();
         let below = (lines.sum::<usize>() + gaps).max(BELOW);
@@ -256,24 +256,24 @@ impl Panel<'_> {
         if rest > 0 {
             self.text(&format!("and {rest} more"), Role::Quiet);
         }
-        if !look.is_empty() {
+        if !found.is_empty() {
             self.gap();
         }
-        for (text, role) in look {
+        for (text, role) in found {
             self.text(&text, role);
         }
     }
 
     /// Returns the lines about the nearest imprint and the pose.
-    fn look_lines(
+    fn search_lines(
         &self,
         present: &Imprint,
-        look: &Look,
+        found: &PoseSearchResult,
         answer: &Answer,
         trained: &TrainedModel,
     ) -> Vec<(String, Role)> {
         let mut lines = Vec::new();
-        match &look.nearest {
+        match &found.nearest {
             None => {
                 let text = "no imprint of the model fits the matrix".to_owned();
                 lines.push((text, Role::Text));
@@ -285,7 +285,7 @@ impl Panel<'_> {
             }
             Some(_) => {}
         }
-        if let Some((shape, pose)) = &look.pose {
+        if let Some((shape, pose)) = &found.pose {
             // If shapes are tied, the pose is that of the first.
             let is_named = answer.state != AnswerState::Tied && answer.shape == Some(*shape);
             let whose = if is_named { "" } else { trained.name(*shape) };

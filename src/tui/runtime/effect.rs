@@ -84,9 +84,9 @@ pub enum Work {
     StopSeparating,
     /// Search a model for the nearest imprint, and for the poses of the named shape, or of the nearest imprint's
     /// shape.
-    Look(u64, Box<PoseSearch>),
+    FindPoses(u64, Box<PoseSearch>),
     /// Stop the search.
-    StopLooking,
+    StopFindingPoses,
 }
 
 /// Work about a source of frames.

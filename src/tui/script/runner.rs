@@ -117,7 +117,7 @@ pub fn run_shown(
         show_screen(&session, "", settings, show)?;
     }
     for (line, command) in rest {
-        if !look(&session, *line, command, settings, show)? {
+        if !observe(&session, *line, command, settings, show)? {
             act(&mut session, *line, command)?;
         }
     }
@@ -216,7 +216,7 @@ fn drag(session: &mut Session, places: &[ScreenPosition]) {
 }
 
 /// Carries out a command that only reads the program. Returns false if the command is not one of these.
-fn look(
+fn observe(
     session: &Session,
     line: usize,
     command: &ScriptCommand,
@@ -224,8 +224,8 @@ fn look(
     show: &mut impl FnMut(ScriptOutput<'_>) -> ControlFlow<()>,
 ) -> Result<bool, ScriptFailure> {
     let fails = |message: String| Err(fails(session, line, message));
-    let looks = !matches!(command, ScriptCommand::Quit | ScriptCommand::Wait);
-    if looks && session.app().ended() {
+    let observes = !matches!(command, ScriptCommand::Quit | ScriptCommand::Wait);
+    if observes && session.app().ended() {
         return Err(ScriptFailure::Ended { line });
     }
     match command {

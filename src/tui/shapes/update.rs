@@ -38,7 +38,7 @@ pub(in crate::tui) fn update(
         },
     }
     app.dialogs.push(Dialog::List(list));
-    look(app)
+    read_visible(app)
 }
 
 /// Handles an answer of the library.
@@ -98,7 +98,7 @@ fn on_list(app: &mut App, mut entries: Vec<LibraryEntry>) -> Option<Effect> {
     match app.dialogs.last_mut() {
         Some(Dialog::List(list)) => {
             list.fill(entries);
-            choose_accepted(app).or_else(|| look(app))
+            choose_accepted(app).or_else(|| read_visible(app))
         }
         Some(Dialog::Command(command)) => {
             match wants_names(command.field.text()) {
@@ -233,7 +233,7 @@ fn offer(app: &mut App, before: &str, left: &Leftover) {
 
 /// Reads the shapes of the list that have come into sight.
 /// A library may be large, and only rows in sight need their size and preview.
-fn look(app: &mut App) -> Option<Effect> {
+fn read_visible(app: &mut App) -> Option<Effect> {
     let Some(Dialog::List(list)) = app.dialogs.last_mut() else {
         return None;
     };

@@ -6,7 +6,7 @@
 //! progress   how workers report
 //! threads    the threads that share long work
 //! models     models for recognition: trained, read
-//! look       searches a model for an imprint
+//! poses      searches a model for an imprint
 //! sizes      the limit of a set in several sizes
 //! naming     the shapes that left the imprints of frames
 //! ```
@@ -21,7 +21,7 @@ pub(crate) mod threads;
 
 pub(super) mod models;
 
-pub(super) mod look;
+pub(super) mod poses;
 
 pub(super) mod sizes;
 

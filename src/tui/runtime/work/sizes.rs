@@ -15,7 +15,7 @@ use crate::tui::runtime::work::progress::{ProgressReporter, guarded, on_a_thread
 
 /// Computes the limits of the sizes that are not known yet, on a thread of its own in place of the work before; or at
 /// once, and returns the event.
-pub(in crate::tui::runtime) fn look(
+pub(in crate::tui::runtime) fn separate(
     number: u64,
     request: Arc<SeparationRequest>,
     known: Vec<SeparationPoint>,
@@ -78,8 +78,8 @@ fn scan(
         .map_err(sentence("the set".to_owned()))?;
     let mut points = known;
     for value in request.values().into_iter().skip(points.len()) {
-        let looked = set.model_at(request.axis, value, request.threshold, progress);
-        let (point, model, evaluation) = looked.map_err(place(value))?;
+        let found = set.model_at(request.axis, value, request.threshold, progress);
+        let (point, model, evaluation) = found.map_err(place(value))?;
         points.push(point.clone());
         take(SizeFound {
             point,

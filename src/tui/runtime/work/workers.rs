@@ -35,7 +35,7 @@ use crate::tui::runtime::work::naming::ShapeNamer;
 use crate::tui::runtime::work::progress::{
     PoseLimit, ProgressReporter, WorkerEventSink, caught, guarded, on_a_thread, proceed,
 };
-use crate::tui::runtime::work::{look, sizes, threads};
+use crate::tui::runtime::work::{poses, sizes, threads};
 
 /// The longest time that the end of the program waits for files that are being written.
 const WRITING: Duration = Duration::from_millis(400);
@@ -52,8 +52,8 @@ pub(in crate::tui) struct Workers {
     working: StopFlag,
     /// The stop flag of the estimate in progress.
     measuring: StopFlag,
-    /// The stop flag of the search of a model in progress.
-    looking: StopFlag,
+    /// The stop flag of the search for poses in progress.
+    finding_poses: StopFlag,
     /// The stop flag of the work on the sizes of a set.
     separating: StopFlag,
     /// The thread that writes a file.
@@ -119,11 +119,11 @@ impl Workers {
                 }
             }
             Work::Prepare(number, choice) => {
-                self.looking.stop();
+                self.finding_poses.stop();
                 self.models.prepare(number, choice, &self.execution)
             }
             Work::StopPreparing => self.models.give_up(),
-            Work::Separate(number, request, known) => sizes::look(
+            Work::Separate(number, request, known) => sizes::separate(
                 number,
                 request,
                 known,
@@ -134,11 +134,11 @@ impl Workers {
                 self.separating.stop();
                 None
             }
-            Work::Look(number, search) => {
-                look::look(number, search, &mut self.looking, &self.execution)
+            Work::FindPoses(number, search) => {
+                poses::find(number, search, &mut self.finding_poses, &self.execution)
             }
-            Work::StopLooking => {
-                self.looking.stop();
+            Work::StopFindingPoses => {
+                self.finding_poses.stop();
                 None
             }
         }

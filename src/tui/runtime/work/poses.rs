@@ -1,7 +1,7 @@
 //! Searches a model for an imprint: the nearest imprint of the set, and the poses that leave it.
 //!
 //! ```text
-//! Look(number, search)  -> Looked, also after StopLooking: the screen waits for it before it begins the next
+//! FindPoses(number, search)  -> Searched, also after StopFindingPoses: the screen begins the next one after it
 //! ```
 //! The nearest imprint is found soon. Its poses take a sweep of the whole grid, and are not kept in the model.
 
@@ -10,7 +10,7 @@ use std::sync::atomic::Ordering;
 
 use crate::memory::MemoryGuard;
 use crate::tui::app::worker_event::WorkerEvent;
-use crate::tui::recognise::message::{Look, PoseSearch, RecognitionEvent};
+use crate::tui::recognise::message::{PoseSearch, PoseSearchResult, RecognitionEvent};
 use crate::tui::runtime::work::execution::{Execution, StopFlag};
 use crate::tui::runtime::work::progress::caught;
 use crate::tui::runtime::work::threads;
@@ -19,43 +19,43 @@ use crate::tui::runtime::work::threads;
 const POSES: usize = 13;
 
 /// Begins a search on a thread of its own, in place of the one before; or searches at once and returns the event.
-pub(in crate::tui::runtime) fn look(
+pub(in crate::tui::runtime) fn find(
     number: u64,
-    search: Box<PoseSearch>,
+    request: Box<PoseSearch>,
     stop: &mut StopFlag,
     execution: &Execution,
 ) -> Option<WorkerEvent> {
     let stop = stop.renew();
-    let looked = move |found: Result<Look, String>| {
-        let event = RecognitionEvent::Looked(number, found.map(Box::new));
-        WorkerEvent::Recognition(event)
+    let event = move |found: Result<PoseSearchResult, String>| {
+        let searched = RecognitionEvent::Searched(number, found.map(Box::new));
+        WorkerEvent::Recognition(searched)
     };
-    let find = move |progress: &(dyn Fn(u64) -> bool + Sync)| {
-        find(&search, &MemoryGuard::of_pose_search(), progress)
+    let run = move |progress: &(dyn Fn(u64) -> bool + Sync)| {
+        search(&request, &MemoryGuard::of_pose_search(), progress)
     };
     let post = match execution {
-        Execution::AtOnce(limit) => return Some(looked(Ok(find(&limit.count())))),
+        Execution::AtOnce(limit) => return Some(event(Ok(run(&limit.count())))),
         Execution::OnThreads(post) => Arc::clone(post),
     };
     let work = move || {
         let progress = |_: u64| !stop.load(Ordering::Relaxed);
-        post(looked(caught(|| find(&progress))));
+        post(event(caught(|| run(&progress))));
     };
     let thread = threads::start(move || threads::run(work));
-    thread.err().map(|reason| looked(Err(reason)))
+    thread.err().map(|reason| event(Err(reason)))
 }
 
 /// Searches, and stops the sweep when `progress` says so.
-fn find(
-    search: &PoseSearch,
+fn search(
+    request: &PoseSearch,
     memory: &MemoryGuard,
     progress: &(dyn Fn(u64) -> bool + Sync),
-) -> Look {
-    let model = &search.trained.model;
-    let nearest = model.nearest(&search.imprint);
+) -> PoseSearchResult {
+    let model = &request.trained.model;
+    let nearest = model.nearest(&request.imprint);
     let within = |poses| progress(poses) && memory.allows();
     let found = nearest.as_ref().and_then(|nearest| {
-        let shape = search.named.unwrap_or(nearest.shape);
+        let shape = request.named.unwrap_or(nearest.shape);
         let (pose, poses) = model.poses_of(shape, &nearest.imprint, POSES, &within)?;
         Some(((shape, pose), poses))
     });
@@ -63,7 +63,7 @@ fn find(
         Some((pose, poses)) => (Some(pose), poses),
         None => (None, Vec::new()),
     };
-    Look {
+    PoseSearchResult {
         nearest,
         pose,
         poses,
@@ -81,7 +81,7 @@ mod tests {
     use crate::tui::recognise::trained::TrainedModel;
     use crate::tui::runtime::work::progress::PoseLimit;
 
-    fn search() -> PoseSearch {
+    fn request() -> PoseSearch {
         let touch = "........\n.######.\n.######.\n........";
         PoseSearch {
             trained: Arc::new(TrainedModel::of_a_bar(ModelChoice::Figures)),
@@ -90,9 +90,9 @@ mod tests {
         }
     }
 
-    fn found(event: Option<WorkerEvent>) -> Look {
+    fn found(event: Option<WorkerEvent>) -> PoseSearchResult {
         match event {
-            Some(WorkerEvent::Recognition(RecognitionEvent::Looked(7, Ok(look)))) => *look,
+            Some(WorkerEvent::Recognition(RecognitionEvent::Searched(7, Ok(found)))) => *found,
             event => panic!("{event:?}"),
         }
     }
@@ -101,8 +101,8 @@ mod tests {
     fn a_stopped_search_answers_without_poses() {
         let searched = |limit| {
             let execution = Execution::AtOnce(PoseLimit(limit));
-            let search = Box::new(search());
-            found(look(7, search, &mut StopFlag::default(), &execution))
+            let request = Box::new(request());
+            found(find(7, request, &mut StopFlag::default(), &execution))
         };
         let whole = searched(None);
         assert!(whole.pose.is_some() && whole.refused.is_none());
@@ -119,7 +119,7 @@ mod tests {
         }));
         let mut stop = StopFlag::default();
         for _ in 0..2 {
-            assert_eq!(look(7, Box::new(search()), &mut stop, &execution), None);
+            assert_eq!(find(7, Box::new(request()), &mut stop, &execution), None);
         }
         for _ in 0..2 {
             let event = events.recv_timeout(Duration::from_secs(60));
@@ -131,8 +131,8 @@ mod tests {
     #[test]
     fn a_search_that_needs_too_much_memory_keeps_the_nearest_imprint_and_says_why() {
         let small = MemoryGuard::new(Some(crate::memory::MemorySize(1)), "less");
-        let look = find(&search(), &small, &|_| true);
-        assert!(look.pose.is_none() && look.nearest.is_some());
-        assert!(look.refused.is_some_and(|why| why.contains("more memory")));
+        let found = search(&request(), &small, &|_| true);
+        assert!(found.pose.is_none() && found.nearest.is_some());
+        assert!(found.refused.is_some_and(|why| why.contains("more memory")));
     }
 }
