@@ -105,13 +105,14 @@ fn a_hidden_cursor_has_no_place() {
     );
 }
 
+/// Returns the message of a script that fails.
+fn failure(script: &str) -> String {
+    let failed = output(script, false).expect_err("it does not hold");
+    failed.to_string()
+}
+
 #[test]
 fn failed_expectations_are_reported_with_their_line() {
-    let told = |script: &str| {
-        output(script, false)
-            .expect_err("it does not hold")
-            .to_string()
-    };
     for (script, message) in [
         (
             "Keys f\nExpect /zzz/",
@@ -124,7 +125,11 @@ fn failed_expectations_are_reported_with_their_line() {
         ),
         (
             "ExpectStyle 0,0 reverse",
-            "line 1: at 0,0 is style B, expected R",
+            "line 1: at 0,0 the style is bold, expected reverse",
+        ),
+        (
+            "ExpectStyle 200,0 dim",
+            "line 1: 200,0 is not on the screen, expected dim",
         ),
         ("Click \"zzz\"", "line 1: no \"zzz\" to click on"),
         ("Quit", "line 1: the program has not ended"),
@@ -134,6 +139,15 @@ fn failed_expectations_are_reported_with_their_line() {
             "Signal TERM\nResize 10x10",
             "line 2: the program had already ended",
         ),
+    ] {
+        let found = failure(script);
+        assert!(found.starts_with(message), "{script:?}: {found}");
+    }
+}
+
+#[test]
+fn malformed_commands_are_reported_with_their_line() {
+    for (script, message) in [
         (
             "\n\nFly",
             "line 3: \"Fly\" is unknown, expected one of Size",
@@ -148,7 +162,15 @@ fn failed_expectations_are_reported_with_their_line() {
         ),
         (
             "ExpectAt 3,4",
-            "line 1: expected a place like 12,5 and then more",
+            "line 1: expected a position like 12,5 and then a text",
+        ),
+        (
+            "Drag 3,4",
+            "line 1: expected two or more positions like 12,5, found \"3,4\"",
+        ),
+        (
+            "Scroll 3,4 2000",
+            "line 1: expected a whole number from -1000 to 1000, found \"2000\"",
         ),
         ("Size 80", "line 1: expected a size like 80x24"),
         (
@@ -193,7 +215,7 @@ fn failed_expectations_are_reported_with_their_line() {
             "line 1: expected a folder in double quotes, found nowhere",
         ),
     ] {
-        let found = told(script);
+        let found = failure(script);
         assert!(found.starts_with(message), "{script:?}: {found}");
     }
     for (script, meant) in [
@@ -202,7 +224,7 @@ fn failed_expectations_are_reported_with_their_line() {
         ("ExpectStyle 0,0 blod", "bold"),
         ("Signal TREM", "TERM"),
     ] {
-        let found = told(script);
+        let found = failure(script);
         let end = format!("; did you mean \"{meant}\"?");
         assert!(found.trim_end().ends_with(&end), "{script:?}: {found}");
     }

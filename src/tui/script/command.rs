@@ -68,29 +68,52 @@ pub enum ScriptCommand {
     Frames(usize),
 }
 
-/// The first words of all commands.
-const COMMANDS: [&str; 21] = [
-    "Size",
-    "Set",
-    "Seed",
-    "Resize",
-    "Keys",
-    "Type",
-    "Paste",
-    "Click",
-    "Drag",
-    "Scroll",
-    "Screen",
-    "State",
-    "Expect",
-    "ExpectNot",
-    "ExpectAt",
-    "ExpectStyle",
-    "Signal",
-    "Source",
-    "Frames",
-    "Wait",
-    "Quit",
+/// A function that reads the rest of a line after the name of its command.
+type ReadCommand = fn(&str) -> Result<ScriptCommand, String>;
+
+/// The names of all commands, and how the rest of their line is read.
+const COMMANDS: [(&str, ReadCommand); 21] = [
+    ("Size", |text| {
+        let (columns, rows) = size(text)?;
+        Ok(ScriptCommand::Set(ScriptSetting::Size(columns, rows)))
+    }),
+    ("Set", |text| setting::read(text).map(ScriptCommand::Set)),
+    ("Seed", |text| {
+        let seed = seed(text)?;
+        Ok(ScriptCommand::Set(ScriptSetting::Seed(seed)))
+    }),
+    ("Resize", |text| {
+        let (columns, rows) = size(text)?;
+        Ok(ScriptCommand::Resize(columns, rows))
+    }),
+    ("Keys", |text| {
+        let keys = parse(text).map_err(|error| error.to_string())?;
+        Ok(ScriptCommand::Keys(keys))
+    }),
+    ("Type", |text| quoted(text).map(ScriptCommand::Type)),
+    ("Paste", |text| quoted(text).map(ScriptCommand::Paste)),
+    ("Click", click),
+    ("Drag", drag),
+    ("Scroll", scroll),
+    ("Screen", screen),
+    ("State", |text| Ok(ScriptCommand::State(text.to_owned()))),
+    ("Expect", |text| pattern(text).map(ScriptCommand::Expect)),
+    ("ExpectNot", |text| {
+        pattern(text).map(ScriptCommand::ExpectNot)
+    }),
+    ("ExpectAt", |text| {
+        let (at, text) = two(text, "a text")?;
+        Ok(ScriptCommand::ExpectAt(position(at)?, quoted(text)?))
+    }),
+    ("ExpectStyle", |text| {
+        let (at, name) = two(text, "a style")?;
+        Ok(ScriptCommand::ExpectStyle(position(at)?, style(name)?))
+    }),
+    ("Signal", signal),
+    ("Source", source),
+    ("Frames", |text| frames(text).map(ScriptCommand::Frames)),
+    ("Wait", |text| alone("Wait", text, ScriptCommand::Wait)),
+    ("Quit", |text| alone("Quit", text, ScriptCommand::Quit)),
 ];
 
 /// The styles that a script can expect, and their letters in printed screens.
@@ -147,59 +170,52 @@ pub fn read(script: &str) -> Result<Vec<(usize, ScriptCommand)>, ScriptError> {
 /// Reads one line.
 fn command(line: &str) -> Result<ScriptCommand, String> {
     let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-    let rest = rest.trim();
-    let nothing = |command: ScriptCommand| {
-        if rest.is_empty() {
-            Ok(command)
-        } else {
-            Err(format!("{word} stands alone, found {:?}", shortened(rest)))
-        }
-    };
-    match word {
-        "Size" => {
-            size(rest).map(|(columns, rows)| ScriptCommand::Set(ScriptSetting::Size(columns, rows)))
-        }
-        "Resize" => size(rest).map(|(columns, rows)| ScriptCommand::Resize(columns, rows)),
-        "Set" => setting::read(rest).map(ScriptCommand::Set),
-        "Seed" => seed(rest).map(|seed| ScriptCommand::Set(ScriptSetting::Seed(seed))),
-        "Keys" => parse(rest)
-            .map(ScriptCommand::Keys)
-            .map_err(|error| error.to_string()),
-        "Type" => quoted(rest).map(ScriptCommand::Type),
-        "Paste" => quoted(rest).map(ScriptCommand::Paste),
-        "Click" if rest.starts_with('"') => quoted(rest).map(ScriptCommand::ClickText),
-        "Click" => position(rest).map(ScriptCommand::Click),
-        "Drag" => drag(rest),
-        "Scroll" => scroll(rest),
-        "Screen" if rest.contains(char::is_control) => Err(format!(
-            "a name for a screen has no control characters, found {:?}",
-            shortened(rest)
-        )),
-        "Screen" => Ok(ScriptCommand::Screen(rest.to_owned())),
-        "State" => Ok(ScriptCommand::State(rest.to_owned())),
-        "Expect" => pattern(rest).map(ScriptCommand::Expect),
-        "ExpectNot" => pattern(rest).map(ScriptCommand::ExpectNot),
-        "ExpectAt" => {
-            let (at, text) = two(rest)?;
-            Ok(ScriptCommand::ExpectAt(position(at)?, quoted(text)?))
-        }
-        "ExpectStyle" => {
-            let (at, name) = two(rest)?;
-            Ok(ScriptCommand::ExpectStyle(position(at)?, style(name)?))
-        }
-        "Signal" => signal(rest),
-        "Source" if rest.is_empty() => Err("expected the name of a file with frames".to_owned()),
-        "Source" => Ok(ScriptCommand::Source(rest.to_owned())),
-        "Frames" => frames(rest).map(ScriptCommand::Frames),
-        "Wait" => nothing(ScriptCommand::Wait),
-        "Quit" => nothing(ScriptCommand::Quit),
-        _ => Err(format!(
+    let command = COMMANDS.iter().find(|(name, _)| *name == word);
+    let (_, read) = command.ok_or_else(|| {
+        let names = COMMANDS.map(|(name, _)| name);
+        format!(
             "{:?} is unknown, expected one of {}{}",
             shortened(word),
-            COMMANDS.join(", "),
-            did_you_mean(word, COMMANDS)
-        )),
+            names.join(", "),
+            did_you_mean(word, names)
+        )
+    })?;
+    read(rest.trim())
+}
+
+/// Returns a command that takes nothing.
+fn alone(name: &str, rest: &str, command: ScriptCommand) -> Result<ScriptCommand, String> {
+    if rest.is_empty() {
+        return Ok(command);
     }
+    Err(format!("{name} stands alone, found {:?}", shortened(rest)))
+}
+
+/// Reads what to click on: a text in quotes or a position.
+fn click(text: &str) -> Result<ScriptCommand, String> {
+    if text.starts_with('"') {
+        return quoted(text).map(ScriptCommand::ClickText);
+    }
+    position(text).map(ScriptCommand::Click)
+}
+
+/// Reads a name for a screen, which may be empty.
+fn screen(name: &str) -> Result<ScriptCommand, String> {
+    if name.contains(char::is_control) {
+        let found = shortened(name);
+        return Err(format!(
+            "a name for a screen has no control characters, found {found:?}"
+        ));
+    }
+    Ok(ScriptCommand::Screen(name.to_owned()))
+}
+
+/// Reads the name of a file with frames.
+fn source(name: &str) -> Result<ScriptCommand, String> {
+    if name.is_empty() {
+        return Err("expected the name of a file with frames".to_owned());
+    }
+    Ok(ScriptCommand::Source(name.to_owned()))
 }
 
 /// Reads the name of a signal.
@@ -240,25 +256,33 @@ fn seed(text: &str) -> Result<u64, String> {
 
 /// Reads two or more positions.
 fn drag(text: &str) -> Result<ScriptCommand, String> {
-    let places: Result<Vec<_>, _> = text.split_whitespace().map(position).collect();
-    let places = places?;
-    if places.len() < 2 {
+    let positions: Result<Vec<_>, _> = text.split_whitespace().map(position).collect();
+    let positions = positions?;
+    if positions.len() < 2 {
         let found = shortened(text);
-        return Err(format!("expected two places or more, found {found:?}"));
+        return Err(format!(
+            "expected two or more positions like 12,5, found {found:?}"
+        ));
     }
-    Ok(ScriptCommand::Drag(places))
+    Ok(ScriptCommand::Drag(positions))
 }
 
 /// Reads a position and a number of steps of the wheel, downwards if positive.
 fn scroll(text: &str) -> Result<ScriptCommand, String> {
-    let (at, turns) = two(text)?;
+    let (at, turns) = two(text, "a number")?;
     let number = turns.parse().ok();
     let number = number.filter(|turns: &i16| turns.unsigned_abs() <= 1000);
     let number = number.ok_or_else(|| {
         let found = shortened(turns);
-        format!("expected a whole number of turns, found {found:?}")
+        format!("expected a whole number from -1000 to 1000, found {found:?}")
     })?;
     Ok(ScriptCommand::Scroll(position(at)?, number))
+}
+
+/// Returns the name of a style, given by its letter.
+pub(in crate::tui::script) fn style_name(letter: char) -> &'static str {
+    let style = STYLES.iter().find(|(_, own)| *own == letter);
+    style.map_or("unknown", |(name, _)| name)
 }
 
 /// Returns the letter of a style.
@@ -275,13 +299,11 @@ fn style(name: &str) -> Result<char, String> {
     })
 }
 
-/// Splits a text into a position and the rest.
-fn two(text: &str) -> Result<(&str, &str), String> {
+/// Splits a text into a position and the rest, which is `what`.
+fn two<'a>(text: &'a str, what: &str) -> Result<(&'a str, &'a str), String> {
     let (first, second) = text.split_once(char::is_whitespace).ok_or_else(|| {
-        format!(
-            "expected a place like 12,5 and then more, found {:?}",
-            shortened(text)
-        )
+        let found = shortened(text);
+        format!("expected a position like 12,5 and then {what}, found {found:?}")
     })?;
     Ok((first, second.trim()))
 }

@@ -103,14 +103,14 @@ impl Recorder {
     /// Returns the command for the events held back.
     fn let_go(&mut self) -> String {
         let way = std::mem::take(&mut self.held);
-        let places: Vec<String> = way
+        let positions: Vec<String> = way
             .iter()
             .map(|(column, row)| format!("{column},{row}"))
             .collect();
-        match places.len() {
+        match positions.len() {
             0 => String::new(),
-            1 => format!("Click {}\n", places[0]),
-            _ => format!("Drag {}\n", places.join(" ")),
+            1 => format!("Click {}\n", positions[0]),
+            _ => format!("Drag {}\n", positions.join(" ")),
         }
     }
 }

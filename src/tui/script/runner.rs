@@ -24,7 +24,7 @@ use crate::tui::app::state::App;
 use crate::tui::keys::key::Key;
 use crate::tui::recognise::message::RecogniseMessage;
 use crate::tui::runtime::World;
-use crate::tui::script::command::{ScreenPosition, ScriptCommand, ScriptError, read};
+use crate::tui::script::command::{ScreenPosition, ScriptCommand, ScriptError, read, style_name};
 use crate::tui::script::session::Session;
 use crate::tui::script::setting::ScriptSetting;
 pub use crate::tui::script::start::ScriptOptions;
@@ -143,25 +143,25 @@ fn act(session: &mut Session, line: usize, command: &ScriptCommand) -> Result<()
             .chars()
             .for_each(|character| session.press(Key::Char(character))),
         ScriptCommand::Paste(text) => session.send(Message::Paste(text.clone())),
-        ScriptCommand::Click(place) => click(session, *place),
+        ScriptCommand::Click(at) => click(session, *at),
         ScriptCommand::ClickText(text) => {
-            let place = find(&session.screen(), text);
+            let at = find(&session.screen(), text);
             click(
                 session,
-                place.ok_or_else(|| {
+                at.ok_or_else(|| {
                     let text = shortened(text);
                     fails(session, line, format!("no {text:?} to click on"))
                 })?,
             );
         }
-        ScriptCommand::Drag(places) => drag(session, places),
-        ScriptCommand::Scroll(place, turns) => {
+        ScriptCommand::Drag(way) => drag(session, way),
+        ScriptCommand::Scroll(at, turns) => {
             let kind = if *turns < 0 {
                 MouseKind::ScrollUp
             } else {
                 MouseKind::ScrollDown
             };
-            (0..turns.unsigned_abs()).for_each(|_| mouse(session, kind, *place));
+            (0..turns.unsigned_abs()).for_each(|_| mouse(session, kind, *at));
         }
         ScriptCommand::Set(ScriptSetting::Seed(seed)) => {
             session.send(Message::Recognise(RecogniseMessage::Seed(*seed)));
@@ -201,16 +201,16 @@ fn take_frames(session: &mut Session, count: usize) -> Result<(), String> {
 }
 
 /// Presses the mouse at the first position, moves it over the others and releases it at the last one.
-fn drag(session: &mut Session, places: &[ScreenPosition]) {
-    for (index, &place) in places.iter().enumerate() {
+fn drag(session: &mut Session, way: &[ScreenPosition]) {
+    for (index, &at) in way.iter().enumerate() {
         let kind = if index == 0 {
             MouseKind::Press
         } else {
             MouseKind::Drag
         };
-        mouse(session, kind, place);
+        mouse(session, kind, at);
     }
-    if let Some(&last) = places.last() {
+    if let Some(&last) = way.last() {
         mouse(session, MouseKind::Release, last);
     }
 }
@@ -269,8 +269,13 @@ fn expect(session: &Session, command: &ScriptCommand) -> Option<Result<(), Strin
             let index = character_at(line_of(&session.screen(), *row), *column);
             let found = line_of(&session.styles(), *row).chars().nth(index);
             (found != Some(*letter)).then(|| {
-                let found = found.map_or("nothing".to_owned(), |found| format!("style {found}"));
-                format!("at {column},{row} is {found}, expected {letter}")
+                let expected = style_name(*letter);
+                match found.map(style_name) {
+                    Some(found) => {
+                        format!("at {column},{row} the style is {found}, expected {expected}")
+                    }
+                    None => format!("{column},{row} is not on the screen, expected {expected}"),
+                }
             })
         }
         _ => return None,
@@ -322,9 +327,9 @@ fn mouse(session: &mut Session, kind: MouseKind, (column, row): ScreenPosition) 
 }
 
 /// Presses and releases the button at a position.
-fn click(session: &mut Session, place: ScreenPosition) {
-    mouse(session, MouseKind::Press, place);
-    mouse(session, MouseKind::Release, place);
+fn click(session: &mut Session, at: ScreenPosition) {
+    mouse(session, MouseKind::Press, at);
+    mouse(session, MouseKind::Release, at);
 }
 
 /// Returns the first position where a text stands.
