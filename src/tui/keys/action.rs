@@ -277,8 +277,8 @@ actions! {
         PREVIOUS_PAGE "previous-page" [] Explore(NextPage(-1));
         NEXT_DESCRIPTOR "next-descriptor" [] Explore(Feature(1));
         PREVIOUS_DESCRIPTOR "previous-descriptor" [] Explore(Feature(-1));
-        LATER_COLUMNS "later-columns" [] Explore(Columns(1));
-        EARLIER_COLUMNS "earlier-columns" [] Explore(Columns(-1));
+        COLUMNS_RIGHT "columns-right" [] Explore(Columns(1));
+        COLUMNS_LEFT "columns-left" [] Explore(Columns(-1));
         SORT "sort" [] Explore(ExploreMessage::SortHere);
         SORT_BY_POSES "sort-by-poses" [] Explore(Sort(ListColumn::Poses));
         SORT_BY_FIRST_POSE "sort-by-first-pose" [] Explore(Sort(ListColumn::FirstPose));

@@ -226,7 +226,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('/') => FILTER, Char('f') => FILTER]
             "filter" "show only imprints that fit, such as na>=40 holes=0";
         [Char('s') => SORT] "sort" "sort by the chosen heading; again: reversed";
-        [LEFT => EARLIER_COLUMNS, RIGHT => LATER_COLUMNS]
+        [LEFT => COLUMNS_LEFT, RIGHT => COLUMNS_RIGHT]
             "heading" "choose a heading to sort by";
         [Char('#') => SORT_BY_FIRST_POSE, Char('n') => SORT_BY_POSES,
             Char('c') => SORT_BY_PIECES, Char('h') => SORT_BY_HOLES,
@@ -241,7 +241,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN, PageUp => PAGE_UP, PageDown => PAGE_DOWN]
             "" "choose a descriptor";
         [Home => FIRST, End => LAST] "" "first, last descriptor";
-        [LEFT => EARLIER_COLUMNS, RIGHT => LATER_COLUMNS]
+        [LEFT => COLUMNS_LEFT, RIGHT => COLUMNS_RIGHT]
             "columns" "earlier, later columns";
         [Enter => HISTOGRAM] "histogram" "its histogram";
     }
@@ -275,7 +275,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN, PageUp => PAGE_UP, PageDown => PAGE_DOWN]
             "y axis" "choose the descriptor of the vertical axis";
         [Home => FIRST, End => LAST] "" "first, last descriptor for that axis";
-        [LEFT => EARLIER_COLUMNS, RIGHT => LATER_COLUMNS]
+        [LEFT => COLUMNS_LEFT, RIGHT => COLUMNS_RIGHT]
             "x axis" "choose the descriptor of the horizontal axis";
         [Char('/') => FILTER, Char('f') => FILTER]
             "filter" "show only imprints that fit, such as na>=40 holes=0";
