@@ -201,12 +201,13 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
 /// Returns a time in words: "about 20 seconds".
 pub fn about(time: Duration) -> String {
     let seconds = time.as_secs();
+    let rounded = |unit: u64| (seconds + unit / 2) / unit;
     let (number, unit) = match seconds {
         0 => return "under a second".to_owned(),
         1..100 => (seconds, "second"),
-        100..6_000 => (seconds / 60, "minute"),
-        6_000..172_800 => (seconds / 3_600, "hour"),
-        _ => (seconds / 86_400, "day"),
+        100..6_000 => (rounded(60), "minute"),
+        6_000..172_800 => (rounded(3_600), "hour"),
+        _ => (rounded(86_400), "day"),
     };
     format!("about {}", counted(number, unit))
 }
@@ -225,11 +226,11 @@ mod tests {
                 "under a second",
                 "about 1 second",
                 "about 99 seconds",
-                "about 1 minute",
-                "about 99 minutes",
+                "about 2 minutes",
+                "about 100 minutes",
                 "about 2 hours",
                 "about 2 days",
-                "about 4,629 days"
+                "about 4,630 days"
             ]
         );
     }

@@ -44,7 +44,7 @@ mod tests {
                 "less than a minute ago",
                 "about 60 seconds ago",
                 "about 12 minutes ago",
-                "about 4 days ago",
+                "about 5 days ago",
             ]
         );
     }
