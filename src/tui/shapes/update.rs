@@ -177,7 +177,7 @@ fn on_change(app: &mut App, change: LibraryEvent) {
 /// Returns how to restore a shape that is in the trash now.
 fn how_to_restore(app: &App, name: &str) -> String {
     let undo = app.key_of(&action::UNDO);
-    format!("{undo} now, or :restore {name} later, brings it back")
+    format!("{undo} restores it now, :restore {name} later")
 }
 
 /// Handles a save: the history notes the document as it was when the save was asked for.
@@ -212,7 +212,8 @@ fn offer(app: &mut App, before: &str, left: &Leftover) {
         "{before}There is unsaved work from last time{of}: {}.",
         left.what
     );
-    let answers = format!("({yes}: yes, {no}: to the trash, {later}: ask again next time)");
+    let answers =
+        format!("{yes} restores it, {no} moves it to the trash, {later} asks again next time");
     let question = Question {
         no: Some(Message::GiveUp),
         ..Question::new(format!("{text} Restore it? {answers}"), Message::Recover)

@@ -140,7 +140,7 @@ fn deleting_asks_and_can_be_undone() {
     then(
         &mut session,
         "nd<Enter>y",
-        &["one deleted; u now, or :restore one later, brings it back"],
+        &["one deleted; u restores it now, :restore one later"],
     );
     then(&mut session, "d", &["there are no shapes of your own"]);
     then(&mut session, "<Esc>u", &["one is back"]);

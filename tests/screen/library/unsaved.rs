@@ -106,7 +106,7 @@ fn all_unsaved_work_that_is_thrown_away_can_be_restored() {
     then(
         &mut later,
         "n",
-        &["the unsaved work is in the trash as unsaved 2; u now, or"],
+        &["the unsaved work is in the trash as unsaved 2; u restores it now"],
     );
     then(&mut later, "u", &["unsaved 2 is back"]);
     then(&mut later, "u", &["unsaved 1 is back"]);
