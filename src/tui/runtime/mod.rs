@@ -77,7 +77,7 @@ pub struct World {
     /// The reader of the library and of files.
     reader: Reader,
     /// The queue of reminders to write, which nobody waits for.
-    memories: DiskQueue,
+    reminder_writer: DiskQueue,
     /// Messages that come after the present one.
     later: VecDeque<Message>,
     /// Sweeps and exports in progress.
@@ -104,7 +104,7 @@ impl World {
         Self {
             writer: DiskQueue::new(library.clone()),
             reader: Reader::new(DiskQueue::new(library.clone())),
-            memories: DiskQueue::new(library),
+            reminder_writer: DiskQueue::new(library),
             later: VecDeque::new(),
             orphan: None,
             reminders: None,
@@ -160,7 +160,7 @@ impl World {
         self.journal.report_to(Arc::clone(&post));
         self.writer.post_to(Arc::clone(&post));
         self.reader.queue.post_to(Arc::clone(&post));
-        self.memories.post_to(Arc::clone(&post));
+        self.reminder_writer.post_to(Arc::clone(&post));
         self.workers.post_to(post);
         self
     }
@@ -263,15 +263,15 @@ impl World {
         }
         self.journal.note(app);
         if let Some(reminders) = &mut self.reminders {
-            reminders.note(app, &mut self.memories);
+            reminders.note(app, &mut self.reminder_writer);
         }
         terminal
     }
 
     /// Takes the answers to changes, if they have not been taken already.
     fn collect_changes(&mut self) {
-        // Memories have no answer.
-        while self.memories.wait(Duration::ZERO).is_some() {}
+        // Reminders have no answer.
+        while self.reminder_writer.wait(Duration::ZERO).is_some() {}
         while let Some(answer) = self.writer.wait(Duration::ZERO) {
             let message = self.answer(answer);
             self.later.extend(message);
@@ -432,9 +432,9 @@ impl World {
             self.take(app, answer, take);
         }
         lines.extend(self.finish_changes(app, saved_by, take));
-        while !self.memories.is_idle() {
+        while !self.reminder_writer.is_idle() {
             let time = saved_by.saturating_duration_since(Instant::now());
-            if self.memories.wait(time).is_none() {
+            if self.reminder_writer.wait(time).is_none() {
                 break;
             }
         }

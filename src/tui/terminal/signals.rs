@@ -14,7 +14,7 @@ use signal_hook::iterator::exfiltrator::SignalOnly;
 
 /// The signals that the program handles. Some have no meaning here; unhandled, they would end the program without
 /// restoring the terminal, so they end it like TERM.
-const HEARD: [i32; 14] = [
+const RECEIVED: [i32; 14] = [
     SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU,
     SIGABRT, SIGTSTP, SIGCONT, SIGWINCH,
 ];
@@ -45,7 +45,7 @@ impl SignalReceiver {
         let (read, write) = UnixStream::pair()?;
         read.set_nonblocking(true)?;
         write.set_nonblocking(true)?;
-        let delivery = SignalDelivery::with_pipe(read, write, SignalOnly, HEARD)?;
+        let delivery = SignalDelivery::with_pipe(read, write, SignalOnly, RECEIVED)?;
         Ok(Self { delivery })
     }
 
@@ -56,7 +56,7 @@ impl SignalReceiver {
 
     /// Returns the signals since the last call; those that end the program come first.
     pub(in crate::tui) fn received(&mut self) -> Vec<SignalEvent> {
-        let mut heard: Vec<SignalEvent> = self
+        let mut received: Vec<SignalEvent> = self
             .delivery
             .pending()
             .map(|signal| match signal {
@@ -66,7 +66,7 @@ impl SignalReceiver {
                 other => SignalEvent::End(other),
             })
             .collect();
-        heard.sort_by_key(|said| !matches!(said, SignalEvent::End(_)));
-        heard
+        received.sort_by_key(|event| !matches!(event, SignalEvent::End(_)));
+        received
     }
 }
