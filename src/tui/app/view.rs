@@ -18,7 +18,8 @@
 //! have the whole page. On a low screen the lines below the matrix are left out first. A screen that is too small for
 //! anything says so. Every pane accepts any rectangle, also an empty one.
 //!
-//! Views borrow what they draw, `&Theme` and `&Keymap`. Only this file and the lines at the foot see the whole state.
+//! A page borrows its own state, `&Theme` and `&Keymap`. What surrounds the pages reads the whole state: this file, the
+//! menu, the title, the matrix, the lines at the foot.
 
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
