@@ -11,8 +11,8 @@ pub enum ListColumn {
     FirstPose,
     /// The number of poses that leave it; their share has the same order.
     Poses,
-    /// The place of the first of these poses, along an axis.
-    Place(Axis),
+    /// The position of the first of these poses, along an axis.
+    Position(Axis),
     /// The number of pieces.
     Pieces,
     /// The number of holes.
@@ -23,9 +23,9 @@ pub enum ListColumn {
 
 impl ListColumn {
     /// Returns true if the largest comes first when rows are sorted by this column for the first time. Counts and
-    /// values begin with the largest, numbers and places with the smallest.
+    /// values begin with the largest, numbers and positions with the smallest.
     pub fn largest_first(self) -> bool {
-        !matches!(self, Self::FirstPose | Self::Place(_))
+        !matches!(self, Self::FirstPose | Self::Position(_))
     }
 
     /// Returns the numbers of all imprints of a sweep, sorted by this column. `values` are those of the chosen
@@ -37,13 +37,13 @@ impl ListColumn {
             Self::Pieces => SortKey::Pieces,
             Self::Holes => SortKey::Holes,
             Self::Value => SortKey::Value,
-            Self::Place(axis) => {
+            Self::Position(axis) => {
                 let range = sweep.grid.ranges()[axis];
                 let first_poses = sweep.atlas.first_poses();
-                let places =
+                let positions =
                     first_poses.map(|pose| Some(range.value(sweep.grid.index(pose)[axis])));
-                let places: Vec<Option<f64>> = places.collect();
-                return sorted(&sweep.atlas, &places, SortKey::Value, descending);
+                let positions: Vec<Option<f64>> = positions.collect();
+                return sorted(&sweep.atlas, &positions, SortKey::Value, descending);
             }
         };
         sorted(&sweep.atlas, values, key, descending)

@@ -29,7 +29,7 @@ const NUMBER: usize = 9;
 pub static PAGE: ResultsPage = ResultsPage {
     title: "histogram",
     context: Context::Histogram,
-    sifted: false,
+    filtered: false,
     drawing: None,
     table: Some(table),
     wheel: Wheel::Step,

@@ -41,7 +41,7 @@ const SIGN: usize = 2;
 pub static PAGE: ResultsPage = ResultsPage {
     title: "imprints",
     context: Context::Imprints,
-    sifted: true,
+    filtered: true,
     drawing: None,
     table: None,
     wheel: Wheel::Rows,
@@ -156,7 +156,7 @@ impl ImprintList {
     /// including the gap before it.
     pub fn columns(&self) -> Vec<(ListColumn, usize)> {
         let place = self.place.iter();
-        let place = place.map(|&(axis, width)| (ListColumn::Place(axis), width + 1));
+        let place = place.map(|&(axis, width)| (ListColumn::Position(axis), width + 1));
         let first = [
             (ListColumn::FirstPose, SIGN + self.id),
             (ListColumn::Poses, 1 + self.poses + 1 + SHARE),
@@ -236,7 +236,7 @@ fn draw_headings(theme: &Theme, results: &Results, list: &ImprintList, buffer: &
         let title = match column {
             ListColumn::FirstPose => "#",
             ListColumn::Poses => "poses",
-            ListColumn::Place(axis) => axis.parameter().row().short,
+            ListColumn::Position(axis) => axis.parameter().row().short,
             ListColumn::Pieces => "p",
             ListColumn::Holes => "h",
             ListColumn::Value => &key,

@@ -27,7 +27,7 @@ pub struct ResultsPage {
     /// The context in which its keys are looked up.
     pub context: Context,
     /// Whether it shows only the imprints that the filter keeps.
-    pub sifted: bool,
+    pub filtered: bool,
     /// The same for a file: None for a page that is a table.
     pub drawing: Option<PageDrawing>,
     /// Returns the numbers of the page for a CSV file. The field is None for pages with a drawing, and for the list of

@@ -21,7 +21,7 @@ fn results(app: &mut App) -> Option<&mut Results> {
 }
 
 /// Handles a message in the prompt for a filter, which stays open until the filter can be read.
-pub(crate) fn in_filter(
+pub(in crate::tui) fn in_filter(
     app: &mut App,
     mut dialog: FilterDialog,
     message: &Message,
@@ -54,7 +54,7 @@ pub(crate) fn in_filter(
 
 /// Returns the prompt for a letter. Shows a notice and returns None if there is nothing to mark or to go to. A mark
 /// belongs to a pose, so that it holds on every page and under every filter.
-pub(crate) fn mark_dialog(
+pub(in crate::tui) fn mark_dialog(
     app: &mut App,
     results: &Results,
     purpose: MarkPurpose,
@@ -92,7 +92,11 @@ fn what_lies_at(results: &Results, pose: u64) -> String {
 
 /// Handles a message in the prompt for a letter: a letter sets a mark or goes to it; another character is refused,
 /// and any other message closes the prompt.
-pub(crate) fn in_mark(app: &mut App, dialog: MarkDialog, message: &Message) -> Option<Effect> {
+pub(in crate::tui) fn in_mark(
+    app: &mut App,
+    dialog: MarkDialog,
+    message: &Message,
+) -> Option<Effect> {
     let Message::Type(letter) = *message else {
         return None;
     };

@@ -21,7 +21,7 @@ use crate::tui::explore::message::{ExplorePage, Findings, name_of};
 use crate::tui::widget::number::around;
 
 /// The first descriptor of the horizontal axis of the scatter plot: the perimeter `p`, by its index.
-const ACROSS: usize = 7;
+const X_FEATURE: usize = 7;
 
 /// The results of a sweep, and what is shown of them.
 #[derive(Clone, Debug)]
@@ -35,7 +35,7 @@ pub struct Results {
     /// The values of the chosen descriptor, by the imprints' numbers.
     values: Vec<Option<f64>>,
     /// The number of the descriptor of the scatter plot's horizontal axis, and its values by the imprints' numbers.
-    across: (usize, Vec<Option<f64>>),
+    x_feature: (usize, Vec<Option<f64>>),
     /// The imprints of each angle; None until the page of angles was opened and they were found.
     angle_curve: Option<Arc<AngleCurve>>,
     /// The zooms for which the imprints of each angle were requested last.
@@ -45,7 +45,7 @@ pub struct Results {
     /// The imprints that the map shows.
     visible_imprints: VisibleImprints,
     /// How many times the map was zoomed in, starting from its whole range.
-    closer: u8,
+    map_zoom: u8,
     /// The column that rows are sorted by, and whether the largest comes first.
     sort: (ListColumn, bool),
     /// The chosen heading, which the sort key sorts by.
@@ -78,12 +78,12 @@ impl Results {
             page: ExplorePage::Imprints,
             feature: 0,
             values: findings.sweep.atlas.values(0),
-            across: (ACROSS, findings.sweep.atlas.values(ACROSS)),
+            x_feature: (X_FEATURE, findings.sweep.atlas.values(X_FEATURE)),
             angle_curve: None,
             angles_asked: None,
             angles_failed: None,
             visible_imprints: VisibleImprints::default(),
-            closer: 0,
+            map_zoom: 0,
             order: findings.by_poses.clone(),
             findings,
             sort: (ListColumn::Poses, true),
@@ -97,7 +97,7 @@ impl Results {
             pose_index: PoseIndex::new([0; 5]),
             marks: BTreeMap::new(),
         };
-        results.sift();
+        results.apply_filter();
         results
     }
 
@@ -158,19 +158,19 @@ impl Results {
     }
 
     /// Returns the number of the descriptor of the scatter plot's horizontal axis.
-    pub fn across(&self) -> usize {
-        self.across.0
+    pub fn x_feature(&self) -> usize {
+        self.x_feature.0
     }
 
     /// Returns the values of that descriptor, by the imprints' numbers.
-    pub fn across_values(&self) -> &[Option<f64>] {
-        &self.across.1
+    pub fn x_values(&self) -> &[Option<f64>] {
+        &self.x_feature.1
     }
 
     /// Chooses the descriptor `by` further on for the scatter plot's horizontal axis; the first follows the last.
-    pub fn next_across(&mut self, by: i8) {
-        let number = around(self.across.0, by, features().len());
-        self.across = (number, self.sweep().atlas.values(number));
+    pub fn next_x_feature(&mut self, by: i8) {
+        let number = around(self.x_feature.0, by, features().len());
+        self.x_feature = (number, self.sweep().atlas.values(number));
     }
 
     /// Returns the imprints of each angle at the zooms of the map; None until a worker has found them.
@@ -214,13 +214,13 @@ impl Results {
     }
 
     /// Returns how many times the map was zoomed in.
-    pub fn closer(&self) -> u8 {
-        self.closer
+    pub fn map_zoom(&self) -> u8 {
+        self.map_zoom
     }
 
     /// Zooms the map in, or out if `by` is negative; `last` is the closest zoom.
     pub fn zoom_map(&mut self, by: i8, last: u8) {
-        self.closer = self.closer.min(last).saturating_add_signed(by).min(last);
+        self.map_zoom = self.map_zoom.min(last).saturating_add_signed(by).min(last);
     }
 
     /// Returns how many of all imprints are in the list, as text: `312 of 4,102`.
@@ -230,9 +230,9 @@ impl Results {
         format!("{} of {}", count(self.row_count()), count(all))
     }
 
-    /// Returns a summary of the sweep; it begins with a remark if the sweep is only a part. `sifted` is whether the
+    /// Returns a summary of the sweep; it begins with a remark if the sweep is only a part. `filtered` is whether the
     /// shown page follows the filter.
-    pub fn summary(&self, sifted: bool) -> String {
+    pub fn summary(&self, filtered: bool) -> String {
         let result = self.sweep();
         let all = result.grid.poses();
         let poses = if result.complete() {
@@ -242,7 +242,7 @@ impl Results {
             format!("a part: {done} of {}", counted(all, "pose"))
         };
         let what = name_of(result.grid.source());
-        if sifted && !self.filter.is_empty() {
+        if filtered && !self.filter.is_empty() {
             let kept = self.kept_of_all();
             return format!("{what}: {poses}, {kept} distinct imprints: {}", self.filter);
         }
@@ -295,7 +295,7 @@ impl Results {
         } else {
             filter.keeps(&self.sweep().atlas)
         };
-        self.sift();
+        self.apply_filter();
     }
 
     /// Returns true if the filter keeps an imprint.
@@ -320,12 +320,12 @@ impl Results {
     fn arrange(&mut self) {
         let (by, descending) = self.sort;
         self.order = by.order(self.sweep(), &self.values, descending);
-        self.sift();
+        self.apply_filter();
     }
 
     /// Filters the rows, and keeps the selected imprint selected; if the filter removes it, a row at about the same
     /// place is selected.
-    fn sift(&mut self) {
+    fn apply_filter(&mut self) {
         let selected = self.rows.get(self.selected).copied();
         let rows = self.order.iter().copied();
         self.rows = rows.filter(|&id| self.keeps(id)).collect();
@@ -625,8 +625,8 @@ mod tests {
         let mut results = results();
         let shown = [
             ListColumn::FirstPose,
-            ListColumn::Place(Axis::X0),
-            ListColumn::Place(Axis::Angle),
+            ListColumn::Position(Axis::X0),
+            ListColumn::Position(Axis::Angle),
         ];
         results.move_heading(1, &shown);
         assert_eq!(results.heading(), shown[0], "that of poses is not shown");

@@ -33,7 +33,7 @@ const VALUE: usize = 9;
 pub static PAGE: ResultsPage = ResultsPage {
     title: "scatter",
     context: Context::Scatter,
-    sifted: true,
+    filtered: true,
     drawing: Some(drawing),
     table: None,
     wheel: Wheel::Step,
@@ -45,7 +45,7 @@ pub static PAGE: ResultsPage = ResultsPage {
 /// Chooses a descriptor, or selects an imprint.
 fn update(results: &mut Results, message: &Message, page: Rect) {
     match *message {
-        Message::Explore(ExploreMessage::Columns(by)) => results.next_across(by),
+        Message::Explore(ExploreMessage::Columns(by)) => results.next_x_feature(by),
         Message::Select(row) => results.select(row),
         _ => choose_descriptor(results, message, page),
     }
@@ -54,7 +54,7 @@ fn update(results: &mut Results, message: &Message, page: Rect) {
 /// Returns an imprint's values, horizontal and vertical; None if it lacks one.
 fn point(results: &Results, entry: &AtlasEntry) -> Option<(f64, f64)> {
     let index = usize::try_from(entry.id).ok()?;
-    let [x, y] = [results.across_values(), results.values()];
+    let [x, y] = [results.x_values(), results.values()];
     Some(((*x.get(index)?)?, (*y.get(index)?)?))
 }
 
@@ -100,7 +100,7 @@ fn click(results: &Results, page: Rect, at: Position) -> Option<Message> {
 
 /// Returns the title: both descriptors, and the number of imprints.
 fn title(results: &Results, count: usize) -> String {
-    let (x, y) = (&features()[results.across()], results.feature());
+    let (x, y) = (&features()[results.x_feature()], results.feature());
     format!(
         "{}: {} against {}: {}; {}",
         y.key,
@@ -131,8 +131,8 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
         draw_no_room(theme, buffer, page);
         return None;
     };
-    let across = features()[results.across()].key.as_str();
-    field.draw_axes(theme, buffer, [results.feature().key.as_str(), across]);
+    let x_key = features()[results.x_feature()].key.as_str();
+    field.draw_axes(theme, buffer, [results.feature().key.as_str(), x_key]);
     let style = theme.style(Role::Chosen);
     let all = points.iter().map(|(_, point)| *point);
     field.draw_points(theme, buffer, all, style);
@@ -154,8 +154,8 @@ fn detail(theme: &Theme, results: &Results, entry: &AtlasEntry) -> String {
     format!(
         "imprint {}: {} {}, {} {}; {}",
         entry.id,
-        features()[results.across()].key,
-        formatted(results.across_values()),
+        features()[results.x_feature()].key,
+        formatted(results.x_values()),
         results.feature().key,
         formatted(results.values()),
         counted(entry.count, "pose")
@@ -168,7 +168,7 @@ fn drawing(results: &Results, format: DrawingFormat) -> Option<Result<Vec<u8>, S
     if points.is_empty() {
         return None;
     }
-    let (x, y) = (&features()[results.across()], results.feature());
+    let (x, y) = (&features()[results.x_feature()], results.feature());
     let label =
         |feature: &crate::atlas::Feature| format!("{}: {}", feature.key, feature.descriptor.name);
     let mut plot = PointPlot::new(&label(x), &label(y))

@@ -27,7 +27,7 @@ use crate::tui::widget::write::{self, below, first_of};
 pub static PAGE: ResultsPage = ResultsPage {
     title: "statistics",
     context: Context::Statistics,
-    sifted: false,
+    filtered: false,
     drawing: None,
     table: Some(table),
     wheel: Wheel::Rows,

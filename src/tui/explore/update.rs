@@ -29,7 +29,7 @@ use crate::tui::runtime::effect::Effect;
 
 /// Handles a message over the results. The page was taken off the stack: an arm that opens another page puts it back
 /// first, below that one. Closed results are kept, and Explore opens them again for the same shape.
-pub(crate) fn in_results(
+pub(in crate::tui) fn in_results(
     app: &mut App,
     mut results: Box<Results>,
     message: Message,
@@ -75,10 +75,10 @@ pub(crate) fn in_results(
                 change_view(app, &mut results, asked);
             }
             let page = page_area(app, &results);
-            let before = results.closer();
+            let before = results.map_zoom();
             (pages::row(results.page()).update)(&mut results, &message, page);
             if let (Message::Zoom(by), ExplorePage::Map) = (&message, results.page())
-                && results.closer() == before
+                && results.map_zoom() == before
             {
                 let end = ["this is the whole range", "every pose has its letter"];
                 inform(app, end[usize::from(*by > 0)]);
@@ -239,7 +239,7 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
 
 /// Handles a message in the prompt for the name of a file. The prompt serves the pages of Explore and the curve of
 /// the page of sizes; a refused name stays in it.
-pub(crate) fn in_export(
+pub(in crate::tui) fn in_export(
     app: &mut App,
     mut dialog: ExportDialog,
     message: &Message,

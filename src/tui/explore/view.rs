@@ -52,7 +52,7 @@ impl Page for Results {
             };
             write::line(buffer, area, theme, [(title.as_str(), role)]);
         }
-        let summary = self.summary(pages::row(self.page()).sifted);
+        let summary = self.summary(pages::row(self.page()).filtered);
         write::line(
             buffer,
             parts.summary,

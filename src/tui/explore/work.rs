@@ -34,7 +34,7 @@ use crate::tui::explore::view::ResultPanes;
 use crate::tui::runtime::effect::{Effect, FileRequest, Work};
 
 /// Handles a request by a key, a command or an answered question.
-pub(crate) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
+pub(in crate::tui) fn act(app: &mut App, asked: ExploreMessage) -> Option<Effect> {
     match asked {
         ExploreMessage::Open => open(app),
         ExploreMessage::Ranges => open_ranges(app),
@@ -158,7 +158,7 @@ fn begin(app: &mut App, job: WorkKind) -> u64 {
 }
 
 /// Handles a message in the form of ranges.
-pub(crate) fn in_ranges(
+pub(in crate::tui) fn in_ranges(
     app: &mut App,
     mut form: Box<RangesForm>,
     message: Message,
@@ -186,7 +186,11 @@ pub(crate) fn in_ranges(
 /// Handles a message over work in progress. Closing the page stops the work; the page stays until the worker has
 /// answered, because only then is it known what is complete. Quitting meanwhile ends the program at once: nothing
 /// else would while a worker hangs, and unsaved work is offered at the next start.
-pub(crate) fn in_running(app: &mut App, mut running: Running, message: &Message) -> Option<Effect> {
+pub(in crate::tui) fn in_running(
+    app: &mut App,
+    mut running: Running,
+    message: &Message,
+) -> Option<Effect> {
     let stops = matches!(
         message,
         Message::Explore(ExploreMessage::Stop) | Message::Cancel | Message::Quit

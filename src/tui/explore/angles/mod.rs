@@ -38,7 +38,7 @@ const LEGEND: &str = "  line: mean, dashes: min, max";
 pub static PAGE: ResultsPage = ResultsPage {
     title: "angles",
     context: Context::Angles,
-    sifted: false,
+    filtered: false,
     drawing: Some(drawing),
     table: None,
     wheel: Wheel::Step,

@@ -30,7 +30,7 @@ use crate::tui::keys::binding::Context;
 pub static PAGE: ResultsPage = ResultsPage {
     title: "map",
     context: Context::Map,
-    sifted: false,
+    filtered: false,
     drawing: Some(view::drawing),
     table: None,
     wheel: Wheel::Rows,
