@@ -89,7 +89,7 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
     );
     assert_eq!(
         shelf.does("library|delete|My Ring", ""),
-        "deleted my ring; taxel library restore NAME brings it back\n"
+        "deleted my ring; to restore it: taxel library restore 'my ring'\n"
     );
     shelf.refuses("library|show|my ring", "no shape is called \"my ring\"");
     shelf.refuses("library|delete|my ring", "no shape is called \"my ring\"");
@@ -118,6 +118,24 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
     assert_eq!(shelf.does("library|check|--json", ""), "[]\n");
     let path = shelf.does("library|path", "");
     assert_eq!(path, format!("{}\n", shelf.folder.display()));
+}
+
+/// A Chinese character takes two columns of the terminal.
+#[test]
+fn a_table_is_aligned_below_wide_names() {
+    let shelf = Shelf::new();
+    shelf.does("library|save|字字字|-", RING);
+    shelf.does("library|save|sixteen letters.|-", RING);
+    let list = shelf.does("library|list", "");
+    let lines: Vec<&str> = list.lines().take(3).collect();
+    assert_eq!(
+        lines,
+        [
+            "name              origin      size   NA  pieces  holes",
+            "sixteen letters.  own        4 × 3    6       1      1",
+            "字字字            own        4 × 3    6       1      1",
+        ]
+    );
 }
 
 #[test]

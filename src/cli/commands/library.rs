@@ -11,6 +11,7 @@
 
 use std::ffi::OsStr;
 use std::fmt::{self, Write};
+use std::iter;
 use std::path::Path;
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -157,16 +158,15 @@ pub(crate) fn list(shelf: &Shelf, as_json: bool, charset: Charset) -> Result<Str
     if as_json {
         return Ok(json::ascii(&lines) + "\n");
     }
-    let names: Vec<_> = lines.iter().map(|line| charset.line(&line.name)).collect();
-    let widths = names.iter().map(|name| name.chars().count());
-    let width = widths.fold("name".len(), usize::max);
+    let names = lines.iter().map(|line| &*line.name);
+    let column = charset.column(iter::once("name").chain(names));
     let mut text = format!(
-        "{:width$}  origin   {:>7}   NA  pieces  holes\n",
-        "name", "size"
+        "{}  origin   {:>7}   NA  pieces  holes\n",
+        column[0], "size"
     );
-    for (line, name) in lines.iter().zip(names) {
+    for (line, name) in lines.iter().zip(&column[1..]) {
         // Cannot fail: the text is kept in memory.
-        let _ = write!(text, "{name:width$}  {:<7}  ", line.origin());
+        let _ = write!(text, "{name}  {:<7}  ", line.origin());
         let _ = match &line.found {
             Ok(summary) => {
                 let size = format!("{} × {}", summary.columns, summary.rows);
@@ -235,8 +235,9 @@ fn in_order(error: CliError, file: &str) -> CliError {
 pub(crate) fn delete(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     let deleted = shelf.library()?.delete(name);
     let name = deleted.map_err(|error| shelf.refused(error))?;
+    let argument = as_argument(&name);
     Ok(format!(
-        "deleted {name}; taxel library restore NAME brings it back\n"
+        "deleted {name}; to restore it: taxel library restore {argument}\n"
     ))
 }
 

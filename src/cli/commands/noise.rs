@@ -15,6 +15,7 @@
 //! after `±`. The same seed gives the same numbers with any number of threads.
 
 use std::fmt::Write;
+use std::iter;
 use std::sync::OnceLock;
 use std::sync::atomic::Ordering;
 
@@ -385,7 +386,7 @@ pub(crate) fn touches(
     Ok(if asked.json {
         touches_json(asked, &shapes, all) + "\n"
     } else {
-        charset.lines(&touches_text(asked, &shapes, all))
+        touches_text(asked, &shapes, all, charset)
     })
 }
 
@@ -437,16 +438,17 @@ fn touches_text(
     asked: &TouchesArguments,
     shapes: &[(&str, &TouchesUntil)],
     (mean, error): (Option<f64>, Option<f64>),
+    charset: Charset,
 ) -> String {
-    let widths = shapes.iter().map(|(name, _)| name.chars().count());
-    let width = widths.fold("all shapes".len(), usize::max);
+    let names = shapes.iter().map(|(name, _)| *name);
+    let column = charset.column(iter::once("all shapes").chain(names));
     let mut text = format!(
         "touches until a shape is {} probable; {} each, seed {}\n",
         percent(asked.until),
         counted(asked.runs, "run"),
         asked.seed
     );
-    for (name, own) in shapes {
+    for ((_, own), name) in shapes.iter().zip(&column[1..]) {
         let left = match own.runs - own.reached {
             0 => String::new(),
             more => {
@@ -457,11 +459,10 @@ fn touches_text(
         };
         let value = with_error(own.mean, own.standard_error);
         // Cannot fail: the text is kept in memory.
-        let _ = writeln!(text, "  {name:<width$}  {value}{left}");
+        let _ = writeln!(text, "  {name}  {value}{left}");
     }
-    let value = with_error(mean, error);
-    let _ = writeln!(text, "  {:<width$}  {value}", "all shapes");
-    text
+    let _ = writeln!(text, "  {}  {}", column[0], with_error(mean, error));
+    charset.lines(&text)
 }
 
 /// Formats a mean and its standard error, which may be missing.

@@ -182,17 +182,12 @@ impl AnswerText<'_> {
     fn ranking(&self, charset: Charset) -> String {
         let top = self.top.unwrap_or(SHOWN);
         let shown = self.answer.ranking.iter().take(top);
-        let width = shown
-            .clone()
-            .map(|&(shape, _)| self.name(shape).chars().count())
-            .max();
-        let width = width.unwrap_or(0);
+        let names = charset.column(shown.clone().map(|&(shape, _)| self.name(shape)));
         let mut text = String::new();
-        for &(shape, probability) in shown {
-            let (name, percent) = (self.name(shape), percent(probability));
-            let bar = bar(probability, BAR, charset);
+        for (name, &(_, probability)) in names.iter().zip(shown) {
+            let (bar, percent) = (bar(probability, BAR, charset), percent(probability));
             // Cannot fail: the text is kept in memory.
-            let _ = writeln!(text, "  {name:<width$}  {bar:<BAR$}  {percent:>7}");
+            let _ = writeln!(text, "  {name}  {bar:<BAR$}  {percent:>7}");
         }
         let rest = self.answer.ranking.len().saturating_sub(top);
         if rest > 0 {

@@ -6,8 +6,10 @@
 
 use std::borrow::Cow;
 use std::ffi::OsString;
+use std::iter;
 
 use crate::quote::is_invisible;
+use crate::tui::widget::columns::width;
 use crate::tui::widget::theme::spelling;
 
 /// The characters that may be written.
@@ -81,6 +83,19 @@ impl Charset {
         lines.join("\n")
     }
 
+    /// Converts the cells of a column and pads them on the right to one width. A wide character, as in `字`, takes two
+    /// columns of the terminal.
+    pub(crate) fn column<'a>(self, cells: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+        let converted = cells.into_iter().map(|cell| self.line(cell).into_owned());
+        let mut column: Vec<String> = converted.collect();
+        let widest = column.iter().map(|cell| width(cell)).max();
+        for cell in &mut column {
+            let missing = widest.map_or(0, |widest| widest - width(cell));
+            cell.extend(iter::repeat_n(' ', missing));
+        }
+        column
+    }
+
     /// Returns true if a character can be written as it is.
     fn has(self, character: char) -> bool {
         match self {
@@ -140,5 +155,13 @@ mod tests {
             "a\\u{61c}\\u{ad}\\u{206e}\\u{fff9}\\u{e0041}\\u{3164}"
         );
         assert_eq!(Charset::Ascii.lines("a\nb…\n"), "a\nb...\n");
+    }
+
+    #[test]
+    fn the_cells_of_a_column_are_equally_wide() {
+        let column = |charset: Charset| charset.column(["字", "bar", ""]);
+        assert_eq!(column(Charset::Unicode), ["字 ", "bar", "   "]);
+        assert_eq!(column(Charset::Ascii), ["\\u{5b57}", "bar     ", "        "]);
+        assert_eq!(Charset::Ascii.column([]), [""; 0]);
     }
 }

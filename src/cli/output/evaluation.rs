@@ -27,6 +27,7 @@ use crate::parameter::number::share;
 use crate::recognition::{
     Classifier, ClassifierEvaluation, ConfusionMatrix, Evaluation, ShapeDescriptor,
 };
+use crate::tui::widget::columns::width;
 
 /// An evaluation as a JSON object, with its keys in the order of the documentation.
 pub(crate) struct EvaluationJson<'a> {
@@ -195,11 +196,8 @@ pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
     };
     let shapes = labels.len();
     let numbers = shapes.to_string().len();
-    let name = labels
-        .iter()
-        .map(|label| label.chars().count())
-        .max()
-        .unwrap_or_default();
+    let names = charset.column(labels.iter().map(String::as_str));
+    let name = names.first().map_or(0, |name| width(name));
     let mut widths = Vec::new();
     for column in 0..shapes {
         let cells = (0..shapes).map(|row| cell(row, column).chars().count());
@@ -210,8 +208,8 @@ pub(crate) fn matrix(evaluation: &Evaluation, charset: Charset) -> String {
         let _ = write!(text, " {:>1$} ", column + 1, width - 1);
     }
     text += "   recall\n";
-    for (row, label) in labels.iter().enumerate() {
-        let _ = write!(text, "{:>numbers$} {label:<name$}", row + 1);
+    for (row, label) in names.iter().enumerate() {
+        let _ = write!(text, "{:>numbers$} {label}", row + 1);
         for (column, width) in widths.iter().enumerate() {
             let _ = write!(text, " {:>width$}", cell(row, column));
         }
@@ -385,19 +383,16 @@ pub(crate) fn features(reached: Option<&ClassifierEvaluation>) -> String {
 /// Returns the errors of pairs, in percent. The matrix is symmetric: each entry is the error of the best classifier
 /// if there were only these two shapes.
 pub(crate) fn pairs(labels: &[String], errors: &[Vec<f64>], charset: Charset) -> String {
-    let name = labels
-        .iter()
-        .map(|label| label.chars().count())
-        .max()
-        .unwrap_or_default();
+    let names = charset.column(labels.iter().map(String::as_str));
+    let name = names.first().map_or(0, |name| width(name));
     let numbers = labels.len().to_string().len();
     let mut text = format!("{:1$}", "", name + numbers + 1);
     for column in 1..=labels.len() {
         let _ = write!(text, " {column:>6}");
     }
     text.push('\n');
-    for (row, (label, errors)) in labels.iter().zip(errors).enumerate() {
-        let _ = write!(text, "{:>numbers$} {label:<name$}", row + 1);
+    for (row, (label, errors)) in names.iter().zip(errors).enumerate() {
+        let _ = write!(text, "{:>numbers$} {label}", row + 1);
         for (column, error) in errors.iter().enumerate() {
             let cell = if row == column {
                 String::from("-")

@@ -16,6 +16,7 @@
 //! another block below. Lengths are in cells; if the pitch is known, another row gives them in mm.
 
 use std::fmt::Write;
+use std::iter;
 
 use crate::cli::output::charset::Charset;
 use crate::description::{DESCRIPTORS, Description, Descriptor, Dimension, RegionKind, regions};
@@ -161,17 +162,8 @@ fn table_rows(pitch: Option<f64>, holes: bool) -> Vec<TableRow> {
 /// Returns the left column of the table, padded to one width; the first cell, above the labels, is empty.
 fn labels(descriptions: &[Description], pitch: Option<f64>, charset: Charset) -> Vec<String> {
     let holes = descriptions.iter().any(|it| it.kind == RegionKind::Hole);
-    let mut labels = vec![String::new()];
-    labels.extend(
-        table_rows(pitch, holes)
-            .iter()
-            .map(|row| charset.line(&row.label).into_owned()),
-    );
-    let width = widest(&labels);
-    labels
-        .iter()
-        .map(|label| format!("{label:<width$}"))
-        .collect()
+    let rows = table_rows(pitch, holes);
+    charset.column(iter::once("").chain(rows.iter().map(|row| &*row.label)))
 }
 
 /// Returns the width of the widest cell, in characters.
