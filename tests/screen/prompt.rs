@@ -72,6 +72,7 @@ fn the_cursor_and_the_shape_are_moved_by_commands() {
             "figure hexagon --side 3 --angle 5 --side 4",
             "! --side is given twice",
         ),
+        ("figure hexagon ----side 3", "! ----side is unknown"),
     ] {
         let session = session(&format!("f<Enter>:{line}<Enter>"));
         shows(&session, &[shown]);

@@ -207,7 +207,7 @@ fn numbers(
     parameters: &[Parameter],
     sensor: &Sensor,
 ) -> Result<Vec<(Parameter, f64)>, String> {
-    let known = |flag: &str| Parameter::from_flag(flag.trim_start_matches("--"));
+    let known = |flag: &str| Parameter::from_flag(flag.strip_prefix("--")?);
     let names: Vec<String> = parameters.iter().copied().map(flag_of).collect();
     let number = |(_, parameter, text): Flag<'_, Parameter>| {
         let value = sensor.read(parameter, text);
