@@ -173,7 +173,7 @@ impl Surroundings {
             Request::Help(text) => print(&charset.lines(&text))?,
             Request::Settings => print(&self.settings.text(charset))?,
             Request::Script(asked) => script::run(&asked, &self.settings, shelf, charset)?,
-            Request::Completions(shell) => write(&completions::script(shell, definitions::all()))?,
+            Request::Completions(shell) => print(&completions::script(shell, definitions::all()))?,
             Request::Man(None) => write(&man::main_page()?)?,
             Request::Man(Some(folder)) => {
                 print(&(charset.line(&man::write(&folder)?).into_owned() + "\n"))?;

@@ -300,6 +300,8 @@ fn bash_completes_names_of_shapes_and_models() {
         (&["model", "confusion", "fig"], "figures\nfigures-30\n"),
         (&["model", "delete", ""], "parts\n"),
         (&["recognise", "washer", "--model", "pa"], "parts\n"),
+        (&["recognize", "wa"], "washer\n"),
+        (&["watch", "-", "--min-taxels", "2", "--model", "pa"], "parts\n"),
         (&["watch", "-", "--model", "=", "pa"], "parts\n"),
         (&["model", "separate", "pa"], "parts\n"),
         // Files, which bash completes itself, and flags.
@@ -362,6 +364,7 @@ fn bash_completes_commands_kinds_and_flags() {
         ("taxel figure hex", &["hexagon"]),
         ("taxel figure --radius-", &["--radius-x", "--radius-y"]),
         ("taxel library re", &["restore"]),
+        ("taxel recognize --mod", &["--model"]),
         ("taxel --theme ", &["dark", "light", "mono"]),
     ] {
         let found = offered(line);

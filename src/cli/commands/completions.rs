@@ -3,18 +3,20 @@
 //! they complete; if no name fits, they offer files.
 
 use std::collections::BTreeSet;
+use std::iter;
 
 use clap::Command;
 use clap::builder::PossibleValue;
-use clap_complete::generate;
 use clap_complete::shells::{Bash, Fish, Zsh};
+use clap_complete::{Generator, generate};
 
 use crate::cli::arguments::program::Shell;
+use crate::storage::ModelChoice;
 
 /// The end of the script for bash, which adds names to clap's completions. `VALUES` is replaced by all flags with a
-/// value, which are not arguments of a command. The names are those of the folder that `--library` names on the line,
-/// or else of the user's library. A blank in a name is escaped, unless the word starts with a quotation mark, which
-/// is not part of the text that bash replaces.
+/// value, which are not arguments of a command, and `SETS` by the built-in models. The names are those of the folder
+/// that `--library` names on the line, or else of the user's library. A blank in a name is escaped, unless the word
+/// starts with a quotation mark, which is not part of the text that bash replaces.
 const NAMES_OF_BASH: &str = r#"
 _taxel_names() {
     _taxel "$@"
@@ -52,7 +54,7 @@ _taxel_names() {
         *)
             ((${#words[@]} == 0)) || return 0
             case "$command" in
-                picture | describe | export | recognise | "library show") kinds="shapes" ;;
+                picture | describe | export | recogni[sz]e | "library show") kinds="shapes" ;;
                 "library delete") kinds="own" ;;
                 "library restore") kinds="deleted" ;;
                 "model show" | "model confusion" | "model touches") kinds="models sets" ;;
@@ -83,7 +85,7 @@ _taxel_names() {
             own) taxel library list --names --own "${library[@]}" ;;
             deleted) taxel library list --names --deleted "${library[@]}" ;;
             models) taxel model list --names "${library[@]}" ;;
-            sets) printf '%s\n' figures figures-30 shapes ;;
+            sets) printf '%s\n' SETS ;;
         esac 2> /dev/null
     done)
 }
@@ -91,7 +93,7 @@ _taxel_names() {
 complete -F _taxel_names -o bashdefault -o default taxel
 "#;
 
-/// The functions for zsh that offer names of one kind, or files.
+/// The functions for zsh that offer names of one kind, or files. `SETS` is replaced by the built-in models.
 const NAMES_OF_ZSH: &str = r#"(( $+functions[_taxel_names] )) ||
 _taxel_names() {
     local kind=$1
@@ -107,7 +109,7 @@ _taxel_names() {
     folder=${(Q)folder}
     [[ -n $folder ]] && library=(--library "${folder/#\~/$HOME}")
     names=(${(f)"$(_call_program names taxel $@ --names ${(q)library} 2> /dev/null)"})
-    [[ $kind == set ]] && names+=(figures figures-30 shapes)
+    [[ $kind == set ]] && names+=(SETS)
     _alternative "names:$kind:compadd -a names" 'files:file:_files'
 }
 _taxel_shapes() { _taxel_names shape library list }
@@ -131,7 +133,7 @@ const ARGUMENTS_OF_ZSH: [(&str, &str); 8] = [
     ("'--model=[", "sets"),
 ];
 
-/// The end of the script for fish, which escapes what it inserts.
+/// The end of the script for fish, which escapes what it inserts. `SETS` is replaced by the built-in models.
 const NAMES_OF_FISH: &str = r#"
 function __fish_taxel_names
     set -l words (commandline -opc)
@@ -149,9 +151,9 @@ function __fish_taxel_names
 end
 function __fish_taxel_sets
     __fish_taxel_names model list
-    printf '%s\n' figures figures-30 shapes
+    printf '%s\n' SETS
 end
-complete -c taxel -n "__fish_taxel_using_subcommand picture describe export recognise" -a "(__fish_taxel_names library list)" -d shape
+complete -c taxel -n "__fish_taxel_using_subcommand picture describe export recognise recognize" -a "(__fish_taxel_names library list)" -d shape
 complete -c taxel -n "__fish_taxel_using_subcommand library; and __fish_seen_subcommand_from show save" -a "(__fish_taxel_names library list)" -d shape
 complete -c taxel -n "__fish_taxel_using_subcommand library; and __fish_seen_subcommand_from delete" -a "(__fish_taxel_names library list --own)" -d shape
 complete -c taxel -n "__fish_taxel_using_subcommand library; and __fish_seen_subcommand_from restore" -a "(__fish_taxel_names library list --deleted)" -d shape
@@ -160,16 +162,16 @@ complete -c taxel -n "__fish_taxel_using_subcommand model; and __fish_seen_subco
 complete -c taxel -n "__fish_taxel_using_subcommand model; and __fish_seen_subcommand_from delete" -a "(__fish_taxel_names model list)" -d model
 complete -c taxel -n "__fish_taxel_using_subcommand sweep" -l picture -r -a "(__fish_taxel_names library list)" -d shape
 complete -c taxel -n "__fish_taxel_using_subcommand recognise" -l mask -r -a "(__fish_taxel_names library list)" -d shape
-complete -c taxel -n "__fish_taxel_using_subcommand recognise frames watch" -l model -r -a "(__fish_taxel_sets)" -d model
+complete -c taxel -n "__fish_taxel_using_subcommand recognise recognize frames watch" -l model -r -a "(__fish_taxel_sets)" -d model
 "#;
 
-/// Changes clap's script for zsh, so that it offers names in place of files.
-fn names_of_zsh(script: &str) -> String {
+/// Changes clap's script for zsh, so that it offers names in place of files. `functions` offer them.
+fn names_of_zsh(script: &str, functions: &str) -> String {
     let mut changed = String::new();
     let (mut command, mut kind) = ("", None);
     for line in script.lines() {
         if line.starts_with("if [ \"$funcstack[1]\"") {
-            changed += NAMES_OF_ZSH;
+            changed += functions;
         }
         // A subcommand is a case of the script.
         if let Some(name) = line
@@ -201,36 +203,62 @@ fn flags_with_value(command: &Command) -> BTreeSet<String> {
     let own = command
         .get_arguments()
         .filter(|argument| argument.get_action().takes_values());
-    let own = own.filter_map(|argument| argument.get_long());
+    let own = own.flat_map(|argument| {
+        let aliases = argument.get_all_aliases().into_iter().flatten();
+        argument.get_long().into_iter().chain(aliases)
+    });
     let flags = own.map(|flag| format!("--{flag}"));
     let inner = command.get_subcommands().flat_map(flags_with_value);
     flags.chain(inner).collect()
 }
 
-/// Returns the completions of all commands, as a script for a shell.
-pub(crate) fn script(shell: Shell, mut all: Command) -> Vec<u8> {
-    let (mut script, name) = (Vec::new(), "taxel");
-    match shell {
-        Shell::Bash => {
-            generate(Bash, &mut all, name, &mut script);
-            let values: Vec<String> = flags_with_value(&all).into_iter().collect();
-            script.extend(
-                NAMES_OF_BASH
-                    .replace("VALUES", &values.join(" "))
-                    .into_bytes(),
-            );
-        }
-        Shell::Zsh => {
-            generate(Zsh, &mut all, name, &mut script);
-            script = names_of_zsh(&String::from_utf8_lossy(&script)).into_bytes();
-        }
-        Shell::Fish => {
-            generate(Fish, &mut all, name, &mut script);
-            script.extend(words_of_fish(&all).into_bytes());
-            script.extend(NAMES_OF_FISH.as_bytes());
-        }
+/// Lets a script complete after an alias of a command, such as `recognize`: clap leaves these out, since it does not
+/// offer them. `case` is the script's pattern for a name, in which more names are separated by `or`.
+fn with_aliases(
+    mut script: String,
+    all: &Command,
+    case: impl Fn(&str) -> String,
+    or: &str,
+) -> String {
+    for command in all.get_subcommands() {
+        let name = command.get_name();
+        let names: Vec<&str> = iter::once(name).chain(command.get_all_aliases()).collect();
+        script = script.replace(&case(name), &case(&names.join(or)));
     }
     script
+}
+
+/// Returns clap's completions of all commands, as a script for a shell.
+fn generated(shell: impl Generator, all: &mut Command) -> String {
+    let mut script = Vec::new();
+    generate(shell, all, "taxel", &mut script);
+    String::from_utf8_lossy(&script).into_owned()
+}
+
+/// Returns the completions of all commands, as a script for a shell.
+pub(crate) fn script(shell: Shell, mut all: Command) -> String {
+    let sets = ModelChoice::BUILT_IN.map(|set| set.name().to_owned());
+    let with_sets = |text: &str| text.replace("SETS", &sets.join(" "));
+    match shell {
+        Shell::Bash => {
+            let script = generated(Bash, &mut all);
+            let case = |names: &str| format!("taxel,{names})");
+            let values: Vec<String> = flags_with_value(&all).into_iter().collect();
+            with_aliases(script, &all, case, " | taxel,")
+                + &with_sets(NAMES_OF_BASH).replace("VALUES", &values.join(" "))
+        }
+        Shell::Zsh => {
+            let script = generated(Zsh, &mut all);
+            let case = |names: &str| format!("\n({names})\n");
+            let script = with_aliases(script, &all, case, "|");
+            names_of_zsh(&script, &with_sets(NAMES_OF_ZSH))
+        }
+        Shell::Fish => {
+            let script = generated(Fish, &mut all) + &words_of_fish(&all);
+            let case = |names: &str| format!("__fish_taxel_using_subcommand {names}\"");
+            with_aliases(script + &with_sets(NAMES_OF_FISH), &all, case, " ")
+        }
+    }
 }
 
 /// Returns the words that commands take as arguments, for fish: clap's script has only commands and flags.
