@@ -249,7 +249,7 @@ fn kind(expected: &str) -> &str {
 }
 
 #[cfg(test)]
-mod parser_tests {
+mod tests {
     use super::*;
     use std::collections::BTreeMap;
 
@@ -301,12 +301,7 @@ mod parser_tests {
             "side: 99 is out of range"
         );
     }
-}
-
-#[cfg(all(test, feature = "tui"))]
-mod tests {
-    use super::*;
-
+    #[cfg(feature = "tui")]
     #[test]
     fn a_value_without_a_json_form_is_an_error_object() {
         let no_text_key = std::collections::BTreeMap::from([((1, 2), 3)]);

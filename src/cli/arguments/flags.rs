@@ -326,3 +326,29 @@ pub(super) fn unhandled_subcommand(name: &str) -> CliError {
     let message = format!("{name:?} is not implemented; this is a bug\n");
     clap::Error::raw(ErrorKind::InvalidSubcommand, message).into()
 }
+
+/// Defines the required argument `MODEL`: the name of a model beside the library, or its file.
+pub(super) fn which_model() -> Arg {
+    Arg::new("model")
+        .value_name("MODEL")
+        .required(true)
+        .value_parser(name_or_path())
+        .help("Name of a model, or its file")
+}
+
+/// Defines `--seed`. The same seed draws the same touches with any number of threads.
+pub(super) fn seed() -> Arg {
+    option("seed", "N", "Seed of the random numbers; default 0")
+        .value_parser(whole::<u64>(0..))
+        .default_value("0")
+        .hide_default_value(true)
+}
+
+/// Returns the value of a flag, or its default.
+pub(super) fn number_of<T: Copy + Send + Sync + 'static>(
+    matches: &ArgMatches,
+    id: &str,
+    default: T,
+) -> T {
+    matches.get_one(id).copied().unwrap_or(default)
+}

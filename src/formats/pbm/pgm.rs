@@ -4,7 +4,8 @@
 //! Source: <https://netpbm.sourceforge.net/doc/pgm.html>. If the brightest shade is above 255, a raw shade takes two
 //! bytes, the higher one first.
 
-use crate::formats::pbm::{Cursor, PbmError};
+use crate::formats::pbm::cursor::Cursor;
+use crate::formats::pbm::error::PbmError;
 use crate::imprint::Imprint;
 
 /// Reads everything after the height; returns the offset after the last shade.

@@ -18,10 +18,10 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 
 use crate::cli::arguments::flags::{
-    self, EvaluationForm, json, option, quiet, replace, report, switch, whole,
+    self, EvaluationForm, json, number_of, option, quiet, replace, report, seed, switch,
+    which_model, whole,
 };
 use crate::cli::arguments::help::MODEL_CONFUSION_EXAMPLES;
-use crate::cli::arguments::model::{number, seed, which_model};
 use crate::cli::arguments::parameters;
 use crate::cli::error::CliError;
 use crate::index::wide;
@@ -337,8 +337,8 @@ impl NoiseArguments {
             noise,
             dead: dead.map_or_else(|| vec![0], |dead| dead.copied().collect()),
             given: matches.get_one("given").cloned(),
-            touches: number(matches, "touches", 1000),
-            seed: number(matches, "seed", 0),
+            touches: number_of(matches, "touches", 1000),
+            seed: number_of(matches, "seed", 0),
             size: matches.get_one("matrix").copied(),
         }
     }
@@ -354,7 +354,7 @@ fn classifiers(matches: &ArgMatches) -> ClassifierSettings {
     classifiers.neighbours = limit("neighbours", classifiers.neighbours);
     classifiers.sample = limit("sample", classifiers.sample);
     classifiers.templates = limit("templates", classifiers.templates);
-    classifiers.seed = number(matches, "seed", classifiers.seed);
+    classifiers.seed = number_of(matches, "seed", classifiers.seed);
     let given = matches.get_one::<GivenDescriptors>("given");
     classifiers.descriptors = given.map(|given| given.descriptors().to_vec());
     classifiers

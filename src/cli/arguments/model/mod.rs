@@ -14,11 +14,9 @@
 
 use std::ffi::OsString;
 
-use clap::{Arg, ArgMatches, Command};
+use clap::{ArgMatches, Command};
 
-use crate::cli::arguments::flags::{
-    self, json, option, required, switch, unhandled_subcommand, whole,
-};
+use crate::cli::arguments::flags::{self, json, required, switch, unhandled_subcommand};
 use crate::cli::arguments::help::{
     MODEL_DELETE_EXAMPLES, MODEL_EXAMPLES, MODEL_LIST_EXAMPLES, MODEL_SHOW_EXAMPLES,
 };
@@ -88,7 +86,7 @@ pub(super) fn command() -> Command {
     let show = Command::new("show")
         .about("Show what a model was trained on, and its error")
         .after_help(MODEL_SHOW_EXAMPLES)
-        .args([which_model(), json()]);
+        .args([flags::which_model(), json()]);
     let list = Command::new("list")
         .about("List the models")
         .after_help(MODEL_LIST_EXAMPLES)
@@ -109,26 +107,4 @@ pub(super) fn command() -> Command {
         .subcommand(confusion::command())
         .subcommand(touches::command())
         .subcommand(separate::command())
-}
-
-/// Defines the required argument `MODEL`: the name of a model beside the library, or its file.
-fn which_model() -> Arg {
-    Arg::new("model")
-        .value_name("MODEL")
-        .required(true)
-        .value_parser(flags::name_or_path())
-        .help("Name of a model, or its file")
-}
-
-/// Defines `--seed`. The same seed draws the same touches with any number of threads.
-fn seed() -> Arg {
-    option("seed", "N", "Seed of the random numbers; default 0")
-        .value_parser(whole::<u64>(0..))
-        .default_value("0")
-        .hide_default_value(true)
-}
-
-/// Returns the value of a flag, or its default.
-fn number<T: Copy + Send + Sync + 'static>(matches: &ArgMatches, id: &str, default: T) -> T {
-    matches.get_one(id).copied().unwrap_or(default)
 }

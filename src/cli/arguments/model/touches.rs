@@ -4,9 +4,10 @@ use std::ffi::OsString;
 
 use clap::{ArgMatches, Command};
 
-use crate::cli::arguments::flags::{self, json, option, parse_probability, quiet, whole};
+use crate::cli::arguments::flags::{
+    self, json, number_of, option, parse_probability, quiet, seed, which_model, whole,
+};
 use crate::cli::arguments::help::MODEL_TOUCHES_EXAMPLES;
-use crate::cli::arguments::model::{number, seed, which_model};
 
 /// A simulation of how many touches it takes until a shape is probable enough.
 #[derive(Clone, Debug)]
@@ -51,9 +52,9 @@ impl TouchesArguments {
     pub(super) fn of(matches: &ArgMatches) -> Self {
         Self {
             model: flags::word(matches, "model"),
-            until: number(matches, "until", 0.99),
-            runs: number(matches, "runs", 10_000),
-            seed: number(matches, "seed", 0),
+            until: number_of(matches, "until", 0.99),
+            runs: number_of(matches, "runs", 10_000),
+            seed: number_of(matches, "seed", 0),
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         }
