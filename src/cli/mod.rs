@@ -60,6 +60,7 @@ use error::CliError;
 use input::lines::LineInput;
 use input::shapes::Shelf;
 use output::charset::Charset;
+use output::note::note;
 use output::progress::Progress;
 use settings::resolved::Effective;
 
@@ -298,11 +299,6 @@ impl Surroundings {
         };
         print(&text)
     }
-}
-
-/// Writes a note to standard error. If it cannot be written, it is dropped: it is not part of the answer.
-fn note(text: &str, charset: Charset) {
-    let _ = writeln!(io::stderr().lock(), "{}", charset.line(text));
 }
 
 /// Writes text to standard output.

@@ -51,7 +51,7 @@ fn violations(files: &[(String, String)]) -> Vec<String> {
             order(source, &sources, &mut edges, &mut report);
         }
     }
-    found.extend(cycles(&edges));
+    found.extend(cycles(&edges, &sources));
     found.extend(names(&sources));
     found
 }
@@ -60,7 +60,7 @@ fn violations(files: &[(String, String)]) -> Vec<String> {
 type Edges = BTreeMap<String, BTreeMap<String, usize>>;
 
 /// Returns one line for each pair of files that is part of a cycle.
-fn cycles(edges: &Edges) -> Vec<String> {
+fn cycles(edges: &Edges, sources: &[Source<'_>]) -> Vec<String> {
     let reaches = |from: &str, wanted: &str| {
         let (mut seen, mut waiting) = (vec![from], vec![from]);
         while let Some(module) = waiting.pop() {
@@ -77,11 +77,13 @@ fn cycles(edges: &Edges) -> Vec<String> {
         false
     };
     let mut found = Vec::new();
-    for (from, targets) in edges {
-        for (to, line) in targets {
-            if reaches(to, from) {
+    for source in sources {
+        let from = source.module.join("/");
+        for (to, line) in edges.get(&from).into_iter().flatten() {
+            if reaches(to, &from) {
                 found.push(format!(
-                    "src/{from}.rs:{line}: `{to}`; law: no cycle inside a room"
+                    "{}:{line}: `{to}`; law: no cycle inside a room",
+                    source.file
                 ));
             }
         }
@@ -272,7 +274,7 @@ fn order(
     if !listed(parent, all).contains(own) {
         report(1, own, "a file is listed by its parent");
     }
-    let rooms = listed(&[], all);
+    let (rooms, children) = (listed(&[], all), listed(module, all));
     let rank = |word: &str| rooms.iter().position(|name| *name == word);
     for (path, line) in paths(shipped(&source.tokens)) {
         let name = path.join("::");
@@ -283,6 +285,8 @@ fn order(
             }
             ["super", ref rest @ ..] => [parent, rest].concat(),
             ["crate", ref rest @ ..] => rest.to_vec(),
+            ["self", ref rest @ ..] => [module, rest].concat(),
+            [first, ..] if children.contains(&first) => [module, &path[..]].concat(),
             _ => continue,
         };
         match (target.first().and_then(|room| rank(room)), rank(module[0])) {
@@ -305,7 +309,8 @@ fn order(
     }
 }
 
-/// Returns the file that defines an item: `file`, or the file below it from which `file` re-exports the item.
+/// Returns the file that defines an item: `file`, or the file below it from which `file` re-exports the item, perhaps
+/// through the front pages of folders in between.
 fn reexported<'a>(file: &[&'a str], target: &[&'a str], all: &[Source<'a>]) -> Vec<&'a str> {
     let item = target.get(file.len());
     let front = all.iter().find(|source| source.module == file);
@@ -318,10 +323,14 @@ fn reexported<'a>(file: &[&'a str], target: &[&'a str], all: &[Source<'a>]) -> V
             let (last, path) = path.split_last()?;
             let path = path.strip_prefix(&["self"]).unwrap_or(path);
             let home = [file, path].concat();
-            let is_home = last == item && all.iter().any(|other| other.module == home);
+            let is_home =
+                last == item && home != file && all.iter().any(|other| other.module == home);
             is_home.then_some(home)
         });
-    candidates.max_by_key(Vec::len).unwrap_or(file.to_vec())
+    match candidates.max_by_key(Vec::len) {
+        Some(home) => reexported(&home, &[&home[..], &[*item]].concat(), all),
+        None => file.to_vec(),
+    }
 }
 
 /// Returns the files of `src/`, sorted.
@@ -375,7 +384,7 @@ src/a.rs |
 src/b.rs |
 src/x/p.rs |
 src/x/q.rs | use super::p;
-src/x/r.rs | use super::q::Q;
+src/x/r.rs | use super::q::Q; use super::front;
 src/tui/mod.rs | mod runtime;";
 const BREACHES: &str = r#"
 src/a.rs | use crate::b::B; | 2: `crate::b::B`; law: only rooms listed above
@@ -393,6 +402,9 @@ src/x/p.rs | use crate::x::q::Q; | 2: `x/q`; law: no cycle
 src/x/p.rs | use crate::x::r::f; | 2: `x/r`; law: no cycle
 src/x/p.rs | use crate::x::Q; | 2: `x/q`; law: no cycle
 src/x/p.rs | use super::Q; | 2: `x/q`; law: no cycle
+src/x/mod.rs | pub mod p; mod q;¶mod r; use r::f; | 3: `x/r`; law: no cycle
+src/x/mod.rs | pub mod p; mod q;¶mod r; fn front() { r::f() } | 3: `x/r`; law: no cycle
+src/x/mod.rs | pub mod p; mod q;¶mod r; fn front() { self::r::f() } | 3: `x/r`; law: no cycle
 src/x/p.rs | pub(crate) struct A; mod z { pub enum A {} } | 2 and src/x/p.rs:2: `A`; law: a type name is defined once
 src/b.rs | pub trait X { type T; }¶pub(super) type X<T> = u8; | 2 and src/b.rs:3: `X`; law: a type
 src/x/q.rs | use super::super::a; | 2: `super::super::a`; law: no `super::super`

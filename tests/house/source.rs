@@ -39,18 +39,20 @@ pub(crate) fn listed<'a>(module: &[&str], all: &[Source<'a>]) -> Vec<&'a str> {
     modules.map(|pair| pair[1].0).collect()
 }
 
-/// Returns the tokens before `#[cfg(test)] mod tests {`; clippy ensures that nothing follows these tests.
+/// Returns the tokens before `mod tests {` with its `#[cfg(test)]`; clippy ensures that nothing follows these tests.
 pub(crate) fn shipped<'t, 'a>(tokens: &'t [Token<'a>]) -> &'t [Token<'a>] {
-    let same = |part: &[Token<'_>], words: &[&str]| part.iter().map(|token| &token.0).eq(words);
-    let is_start = |part: &[Token<'_>]| same(part, &["mod", "tests", "{"]);
+    let is_start = |part: &[Token<'_>]| {
+        let words = part.iter().map(|token| token.0);
+        words.eq(["mod", "tests", "{"])
+    };
     let start = tokens.windows(3).position(is_start);
     let before = &tokens[..start.unwrap_or(0)];
     // Only the attributes of `mod tests` stand between it and the end of the item before.
     let end = before
         .iter()
         .rposition(|token| matches!(token.0, ";" | "}"));
-    let mut attributes = before[end.unwrap_or(0)..].windows(5);
-    let of_tests = attributes.any(|part| same(part, &["cfg", "(", "test", ")", "]"]));
+    let mut attributes = before[end.unwrap_or(0)..].iter();
+    let of_tests = attributes.any(|token| token.0 == "test");
     if of_tests { before } else { tokens }
 }
 

@@ -17,6 +17,7 @@ use crate::cli::error::{CliError, MOST_PAIRED};
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson, NamedBy};
+use crate::cli::output::note::note;
 use crate::cli::output::progress::Progress;
 use crate::formats::value::percent;
 use crate::formats::{ConfusionMap, DrawingFormat, json};
@@ -58,7 +59,7 @@ pub(crate) fn confusion(
         Evaluated::HalfStep => noise::half_step(&model, asked, charset),
     }?;
     if let Some(path) = asked.export.as_ref().filter(|_| !asked.quiet) {
-        crate::cli::note(&written(path), charset);
+        note(&written(path), charset);
     }
     Ok(text)
 }

@@ -19,6 +19,7 @@ use crate::cli::commands::sweep::leave;
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson};
+use crate::cli::output::note::note;
 use crate::cli::signals::Signals;
 use crate::formats::value::counted;
 use crate::formats::{MODEL_FORMAT, archive_kind, json};
@@ -140,7 +141,7 @@ pub(crate) fn merge(
     );
     let say = |text: &str| {
         if !wanted.quiet {
-            crate::cli::note(text, charset);
+            note(text, charset);
         }
     };
     let bound = bound(&parts, &memory)?;

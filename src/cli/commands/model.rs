@@ -28,6 +28,7 @@ use crate::cli::input::shape_set;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, NamedBy};
+use crate::cli::output::note::note;
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
 use crate::cli::threads;
@@ -73,7 +74,7 @@ pub(crate) fn train(
     // A path that cannot be written is an error before the work, not after it.
     drop(UnfinishedFile::new(&path, asked.there.existing())?);
     if !asked.quiet {
-        crate::cli::note(&grid_text(&sensor, anchor, &ranges), charset);
+        note(&grid_text(&sensor, anchor, &ranges), charset);
     }
     let memory = MemoryGuard::new(asked.memory, TOO_LITTLE_MEMORY);
     let progress = Progress::new(training.poses(), asked.quiet, charset);

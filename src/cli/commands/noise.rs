@@ -30,6 +30,7 @@ use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, bar, percent_fine};
+use crate::cli::output::note::note;
 use crate::cli::output::plot;
 use crate::cli::output::progress::Progress;
 use crate::cli::signals::Signals;
@@ -70,7 +71,7 @@ pub(crate) fn degradation(
     let sensor = matrix(model, asked.size)?;
     check_dead(&asked.dead, &sensor)?;
     if let Some(text) = left_out(model, &sensor).filter(|_| !all_asked.quiet) {
-        crate::cli::note(&text, charset);
+        note(&text, charset);
     }
     let values: Vec<f64> = asked.noise.values().collect();
     let each = asked.touches * model.shapes().len() as u64;

@@ -20,6 +20,7 @@ use crate::cli::error::CliError;
 use crate::cli::input::shape_set;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
+use crate::cli::output::note::note;
 use crate::cli::output::progress::Progress;
 use crate::cli::output::separation;
 use crate::cli::signals::Signals;
@@ -56,7 +57,7 @@ pub(crate) fn separate(
         drop(UnfinishedFile::new(path, asked.existing)?);
     }
     if let Some(text) = left_out(asked, &sizes) {
-        crate::cli::note(&text, charset);
+        note(&text, charset);
     }
     let more = asked.wanted.map_or(0, |_| REFINED);
     let points = (sizes.len() as u64 + more) * thresholds.len() as u64;
@@ -79,7 +80,7 @@ pub(crate) fn separate(
         };
         put(path, &content, asked.existing)?;
         if !asked.quiet {
-            crate::cli::note(&written(path), charset);
+            note(&written(path), charset);
         }
     }
     if let (EvaluationForm::Csv, Some(wanted)) = (asked.form, asked.wanted) {
@@ -87,7 +88,7 @@ pub(crate) fn separate(
         // it.
         let found = separation::all_found(asked.axis, &asked.sizes, &curves, wanted);
         for line in found.lines() {
-            crate::cli::note(line, charset);
+            note(line, charset);
         }
     }
     Ok(match asked.form {

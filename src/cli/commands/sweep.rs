@@ -20,6 +20,7 @@ use crate::cli::commands::export::written;
 use crate::cli::commands::resume::{self, KEPT};
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
+use crate::cli::output::note::note;
 use crate::cli::output::progress::Progress;
 use crate::cli::output::sweep_summary::SweepSummary;
 use crate::cli::signals::Signals;
@@ -38,7 +39,7 @@ impl Wanted {
         let atlas = self.atlas.as_ref().map(AtlasFile::path);
         let files = atlas.into_iter().chain(self.poses.as_deref());
         for path in files.filter(|_| !self.quiet) {
-            crate::cli::note(&written(path), charset);
+            note(&written(path), charset);
         }
     }
 }
@@ -116,7 +117,7 @@ pub(crate) fn sweep(
         {
             if !wanted.quiet {
                 let name = file.path().to_string_lossy();
-                crate::cli::note(&format!("{KEPT}: {name}"), charset);
+                note(&format!("{KEPT}: {name}"), charset);
             }
             return Ok(summary(&kept, start, wanted, charset));
         }

@@ -161,7 +161,10 @@ mod tests {
     fn the_cells_of_a_column_are_equally_wide() {
         let column = |charset: Charset| charset.column(["字", "bar", ""]);
         assert_eq!(column(Charset::Unicode), ["字 ", "bar", "   "]);
-        assert_eq!(column(Charset::Ascii), ["\\u{5b57}", "bar     ", "        "]);
+        assert_eq!(
+            column(Charset::Ascii),
+            ["\\u{5b57}", "bar     ", "        "]
+        );
         assert_eq!(Charset::Ascii.column([]), [""; 0]);
     }
 }

@@ -5,6 +5,8 @@
 
 pub(super) mod charset;
 
+pub(super) mod note;
+
 pub(super) mod report;
 
 pub(super) mod heat_map;
