@@ -63,10 +63,9 @@ fn the_cursor_and_the_shape_are_moved_by_commands() {
         ("move far away", "like 0.5 -1, found \"far away\""),
         ("move", "! move takes DX DY in cells, like 0.5 -1"),
         ("turn", "! turn takes DEGREES, like 30.5"),
-        ("step larger", "ellipse"),
+        ("step larger", "step 0.1"),
         ("region previous", "there is no other region"),
         ("help", "On the matrix"),
-        ("suspend", "ellipse"),
         ("sensor --rows 8 --rows 9", "! --rows is given twice"),
         (
             "figure hexagon --side 3 --angle 5 --side 4",
