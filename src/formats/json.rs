@@ -304,7 +304,7 @@ mod tests {
     #[cfg(feature = "tui")]
     #[test]
     fn a_value_without_a_json_form_is_an_error_object() {
-        let no_text_key = std::collections::BTreeMap::from([((1, 2), 3)]);
+        let no_text_key = BTreeMap::from([((1, 2), 3)]);
         assert_eq!(text(&no_text_key), r#"{"error":"key must be a string"}"#);
         assert_eq!(text(&[1, 2]), "[1,2]");
     }

@@ -100,3 +100,17 @@ pub fn counted(count: impl Into<u128>, noun: &str) -> String {
     };
     format!("{} {noun}{ending}", grouped(count))
 }
+
+/// Formats the number of taxels in which two imprints differ.
+///
+/// ```
+/// use taxel::parameter::number::differing;
+/// assert_eq!([0_u8, 1, 2].map(differing), ["no taxel differs", "1 taxel differs", "2 taxels differ"]);
+/// ```
+pub fn differing(taxels: impl Into<u128>) -> String {
+    match taxels.into() {
+        0 => "no taxel differs".to_owned(),
+        1 => "1 taxel differs".to_owned(),
+        taxels => format!("{} differ", counted(taxels, "taxel")),
+    }
+}

@@ -13,10 +13,9 @@ use clap::Command;
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 
-use crate::cli::arguments::definitions;
 use crate::figure::FigureKind;
 use crate::parameter::PARAMETERS;
-use crate::quote::as_argument;
+use crate::quote::{as_argument, joined};
 
 /// Extensions of files that contain frames. `.txt` and `.json` are left out: such files may be imprints and shapes.
 const RECORDINGS: [&str; 8] = ["apd", "asf", "csv", "jsonl", "lst", "mcap", "npy", "npz"];
@@ -106,7 +105,7 @@ fn misplaced(error: &Error, program: &Command) -> Option<(Vec<String>, String)> 
     let places = own_flags.iter().any(|own| own == "x0");
     if places && others.iter().any(|other| other == flag) {
         let own_flags = own_flags.iter().map(|own| format!("--{own}"));
-        let own_flags = definitions::list(own_flags, "and");
+        let own_flags = joined(own_flags, "and");
         message += &format!("; its parameters are {own_flags}");
     } else {
         let more = owners.len().saturating_sub(MOST_NAMED);
@@ -114,7 +113,7 @@ fn misplaced(error: &Error, program: &Command) -> Option<(Vec<String>, String)> 
         if more > 0 {
             owners.push(format!("{more} more"));
         }
-        message += &format!(", but to {}", definitions::list(owners.into_iter(), "and"));
+        message += &format!(", but to {}", joined(owners, "and"));
     }
     Some((names, message))
 }
@@ -204,8 +203,7 @@ fn for_missing(error: &Error) -> Vec<String> {
     let lacks = |word: &str| missing.iter().any(|argument| argument.contains(word));
     let mut tips = Vec::new();
     if lacks("KIND") {
-        let kinds = FigureKind::ALL.map(|kind| kind.name().to_owned());
-        let kinds = definitions::list(kinds.into_iter(), "or");
+        let kinds = joined(FigureKind::ALL.map(FigureKind::name), "or");
         tips.push(format!("KIND is {kinds}"));
     }
     if lacks("--peak") {

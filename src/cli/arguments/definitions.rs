@@ -15,8 +15,8 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgGroup, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    alone, anchor, force, jobs, json, memory, name, name_or_path, npy, of_sensor, option,
-    parse_name, quiet, range, replace, resume, sensor, sensor_of_imprints, shard, switch, what,
+    alone, anchor, force, jobs, json, memory, name, name_or_path, npy, of_sensor, option, quiet,
+    range, replace, resume, sensor, sensor_of_imprints, shard, switch, what,
 };
 use crate::cli::arguments::help::{
     ABOUT, BATCH_EXAMPLES, CHECK_EXAMPLES, DELETE_EXAMPLES, DESCRIBE_EXAMPLES, EXAMPLES,
@@ -29,11 +29,13 @@ use crate::cli::arguments::program::{
 };
 use crate::cli::arguments::{export, frames, model, parameters, recognise, watch};
 use crate::figure::FigureKind;
+use crate::formats::Name;
 use crate::parameter::Parameter;
 use crate::picture::PICTURE_PARAMETERS;
 use crate::pose::Axis;
+use crate::quote::joined;
 use crate::sensor::SENSOR_PARAMETERS;
-use crate::storage::{AtlasEndingError, AtlasFile};
+use crate::storage::AtlasFile;
 
 /// Defines the program with all its commands. Completions and manual pages are made from this too, so a new command
 /// appears in them by itself.
@@ -105,18 +107,13 @@ fn with_negative_numbers(command: Command) -> Command {
 /// parameter of any kind; [`Given::foreign`](parameters::Given::foreign) refuses those that the given kind does not
 /// have. Angles are degrees clockwise as seen, lengths are in cell sides.
 fn figure() -> Command {
-    let kinds = FigureKind::ALL
-        .into_iter()
-        .map(|kind| kind.name().to_owned());
+    let kinds = FigureKind::ALL.map(FigureKind::name);
     let kind = Arg::new("kind")
         .value_name("KIND")
         .required(true)
-        .value_parser(parameters::one_of(
-            FigureKind::ALL.map(FigureKind::name),
-            FigureKind::from_name,
-        ))
+        .value_parser(parameters::one_of(kinds, FigureKind::from_name))
         .hide_possible_values(true)
-        .help(parameters::wrapped(&list(kinds, "or"), 64));
+        .help(parameters::wrapped(&joined(kinds, "or"), 64));
     let own = parameters::figure_parameters();
     Command::new("figure")
         .about("Touch a figure and describe its imprint")
@@ -292,12 +289,8 @@ fn merge() -> Command {
 /// Defines `--atlas`, the file that a sweep or a merge writes. Its extension decides the format, so there is no flag
 /// for this; only `.npz` can be read again.
 fn atlas() -> Arg {
-    option("atlas", "FILE", "Write the atlas, as .csv, .jsonl or .npz").value_parser(parse_atlas)
-}
-
-/// Parses the file name of an atlas, whose extension must be that of one of the formats.
-fn parse_atlas(text: &str) -> Result<AtlasFile, AtlasEndingError> {
-    AtlasFile::new(text)
+    option("atlas", "FILE", "Write the atlas, as .csv, .jsonl or .npz")
+        .value_parser(|path: &str| AtlasFile::new(path))
 }
 
 /// Defines `taxel frames FILE`. With `--export`, each frame gets a file of its own. `--save` stores a single shape,
@@ -374,7 +367,7 @@ fn kept() -> ArgGroup {
 /// for commands that answer with one imprint: `figure`, `picture` and `frames`.
 fn keeping() -> [Arg; 4] {
     let save = option("save", "NAME", "Store the shape in the library too")
-        .value_parser(parse_name)
+        .value_parser(Name::new)
         .help_heading("Library");
     let export = Arg::new("export")
         .long("export")
@@ -402,16 +395,6 @@ fn folder() -> Arg {
     option("library", "DIR", "The library's folder")
         .value_parser(value_parser!(PathBuf))
         .help_heading("Library")
-}
-
-/// Joins names as in a sentence: `a, b or c`, with `word` before the last.
-pub(crate) fn list(names: impl Iterator<Item = String>, word: &str) -> String {
-    let names: Vec<String> = names.collect();
-    match names.split_last() {
-        Some((last, [])) => last.clone(),
-        Some((last, others)) => format!("{} {word} {last}", others.join(", ")),
-        None => String::new(),
-    }
 }
 
 #[cfg(test)]

@@ -17,12 +17,12 @@ use clap::{Arg, ArgAction, ArgGroup, ArgMatches};
 
 use crate::cli::arguments::parameters;
 use crate::cli::error::CliError;
-use crate::formats::{Name, NameError};
+use crate::formats::Name;
 use crate::memory::MemorySize;
 use crate::parameter::{Parameter, number};
-use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, RangeError, Ranges};
+use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, Ranges};
 use crate::sensor::SENSOR_PARAMETERS;
-use crate::sweep::{Shard, ShardError};
+use crate::sweep::Shard;
 
 /// Defines a flag without a value, `--NAME`.
 pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
@@ -97,7 +97,7 @@ pub(super) fn range(axis: Axis, default: &str) -> Arg {
         .long(flag)
         .value_name("START:END:STEP")
         .allow_hyphen_values(true)
-        .value_parser(parse_range)
+        .value_parser(str::parse::<DecimalRange>)
         .help_heading("Grid")
         .help(parameters::wrapped(&help, 46))
 }
@@ -154,7 +154,8 @@ pub(super) fn memory_of(matches: &ArgMatches) -> Option<MemorySize> {
 
 /// Defines `--shard`, for work that is divided among several machines.
 pub(super) fn shard() -> Arg {
-    option("shard", "K/N", "Compute only shard K of N of the grid").value_parser(parse_shard)
+    option("shard", "K/N", "Compute only shard K of N of the grid")
+        .value_parser(str::parse::<Shard>)
 }
 
 /// Returns the value of [`shard`]; if not given, the whole grid.
@@ -169,16 +170,6 @@ pub(super) fn resume() -> Arg {
         "Skip the shard if its file is complete and belongs\nto this study; refuse any other file",
     )
     .conflicts_with("force")
-}
-
-/// Parses a range of the grid, such as `5:5.99:0.01`.
-pub(super) fn parse_range(text: &str) -> Result<DecimalRange, RangeError> {
-    text.parse()
-}
-
-/// Parses a part of the grid, such as `3/40`.
-fn parse_shard(text: &str) -> Result<Shard, ShardError> {
-    text.parse()
 }
 
 /// Defines `--force` for commands that write a file.
@@ -219,13 +210,8 @@ pub(super) fn name(help: &'static str) -> Arg {
     Arg::new("name")
         .value_name("NAME")
         .required(true)
-        .value_parser(parse_name)
+        .value_parser(Name::new)
         .help(help)
-}
-
-/// Parses the name of a shape; see [`Name`] for the names that are allowed.
-pub(super) fn parse_name(text: &str) -> Result<Name, NameError> {
-    Name::new(text)
 }
 
 /// Returns the name or file that an argument gives, with any bytes. It is empty if the argument is not given; one

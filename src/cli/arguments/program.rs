@@ -210,12 +210,7 @@ pub(crate) fn config_file() -> Arg {
 
 /// Defines `--size`, for the screen and for scripts.
 pub(crate) fn size() -> Arg {
-    option("size", "CxR", "Columns and rows of the screen").value_parser(parse_size)
-}
-
-/// Parses columns and rows, such as `80x24`.
-fn parse_size(text: &str) -> Result<(u16, u16), String> {
-    command::size(text)
+    option("size", "CxR", "Columns and rows of the screen").value_parser(command::size)
 }
 
 /// Defines `--ascii`, for the help and for the screen. [`Charset`](crate::cli::output::charset::Charset) looks for

@@ -30,6 +30,7 @@ use crate::figure::FigureKind;
 use crate::formats::Name;
 use crate::memory::MemorySize;
 use crate::pose::{Anchor, GivenRanges};
+use crate::quote::joined;
 use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::storage::AtlasFile;
@@ -448,7 +449,7 @@ fn source(
             "'--{}' does not belong to '{}', which takes {}",
             parameter.flag(),
             kind.name(),
-            definitions::list(own, "and")
+            joined(own, "and")
         );
         return Err(misused(command, name, &message));
     }

@@ -12,7 +12,7 @@ use crate::cli::output::pose::PoseReport;
 use crate::formats::described::Rows;
 use crate::formats::value::percent;
 use crate::imprint::Imprint;
-use crate::parameter::number::short;
+use crate::parameter::number::{differing, short};
 use crate::recognition::{Answer, AnswerState, Evidence, Model, Nearest, Noise, SearchMethod};
 
 /// The number of shapes that a text shows by default.
@@ -203,14 +203,10 @@ impl AnswerText<'_> {
         };
         let (name, distance) = (self.name(nearest.shape), nearest.distance);
         let dead = self.noise.as_ref().and_then(Noise::dead);
-        let differ = if distance == 1 {
-            "taxel differs"
-        } else {
-            "taxels differ"
-        };
         format!(
-            "nearest: {name}, {distance} {differ}\n{}\
+            "nearest: {name}, {}\n{}\
              \x20 # both   + only in the touch   - only in the nearest imprint{}\n",
+            differing(distance),
             differences(self.touch, &nearest.imprint, dead),
             if dead.is_some() { "   x dead" } else { "" }
         )

@@ -5,8 +5,8 @@ use ratatui::layout::{Position, Rect};
 
 use crate::description::{DESCRIPTORS, Description, Descriptor, Value, main_region, regions};
 use crate::formats::value;
-use crate::formats::value::counted;
 use crate::imprint::Imprint;
+use crate::parameter::number::differing;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::binding::Context;
@@ -402,11 +402,7 @@ impl Page for Comparison {
         write::clear(buffer, area);
         let [first, second] = &self.names;
         // On a narrow screen the names are cut, not the number.
-        let differ = match self.differing() {
-            0 => "no taxel differs".to_owned(),
-            1 => "1 taxel differs".to_owned(),
-            count => format!("{} differ", counted(count, "taxel")),
-        };
+        let differ = differing(self.differing());
         let pieces = [
             (differ.as_str(), Role::Title),
             ("   A: ", Role::Key),

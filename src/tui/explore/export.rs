@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::formats::DrawingFormat;
-use crate::quote::shortened;
+use crate::quote::{joined, shortened};
 use crate::storage::{AtlasFile, is_poses};
 use crate::tui::app::line_prompt::LinePrompt;
 use crate::tui::explore::page::is_csv;
@@ -106,11 +106,7 @@ impl ExportDialog {
         } else {
             format!("{:?}: ", shortened(name))
         };
-        let all = self.what.endings().join(", ");
-        let endings = match all.rsplit_once(", ") {
-            Some((others, last)) => format!("{others} or {last}"),
-            None => all,
-        };
+        let endings = joined(self.what.endings(), "or");
         Err(format!("{found}expected a name that ends in {endings}"))
     }
 }

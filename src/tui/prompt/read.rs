@@ -17,7 +17,7 @@ use crate::formats::Name;
 use crate::formats::record::RecordError;
 use crate::parameter::{Parameter, number};
 use crate::pose::{Anchor, Axis, GivenRanges, PoseGrid, RangeError, default_ranges};
-use crate::quote::{did_you_mean, shortened};
+use crate::quote::{did_you_mean, joined, shortened};
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
 use crate::source::Source;
 use crate::storage::ModelChoice;
@@ -160,8 +160,7 @@ fn taxel(column: &str, row: &str, sensor: &Sensor) -> Result<Message, String> {
 
 /// Reads a distance in cells along x and y; None unless both are finite numbers.
 fn distance(dx: &str, dy: &str) -> Option<Message> {
-    let cells = |text: &str| text.parse().ok().filter(|cells: &f64| cells.is_finite());
-    Some(Message::Move(cells(dx)?, cells(dy)?))
+    Some(Message::Move(number::read(dx)?, number::read(dy)?))
 }
 
 /// Returns the error that says what a command takes and what was found.
@@ -175,11 +174,10 @@ fn unexpected(command: &PromptCommand, rest: &str) -> String {
         other => other.form(),
     });
     taken.extend(form);
-    let taken = match taken.split_last() {
-        None => "nothing".to_owned(),
-        Some((last, [])) => (*last).to_owned(),
-        Some((last, others)) => format!("{} or {last}", others.join(", ")),
-    };
+    if taken.is_empty() {
+        taken.push("nothing");
+    }
+    let taken = joined(taken, "or");
     let found = if rest.is_empty() {
         String::new()
     } else {

@@ -26,9 +26,7 @@ use crate::cli::arguments::parameters;
 use crate::cli::error::CliError;
 use crate::index::wide;
 use crate::pose::{DecimalRange, RangeError};
-use crate::recognition::{
-    Classifier, ClassifierSettings, GivenDescriptors, GivenError, Noise, Rounding,
-};
+use crate::recognition::{Classifier, ClassifierSettings, GivenDescriptors, Noise, Rounding};
 use crate::sensor::MatrixSize;
 use crate::storage::Existing;
 
@@ -117,7 +115,7 @@ pub(super) fn command() -> Command {
                 "Round a descriptor to steps: cg_cd=0.01",
             )
             .action(ArgAction::Append)
-            .value_parser(parse_rounding)
+            .value_parser(str::parse::<Rounding>)
             .requires("descriptors")
             .conflicts_with("classifier"),
         )
@@ -139,7 +137,7 @@ fn questions() -> [Arg; 4] {
             "KEY,...",
             "Use only these descriptors: na,p",
         )
-        .value_parser(parse_given),
+        .value_parser(str::parse::<GivenDescriptors>),
         switch("greedy", "Choose descriptors one by one until none helps"),
         switch("pairs", "Print the error of each pair of shapes alone"),
         option(
@@ -227,16 +225,6 @@ fn parse_matrix(text: &str) -> Result<MatrixSize, &'static str> {
     let (columns, rows) = text.split_once('x').ok_or(expected)?;
     let side = |text: &str| text.trim().parse().map_err(|_| expected);
     MatrixSize::new(side(columns)?, side(rows)?).map_err(|_| expected)
-}
-
-/// Parses a list of descriptors, such as `na,p`.
-fn parse_given(text: &str) -> Result<GivenDescriptors, GivenError> {
-    text.parse()
-}
-
-/// Parses a descriptor and a step, such as `cg_cd=0.01`.
-fn parse_rounding(text: &str) -> Result<Rounding, GivenError> {
-    text.parse()
 }
 
 impl ConfusionArguments {

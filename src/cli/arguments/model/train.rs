@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    self, anchor, jobs, json, memory, of_sensor, option, parse_name, quiet, range, replace, resume,
-    shard, switch,
+    self, anchor, jobs, json, memory, of_sensor, option, quiet, range, replace, resume, shard,
+    switch,
 };
 use crate::cli::arguments::help::MODEL_TRAIN_EXAMPLES;
 use crate::cli::arguments::model::shape_set::{self, SetArguments};
@@ -71,7 +71,7 @@ pub(super) fn command() -> Command {
         "NAME",
         "Keep the model under this name, beside the library",
     )
-    .value_parser(parse_name);
+    .value_parser(Name::new);
     let allow_cut = switch("allow-cut", "Also take poses that the sensor cuts off");
     let anchor = anchor().help(
         "What x0 and y0 set: corner or centre; default\n\
