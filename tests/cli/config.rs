@@ -52,7 +52,7 @@ fn unknown_keys_and_bad_values_are_refused_with_their_places() {
         ),
         (
             "[source]\nbaud = 12\n",
-            "2:8: expected a whole number, 50 to 20000000, found \"12\"",
+            "2:8: expected a whole number from 50 to 20000000, found \"12\"",
         ),
         (
             "[source]\nformat = 'csv'\n",
@@ -156,7 +156,7 @@ fn surprising_changes_of_keys_are_refused_with_their_places() {
     );
     refused(
         "keys.matrix.x = 'increase'\n",
-        "1:17: \"increase\" is not an action of this place; 'taxel config' lists them",
+        "1:17: \"increase\" is no action of [keys.matrix]; 'taxel config' lists the actions",
     );
     refused(
         "[keys.list]\nj = 'scroll-down'\n",

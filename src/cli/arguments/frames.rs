@@ -17,7 +17,7 @@ use crate::cli::arguments::flags::{name_or_path, option, parse_number, switch, w
 use crate::cli::arguments::help::FRAMES_EXAMPLES;
 use crate::cli::arguments::recognise::parse_noise;
 use crate::cli::error::CliError;
-use crate::cli::settings::sensors::SensorSettings;
+use crate::cli::settings::sensors::{LEAST, SensorSettings};
 use crate::frame::{Crop, FrameError, FrameSize, Rule, RuleOrigin, SetRule};
 use crate::imprint::Imprint;
 use crate::parameter::number;
@@ -226,7 +226,7 @@ pub(crate) fn rules() -> [Arg; 6] {
         .long("least")
         .alias("min-taxels")
         .value_name("K")
-        .value_parser(whole::<u32>(1..=4096))
+        .value_parser(whole::<u32>(LEAST))
         .help("Drop pieces of fewer than K taxels");
     [
         value(

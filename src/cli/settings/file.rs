@@ -290,7 +290,7 @@ impl Config {
         let changes: Vec<Change> = self.changes.iter().map(|own| own.value).collect();
         self.keymap = Keymap::with(&changes).map_err(|(index, error)| {
             let (key, value) = spans[index];
-            let byte = if matches!(error, KeymapError::Elsewhere(_)) {
+            let byte = if matches!(error, KeymapError::Elsewhere { .. }) {
                 value
             } else {
                 key

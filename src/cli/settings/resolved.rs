@@ -345,17 +345,14 @@ impl Effective {
 
     /// Returns the table `[sensor]`.
     fn sensor_text(&self) -> String {
-        let value = |parameter| match parameter {
-            Parameter::Columns => f64::from(self.sensor.columns()),
-            Parameter::Rows => f64::from(self.sensor.rows()),
-            Parameter::Threshold => self.sensor.threshold(),
-            _ => self.sensor.pitch_mm(),
-        };
         let line = |(name, parameter, origin): &(&str, Parameter, SettingOrigin)| {
             let entry = match (parameter, origin) {
                 // Even an entry with the default value would make lengths appear in mm.
                 (Parameter::Pitch, SettingOrigin::Default) => "# pitch is not set".to_owned(),
-                (parameter, _) => format!("{name} = {}", value(*parameter)),
+                (parameter, _) => match self.sensor.get(*parameter) {
+                    Some(value) => format!("{name} = {value}"),
+                    None => format!("# {name} is not set"),
+                },
             };
             commented(&entry, origin)
         };

@@ -2,6 +2,8 @@
 //!
 //! Flags of `taxel watch` and `taxel frames` override them. On the screen, `:watch SOURCE` starts with them.
 
+use std::ops::RangeInclusive;
+
 use crate::acquire::AcquireOptions;
 use crate::formats::stream::StreamFormat;
 use crate::frame::{FrameSize, LARGEST_VALUE, Rule, RuleOrigin, SetRule};
@@ -59,6 +61,9 @@ pub(crate) struct SensorSetting {
 /// The tables, in the order in which they are shown.
 pub(crate) const TABLES: [&str; 2] = ["source", "frames"];
 
+/// The number of taxels below which pieces may be dropped.
+pub(crate) const LEAST: RangeInclusive<u32> = 1..=4096;
+
 /// All settings of real sensors.
 pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
     use SensorKey as Key;
@@ -81,6 +86,7 @@ pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
         *FrameSize::SIDES.start() as u64,
         *FrameSize::SIDES.end() as u64,
     );
+    let least = Whole(*LEAST.start() as u64, *LEAST.end() as u64);
     let baud = &AcquireOptions::BAUDS;
     let baud = Whole(*baud.start() as u64, *baud.end() as u64);
     [
@@ -92,7 +98,7 @@ pub(crate) const SENSOR_SETTINGS: [SensorSetting; 11] = {
         row("frames", "percent", Key::Percent, Percent),
         row("frames", "low", Key::Low, value),
         row("frames", "high", Key::High, value),
-        row("frames", "least", Key::Least, Whole(1, 4096)),
+        row("frames", "least", Key::Least, least),
         row("frames", "tare", Key::Tare, Whole(0, 1_000_000)),
         row(
             "frames",
@@ -122,8 +128,8 @@ impl SettingKind {
                 let names = StreamFormat::NAMES.map(|(name, _)| format!("{name:?}"));
                 format!("one of \"auto\", {}", names.join(", "))
             }
-            Self::Whole(least, most) => format!("a whole number, {least} to {most}"),
-            Self::Number(least, most) => format!("a number, {least:?} to {most:?}"),
+            Self::Whole(least, most) => format!("a whole number from {least} to {most}"),
+            Self::Number(least, most) => format!("a number from {least:?} to {most:?}"),
             Self::Percent => "a number above 0, up to 100".to_owned(),
         }
     }

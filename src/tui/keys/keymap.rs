@@ -52,8 +52,13 @@ pub enum KeymapError {
     #[error("{0} is bound twice here")]
     Twice(Key),
     /// The place does not have the action.
-    #[error("{0:?} is not an action of this place; 'taxel config' lists them")]
-    Elsewhere(&'static str),
+    #[error("{action:?} is no action of [keys.{}]; 'taxel config' lists the actions", context.name())]
+    Elsewhere {
+        /// The name of the action.
+        action: &'static str,
+        /// The place.
+        context: Context,
+    },
     /// The former action of the key would have no key left.
     #[error("{key} is the only key of {action:?} here; give the action another key first")]
     LastKey {
@@ -206,7 +211,8 @@ fn allowed(change: &Change, before: &[Change]) -> Result<(), KeymapError> {
     }
     match action {
         Some(action) if !bound.any(|(_, own)| *own == action) => {
-            Err(KeymapError::Elsewhere(action.name))
+            let action = action.name;
+            Err(KeymapError::Elsewhere { action, context })
         }
         _ => Ok(()),
     }
@@ -386,7 +392,7 @@ mod tests {
             (change(Matrix, "x", "undo"), "x is bound twice here"),
             (
                 change(Matrix, "a", "increase"),
-                "\"increase\" is not an action of this place; 'taxel config' lists them",
+                "\"increase\" is no action of [keys.matrix]; 'taxel config' lists the actions",
             ),
             (
                 change(Matrix, "d", "undo"),
