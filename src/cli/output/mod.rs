@@ -1,7 +1,7 @@
 //! Formats answers: character sets, imprints, evaluations, recordings, progress and more.
 //!
-//! Only `line_writer` writes to standard output. Other answers are returned by the commands as text, and
-//! [`crate::cli::run`] writes them.
+//! Most of it is text that commands return and [`crate::cli::run`] writes. `line_writer` writes answers that come one by
+//! one; `note` and `progress` write to standard error.
 
 pub(super) mod charset;
 
