@@ -305,7 +305,7 @@ pub(crate) enum CliError {
     NotResumed {
         /// The file's name.
         name: String,
-        /// The state of the file: "not whole" or "of another study".
+        /// The state of the file: "incomplete" or "part of another study".
         what: &'static str,
         /// The reason.
         reason: String,

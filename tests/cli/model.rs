@@ -346,7 +346,10 @@ fn an_interrupted_training_can_be_resumed() {
             "{}",
             run.stderr
         );
-        assert!(run.stderr.contains("error: part.npz is of another study ("));
+        assert!(
+            run.stderr
+                .contains("error: part.npz is part of another study (")
+        );
     }
     // Poses that are cut off must be allowed again.
     fs::remove_file(place.path("part.npz")).expect("it is there");
@@ -363,7 +366,7 @@ fn an_interrupted_training_can_be_resumed() {
     fs::write(place.path("part.npz"), &written[..100]).expect("written");
     let run = train(of);
     assert!(
-        run.status == Some(1) && run.stderr.contains("part.npz is not whole ("),
+        run.status == Some(1) && run.stderr.contains("part.npz is incomplete ("),
         "{}",
         run.stderr
     );
@@ -704,7 +707,7 @@ fn damaged_models_are_refused() {
         "sweep hexagon --x0 5 --y0 5 --angle 0 --quiet --resume --atlas m.npz",
         "",
     );
-    let kind = "m.npz is of another study (a model, expected an atlas of taxel sweep); ";
+    let kind = "m.npz is part of another study (a model, expected an atlas of taxel sweep); ";
     assert!(
         run.status == Some(1) && run.stderr.contains(kind),
         "{}",

@@ -283,7 +283,7 @@ fn an_interrupted_study_can_be_resumed() {
         ("--shard 2/3 --thickness 1", "its shape is another one"),
     ] {
         let run = part(&format!("{more} --resume"));
-        let said = format!("2.npz is of another study ({reason}");
+        let said = format!("2.npz is part of another study ({reason}");
         assert!(
             run.status == Some(1) && run.stderr.contains(&said),
             "{}",
@@ -295,7 +295,7 @@ fn an_interrupted_study_can_be_resumed() {
     fs::write(path("2.npz"), &written[..written.len() / 2]).expect("written");
     let run = part("--shard 2/3 --resume");
     assert!(
-        run.status == Some(1) && run.stderr.contains("2.npz is not whole ("),
+        run.status == Some(1) && run.stderr.contains("2.npz is incomplete ("),
         "{}",
         run.stderr
     );

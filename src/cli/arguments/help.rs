@@ -140,7 +140,8 @@ Examples:
 /// `taxel config`: where the settings file is, and an example of one.
 pub(crate) const CONFIG_EXAMPLES: &str = r#"The output is itself a settings file. Yours is taxel/config.toml in your folder
 for settings, or the file that --config or TAXEL_CONFIG names:
-  theme = "light"               # as --theme, --color; charset = "ascii"
+  theme = "light"
+  charset = "ascii"             # as the flag --ascii
   library = "~/shapes"
   [sensor]
   columns = 32

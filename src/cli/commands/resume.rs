@@ -104,7 +104,7 @@ fn whole<T>(path: &Path, read: Result<T, ArchiveFileError>) -> Result<Option<T>,
 fn torn(path: &Path, reason: &str) -> CliError {
     CliError::NotResumed {
         name: path.to_string_lossy().into_owned(),
-        what: "not whole",
+        what: "incomplete",
         reason: reason.to_owned(),
     }
 }
@@ -113,7 +113,7 @@ fn torn(path: &Path, reason: &str) -> CliError {
 fn foreign(path: &Path, reason: &str) -> CliError {
     CliError::NotResumed {
         name: path.to_string_lossy().into_owned(),
-        what: "of another study",
+        what: "part of another study",
         reason: reason.to_owned(),
     }
 }
@@ -183,8 +183,8 @@ mod tests {
         let file = AtlasFile::new(&path).expect("an archive");
         let written = file.write(&stopped, Existing::Kept, &AtomicBool::new(false));
         written.expect("written");
-        let refused = atlas(&path, &grid, Shard::WHOLE).expect_err("not whole");
-        let said = "is not whole (not all of its poses were swept)";
+        let refused = atlas(&path, &grid, Shard::WHOLE).expect_err("incomplete");
+        let said = "is incomplete (not all of its poses were swept)";
         assert!(refused.to_string().contains(said), "{refused}");
     }
 }
