@@ -21,7 +21,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::formats::value::{counted, decimal, deviation, grouped, percent};
 use crate::imprint::Imprint;
-use crate::parameter::number::{share, short};
+use crate::parameter::number::{differing, share, short};
 use crate::pose::Axis;
 use crate::recognition::{Answer, AnswerState, Nearest, PoseEstimate};
 use crate::tui::app::page::{Page, PoseLayer, Slot};
@@ -279,7 +279,7 @@ impl Panel<'_> {
                 lines.push((text, Role::Text));
             }
             Some(nearest) if nearest.distance > 0 => {
-                let (name, differ) = (trained.name(nearest.shape), differ(nearest.distance));
+                let (name, differ) = (trained.name(nearest.shape), differing(nearest.distance));
                 lines.push((format!("nearest: {name}, {differ}"), Role::Text));
                 lines.push((legend(present, nearest), Role::Quiet));
             }
@@ -421,12 +421,6 @@ fn spread_of(number: f64, decimals: usize) -> String {
         little if little.starts_with('<') => little,
         _ => format!("{number:.decimals$}"),
     }
-}
-
-/// Returns a number of differing taxels, in words.
-fn differ(count: u32) -> String {
-    let verb = if count == 1 { "differs" } else { "differ" };
-    format!("{} {verb}", counted(count, "taxel"))
 }
 
 /// Formats a share of a whole as percent.
