@@ -200,6 +200,13 @@ fn help_is_available_everywhere() {
             "On the matrix",
         ),
         (
+            "H/<F1>",
+            "a word in a step",
+            "Searching",
+            "keep the search, to go to other matches",
+            "Searching the help",
+        ),
+        (
             "<Space>s<F1>",
             "Save as:",
             "Saving",

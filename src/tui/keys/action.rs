@@ -5,8 +5,8 @@
 //!                  constant    name          spellings       message
 //!                  KEEP "keep" [] Recognise(RecogniseMessage::Keep), "keep this touch as one of several";
 //!                                                                    what it does, if the help of its key does not say it
-//! with arguments   "load" Arguments::Shape(Purpose::Load), "Load: bring a stored shape onto the matrix";
-//!                  name   what follows the name             what it does
+//! with arguments   "move" Arguments::Distance, "move the shape right and down, in cells";
+//!                  name   what follows the name  what it does, if no key has an action of this name
 //! ```
 //! Everything else refers to these rows. [`crate::tui::keys::default_keys`] gives them keys, with a hint and a line
 //! of help for each place; a settings file gives them other keys, by name; and [`crate::tui::prompt::commands`] makes
@@ -142,13 +142,13 @@ impl Arguments {
     }
 }
 
-/// Builds the table from rows `CONSTANT "name" ["spelling"…] message, "help"`, where the help may be left out, and
-/// `"name" arguments, "help"`. It is a macro, so that the default keys can name each row and the compiler checks the
+/// Builds the table from rows `CONSTANT "name" ["spelling"…] message, "help"` and `"name" arguments, "help"`; the help
+/// may be left out. It is a macro, so that the default keys can name each row and the compiler checks the
 /// names.
 macro_rules! actions {
     (
         alone {$($constant:ident $name:literal [$($spelling:literal),*] $message:expr $(, $help:literal)?;)+}
-        with_arguments {$($command:literal $arguments:expr, $use:literal;)+}
+        with_arguments {$($command:literal $arguments:expr $(, $use:literal)?;)+}
     ) => {
         $(
             #[doc = concat!("`", $name, "`.")]
@@ -167,7 +167,7 @@ macro_rules! actions {
                 name: $command,
                 spellings: &[],
                 does: Does::With($arguments),
-                help: $use,
+                help: concat!($($use)?),
             }),+
         ];
     };
@@ -336,19 +336,19 @@ actions! {
     with_arguments {
         "compare" Arguments::Shape(Purpose::Compare), "compare with a stored shape, or with the step before";
         "cursor" Arguments::Taxel, "move the cursor, or put it on a taxel";
-        "delete" Arguments::Shape(Purpose::Delete), "Delete: move a stored shape to the trash";
+        "delete" Arguments::Shape(Purpose::Delete);
         "explore" Arguments::Ranges, "Explore: all imprints in these ranges";
         "export" Arguments::File(FilePurpose::Write), "the same as :write";
-        "figure" Arguments::Figure, "Figure: place one of the seven figures";
-        "load" Arguments::Shape(Purpose::Load), "Load: bring a stored shape onto the matrix";
+        "figure" Arguments::Figure;
+        "load" Arguments::Shape(Purpose::Load);
         "move" Arguments::Distance, "move the shape right and down, in cells";
         "open" Arguments::File(FilePurpose::Open), "open a shape or an imprint from a file";
-        "picture" Arguments::Shape(Purpose::Picture), "Picture: place a stored shape, or move the one here";
+        "picture" Arguments::Shape(Purpose::Picture);
         "recognise" Arguments::Model, "Recognise: which shape of this model left the imprint";
         "restore" Arguments::Deleted, "bring back this deleted shape, or the one deleted last";
-        "save" Arguments::Name, "Save: store what is on the matrix";
+        "save" Arguments::Name;
         "seed" Arguments::Seed, "set the seed of the quiz's random touches";
-        "sensor" Arguments::Sensor, "Sensor: columns, rows, threshold, pitch";
+        "sensor" Arguments::Sensor;
         "separate" Arguments::Sizes, "the error against the size of the shapes";
         "turn" Arguments::Degrees, "turn the shape right; negative degrees: left";
         "watch" Arguments::FrameSource, "Watch: frames, live or recorded";

@@ -124,8 +124,8 @@ contexts! {
     Question "question" "At a question" Ignored, EVERYWHERE;
     /// In the list of keys.
     Help "help" "In the help" Ignored, EVERYWHERE;
-    /// In the field for the text to search for in the list of keys.
-    Search "search" "Searching the help" Typed, LINE;
+    /// In the field for the text to search for in the list of keys, or in that of steps.
+    Search "search" "Searching" Typed, LINE;
     /// In any text field, unless its page gives the key another meaning.
     Line "line" "In a line of text" Typed, EVERYWHERE;
     /// Everywhere, unless the place gives the key another meaning.

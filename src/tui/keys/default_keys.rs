@@ -49,7 +49,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('f') => FIGURE] "" "Figure: place one of the seven figures";
         [Char('p') => PICTURE] "" "Picture: place a stored shape, or move the one here";
         [Char('s') => SAVE] "" "Save: store what is on the matrix";
-        [Char('d') => DELETE] "" "Delete: remove a stored shape";
+        [Char('d') => DELETE] "" "Delete: move a stored shape to the trash";
         [Char('q') => QUIT] "" "Quit: asks first where work would be lost";
         [LEFT => CURSOR_LEFT, RIGHT => CURSOR_RIGHT, UP => CURSOR_UP, DOWN => CURSOR_DOWN]
             "" "move the cursor";
@@ -410,7 +410,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Esc => CANCEL, Ctrl('g') => CANCEL] "" "leave the search; without one: close";
     }
 
-    /// Help follows with every character typed; Esc restores the earlier lines and search.
+    /// The list follows with every character typed; Esc restores it.
     Search {
         [Enter => ACCEPT] "keep" "keep the search, to go to other matches";
         [Esc => CANCEL, Ctrl('g') => CANCEL] "cancel" "back to where the search began";
