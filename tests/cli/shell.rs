@@ -301,10 +301,6 @@ fn bash_completes_names_of_shapes_and_models() {
         (&["model", "delete", ""], "parts\n"),
         (&["recognise", "washer", "--model", "pa"], "parts\n"),
         (&["recognize", "wa"], "washer\n"),
-        (
-            &["watch", "-", "--min-taxels", "2", "--model", "pa"],
-            "parts\n",
-        ),
         (&["watch", "-", "--model", "=", "pa"], "parts\n"),
         (&["model", "separate", "pa"], "parts\n"),
         // Files, which bash completes itself, and flags.

@@ -203,10 +203,7 @@ fn flags_with_value(command: &Command) -> BTreeSet<String> {
     let own = command
         .get_arguments()
         .filter(|argument| argument.get_action().takes_values());
-    let own = own.flat_map(|argument| {
-        let aliases = argument.get_all_aliases().into_iter().flatten();
-        argument.get_long().into_iter().chain(aliases)
-    });
+    let own = own.filter_map(|argument| argument.get_long());
     let flags = own.map(|flag| format!("--{flag}"));
     let inner = command.get_subcommands().flat_map(flags_with_value);
     flags.chain(inner).collect()
