@@ -4,11 +4,17 @@ use std::ffi::OsString;
 use std::fs::{self, File, Metadata};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{ErrorKind, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::formats::shape::MAX_BYTES;
 use crate::storage::atomic_file::{kind_in_words, sync_folder};
 use crate::storage::error::{FileError, LibraryError};
+
+/// The name of the folder inside a library with its deleted shapes.
+pub(crate) const TRASH: &str = ".trash";
+
+/// The name of the folder inside a library with unsaved work.
+pub(crate) const JOURNAL: &str = ".journal";
 
 /// Returns a hash of a file's content. Two contents with the same stamp count as equal.
 pub(crate) fn stamp(content: &[u8]) -> u64 {
@@ -116,6 +122,15 @@ pub(crate) fn file_above(path: &Path) -> Option<&Path> {
     found.next().filter(|above| !above.is_dir())
 }
 
+/// Returns true if a file in the journal's folder is called like a file of a journal: two numbers and a hyphen, then
+/// an ending. A file of another name belongs to someone else.
+pub(crate) fn is_journal(path: &Path) -> bool {
+    let name = path.file_stem().and_then(|name| name.to_str());
+    let numbers = name.and_then(|name| name.split_once('-'));
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
+    numbers.is_some_and(|(process, number)| is_number(process) && is_number(number))
+}
+
 /// Makes a folder and the folders above it, and syncs them. A link to a folder counts as a folder.
 pub(crate) fn make(path: &Path) -> Result<(), LibraryError> {
     if path.as_os_str().is_empty() || path.is_dir() {
@@ -140,13 +155,39 @@ pub(crate) fn make(path: &Path) -> Result<(), LibraryError> {
     Ok(sync_folder(parent)?)
 }
 
-/// Does the same as [`make`] for a folder inside the library, which must not lead out of it.
-pub(crate) fn make_inner(path: &Path) -> Result<(), LibraryError> {
-    let found = path.symlink_metadata();
-    if found.is_ok_and(|found| found.file_type().is_symlink()) {
-        return Err(in_the_way(path, "a symbolic link", "a folder"));
+/// A folder inside the library. It is no link: a link would lead out of the library, to files of others.
+#[derive(Debug)]
+pub(crate) struct InnerFolder(PathBuf);
+
+impl InnerFolder {
+    /// Returns the folder of that name in a library. It may not exist yet.
+    ///
+    /// # Errors
+    /// Returns an error if a link has the name.
+    pub(crate) fn of(library: &Path, name: &str) -> Result<Self, LibraryError> {
+        let path = library.join(name);
+        let found = path.symlink_metadata();
+        if found.is_ok_and(|found| found.file_type().is_symlink()) {
+            return Err(in_the_way(&path, "a symbolic link", "a folder"));
+        }
+        Ok(Self(path))
     }
-    make(path)
+
+    /// Returns the path of the folder.
+    pub(crate) fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Does the same as [`make`].
+    pub(crate) fn make(&self) -> Result<(), LibraryError> {
+        make(&self.0)
+    }
+
+    /// Returns the paths of everything in the folder; empty if the folder does not exist.
+    pub(crate) fn paths(&self) -> Result<Vec<PathBuf>, FileError> {
+        let names = names(&self.0)?.into_iter();
+        Ok(names.map(|name| self.0.join(name)).collect())
+    }
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use std::time::Duration;
 use crate::formats::shape::StoredShape;
 use crate::storage::atomic_file;
 use crate::storage::error::{FileError, LibraryError};
-use crate::storage::folder;
+use crate::storage::folder::{self, InnerFolder, JOURNAL, is_journal};
 use crate::storage::library::Library;
 use crate::storage::lock::{Lock, LockAttempt};
 
@@ -27,7 +27,8 @@ pub const UNNAMED: &str = "unsaved";
 /// until it is cleared: a program that ends without clearing it has lost nothing.
 #[derive(Debug)]
 pub struct Journal {
-    folder: PathBuf,
+    /// The folder of the library.
+    library: PathBuf,
     /// The journal's file, with the lock if the file system has locks.
     open: Option<(PathBuf, Option<Lock>)>,
 }
@@ -36,7 +37,7 @@ impl Journal {
     /// Creates a journal in a library.
     pub fn new(library: &Library) -> Self {
         Self {
-            folder: folder_in(library),
+            library: library.folder().to_owned(),
             open: None,
         }
     }
@@ -71,10 +72,11 @@ impl Journal {
         if let Some((path, _)) = &self.open {
             return Ok(path.clone());
         }
-        folder::make_inner(&self.folder)?;
+        let folder = InnerFolder::of(&self.library, JOURNAL)?;
+        folder.make()?;
         let process = std::process::id();
         for number in 0..1000 {
-            let path = self.folder.join(format!("{process}-{number}.json"));
+            let path = folder.path().join(format!("{process}-{number}.json"));
             // Left by a dead program with the same process number.
             if path.exists() {
                 continue;
@@ -90,7 +92,7 @@ impl Journal {
             return Ok(path);
         }
         let none = io::Error::other("no journal could be locked");
-        Err(FileError::new("create a journal", &self.folder, none).into())
+        Err(FileError::new("create a journal", folder.path(), none).into())
     }
 
     /// Forgets the shape that was kept, because it is saved or given up.
@@ -113,14 +115,14 @@ pub struct Orphan {
 impl Orphan {
     /// Returns the newest journals that wait in a library, at most 100, the oldest of them first. Removes work that
     /// is identical to the saved shape of its name. Leaves a journal alone if it cannot be read: it may be of a later
-    /// version.
+    /// version. Leaves files of other names alone, too, and a folder outside of the library that a link leads to.
     pub fn all(library: &Library) -> Vec<Self> {
-        let journals = folder_in(library);
+        let folder = InnerFolder::of(library.folder(), JOURNAL);
         // A folder that cannot be read must not keep the program from starting.
-        let Ok(names) = folder::names(&journals) else {
+        let Ok(Ok(mut paths)) = folder.map(|folder| folder.paths()) else {
             return Vec::new();
         };
-        let mut paths: Vec<PathBuf> = names.into_iter().map(|name| journals.join(name)).collect();
+        paths.retain(|path| is_journal(path));
         paths.sort_by_cached_key(|path| {
             let changed = fs::symlink_metadata(path).and_then(|file| file.modified());
             // Of files with the same time, `1-10.json` comes after `1-9.json`.
@@ -153,8 +155,6 @@ impl Orphan {
     /// Returns the work in a journal, if its program is dead and the work would be lost.
     fn of(library: &Library, path: PathBuf) -> Option<Self> {
         let lock = Lock::if_free(&lock_of(&path))?;
-        // This file is half-written; the one before is whole.
-        let _ = fs::remove_file(temporary_of(&path));
         let content = match folder::read(&path) {
             // Its program has cleared it just now.
             Err(LibraryError::System(refused)) if refused.error.kind() == ErrorKind::NotFound => {
@@ -193,10 +193,6 @@ fn is_saved(library: &Library, shape: &StoredShape) -> bool {
         || library
             .load(shape.name.as_str())
             .is_ok_and(|saved| same(&saved.shape))
-}
-
-fn folder_in(library: &Library) -> PathBuf {
-    library.folder().join(".journal")
 }
 
 fn lock_of(path: &Path) -> PathBuf {

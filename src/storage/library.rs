@@ -17,7 +17,7 @@ use crate::storage::atomic_file;
 use crate::storage::atomic_file::sync_folder;
 use crate::storage::error::{FileError, LibraryError};
 use crate::storage::folder;
-use crate::storage::folder::stamp;
+use crate::storage::folder::{InnerFolder, JOURNAL, TRASH, is_journal, stamp};
 use crate::storage::lock;
 use crate::storage::lock::Lock;
 use crate::storage::name_index::NameIndex;
@@ -148,10 +148,6 @@ impl Library {
     /// Returns the folder of the library.
     pub fn folder(&self) -> &Path {
         &self.folder
-    }
-
-    fn trash(&self) -> PathBuf {
-        self.folder.join(".trash")
     }
 
     /// Lists all shapes by name, the user's first, without opening any file. Skips files that are not called
@@ -328,11 +324,10 @@ impl Library {
         let own = self.deletable(name)?;
         let path = self.path(&own);
         folder::regular(&path)?;
-        folder::make_inner(&self.trash())?;
-        let mut trash = Trash::read(self.trash())?;
+        let mut trash = Trash::made(&self.folder)?;
         fs::rename(&path, trash.next_path(&own)?)
             .map_err(|error| FileError::new("move it into the trash", &path, error))?;
-        sync_folder(&self.trash())?;
+        sync_folder(trash.folder())?;
         sync_folder(&self.folder)?;
         trash.forget_oldest();
         Ok(own)
@@ -345,8 +340,7 @@ impl Library {
     pub fn throw_away(&self, shape: &StoredShape) -> Result<String, LibraryError> {
         folder::make(&self.folder)?;
         let _lock = Lock::wait(&self.folder, &self.waits)?;
-        folder::make_inner(&self.trash())?;
-        let mut trash = Trash::read(self.trash())?;
+        let mut trash = Trash::made(&self.folder)?;
         let free = |name: &Name| {
             let thrown = trash.newest_first().any(|thrown| name.same(&thrown.name));
             !thrown && matches!(self.own_name(name), Ok(None))
@@ -360,7 +354,7 @@ impl Library {
         let name = name.unwrap_or_else(|| shape.name.clone());
         let thrown = shape.clone().renamed(name.clone());
         let path = trash.next_path(name.as_str())?;
-        let temporary = self.trash().join(TEMPORARY);
+        let temporary = trash.folder().join(TEMPORARY);
         atomic_file::write(&path, Some(&temporary), thrown.write().as_bytes())?;
         trash.forget_oldest();
         Ok(name.to_string())
@@ -389,7 +383,7 @@ impl Library {
     /// Returns an error if the folder exists but cannot be read.
     pub fn in_trash(&self) -> Result<Vec<String>, LibraryError> {
         let mut met = HashSet::new();
-        let trash = Trash::read(self.trash())?;
+        let trash = Trash::read(&self.folder)?;
         let names = trash.newest_first().map(|deleted| &deleted.name);
         Ok(names
             .filter(|name| met.insert(folded(name)))
@@ -427,7 +421,7 @@ impl Library {
             return Err(missing());
         }
         let _lock = Lock::wait(&self.folder, &self.waits)?;
-        let trash = Trash::read(self.trash())?;
+        let trash = Trash::read(&self.folder)?;
         let mut newest = trash.newest_first();
         let deleted = newest.find(|deleted| is_wanted(&deleted.name));
         let deleted = deleted.ok_or_else(missing)?;
@@ -439,7 +433,7 @@ impl Library {
         fs::rename(&deleted.path, self.path(&deleted.name))
             .map_err(|error| FileError::new("bring it back", &deleted.path, error))?;
         sync_folder(&self.folder)?;
-        sync_folder(&self.trash())?;
+        sync_folder(trash.folder())?;
         Ok(deleted.name.clone())
     }
 
@@ -452,9 +446,11 @@ impl Library {
         let mut found = Vec::new();
         for name in folder::names(&self.folder)? {
             let what = match name.to_str() {
-                Some(".lock" | ".trash" | ".journal" | COMMANDS | RECOGNISED_SET | FORMS) => {
-                    continue;
-                }
+                Some(".lock" | COMMANDS | RECOGNISED_SET | FORMS) => continue,
+                Some(inner @ (TRASH | JOURNAL)) => match InnerFolder::of(&self.folder, inner) {
+                    Ok(_) => continue,
+                    Err(_) => "a symbolic link, which is not followed",
+                },
                 Some(name) if name.starts_with(TEMPORARY) || is_temporary(name) => {
                     "half-written by a program that died, or being written"
                 }
@@ -466,10 +462,10 @@ impl Library {
             };
             found.push((self.folder.join(name), what));
         }
-        let journal = self.folder.join(".journal");
-        for name in folder::names(&journal)? {
-            let path = journal.join(name);
-            let what = match path.extension().and_then(|end| end.to_str()) {
+        let journal = InnerFolder::of(&self.folder, JOURNAL);
+        for path in journal.map_or(Ok(Vec::new()), |journal| journal.paths())? {
+            let ending = path.extension().and_then(|ending| ending.to_str());
+            let what = match ending.filter(|_| is_journal(&path)) {
                 Some("json") => "unsaved work, of a running program or of one that died",
                 Some("lock" | "tmp") => continue,
                 _ => "no journal",

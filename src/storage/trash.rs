@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::formats::name::Name;
-use crate::storage::error::FileError;
-use crate::storage::folder;
+use crate::storage::error::{FileError, LibraryError};
+use crate::storage::folder::{InnerFolder, TRASH};
 
 /// The number of deleted shapes that are kept; older ones are removed for good.
 pub const TRASH_KEPT: usize = 50;
@@ -25,19 +25,40 @@ pub(crate) struct DeletedShape {
 
 /// The shapes that were in a trash when its folder was read.
 pub(crate) struct Trash {
-    folder: PathBuf,
+    folder: InnerFolder,
     /// The shapes, the oldest first.
     shapes: Vec<DeletedShape>,
 }
 
 impl Trash {
-    /// Reads a trash; empty if its folder does not exist.
-    pub(crate) fn read(folder: PathBuf) -> Result<Self, FileError> {
-        let names = folder::names(&folder)?.into_iter();
-        let shapes = names.filter_map(|name| DeletedShape::at(&folder.join(name)));
-        let mut shapes: Vec<DeletedShape> = shapes.collect();
+    /// Reads the trash of a library; empty if its folder does not exist.
+    ///
+    /// # Errors
+    /// Returns an error if the folder is a link or cannot be read.
+    pub(crate) fn read(library: &Path) -> Result<Self, LibraryError> {
+        Self::in_folder(InnerFolder::of(library, TRASH)?)
+    }
+
+    /// Reads the trash of a library, and makes its folder if there is none.
+    ///
+    /// # Errors
+    /// Returns an error if the folder is a link or cannot be made or read.
+    pub(crate) fn made(library: &Path) -> Result<Self, LibraryError> {
+        let folder = InnerFolder::of(library, TRASH)?;
+        folder.make()?;
+        Self::in_folder(folder)
+    }
+
+    fn in_folder(folder: InnerFolder) -> Result<Self, LibraryError> {
+        let paths = folder.paths()?.into_iter();
+        let mut shapes: Vec<DeletedShape> = paths.filter_map(DeletedShape::at).collect();
         shapes.sort_by_key(|shape| shape.number);
         Ok(Self { folder, shapes })
+    }
+
+    /// Returns the path of the folder.
+    pub(crate) fn folder(&self) -> &Path {
+        self.folder.path()
     }
 
     /// Iterates over the shapes, the last deleted first.
@@ -59,7 +80,8 @@ impl Trash {
     }
 
     fn path(&self, number: u64, name: &str) -> PathBuf {
-        self.folder.join(format!("{number:010} {name}.json"))
+        let file = format!("{number:010} {name}.json");
+        self.folder().join(file)
     }
 
     /// Numbers the shapes from 1, the oldest first.
@@ -91,7 +113,7 @@ impl Trash {
 
 impl DeletedShape {
     /// Returns the deleted shape at a path; None if the file's name is not that of a deleted shape.
-    fn at(path: &Path) -> Option<Self> {
+    fn at(path: PathBuf) -> Option<Self> {
         let name = path.file_name()?.to_str()?.strip_suffix(".json")?;
         let (number, name) = name.split_once(' ')?;
         Some(Self {
@@ -100,7 +122,7 @@ impl DeletedShape {
                 .ok()
                 .filter(|number| *number <= LAST_NUMBER)?,
             name: Name::new(name).ok()?.to_string(),
-            path: path.to_owned(),
+            path,
         })
     }
 }

@@ -162,6 +162,88 @@ fn trash_and_journal_cannot_lead_out_of_the_library() {
 }
 
 #[test]
+fn a_shape_is_not_restored_from_outside_of_the_library() {
+    let elsewhere = tempfile::tempdir().expect("a folder");
+    let thesis = elsewhere.path().join("1 thesis.json");
+    fs::write(&thesis, "precious").expect("written");
+    let scratch = Scratch::new();
+    symlink(elsewhere.path(), scratch.path(".trash")).expect("a link");
+    let message = "FOLDER/.trash: is a symbolic link, expected a folder";
+    let library = &scratch.library;
+    assert_eq!(refusal(library.restore("thesis"), &scratch), message);
+    assert_eq!(refusal(library.restore_last(), &scratch), message);
+    assert_eq!(refusal(library.in_trash(), &scratch), message);
+    assert!(thesis.exists());
+}
+
+/// In a folder that a link leads to, even files that are called like journals belong to others.
+#[test]
+fn a_start_leaves_files_of_others_alone() {
+    let precious = [
+        "1-0.lock",
+        "2-0.json",
+        "2-0.tmp",
+        "3-0.json",
+        "4-0.lock",
+        "4-0.tmp",
+        "Cargo.lock",
+        "notes.json",
+        "notes.tmp",
+        "work.json",
+    ];
+    for (is_linked, left) in [(true, &precious[..]), (false, &precious[6..])] {
+        let elsewhere = tempfile::tempdir().expect("a folder");
+        let scratch = Scratch::new();
+        if is_linked {
+            symlink(elsewhere.path(), scratch.path(".journal")).expect("a link");
+        } else {
+            fs::create_dir(scratch.path(".journal")).expect("made");
+        }
+        let journal = scratch.path(".journal");
+        for name in left {
+            fs::write(journal.join(name), "precious").expect("written");
+        }
+        // A shape can be read, and would be offered.
+        fs::write(journal.join("work.json"), shape("work", 7).write()).expect("written");
+        assert_eq!(Orphan::all(&scratch.library).len(), 0);
+        assert_eq!(super::files(&journal), left);
+    }
+}
+
+#[test]
+fn a_check_reports_links_and_files_of_others_in_inner_folders() {
+    let scratch = Scratch::new();
+    fs::create_dir(scratch.path(".journal")).expect("made");
+    scratch.put(".journal/1-0.json", "");
+    scratch.put(".journal/1-0.lock", "");
+    scratch.put(".journal/notes.json", "");
+    symlink("nowhere", scratch.path(".trash")).expect("a link");
+    let left = || {
+        let left = scratch.library.leftovers().expect("read").into_iter();
+        left.map(|(path, what)| {
+            let path = path.strip_prefix(&scratch.folder).expect("inside");
+            format!("{}: {what}", path.display())
+        })
+        .collect::<Vec<_>>()
+    };
+    let link = ".trash: a symbolic link, which is not followed";
+    let unsaved = "unsaved work, of a running program or of one that died";
+    assert_eq!(
+        left(),
+        [
+            &format!(".journal/1-0.json: {unsaved}"),
+            ".journal/notes.json: no journal",
+            link,
+        ]
+    );
+    fs::rename(scratch.path(".journal"), scratch.path("elsewhere")).expect("moved");
+    symlink("elsewhere", scratch.path(".journal")).expect("a link");
+    let journal = ".journal: a symbolic link, which is not followed";
+    let folder = "elsewhere: no shape: its name is not NAME.json";
+    assert_eq!(left(), [journal, link, folder]);
+}
+
+#[test]
 fn broken_files_are_listed_and_reported_without_affecting_others() {
     let scratch = Scratch::with(&["good"]);
     let good = shape("x", 1).write();

@@ -176,6 +176,7 @@ fn unreadable_work_is_kept_and_half_written_files_are_removed() {
     left(&scratch, &shape("work", 1));
     let newer = shape("work", 2).write().replace("shape/1", "shape/2");
     scratch.put(".journal/1-0.json", &newer);
+    scratch.put(".journal/1-0.tmp", "{");
     scratch.put(".journal/2-0.json", "{");
     scratch.put(".journal/3-0.lock", "");
     scratch.put(".journal/3-0.tmp", "{");
@@ -186,7 +187,14 @@ fn unreadable_work_is_kept_and_half_written_files_are_removed() {
     left.retain(|name| !name.starts_with(&std::process::id().to_string()));
     assert_eq!(
         left,
-        ["1-0.json", "1-0.lock", "2-0.json", "2-0.lock", "notes.txt"]
+        [
+            "1-0.json",
+            "1-0.lock",
+            "1-0.tmp",
+            "2-0.json",
+            "2-0.lock",
+            "notes.txt"
+        ]
     );
     // The journal of another program with the same process number is not overwritten.
     let own = std::process::id();
