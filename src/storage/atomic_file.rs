@@ -7,7 +7,7 @@
 //! is killed, the next writer removes the file that it left: see [`crate::storage::temporary`] for files from
 //! [`UnfinishedFile::new`]; the name given to [`UnfinishedFile::with_temporary`] is taken over by the next caller.
 
-use std::fs::{self, File, FileType, Metadata, TryLockError};
+use std::fs::{self, File, FileType, Metadata, Permissions, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -74,10 +74,9 @@ impl UnfinishedFile {
             .metadata()
             .map_err(refuse("write into its folder"))?;
         let file = create().map_err(refuse("write into its folder"))?;
-        // The new file keeps the permissions of the old one: it must not become readable for others.
         if let Some(old) = old {
             file.file()
-                .set_permissions(old.permissions())
+                .set_permissions(permissions_after(&old))
                 .map_err(refuse("set its permissions"))?;
         }
         Ok(Self {
@@ -210,6 +209,18 @@ fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileErr
         }
         _ => Ok(old),
     }
+}
+
+/// Returns the permissions of a file that replaces an old one: the same, so that it does not become readable for
+/// others. But not the bits that make it run as its owner or group: it has other content, and perhaps another owner.
+fn permissions_after(old: &Metadata) -> Permissions {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        Permissions::from_mode(old.permissions().mode() & 0o777)
+    }
+    #[cfg(not(unix))]
+    old.permissions()
 }
 
 /// Returns the kind of something that is not a regular file.
