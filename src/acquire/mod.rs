@@ -38,7 +38,7 @@ pub use event::{AcquireError, AcquireEvent, AcquireOptions, Playback};
 pub(crate) use frame_rate::FrameRate;
 pub use growing_file::ReadAnew;
 #[cfg(feature = "tui")]
-pub(crate) use recorder::name_description;
+pub(crate) use recorder::PreparedDescription;
 pub use recorder::{DescriptionError, FrameRecorder, RecorderError, description_beside};
 pub use run::acquire;
 pub use source::FrameSource;

@@ -13,6 +13,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::storage::error::FileError;
+#[cfg(feature = "acquire")]
+use crate::storage::file_id::FileId;
 use crate::storage::temporary::{OldFile, TemporaryFile};
 
 /// The treatment of a file that is there already.
@@ -280,6 +282,24 @@ pub fn persist_pair(first: FinishedFile, second: FinishedFile) -> Result<File, F
     synced?;
     sync_folder(folder_of(&beside))?;
     Ok(file)
+}
+
+/// Gives the second of two files that belong together its name again, unless another file has the name of the first
+/// one by now. Returns whether it did. Of two programs that name such files in one folder at once, one waits for the
+/// other.
+///
+/// # Errors
+/// Returns the errors of [`FinishedFile::persist`].
+#[cfg(feature = "acquire")]
+pub(crate) fn persist_beside(
+    (first, path): (FileId, &Path),
+    second: FinishedFile,
+) -> Result<bool, FileError> {
+    let _lock = lock_folder(folder_of(path));
+    if !first.is_at(path) {
+        return Ok(false);
+    }
+    second.persist().map(|()| true)
 }
 
 /// Moves a file that is to be replaced to a temporary name.

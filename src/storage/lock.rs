@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::storage::error::{FileError, LibraryError};
+use crate::storage::file_id::FileId;
 use crate::storage::folder::regular;
 
 /// The time that a writer waits for another program. Writing takes milliseconds, unless that program is stopped.
@@ -78,7 +79,9 @@ impl Lock {
         let file = open(path)?;
         Ok(match try_lock(&file, path)? {
             // The program that held it may have removed the file: then this lock protects nothing.
-            Some(true) if is_at(&file, path) => LockAttempt::Free(Self { file }),
+            Some(true) if FileId::of(&file).is_ok_and(|id| id.is_at(path)) => {
+                LockAttempt::Free(Self { file })
+            }
             Some(_) => LockAttempt::Held,
             None => LockAttempt::Unsupported,
         })
@@ -148,20 +151,6 @@ fn open(path: &Path) -> Result<File, LibraryError> {
         file => file,
     };
     Ok(file.map_err(|error| FileError::new("open the lock", path, error))?)
-}
-
-#[cfg(unix)]
-fn is_at(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let id = |found: fs::Metadata| (found.dev(), found.ino());
-    let (opened, found) = (file.metadata().map(id), fs::symlink_metadata(path).map(id));
-    matches!((opened, found), (Ok(opened), Ok(found)) if opened == found)
-}
-
-/// Returns true: on these systems an open file cannot be removed.
-#[cfg(not(unix))]
-fn is_at(_: &File, _: &Path) -> bool {
-    true
 }
 
 #[cfg(test)]

@@ -33,6 +33,9 @@ mod temporary;
 pub mod location;
 
 #[cfg(feature = "library")]
+mod file_id;
+
+#[cfg(feature = "library")]
 mod folder;
 
 #[cfg(feature = "library")]
@@ -69,6 +72,12 @@ mod models;
 mod model_choice;
 
 pub use atomic_file::{Existing, FinishedFile, UnfinishedFile, persist_pair};
+
+#[cfg(feature = "acquire")]
+pub(crate) use file_id::FileId;
+
+#[cfg(feature = "acquire")]
+pub(crate) use atomic_file::persist_beside;
 
 pub use error::FileError;
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::acquire::recorder::error::{DescriptionError, RecorderError, refused};
 use crate::formats::recording::RecordingMetadata;
-use crate::storage::{Existing, FinishedFile};
+use crate::storage::{Existing, FileId, FinishedFile, persist_beside};
 
 /// The largest size of a description, in bytes.
 const LARGEST_DESCRIPTION: u64 = 1 << 22;
@@ -14,7 +14,7 @@ const LARGEST_DESCRIPTION: u64 = 1 << 22;
 /// A description that is to be written. Writing it takes as long as the disk does, and needs no recorder: meanwhile,
 /// frames can be added to the recorder.
 /// ```text
-/// set_view -> DescriptionDraft -> prepare -> take_description -> name_description
+/// set_view -> DescriptionDraft -> prepare -> take_description -> PreparedDescription -> give_name
 /// ```
 #[derive(Debug)]
 pub(crate) struct DescriptionDraft {
@@ -34,12 +34,29 @@ impl DescriptionDraft {
     }
 }
 
-/// Gives a description its name.
-///
-/// # Errors
-/// Returns the system's error.
-pub(crate) fn name_description(file: FinishedFile) -> Result<(), RecorderError> {
-    file.persist().map_err(refused)
+/// A description on the disk, to be given its name at once, beside an array that has its name.
+#[derive(Debug)]
+pub(crate) struct PreparedDescription {
+    pub(super) file: FinishedFile,
+    /// The array, which is open until the description has its name.
+    pub(super) array: FileId,
+    /// The path of the array.
+    pub(super) path: PathBuf,
+}
+
+impl PreparedDescription {
+    /// Gives the description its name.
+    ///
+    /// # Errors
+    /// Returns [`RecorderError::Replaced`] if another file has the name of the array by now, which the description is
+    /// not about, or the system's error.
+    pub(crate) fn give_name(self) -> Result<(), RecorderError> {
+        let Self { file, array, path } = self;
+        match persist_beside((array, &path), file).map_err(refused)? {
+            true => Ok(()),
+            false => Err(RecorderError::Replaced { path }),
+        }
+    }
 }
 
 /// Writes a description to the disk, without its name.

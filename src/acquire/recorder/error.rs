@@ -36,6 +36,15 @@ pub enum RecorderError {
         /// The file.
         path: PathBuf,
     },
+    /// The file was replaced, moved or removed while frames were recorded in it.
+    #[error(
+        "{}: replaced, moved or removed while frames were recorded in it; the description beside it is left as it is",
+        path.display()
+    )]
+    Replaced {
+        /// The path that the file had.
+        path: PathBuf,
+    },
     /// The file, or the description beside it, is the source.
     #[error("{} is the source being watched: record to another file", path.display())]
     IsSource {

@@ -1,7 +1,8 @@
 //! Writes frames to a file that numpy and taxel can open at any moment, even after the program was killed.
 //!
 //! Beside `touch.npy`, an array of records, lies `touch.json`, which says where the frames are from and how they were
-//! looked at. The two get their names together, so a new file never stands beside an old version of the other one.
+//! looked at. The two get their names together, so a new file never stands beside an old version of the other one. If
+//! another program replaces the array meanwhile, the description is left to that program.
 //! `touch.json` says whether the recording was ended: it was not if the program was killed.
 //!
 //! No file appears or is replaced until the first frame arrives. A disk that is full ends a recording after its last
@@ -22,8 +23,8 @@ use description::{DescriptionDraft, is_array, overwrite, prepared};
 use error::refused;
 use record_array::{RecordArray, empty};
 
+pub(crate) use description::PreparedDescription;
 pub use description::description_beside;
-pub(crate) use description::name_description;
 pub use error::{DescriptionError, RecorderError};
 
 use crate::acquire::frame_rate::FrameRate;
@@ -31,7 +32,7 @@ use crate::acquire::frame_rate::FrameRate;
 use crate::formats::recording::RecordedView;
 use crate::formats::recording::RecordingMetadata;
 use crate::frame::{Frame, FrameSize};
-use crate::storage::{Existing, FinishedFile, UnfinishedFile, persist_pair};
+use crate::storage::{Existing, FileId, FinishedFile, UnfinishedFile, persist_pair};
 
 /// The largest number of bursts over which the rate is measured: several minutes.
 const MOST_BURSTS: usize = 4096;
@@ -80,8 +81,8 @@ pub struct FrameRecorder {
 enum Names {
     /// The files get their names with the first frame.
     Waiting(FinishedFile, FinishedFile),
-    /// The files have their names.
-    Given,
+    /// The files have their names; the identity of the array.
+    Given(FileId),
     /// The files did not get their names. The files of these names belong to something else, and stay as they are.
     Refused,
 }
@@ -186,10 +187,13 @@ impl FrameRecorder {
 
     /// Takes a description that is on the disk, to give it its name together with the array. If the array has its
     /// name already, returns the description, which is to be given its name at once.
-    pub(crate) fn take_description(&mut self, file: FinishedFile) -> Option<FinishedFile> {
+    pub(crate) fn take_description(&mut self, file: FinishedFile) -> Option<PreparedDescription> {
         match &mut self.names {
             Names::Waiting(_, description) => *description = file.with_existing(self.existing),
-            Names::Given => return Some(file),
+            Names::Given(array) => {
+                let (array, path) = (*array, self.path.clone());
+                return Some(PreparedDescription { file, array, path });
+            }
             Names::Refused => {}
         }
         None
@@ -197,7 +201,8 @@ impl FrameRecorder {
 
     fn write_description(&mut self) -> Result<(), RecorderError> {
         let file = self.draft().prepare()?;
-        self.take_description(file).map_or(Ok(()), name_description)
+        let file = self.take_description(file);
+        file.map_or(Ok(()), PreparedDescription::give_name)
     }
 
     /// Returns the number of frames that were recorded.
@@ -233,9 +238,10 @@ impl FrameRecorder {
         }
         self.names = match std::mem::replace(&mut self.names, Names::Refused) {
             Names::Waiting(array, description) => {
-                self.array
-                    .move_to(persist_pair(array, description).map_err(refused)?);
-                Names::Given
+                let file = persist_pair(array, description).map_err(refused)?;
+                let id = FileId::of(&file).map_err(|error| self.refused(error))?;
+                self.array.move_to(file);
+                Names::Given(id)
             }
             names => names,
         };
@@ -271,7 +277,7 @@ impl FrameRecorder {
     /// # Errors
     /// Returns the system's error.
     pub fn flush(&mut self) -> Result<(), RecorderError> {
-        if !matches!(self.names, Names::Given) {
+        if !matches!(self.names, Names::Given(_)) {
             return Ok(());
         }
         let written = self.array.write_out().and_then(|()| self.array.sync());
@@ -291,7 +297,7 @@ impl FrameRecorder {
     /// Returns the system's error. Even then the records in the file are whole, and the description says why it ends
     /// there.
     pub fn finish(mut self) -> Result<u64, RecorderError> {
-        if !matches!(self.names, Names::Given) {
+        if !matches!(self.names, Names::Given(_)) {
             return Ok(0);
         }
         let written = self.array.write_out();
@@ -304,9 +310,10 @@ impl FrameRecorder {
         self.metadata.seconds_per_frame = stated.or_else(|| self.rate.seconds_per_frame());
         self.metadata.ended = Some(true);
         self.metadata.ended_by = self.reason.take();
-        let described = self
-            .write_description()
-            .or_else(|error| overwrite(&self.path, &self.metadata).map_err(|_| error));
+        let described = self.write_description().or_else(|error| match error {
+            RecorderError::Replaced { .. } => Err(error),
+            error => overwrite(&self.path, &self.metadata).map_err(|_| error),
+        });
         // Frames that could not be written are not tried again.
         self.array.give_up();
         written.and(synced).and(described)?;
@@ -316,7 +323,7 @@ impl FrameRecorder {
 
 impl Drop for FrameRecorder {
     fn drop(&mut self) {
-        if matches!(self.names, Names::Given) && !self.array.is_written_out() {
+        if matches!(self.names, Names::Given(_)) && !self.array.is_written_out() {
             let _ = self.array.write_out();
         }
     }
@@ -361,10 +368,43 @@ mod tests {
                 file
             };
             let file = recorder.take_description(file).expect("to be named");
-            name_description(file).expect("named");
+            file.give_name().expect("named");
             let beside = description_beside(&path).expect("there").expect("read");
             assert_eq!(beside.marks, marks);
         }
+    }
+
+    /// Another program has replaced the recording, with its description.
+    #[cfg(unix)]
+    #[test]
+    fn a_recording_that_was_replaced_leaves_the_new_description_alone() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let mut old = begun(&path);
+        old.add(&Frame::default(), None).expect("recorded");
+        let mut metadata = RecordingMetadata::default();
+        metadata.unit = Some("kPa".to_owned());
+        let new = FrameRecorder::create(&path, Existing::Replaced, &metadata);
+        let mut new = new.expect("begun");
+        new.add(&Frame::default(), None).expect("recorded");
+        new.finish().expect("finished");
+        let files = || {
+            [&path, &path.with_extension("json")]
+                .map(std::fs::read)
+                .map(Result::ok)
+        };
+        let before = files();
+        let refused = old.describe(&RecordingMetadata::default());
+        assert!(
+            matches!(refused, Err(RecorderError::Replaced { .. })),
+            "{refused:?}"
+        );
+        let refused = old.finish();
+        assert!(
+            matches!(refused, Err(RecorderError::Replaced { .. })),
+            "{refused:?}"
+        );
+        assert_eq!(files(), before);
     }
 
     #[test]

@@ -13,7 +13,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use crate::acquire::{FrameRecorder, RecorderError, name_description};
+use crate::acquire::{FrameRecorder, PreparedDescription, RecorderError};
 use crate::formats::recording::{RecordedView, RecordingMetadata};
 use crate::frame::Frame;
 use crate::storage::Existing;
@@ -138,7 +138,8 @@ impl Recording {
         };
         let written = draft.prepare().and_then(|file| {
             let file = self.open(|recorder| recorder.take_description(file));
-            file.flatten().map_or(Ok(()), name_description)
+            file.flatten()
+                .map_or(Ok(()), PreparedDescription::give_name)
         });
         drop(one_at_a_time);
         written.map_err(|error| {

@@ -1,0 +1,54 @@
+//! The identity of a file: whether a name still belongs to it, or another program has given the name to another file.
+
+use std::fs::File;
+use std::io;
+use std::path::Path;
+
+/// The identity of a file, which it keeps when it is renamed. It stays unique as long as the file is open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct FileId {
+    /// The number of the device.
+    #[cfg(unix)]
+    device: u64,
+    /// The number of the file on its device.
+    #[cfg(unix)]
+    number: u64,
+}
+
+#[cfg(unix)]
+impl FileId {
+    fn in_metadata(found: &std::fs::Metadata) -> Self {
+        use std::os::unix::fs::MetadataExt;
+        Self {
+            device: found.dev(),
+            number: found.ino(),
+        }
+    }
+
+    /// Returns the identity of an open file.
+    ///
+    /// # Errors
+    /// Returns the system's error.
+    pub(crate) fn of(file: &File) -> io::Result<Self> {
+        file.metadata().map(|found| Self::in_metadata(&found))
+    }
+
+    /// Returns true if the file has this path.
+    pub(crate) fn is_at(self, path: &Path) -> bool {
+        let found = path.symlink_metadata();
+        found.is_ok_and(|found| Self::in_metadata(&found) == self)
+    }
+}
+
+#[cfg(not(unix))]
+impl FileId {
+    /// Returns the same for every file: on these systems an open file cannot be removed.
+    pub(crate) fn of(_: &File) -> io::Result<Self> {
+        Ok(Self {})
+    }
+
+    /// Returns true.
+    pub(crate) fn is_at(self, _: &Path) -> bool {
+        true
+    }
+}
