@@ -135,6 +135,9 @@ impl ModelHead {
 /// The largest number of shapes in a set.
 pub(super) const MAX_SHAPES: usize = 1 << 15;
 
+/// The most characters of the name of a shape, as in a library.
+const LONGEST_NAME: usize = 64;
+
 /// The error for shapes or numbers that do not make a model.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -164,6 +167,18 @@ pub enum ModelError {
         number: usize,
         /// The name.
         name: String,
+    },
+    /// A name that is too long.
+    #[error(
+        "name {name:?} of shape {number} has {length} characters (allowed: up to {LONGEST_NAME})"
+    )]
+    LongName {
+        /// The number of the shape, from 1.
+        number: usize,
+        /// The beginning of the name.
+        name: String,
+        /// The number of characters.
+        length: usize,
     },
     /// A weight of 0.
     #[error("weight of {name:?}: 0, expected at least 1")]
@@ -225,6 +240,14 @@ pub(super) fn check_shapes(shapes: &[NamedShape]) -> Result<(), ModelError> {
             return Err(ModelError::ControlCharacter {
                 number,
                 name: name(),
+            });
+        }
+        let length = shape.name.chars().count();
+        if length > LONGEST_NAME {
+            return Err(ModelError::LongName {
+                number,
+                name: name(),
+                length,
             });
         }
         if !names.insert(shape.name.as_str()) {

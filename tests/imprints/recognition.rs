@@ -593,6 +593,15 @@ fn sets_and_descriptors_that_make_no_sense_are_refused() {
         error(vec![NamedShape::new("disc\nright 100 %", disc)]),
         "name \"disc\\nright 100 %\" of shape 1 has a line break or another control character"
     );
+    let longest = NamedShape::new("é".repeat(64), disc);
+    let too_long = NamedShape::new("n".repeat(70_000), disc);
+    assert_eq!(
+        error(vec![longest, too_long]),
+        format!(
+            "name \"{}…\" of shape 2 has 70000 characters (allowed: up to 64)",
+            "n".repeat(40)
+        )
+    );
     let twice = vec![NamedShape::new("disc", disc), NamedShape::new("disc", disc)];
     assert_eq!(
         error(twice),
