@@ -23,7 +23,7 @@ use crate::storage::{ArchiveFileError, FileError, LibraryError};
 use crate::sweep::MergeError;
 use crate::tui::script::runner;
 
-/// The most shapes for a table of all pairs; as JSON, this many take a gigabyte of memory.
+/// The most shapes for a table of all pairs of shapes; as JSON, this many take a gigabyte of memory.
 pub(crate) const MOST_PAIRED: usize = 4096;
 
 /// The reason why a command failed, or was not done completely.
@@ -198,8 +198,10 @@ pub(crate) enum CliError {
         shapes: usize,
     },
     /// A set with too many shapes for a table of all pairs.
-    #[error("--pairs: the model has {shapes} shapes (allowed: up to {MOST_PAIRED})")]
+    #[error("{table}: the model has {shapes} shapes (allowed: up to {MOST_PAIRED})")]
     TooManyPairs {
+        /// The flag of the table, or its name.
+        table: &'static str,
         /// The number of shapes.
         shapes: usize,
     },

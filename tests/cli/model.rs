@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -879,12 +880,21 @@ fn the_table_of_pairs_is_limited() {
     let lines: String = (0..4097).map(line).collect();
     fs::write(place.path("many.jsonl"), lines).expect("written");
     place.done("model train many.jsonl --positions 1 --angle 0 --out many.npz --quiet");
-    let run = place.run("model confusion many.npz --pairs", "");
-    refused(
-        &run,
-        1,
-        "--pairs: the model has 4097 shapes (allowed: up to 4096)",
-    );
+    for (line, table) in [
+        ("model confusion many.npz --pairs", "--pairs"),
+        ("model confusion many.npz", "confusion matrix"),
+        ("model confusion many.npz --json", "confusion matrix"),
+        ("model confusion many.npz --given na", "confusion matrix"),
+        (
+            "merge many.npz --json --quiet --out merged.npz",
+            "confusion matrix",
+        ),
+    ] {
+        let run = place.run(line, "");
+        let message = format!("{table}: the model has 4097 shapes (allowed: up to 4096)");
+        refused(&run, 1, &message);
+    }
+    assert!(!Path::new(&place.path("merged.npz")).exists());
 }
 
 #[test]

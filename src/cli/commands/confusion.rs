@@ -36,6 +36,9 @@ pub(crate) fn confusion(
     charset: Charset,
 ) -> Result<String, CliError> {
     let model = model::find(&asked.model, shelf)?;
+    if let Some(table) = table_of_pairs(&asked.of) {
+        fits_in_table(table, model.shapes().len())?;
+    }
     if let Some(path) = &asked.export {
         // A file that cannot be written is an error before the work, not after it.
         drop(UnfinishedFile::new(path, asked.existing)?);
@@ -53,7 +56,7 @@ pub(crate) fn confusion(
             shown(asked, &reached.evaluation, Some(&reached), charset)
         }
         Evaluated::Greedy => Ok(chosen(&model, asked, charset)),
-        Evaluated::Pairs => pairs(&model, as_json, charset),
+        Evaluated::Pairs => Ok(pairs(&model, as_json, charset)),
         Evaluated::AllClassifiers => all_classifiers(&model, asked, charset),
         Evaluated::Noise(noise) => noise::degradation(&model, noise, asked, charset),
         Evaluated::HalfStep => noise::half_step(&model, asked, charset),
@@ -62,6 +65,32 @@ pub(crate) fn confusion(
         note(&written(path), charset);
     }
     Ok(text)
+}
+
+/// Returns the table of all pairs of shapes that a question is answered with, as messages call it; None if there is
+/// no such table in the answer.
+fn table_of_pairs(of: &Evaluated) -> Option<&'static str> {
+    match of {
+        Evaluated::Imprints | Evaluated::Given(_) | Evaluated::Classifier(_) => {
+            Some("confusion matrix")
+        }
+        Evaluated::Pairs => Some("--pairs"),
+        Evaluated::Greedy
+        | Evaluated::AllClassifiers
+        | Evaluated::Noise(_)
+        | Evaluated::HalfStep => None,
+    }
+}
+
+/// Refuses a table of all pairs of shapes that would take gigabytes.
+///
+/// # Errors
+/// Returns [`CliError::TooManyPairs`].
+pub(crate) fn fits_in_table(table: &'static str, shapes: usize) -> Result<(), CliError> {
+    if shapes > MOST_PAIRED {
+        return Err(CliError::TooManyPairs { table, shapes });
+    }
+    Ok(())
 }
 
 /// Returns the descriptors that [`greedy`] chooses one by one, with the result of each step.
@@ -83,21 +112,14 @@ fn chosen(model: &Model, asked: &ConfusionArguments, charset: Charset) -> String
 }
 
 /// Returns the error of the best classifier for each pair of shapes, as if there were no others.
-///
-/// # Errors
-/// Returns [`CliError::TooManyPairs`] for a model whose table would take gigabytes.
-fn pairs(model: &Model, as_json: bool, charset: Charset) -> Result<String, CliError> {
-    let shapes = model.shapes().len();
-    if shapes > MOST_PAIRED {
-        return Err(CliError::TooManyPairs { shapes });
-    }
+fn pairs(model: &Model, as_json: bool, charset: Charset) -> String {
     let errors = model.pair_errors();
     let names = model.shapes().iter().map(|shape| shape.name.clone());
     let labels: Vec<String> = names.collect();
     if !as_json {
-        return Ok(evaluation::pairs(&labels, &errors, charset));
+        return evaluation::pairs(&labels, &errors, charset);
     }
-    Ok(json::ascii(&json!({"labels": labels, "errors": errors})) + "\n")
+    json::ascii(&json!({"labels": labels, "errors": errors})) + "\n"
 }
 
 /// Returns the result of a classifier that is not the best one, and shows the progress meanwhile.

@@ -15,6 +15,7 @@ use std::time::Instant;
 
 use crate::cli::arguments::model::train::model_file;
 use crate::cli::arguments::request::Wanted;
+use crate::cli::commands::confusion::fits_in_table;
 use crate::cli::commands::sweep::leave;
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
@@ -237,6 +238,10 @@ fn models(parts: &[Part], memory: &MemoryGuard) -> Result<Model, CliError> {
 
 /// Writes a merged model, and returns the text to print.
 fn leave_model(model: &Model, wanted: &Wanted) -> Result<String, CliError> {
+    if wanted.json {
+        // Before anything is written.
+        fits_in_table("confusion matrix", model.shapes().len())?;
+    }
     let signals = Signals::catch().map_err(CliError::System)?;
     if let Some(file) = &wanted.atlas {
         let saved = save_model(
