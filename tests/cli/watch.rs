@@ -1,7 +1,7 @@
 //! Tests of `taxel watch`: live frames from pipes, pseudo-terminals and recordings, and their recording.
 
 use std::fs;
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::process::{Child, Command};
@@ -624,6 +624,33 @@ fn a_hangup_ends_a_recording_in_a_pipeline() {
         let beside = fs::read_to_string(file.with_extension("json")).expect("it is there");
         let beside: Value = serde_json::from_str(&beside).expect("JSON");
         assert_eq!(beside["ended"], true, "{beside}");
+    }
+}
+
+/// The reader of a pipe is stopped: it neither reads nor closes the pipe.
+#[test]
+fn a_signal_ends_a_watch_whose_answers_nobody_reads() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (source, file) = (folder.path().join("s.txt"), folder.path().join("touch.npy"));
+    fs::write(&source, stream(0..5000)).expect("written");
+    let recorded = format!(" --write {}", file.display());
+    for write in ["", &recorded] {
+        let line = format!("watch {} --format lines --once{write}", source.display());
+        let (mut reader, writer) = std::io::pipe().expect("a pipe");
+        let mut command = program(&line.split(' ').collect::<Vec<_>>(), "C.UTF-8");
+        let mut child = command.stdout(writer).spawn().expect("it starts");
+        // The pipe holds the writer open as long as the command does.
+        drop(command);
+        reader.read_exact(&mut [0]).expect("it answers");
+        std::thread::sleep(Duration::from_millis(300));
+        let id = rustix::process::Pid::from_child(&child);
+        rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("it runs still");
+        let mut status = None;
+        until("end", || {
+            status = child.try_wait().expect("asked");
+            status.is_some()
+        });
+        assert_eq!(status.and_then(|status| status.code()), Some(143), "{line}");
     }
 }
 

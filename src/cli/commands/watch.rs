@@ -18,6 +18,8 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::acquire::{AcquireError, AcquireEvent, FrameRecorder, FrameSource, Playback, acquire};
@@ -110,7 +112,7 @@ pub(crate) fn watch(
     };
     check(&source, asked)?;
     // Errors in these are reported before a recording begins.
-    let lines = line_writer(asked, &processing, shelf)?;
+    let lines = line_writer(asked, &processing, shelf, &signals.stopped)?;
     let recorder = asked.write.as_ref().map(|path| {
         source.refuse_as_target(path)?;
         FrameRecorder::create(path, asked.existing, &metadata)
@@ -143,7 +145,7 @@ pub(crate) fn watch(
     let acquired = acquire(&source, &asked.options, &signals.stopped, &mut |event| {
         watcher.on(event)
     });
-    let stopped = signals.stopped.load(std::sync::atomic::Ordering::Relaxed);
+    let stopped = signals.stopped.load(Ordering::Relaxed);
     watcher.finish(acquired, stopped)?;
     Ok(match signals.failure() {
         CliError::Stopped { status } if stopped => status,
@@ -216,10 +218,11 @@ fn line_writer(
     asked: &WatchArguments,
     processing: &Processing,
     shelf: &Shelf,
+    stopped: &Arc<AtomicBool>,
 ) -> Result<LineWriter, CliError> {
     let noise = asked.naming.noise_with(processing.view.mask.as_ref());
     let found = asked.naming.find(shelf)?;
-    LineWriter::start(move |lines| {
+    LineWriter::start(stopped, move |lines| {
         let Some(found) = found else {
             return lines.write(&mut |_, _| ());
         };

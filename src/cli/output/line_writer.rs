@@ -1,14 +1,25 @@
 //! Writes lines to standard output on a separate thread, so that a slow reader does not hold up a recording.
 
 use std::io::{self, Write};
-use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_channel};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{
+    Receiver, RecvTimeoutError, SyncSender, TryRecvError, TrySendError, channel, sync_channel,
+};
 use std::thread::{Builder, JoinHandle};
+use std::time::{Duration, Instant};
 
 use crate::cli::error::CliError;
 use crate::imprint::Imprint;
 
 /// The most lines that may wait; for frames of 64 × 64 they take about 5 MB.
 const WAITING: usize = 1000;
+
+/// The time after which a line is sent again if too many are waiting, and a signal is looked for.
+const PAUSE: Duration = Duration::from_millis(1);
+
+/// The time that a reader has, after a signal, to read what is waiting.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A line with its end, and the imprint of its frame, if there is one.
 pub(crate) type PendingLine = (Vec<u8>, Option<Imprint>);
@@ -23,24 +34,36 @@ pub(crate) struct LineWriter {
     lines: SyncSender<PendingLine>,
     /// The thread, which returns its error, if there was one.
     thread: JoinHandle<Result<(), CliError>>,
+    /// Disconnected once the thread has ended.
+    ended: Receiver<()>,
+    /// Whether a signal asks the program to end.
+    stopped: Arc<AtomicBool>,
     /// The number of lines dropped because too many were waiting.
     pub(crate) given_up: u64,
 }
 
 impl LineWriter {
-    /// Starts the thread, which calls `run` once with the lines to write.
+    /// Starts the thread, which calls `run` once with the lines to write. Once `stopped` is set, a reader that does not
+    /// read cannot keep the program from ending.
     ///
     /// # Errors
     /// Returns an error if the system provides no thread.
     pub(crate) fn start(
+        stopped: &Arc<AtomicBool>,
         run: impl FnOnce(&WaitingLines) -> Result<(), CliError> + Send + 'static,
     ) -> Result<Self, CliError> {
         let (lines, receiver) = sync_channel(WAITING);
-        let thread = Builder::new().spawn(move || run(&WaitingLines(receiver)));
+        let (ends, ended) = channel();
+        let thread = Builder::new().spawn(move || {
+            let _ends = ends;
+            run(&WaitingLines(receiver))
+        });
         let refused = |error| io::Error::other(format!("cannot start a thread: {error}"));
         Ok(Self {
             lines,
             thread: thread.map_err(|error| CliError::Write(refused(error)))?,
+            ended,
+            stopped: Arc::clone(stopped),
             given_up: 0,
         })
     }
@@ -50,28 +73,40 @@ impl LineWriter {
         self.thread.is_finished()
     }
 
-    /// Sends a line. If too many are waiting, it waits, or drops the line if `may_give_up`. Returns false once
-    /// nothing can be written.
-    pub(crate) fn send(&mut self, line: PendingLine, may_give_up: bool) -> bool {
-        if !may_give_up {
-            return self.lines.send(line).is_ok();
-        }
-        match self.lines.try_send(line) {
-            Ok(()) => true,
-            Err(TrySendError::Full(_)) => {
-                self.given_up += 1;
-                true
-            }
-            Err(TrySendError::Disconnected(_)) => false,
+    /// Sends a line. If too many are waiting, it waits until there is room or a signal comes, or drops the line if
+    /// `may_give_up`. Returns false once nothing can be written.
+    pub(crate) fn send(&mut self, mut line: PendingLine, may_give_up: bool) -> bool {
+        loop {
+            line = match self.lines.try_send(line) {
+                Ok(()) => return true,
+                Err(TrySendError::Disconnected(_)) => return false,
+                Err(TrySendError::Full(_)) if may_give_up => {
+                    self.given_up += 1;
+                    return true;
+                }
+                Err(TrySendError::Full(_)) if self.stopped.load(Ordering::Relaxed) => return true,
+                Err(TrySendError::Full(line)) => line,
+            };
+            std::thread::sleep(PAUSE);
         }
     }
 
-    /// Waits until all lines are written.
+    /// Waits until all lines are written; after a signal, for a second at most. Lines that nobody has read by then are
+    /// lost.
     ///
     /// # Errors
     /// Returns the errors of standard output, and of the thread's other work.
     pub(crate) fn finish(self) -> Result<(), CliError> {
         drop(self.lines);
+        let mut stopped_at = None;
+        while let Err(RecvTimeoutError::Timeout) = self.ended.recv_timeout(10 * PAUSE) {
+            if self.stopped.load(Ordering::Relaxed)
+                && stopped_at.get_or_insert_with(Instant::now).elapsed() > PATIENCE
+            {
+                // The thread ends with the program.
+                return Ok(());
+            }
+        }
         self.thread.join().unwrap_or_else(|_| {
             Err(CliError::Write(io::Error::other(
                 "the thread that writes has failed",
