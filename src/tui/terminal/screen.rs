@@ -420,6 +420,10 @@ impl Backend for Screen {
                 // Ratatui does not report the cell that a wide character covers.
                 self.cells[index..end].fill(Cell::default());
                 self.cells[index] = cell.clone();
+                // Ratatui leaves out control characters but not these two, which end a line or a paragraph.
+                if matches!(cell.symbol(), "\u{2028}" | "\u{2029}") {
+                    self.cells[index].set_symbol(" ");
+                }
                 self.stale[index] = true;
             }
         }

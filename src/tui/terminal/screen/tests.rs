@@ -186,6 +186,11 @@ fn frame_at(before: &[&str], after: &[&str], cursor: (u16, u16)) -> String {
 }
 
 #[test]
+fn characters_that_end_a_line_are_drawn_as_blanks() {
+    assert_eq!(frame(&["...."], &["a\u{2028}b\u{2029}"]), "a b \r");
+}
+
+#[test]
 fn the_shortest_sequence_is_sent() {
     assert_eq!(frame(&["abc"], &["abc"]), "", "no change is no bytes");
     assert_eq!(frame(&["abcdef"], &["Abcdef"]), "A\r");
