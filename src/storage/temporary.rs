@@ -14,6 +14,9 @@ use std::time::{Duration, Instant, SystemTime};
 
 use tempfile::{Builder, NamedTempFile, TempPath};
 
+#[cfg(feature = "tui")]
+use crate::storage::error::FileError;
+
 /// The beginning of the name of a temporary file.
 const PREFIX: &str = ".taxel-";
 
@@ -304,8 +307,11 @@ impl ScratchFolder {
     /// # Errors
     /// Returns the system's error.
     pub(crate) fn new() -> io::Result<Self> {
-        let place = std::env::temp_dir();
-        for path in temporaries(&place) {
+        Self::in_place(&std::env::temp_dir())
+    }
+
+    fn in_place(place: &Path) -> io::Result<Self> {
+        for path in temporaries(place) {
             if path.is_dir() && is_left_over(&path.join(LOCK)).unwrap_or(false) {
                 let _ = fs::remove_dir_all(path);
             }
@@ -313,7 +319,14 @@ impl ScratchFolder {
         let mut builder = builder();
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));
-        let folder = builder.tempdir_in(place)?;
+        // The message names the folder that the user can change, not the temporary one.
+        let refuse = |error: io::Error| {
+            let doing = "make a folder for temporary files";
+            let refused = FileError::new(doing, place, plain(&error));
+            io::Error::new(refused.error.kind(), refused.to_string())
+        };
+        place.metadata().map_err(refuse)?;
+        let folder = builder.tempdir_in(place).map_err(refuse)?;
         let lock = File::create(folder.path().join(LOCK))?;
         let _ = lock.try_lock();
         Ok(Self {
@@ -454,6 +467,17 @@ mod tests {
         assert_eq!(mode & 0o777, 0o700);
         drop(folder);
         assert!(!path.exists());
+    }
+
+    #[cfg(feature = "tui")]
+    #[test]
+    fn a_missing_folder_for_temporary_files_is_named() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let place = folder.path().join("missing");
+        let refused = ScratchFolder::in_place(&place).expect_err("refused");
+        let expected = format!("{}: cannot make a folder", place.display());
+        assert!(refused.to_string().starts_with(&expected), "{refused}");
+        assert!(!refused.to_string().contains(PREFIX), "{refused}");
     }
 
     #[test]
