@@ -41,7 +41,7 @@ mod commands;
 
 use std::ffi::OsString;
 use std::io::{self, BufWriter, IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use arguments::definitions;
 use arguments::frames::FramesArguments;
@@ -287,9 +287,8 @@ impl Surroundings {
                 charset.lines(&library::restore(shelf, name.as_str())?)
             }
             LibraryCommand::Path => {
-                // The path is written byte for byte, so that other programs find the folder.
                 let folder = shelf.library()?.folder().to_owned();
-                return write(&[folder.as_os_str().as_encoded_bytes(), b"\n"].concat());
+                return write(&path_line(&folder, io::stdout().is_terminal(), charset));
             }
             LibraryCommand::Check(json) => {
                 let (text, result) = library::check(shelf, json, charset)?;
@@ -299,6 +298,17 @@ impl Surroundings {
         };
         print(&text)
     }
+}
+
+/// Returns a path as a line of output: byte for byte, so that other programs find the file, but escaped like other text
+/// on a terminal.
+fn path_line(path: &Path, on_terminal: bool, charset: Charset) -> Vec<u8> {
+    let path = path.as_os_str();
+    let shown = on_terminal.then(|| charset.line(&path.to_string_lossy()).into_owned());
+    let bytes = shown
+        .as_ref()
+        .map_or(path.as_encoded_bytes(), String::as_bytes);
+    [bytes, b"\n"].concat()
 }
 
 /// Writes text to standard output.
@@ -316,4 +326,20 @@ fn write(bytes: &[u8]) -> Result<(), CliError> {
         .write_all(bytes)
         .and_then(|()| output.flush())
         .map_err(CliError::Write)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_escaped_on_a_terminal_only() {
+        let path = Path::new("/é/\u{1b}]0;title\u{7}\u{202e}");
+        let line = |on_terminal| {
+            let line = path_line(path, on_terminal, Charset::Unicode);
+            String::from_utf8(line).expect("UTF-8")
+        };
+        assert_eq!(line(false), format!("{}\n", path.display()));
+        assert_eq!(line(true), "/é/\\u{1b}]0;title\\u{7}\\u{202e}\n");
+    }
 }
