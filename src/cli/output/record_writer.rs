@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::Builder;
 
+use crate::storage::FileId;
 use crate::tui::runtime::work::threads::PATIENCE;
 
 /// Writes the file of `--record`. When dropped, as in a panic, it also waits for the last lines, which tell the most.
@@ -71,9 +72,9 @@ impl RecordFile {
         }
     }
 
-    /// Ends the record and removes the file if it is empty.
+    /// Ends the record and removes the file if it is empty, unless another file has its name by now.
     fn finish(self) -> io::Result<()> {
-        if !self.begun {
+        if !self.begun && FileId::of(&self.file).is_ok_and(|id| id.is_at(&self.path)) {
             // If this fails, an empty file stays.
             let _ = fs::remove_file(&self.path);
         }
@@ -144,5 +145,28 @@ impl Drop for RecordWriter {
     fn drop(&mut self) {
         // A caller that needs the error has called `finish`.
         let _ = self.end();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn an_empty_record_is_removed_but_not_a_file_that_took_its_name() {
+        for is_replaced in [false, true] {
+            let folder = tempfile::tempdir().expect("a folder");
+            let path = folder.path().join("record");
+            let file = File::create_new(&path).expect("made");
+            let record = RecordWriter::start(path.clone(), file, Arc::new(|_| ()));
+            if is_replaced {
+                let other = folder.path().join("other");
+                fs::write(&other, "precious").expect("written");
+                fs::rename(&other, &path).expect("moved");
+            }
+            record.finish().expect("ended");
+            assert_eq!(path.exists(), is_replaced);
+        }
     }
 }
