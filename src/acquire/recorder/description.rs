@@ -52,9 +52,10 @@ impl PreparedDescription {
     /// not about, or the system's error.
     pub(crate) fn give_name(self) -> Result<(), RecorderError> {
         let Self { file, array, path } = self;
-        match persist_beside((array, &path), file).map_err(refused)? {
-            true => Ok(()),
-            false => Err(RecorderError::Replaced { path }),
+        if persist_beside((array, &path), file).map_err(refused)? {
+            Ok(())
+        } else {
+            Err(RecorderError::Replaced { path })
         }
     }
 }

@@ -382,8 +382,10 @@ mod tests {
         let path = folder.path().join("a.npy");
         let mut old = begun(&path);
         old.add(&Frame::default(), None).expect("recorded");
-        let mut metadata = RecordingMetadata::default();
-        metadata.unit = Some("kPa".to_owned());
+        let metadata = RecordingMetadata {
+            unit: Some("kPa".to_owned()),
+            ..RecordingMetadata::default()
+        };
         let new = FrameRecorder::create(&path, Existing::Replaced, &metadata);
         let mut new = new.expect("begun");
         new.add(&Frame::default(), None).expect("recorded");
