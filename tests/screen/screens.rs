@@ -295,7 +295,7 @@ fn help_is_complete_and_fits_its_context() {
     }
     let held = sized((80, 60), false, "f<Enter>g?");
     // If an outer context has other keys for the same action, these are still listed.
-    shows(&held, &["move the shape by a step", "  Ctrl-C   "]);
+    shows(&held, &["move the shape by a step", "  Ctrl-L   "]);
     hides(&held, &["move the cursor"]);
     shows("f<Enter>e?", &["Ranges of a sweep"]);
 }
@@ -430,4 +430,24 @@ fn a_pitch_of_1_means_none() {
         &["Pitch     1.000     1: not set"],
     );
     hides("f<Enter>", &["mm"]);
+}
+
+/// Lines, CG and CD share the large taxels with numbers of two digits.
+#[test]
+fn a_number_of_two_digits_is_never_shown_in_part() {
+    for (size, columns) in [((130, 45), 64), ((200, 60), 96)] {
+        let shown = sized(size, false, "f<Enter>cc");
+        shows(&shown, &["coverage in percent\n", "93", "69"]);
+        let screen = shown.screen();
+        for line in screen.lines().skip(3).take(2 * columns / 4) {
+            // Beside the ruler of the rows.
+            let line: String = line.chars().skip(3).take(columns).collect();
+            let mut numbers = line.split(|c: char| !c.is_ascii_digit());
+            assert!(
+                numbers.all(|digits| matches!(digits.len(), 0 | 2)),
+                "{screen}"
+            );
+        }
+    }
+    shows("f<Enter>cc", &["a single digit is tens"]);
 }

@@ -1,9 +1,10 @@
 //! Layers over the taxels: the true outline of the source, and the circumscribed rectangle with CG and CD.
 //!
 //! Lines are drawn in dots finer than characters. Over an active taxel they are reversed, so that the taxel differs
-//! from an inactive one even without colour.
+//! from an inactive one even without colour. A number of two digits is never covered in part: lines leave it out, and
+//! a letter replaces it.
 
-use ratatui::buffer::Buffer;
+use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Modifier;
 
@@ -11,7 +12,7 @@ use crate::description::Description;
 use crate::geometry::{Ellipse, Pen, Point, Side, Solid};
 use crate::recognition::PlacedSource;
 use crate::source::Source;
-use crate::tui::matrix::layout::{TaxelGrid, TaxelSize};
+use crate::tui::matrix::layout::TaxelGrid;
 use crate::tui::widget::dots::{DOTS, DotCanvas, DotPosition, glyph};
 use crate::tui::widget::theme::{Role, Theme};
 
@@ -33,7 +34,24 @@ pub struct Layers {
 impl Layers {
     /// Returns true if a layer is shown on a grid.
     pub fn shown(layer: Option<bool>, grid: &TaxelGrid) -> bool {
-        layer.unwrap_or(matches!(grid.size, TaxelSize::Square(2..)))
+        layer.unwrap_or(grid.size.is_large())
+    }
+}
+
+/// Returns true if a character of the screen is a digit.
+fn is_digit(cell: &Cell) -> bool {
+    cell.symbol()
+        .starts_with(|first: char| first.is_ascii_digit())
+}
+
+/// Erases the number of two digits that a place is in. A large taxel has spaces around its number.
+fn erase_number(buffer: &mut Buffer, place: Position) {
+    for x in place.x.saturating_sub(1)..=place.x.saturating_add(1) {
+        if let Some(cell) = buffer.cell_mut(Position::new(x, place.y))
+            && is_digit(cell)
+        {
+            cell.set_char(' ');
+        }
     }
 }
 
@@ -159,6 +177,9 @@ impl Overlay<'_> {
             let Some(cell) = buffer.cell_mut(place) else {
                 continue;
             };
+            if grid.size.is_large() && is_digit(cell) {
+                continue;
+            }
             let on = grid.taxels(place.x, place.y).any(|(x, y)| active(x, y));
             let style = if on {
                 theme.style(Role::Chosen).add_modifier(Modifier::REVERSED)
@@ -169,6 +190,9 @@ impl Overlay<'_> {
             cell.set_char(glyph(theme, shape)).set_style(style);
         }
         for (place, letter) in self.centres(&dots, *buffer.area()) {
+            if grid.size.is_large() && buffer.cell(place).is_some_and(is_digit) {
+                erase_number(buffer, place);
+            }
             if let Some(cell) = buffer.cell_mut(place) {
                 cell.reset();
                 cell.set_char(letter).set_style(theme.style(Role::Focus));

@@ -46,6 +46,11 @@ impl TaxelSize {
         }
     }
 
+    /// Returns true if taxels are drawn enlarged: then a layer is shown by itself, and a number has two digits.
+    pub(in crate::tui) fn is_large(self) -> bool {
+        matches!(self, Self::Square(2..))
+    }
+
     /// Returns the number of columns of the screen that a taxel takes.
     pub(in crate::tui) fn columns(self) -> u16 {
         match self {

@@ -231,6 +231,9 @@ fn switch_mouse(app: &mut App) -> Effect {
 fn next_display(app: &mut App) {
     let (next, text) = match app.display {
         Display::Imprint => (Display::Shades, "coverage in shades"),
+        Display::Shades if app.grid().is_some_and(|grid| grid.size.is_large()) => {
+            (Display::Percent, "coverage in percent")
+        }
         Display::Shades => (
             Display::Percent,
             "coverage in percent; a single digit is tens: 5 is 50 to 59 %",
