@@ -101,10 +101,11 @@ impl TextField {
                 return true;
             }
             Message::Paste(text) => {
-                // A line break separates words; a line of text has no other place for it.
-                let lines = text.split(['\r', '\n']).map(str::trim);
-                let lines: Vec<&str> = lines.filter(|line| !line.is_empty()).collect();
-                let text = lines.join(" ");
+                // A line break separates words, as does the tab between two cells of a spreadsheet; a line of text
+                // has no other place for them.
+                let words = text.split(['\r', '\n', '\t']).map(str::trim);
+                let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+                let text = words.join(" ");
                 let text = text.chars().filter(|character| !character.is_control());
                 let left_out = text.filter(|&character| !self.insert(character));
                 self.left_out = left_out.count();
@@ -195,7 +196,9 @@ mod tests {
     #[test]
     fn a_field_limits_its_length_and_drops_control_characters() {
         let pasted = Message::Paste("  d\u{1b}\te f g\n".to_owned());
-        assert_eq!(after(&[pasted]), ("abcde ".to_owned(), 6));
+        assert_eq!(after(&[pasted]), ("abcd e".to_owned(), 6));
+        let cells = Message::Paste("3.5\t7".to_owned());
+        assert_eq!(after(&[Message::Erase(Erase::All), cells]).0, "3.5 7");
         let lines = Message::Paste("1\r\n\n2\r3".to_owned());
         assert_eq!(after(&[Message::Erase(Erase::All), lines]).0, "1 2 3");
         let mut field = TextField::new("abc", 6);
