@@ -70,6 +70,31 @@ fn a_source_is_shown_frame_by_frame() {
 }
 
 #[test]
+fn a_source_from_which_no_frame_came_says_why() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (content, flags, reason) in [
+        ("", "", "the source is empty"),
+        (
+            "some words\nand more\n",
+            "",
+            "not a recording of a known format",
+        ),
+        ("r0c0,r0c1\n", "", "no frames"),
+        (
+            "r0c0,r0c1\n1,2\n",
+            " --channel x",
+            "no channel is called \"x\": the recording has one channel",
+        ),
+    ] {
+        let file = folder.path().join("a.csv");
+        std::fs::write(&file, content).expect("written");
+        let mut page = session(&format!(":watch {}{flags}<Enter>", file.display()));
+        page.frames(1);
+        shows(&page, &[reason]);
+    }
+}
+
+#[test]
 fn an_unreadable_source_opens_no_page() {
     let keys = ":watch nowhere.csv<Enter>";
     shows(

@@ -7,9 +7,11 @@
 use std::ops::ControlFlow;
 
 use crate::cli::error::{CliError, note_advice};
-use crate::cli::input::recording::{RecordingFile, no_channel};
+use crate::cli::input::recording::RecordingFile;
 use crate::cli::output::recording_list::ListedChannel;
-use crate::formats::recording::{RecordingError, RecordingEvent, RecordingFormat, RecordingNote};
+use crate::formats::recording::{
+    RecordingError, RecordingEvent, RecordingFormat, RecordingNote, no_channel,
+};
 use crate::formats::value::counted;
 use crate::frame::{FrameError, FrameSize, View};
 use crate::matrix::Matrix;

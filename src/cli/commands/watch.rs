@@ -28,7 +28,7 @@ use crate::cli::commands::model;
 use crate::cli::commands::naming::FrameNamer;
 use crate::cli::error::{CliError, note_advice, stream_advice};
 use crate::cli::input::processing;
-use crate::cli::input::recording::{RecordingFile, no_channel};
+use crate::cli::input::recording::RecordingFile;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::line_writer::LineWriter;
@@ -37,6 +37,7 @@ use crate::cli::signals::Signals;
 use crate::formats::json;
 use crate::formats::recording::{
     ChannelChoice, ChannelInfo, FrameAnswer, ReadOptions, RecordingError, RecordingMetadata,
+    no_channel,
 };
 use crate::formats::stream::{StreamCounts, StreamRefusal};
 use crate::formats::value::counted;
@@ -628,14 +629,8 @@ impl Watcher<'_> {
         }
         // For a stream, this is already an error.
         if failure.is_none() && ended_well && !self.begun {
-            let asked = self.asked.processing.channel.as_deref();
-            let names: Vec<&str> = self.choice.names().iter().map(String::as_str).collect();
-            failure = Some(match asked {
-                Some(asked) if !names.is_empty() && !names.contains(&asked) => {
-                    self.refused(&no_channel(asked, &names))
-                }
-                _ => self.refused("no frames"),
-            });
+            let missing = self.choice.missing();
+            failure = Some(self.refused(missing.as_deref().unwrap_or("no frames")));
         }
         let left_out = self.recorder.as_ref().map_or(0, FrameRecorder::left_out);
         if left_out > 0 {

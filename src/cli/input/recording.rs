@@ -13,12 +13,11 @@ use crate::cli::input::content;
 use crate::cli::input::content::{InputError, InputSource};
 use crate::cli::input::spool::SpooledInput;
 use crate::formats::recording::{
-    ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, UNNAMED,
-    format_of, read, read_rows,
+    ReadOptions, RecordingError, RecordingEvent, RecordingFormat, RecordingMetadata, format_of,
+    read, read_rows,
 };
 use crate::frame::Frame;
 use crate::imprint::Imprint;
-use crate::quote::did_you_mean;
 
 /// The most bytes that are read of a table. A table of 64 × 64 factors is much smaller.
 const LARGEST_TABLE: u64 = 1 << 20;
@@ -200,20 +199,6 @@ impl RecordingFile {
             message: message.to_string(),
         }
     }
-}
-
-/// Returns the message that a recording has no channel of this name; it lists the others.
-pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
-    if names == [UNNAMED] {
-        return format!(
-            "no channel is called {asked:?}: the recording has one channel, without a name; leave out --channel"
-        );
-    }
-    format!(
-        "no channel is called {asked:?}, expected one of {}{}",
-        names.join(", "),
-        did_you_mean(asked, names.iter().copied())
-    )
 }
 
 /// Reads an imprint, alone or in a stored shape, from a file or, for `-`, from standard input.

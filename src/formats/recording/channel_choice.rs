@@ -1,6 +1,7 @@
 //! Chooses the channel of a source to watch, while its channels appear one by one.
 
-use crate::formats::recording::event::ChannelInfo;
+use crate::formats::recording::event::{ChannelInfo, UNNAMED};
+use crate::quote::did_you_mean;
 
 /// A choice of the requested channel, or else of the first one. If the stream has no channels, all frames are taken.
 #[derive(Clone, Debug, Default)]
@@ -43,10 +44,32 @@ impl ChannelChoice {
         }
     }
 
+    /// Returns the message that the channel that was asked for is not among the channels so far; None if it is, or if
+    /// there are no channels.
+    pub fn missing(&self) -> Option<String> {
+        let asked = self.asked.as_deref().filter(|_| self.chosen.is_none())?;
+        let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
+        (!names.is_empty()).then(|| no_channel(asked, &names))
+    }
+
     /// Returns the names of the channels so far; `unnamed` for a channel without a name.
     pub fn names(&self) -> &[String] {
         &self.names
     }
+}
+
+/// Returns the message that a recording has no channel of this name; it lists the others.
+pub(crate) fn no_channel(asked: &str, names: &[&str]) -> String {
+    if names == [UNNAMED] {
+        return format!(
+            "no channel is called {asked:?}: the recording has one channel, without a name; leave out --channel"
+        );
+    }
+    format!(
+        "no channel is called {asked:?}, expected one of {}{}",
+        names.join(", "),
+        did_you_mean(asked, names.iter().copied())
+    )
 }
 
 #[cfg(test)]
@@ -72,6 +95,18 @@ mod tests {
             [false, true, false]
         );
         assert_eq!(choice.names(), ["left", "right", "right"]);
+        assert_eq!(choice.missing(), None);
+    }
+
+    #[test]
+    fn a_channel_that_never_appears_is_reported_with_the_others() {
+        let mut choice = ChannelChoice::new(Some("righ"));
+        assert_eq!(choice.missing(), None, "a stream has none");
+        choice.add(&channel(Some("left")));
+        choice.add(&channel(Some("right")));
+        let said =
+            r#"no channel is called "righ", expected one of left, right; did you mean "right"?"#;
+        assert_eq!(choice.missing().as_deref(), Some(said));
     }
 
     #[test]

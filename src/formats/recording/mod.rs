@@ -70,6 +70,8 @@ mod detect;
 
 pub use answer::FrameAnswer;
 pub use channel_choice::ChannelChoice;
+#[cfg(feature = "cli")]
+pub(crate) use channel_choice::no_channel;
 pub use description::{FrameMark, MetadataError, RecordedView, RecordingMetadata};
 #[cfg(feature = "tui")]
 pub(crate) use detect::may_be_recording;
@@ -78,8 +80,6 @@ pub(crate) use detect::{RecordingInput, format_of, read_as};
 pub use detect::{read, recognised, recognised_input};
 pub use error::RecordingError;
 pub(super) use event::MOST_CHANNELS;
-#[cfg(feature = "cli")]
-pub(crate) use event::UNNAMED;
 pub use event::{ChannelInfo, ReadOptions, RecordingEvent, RecordingFormat, RecordingNote};
 #[cfg(feature = "cli")]
 pub(crate) use table::delimited::read_rows;

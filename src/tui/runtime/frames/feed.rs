@@ -8,12 +8,12 @@
 
 use std::mem::take;
 use std::ops::ControlFlow;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use crate::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
-use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingMetadata};
+use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingError, RecordingMetadata};
 use crate::formats::stream::{StreamCounts, StreamRefusal};
 use crate::formats::value::counted;
 use crate::frame::Frame;
@@ -47,6 +47,10 @@ struct Pending {
     is_new: bool,
     /// The channels so far, and the one that is watched.
     channels: ChannelChoice,
+    /// Whether a frame of the watched channel has come.
+    begun: bool,
+    /// The reason why a stream came to its end without a frame.
+    frameless: Option<String>,
     /// The time of the last frame.
     last_time: Option<f64>,
     /// The time for which the source has been lost since that frame; None if it was not lost.
@@ -164,7 +168,8 @@ impl FrameFeed {
             return;
         }
         let state = match ended {
-            Ok(()) => SourceState::Ended,
+            Ok(()) if stop.load(Ordering::Relaxed) => SourceState::Ended,
+            Ok(()) => locked(&self.pending).end(),
             Err(reason) => SourceState::Failed(reason),
         };
         if self.change(|pending| pending.batch.status.state = state) {
@@ -267,6 +272,7 @@ impl FrameFeed {
             }),
             AcquireEvent::Ended(counts) => self.change(|pending| {
                 pending.batch.status.note_dropped(counts);
+                pending.frameless = frameless(&source::named(&request.source), counts);
             }),
             _ => false,
         }
@@ -292,13 +298,33 @@ fn silence(source: &FrameSource, counts: &StreamCounts, bytes_per_second: f64) -
         let bytes = counted(counts.bytes, "byte");
         return format!("no frame yet: none in {bytes}; rows, columns or format?");
     }
-    let hint = match refusal {
-        Some(StreamRefusal::Unknown) => FORMAT_HINT,
-        Some(refusal) if refusal.is_of_size() => SIZE_HINT,
-        _ => "",
-    };
+    let hint = refusal.map_or("", hint);
     let what = counts.silence(bytes_per_second);
     format!("no frame for more than 2 s: {what}{hint}")
+}
+
+/// Returns the reason why a stream came to its end without a frame; None if there was one.
+fn frameless(source: &FrameSource, counts: &StreamCounts) -> Option<String> {
+    let bytes = counted(counts.bytes, "byte");
+    Some(match (counts.refusal(), &counts.reason) {
+        _ if counts.frames > 0 => return None,
+        _ if counts.bytes == 0 => "the source is empty".to_owned(),
+        (Some(StreamRefusal::Unknown), _) if matches!(source, FrameSource::File(_)) => {
+            RecordingError::Unknown.to_string()
+        }
+        (Some(refusal), _) => format!("{refusal}{}", hint(refusal)),
+        (None, Some(reason)) => format!("{bytes} but no frame; the last line: {reason}"),
+        (None, None) => format!("{bytes} but no frame; rows, columns or format?"),
+    })
+}
+
+/// Returns the end of a message that says where to give what a stream needs.
+fn hint(refusal: StreamRefusal) -> &'static str {
+    match refusal {
+        StreamRefusal::Unknown => FORMAT_HINT,
+        refusal if refusal.is_of_size() => SIZE_HINT,
+        _ => "",
+    }
 }
 
 /// The end of the message that says where to give the format.
@@ -326,6 +352,16 @@ impl Pending {
         SourceState::Silent(format!("{back}; no frame yet"))
     }
 
+    /// Returns the state of a source at its end. One from which no frame came was not what the user expected: the
+    /// state is the reason.
+    fn end(&mut self) -> SourceState {
+        if self.begun {
+            return SourceState::Ended;
+        }
+        let reason = self.channels.missing().or(self.frameless.take());
+        SourceState::Failed(reason.unwrap_or_else(|| "no frames".to_owned()))
+    }
+
     /// Notes the time of a frame, which ends a gap.
     fn note_time(&mut self, time: Option<f64>) {
         let before = std::mem::replace(&mut self.last_time, time);
@@ -340,6 +376,7 @@ impl Pending {
     /// Adds a frame. If nobody takes the frames and they exceed `most` bytes, the older half is dropped.
     /// Half of them go at once, so that a full buffer does not move all frames for each new one. At least one stays.
     fn push(&mut self, frame: Arc<Frame>, most: usize) {
+        self.begun = true;
         self.batch.status.state = SourceState::Live;
         self.batch.provisional = ProvisionalChange::Gone;
         self.bytes += bytes_of(&frame);
