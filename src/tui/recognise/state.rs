@@ -9,6 +9,7 @@ use crate::formats::Name;
 use crate::imprint::Imprint;
 use crate::recognition::{Answer, Evidence};
 use crate::sensor::MatrixSize;
+use crate::source::Source;
 use crate::storage::ModelChoice;
 use crate::tui::explore::message::SweepProgress;
 use crate::tui::recognise::message::{PoseSearch, PoseSearchResult, Prepared};
@@ -113,6 +114,8 @@ pub struct Recognition {
     kept: Vec<Imprint>,
     /// The imprint on the matrix.
     present: Imprint,
+    /// The shape that left it, in its pose; None if no shape did.
+    source: Option<Source>,
     /// The threshold at which a shape touched the matrix; None if no shape does.
     threshold: Option<f64>,
     /// Whether the last kept touch is the one on the matrix.
@@ -142,6 +145,7 @@ impl Recognition {
             state: ModelState::Missing,
             kept: Vec::new(),
             present: Imprint::empty(MatrixSize::SMALLEST),
+            source: None,
             threshold: None,
             present_kept: false,
             answer: None,
@@ -382,10 +386,11 @@ impl Recognition {
         self.threshold = threshold;
     }
 
-    /// Takes over the imprint on the matrix.
-    pub fn show(&mut self, imprint: Imprint) {
-        if imprint != self.present {
-            self.present = imprint;
+    /// Takes over the imprint on the matrix, and the shape that left it. In another pose it is another touch, even if
+    /// the imprint is the same.
+    pub fn show(&mut self, imprint: Imprint, source: Option<&Source>) {
+        if imprint != self.present || source != self.source.as_ref() {
+            (self.present, self.source) = (imprint, source.cloned());
             self.present_kept = false;
             self.ask();
         }
@@ -404,7 +409,7 @@ impl Recognition {
     /// Replaces the kept touches by those of a shape; the last one is on the matrix.
     pub fn set_touches(&mut self, touches: Vec<Imprint>) {
         if let Some(&last) = touches.last() {
-            self.present = last;
+            (self.present, self.source) = (last, None);
         }
         // A single touch is the one on the matrix, which need not be kept.
         self.present_kept = touches.len() > 1;
@@ -525,7 +530,7 @@ mod tests {
     #[test]
     fn a_late_result_of_a_search_in_another_model_is_dropped() {
         let mut page = Recognition::new(0);
-        page.show(touch());
+        page.show(touch(), None);
         with_model(&mut page, ModelChoice::Figures, 1);
         assert!(matches!(page.step_search(2), Some(SearchStep::Begin(_))));
         assert!(page.step_search(3).is_none(), "it is in progress");
@@ -551,16 +556,16 @@ mod tests {
     #[test]
     fn a_search_for_another_imprint_is_stopped_before_the_next_begins() {
         let mut page = Recognition::new(0);
-        page.show(touch());
+        page.show(touch(), None);
         with_model(&mut page, ModelChoice::Figures, 1);
         assert!(matches!(page.step_search(2), Some(SearchStep::Begin(_))));
         let mut other = touch();
         other.set(0, 0, true);
-        page.show(other);
+        page.show(other, None);
         assert!(matches!(page.step_search(3), Some(SearchStep::Stop)));
         assert!(page.step_search(3).is_none(), "it was stopped");
         // The result of a stopped search is incomplete, even if the same imprint is on the matrix again.
-        page.show(touch());
+        page.show(touch(), None);
         assert_eq!(page.take_result(2, Ok(found())), None);
         assert!(page.found().is_none());
         assert!(matches!(page.step_search(3), Some(SearchStep::Begin(_))));
@@ -569,7 +574,7 @@ mod tests {
     #[test]
     fn a_failed_search_gives_its_reason_and_is_not_repeated() {
         let mut page = Recognition::new(0);
-        page.show(touch());
+        page.show(touch(), None);
         with_model(&mut page, ModelChoice::Figures, 1);
         assert!(matches!(page.step_search(2), Some(SearchStep::Begin(_))));
         let failed = page.take_result(2, Err("no thread".to_owned()));

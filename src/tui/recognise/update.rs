@@ -185,9 +185,9 @@ fn forget(app: &mut App) {
 /// together.
 fn add_touch(app: &mut App) {
     // A page that was closed has not followed the matrix.
-    let imprint = app.reading().imprint;
+    let (imprint, source) = (app.reading().imprint, app.shown().source.clone());
     let Some(page) = state(app) else { return };
-    page.show(imprint);
+    page.show(imprint, source.as_ref());
     let kept = page.add_touch();
     let text = match (kept, page.kept()) {
         (true, 1) => "1 touch kept; now touch the shape elsewhere".to_owned(),
@@ -400,11 +400,10 @@ pub(in crate::tui) fn next_work(app: &mut App) -> Option<Effect> {
 /// that it no longer needs.
 fn search(app: &mut App) -> Option<Effect> {
     let (imprint, document) = (app.reading().imprint, app.shown());
-    let touched = document.source.is_some();
-    let threshold = touched.then(|| document.sensor.threshold());
+    let (threshold, source) = (document.sensor.threshold(), document.source.clone());
     let page = topmost!(&mut app.dialogs, Recognition)?;
-    page.show(imprint);
-    page.note_threshold(threshold);
+    page.show(imprint, source.as_ref());
+    page.note_threshold(source.map(|_| threshold));
     let number = app.works + 1;
     Some(Effect::Work(match page.step_search(number)? {
         SearchStep::Begin(search) => {
