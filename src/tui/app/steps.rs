@@ -14,15 +14,21 @@ pub fn difference(from: &Document, to: &Document) -> String {
     let sensor = of_sensor(&from.sensor, &to.sensor);
     let mut parts = vec![sensor, of_source(from.source.as_ref(), to.source.as_ref())];
     let fits = from.edits.columns() == to.edits.columns() && from.edits.rows() == to.edits.rows();
+    if parts.iter().all(String::is_empty) && is_emptied(from, to) {
+        parts.push("emptied".to_owned());
+    }
     // A new source starts without edits, so this is not mentioned.
     if fits && parts.iter().all(String::is_empty) {
         parts.push(of_edits(from, to));
     }
-    if parts.iter().all(String::is_empty) && from != to && to.edits.is_empty() {
-        parts.push("emptied".to_owned());
-    }
     parts.retain(|part| !part.is_empty());
     parts.join(", ")
+}
+
+/// Returns true if the shape, or several taxels at once, were removed and nothing is left.
+fn is_emptied(from: &Document, to: &Document) -> bool {
+    let is_empty = to.source.is_none() && to.edits.is_empty();
+    is_empty && (from.source.is_some() || from.edits.count() > 1)
 }
 
 /// Returns the changes of the sensor.
