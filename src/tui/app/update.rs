@@ -42,7 +42,7 @@ pub fn next_work(app: &mut App) -> Option<Effect> {
 }
 
 /// Handles a message without reading the document again. A count repeats what can be repeated, such as a step of the
-/// cursor; anything else is done once. A repetition ends at the first effect that the runtime has to take care of.
+/// cursor. A repetition ends at the first effect that the runtime has to take care of.
 fn handle(app: &mut App, message: Message) -> Option<Effect> {
     match message {
         Message::Redraw => return Some(Effect::Terminal(TerminalEffect::Redraw)),
@@ -85,6 +85,7 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
             return None;
         }
         Message::Mouse(mouse) => {
+            app.count = None;
             let meant = mouse::act(app, mouse)?;
             return handle(app, meant);
         }
@@ -94,8 +95,24 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
         take_digit(app, digit);
         return None;
     }
-    let times = app.count.take().filter(|_| message.repeats());
-    repeat(app, &message, times.unwrap_or(1))
+    with_count(app, &message)
+}
+
+/// Handles a message of the user as often as the count before it says. What is done only once is refused after a
+/// count, and what closes something only cancels the count.
+fn with_count(app: &mut App, message: &Message) -> Option<Effect> {
+    let count = app.count.take().unwrap_or(1);
+    if count > 1 && !message.repeats() {
+        app.notice = None;
+        if !matches!(message, Message::Cancel | Message::PutBack | Message::Quit) {
+            refuse(
+                app,
+                "a count repeats only steps: moves, turns, zooms, regions, undo, redo",
+            );
+        }
+        return None;
+    }
+    repeat(app, message, count)
 }
 
 /// Takes a digit of a count and shows the count, or that it was cut to the largest one.
