@@ -530,6 +530,22 @@ fn another_shape_is_not_held() {
     }
 }
 
+/// A page that is closed again has changed nothing, so the shape can still be put back.
+#[test]
+fn a_page_that_is_closed_leaves_a_held_shape_held() {
+    for page in ["l", "p", "d", "f", "S", "e", "s", "H", ":", "q"] {
+        let back = format!("f<Enter>g<3x:Right>{page}<Esc>");
+        shows(&back, &["at 4.03, 4.00", "held, step"]);
+        shows(&format!("{back}<Esc>"), &["put back", "at 4.00, 4.00"]);
+    }
+    for accepted in ["f<Enter>", "S<Enter>", "e<2x:Tab><C-u>0<Enter><Enter>"] {
+        hides(&format!("f<Enter>g<Right>{accepted}"), &["held"]);
+    }
+    for key in ["<C-g>", "<C-c>"] {
+        shows(&format!("f<Enter>g<Right>{key}"), &["put back"]);
+    }
+}
+
 #[test]
 fn copying_is_confirmed() {
     shows("y", &["! no region: the matrix is empty"]);
@@ -627,6 +643,10 @@ fn touches_are_kept_combined_and_forgotten() {
         &format!("{one}aa"),
         &["this touch is already kept", "45.3 %"],
     );
+    // Another pose is another touch, even if it leaves the same imprint.
+    let same = ":recognise figures-30<Enter>f<Enter>a:move 0.02 0<Enter>";
+    shows(&format!("{same}a"), &["2 touches kept"]);
+    shows(&format!("{same}aa"), &["this touch is already kept"]);
     shows(
         &format!("{one}a><gt>"),
         &["likely: octagon", "1 touch kept; x forgets"],
@@ -758,6 +778,32 @@ fn esc_cancels_a_count() {
     shows("999", &["999 times"]);
     shows("1000", &["a key repeats at most 999 times"]);
     shows("0", &["a count begins with 1 to 9"]);
+}
+
+#[test]
+fn a_count_is_refused_before_what_is_done_only_once() {
+    let refused = "! a count repeats only steps";
+    shows("2<Space>", &[refused, "NA 0 in all"]);
+    shows("3o", &[refused]);
+    shows("2<Space><Space>1<Left><Space>", &["NA 2 in all"]);
+    shows("f<Enter>g<Right>2<Esc>", &["held", "at 4.01"]);
+    hides("f<Enter>g<Right>2<Esc>", &["2 times"]);
+    hides("2<C-c>", &["2 times"]);
+}
+
+#[test]
+fn an_emptied_matrix_is_a_step_of_that_name() {
+    shows("f<Enter><Space>nH", &["taxel 8, 8 off", "emptied"]);
+    shows("f<Enter><Space>nu", &["undone: emptied"]);
+    shows(":load arrow<Enter>nu", &["undone: emptied"]);
+    shows("<Space><Space>u", &["undone: taxel 8, 8 off"]);
+}
+
+#[test]
+fn cells_of_a_spreadsheet_stay_apart_when_pasted() {
+    let mut form = session("f<Tab>");
+    form.send(Message::Paste("3.5\t7".to_owned()));
+    shows(&form, &["3.5 7", "! not a number"]);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::formats::value::{counted, grouped};
 use crate::pose::Axis;
 use crate::storage::{Existing, is_poses};
 use crate::touch::Plane;
-use crate::tui::app::change::{change, compare_with, from_prompt, inform, refuse};
+use crate::tui::app::change::{change, compare_with, from_prompt, inform, let_go, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::{Document, Reading};
 use crate::tui::app::message::Message;
@@ -225,6 +225,7 @@ fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     let number = results
         .id(&imprint)
         .map_or(String::new(), |id| format!("imprint {id} "));
+    let_go(app);
     change(app, document);
     app.chosen = None;
     let undo = app.key_of(&action::UNDO);

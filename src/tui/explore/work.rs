@@ -22,7 +22,7 @@ use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::{Dialog, Question, topmost};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Page;
-use crate::tui::app::state::{App, Mode, RunState};
+use crate::tui::app::state::{App, RunState};
 use crate::tui::explore::angles::curve::AngleCurve;
 use crate::tui::explore::export::{ExportDialog, ExportKind};
 use crate::tui::explore::message::{ExploreMessage, Findings, SweepProgress};
@@ -83,7 +83,6 @@ pub(super) fn is_own_file(app: &App, name: &str) -> bool {
 /// Opens the last results if they belong to the shape on the matrix, otherwise the form. Results of another shape are
 /// kept: the form opens, and they are there again with their shape.
 fn open(app: &mut App) -> Option<Effect> {
-    app.mode = Mode::Draw;
     match app.results.take() {
         Some(results) if is_of(app, &results) => {
             app.dialogs.push(Dialog::Results(results));

@@ -4,7 +4,7 @@
 //! invalid field and shows its error. Every other message edits the fields, and the matrix follows.
 
 use crate::figure::FigureKind;
-use crate::tui::app::change::{refuse, replace};
+use crate::tui::app::change::{let_go, refuse, replace};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
 use crate::tui::app::state::App;
@@ -24,6 +24,7 @@ pub(in crate::tui) fn update(
                 if let Some(figure) = dialog.made_figure() {
                     app.forms.note_figure(figure, &dialog.shown().sensor);
                 }
+                let_go(app);
                 replace(app, dialog.shown().clone());
                 return None;
             }

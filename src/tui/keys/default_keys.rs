@@ -98,7 +98,8 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('+') => LARGER_STEP, Char('=') => LARGER_STEP, Char('-') => SMALLER_STEP]
             "step" "a larger, a smaller step: 0.01, 0.1, 1";
         [Char('g') => GRAB, Enter => GRAB] "let go" "let the shape go where it is";
-        [Esc => PUT_BACK] "put back" "put it back where it was, and let go";
+        [Esc => PUT_BACK, Ctrl('g') => PUT_BACK, Ctrl('c') => PUT_BACK]
+            "put back" "put it back where it was, and let go";
     }
 
     /// Characters without a row are typed into the field that has the focus.

@@ -329,15 +329,13 @@ fn copy(app: &mut App, what: Copied) -> Option<Effect> {
     Some(Effect::Terminal(TerminalEffect::Copy(text)))
 }
 
-/// Opens a form; a held shape is let go.
+/// Opens a form. A held shape stays held, so that a form that is cancelled changes nothing.
 fn open_form(app: &mut App, form: FormDialog) {
-    app.mode = Mode::Draw;
     app.dialogs.push(Dialog::Form(Box::new(form)));
 }
 
 /// Opens the list of shapes, empty until the library answers.
 fn open_list(app: &mut App, purpose: Purpose) -> Effect {
-    app.mode = Mode::Draw;
     app.dialogs.push(Dialog::List(ListDialog::new(purpose)));
     Effect::Library(LibraryRequest::List)
 }

@@ -310,7 +310,6 @@ fn ask_removal(app: &mut App, name: String) {
 fn open_picture(app: &mut App, imprint: &Imprint, name: String) {
     let picture = Picture::at_home(*imprint).named(&name);
     let form = FormDialog::picture(app.history.present(), picture, name);
-    app.mode = Mode::Draw;
     app.dialogs.push(Dialog::Form(Box::new(form)));
 }
 
