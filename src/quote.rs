@@ -12,6 +12,18 @@ pub(crate) fn shortened_message(message: &str) -> String {
     cut(message, 400)
 }
 
+/// Writes a character for a message, in quotes; one that cannot be seen alone, such as an accent, by its code point.
+pub(crate) fn quoted_character(character: char) -> String {
+    match character {
+        '\'' => "\"'\"".to_owned(),
+        '"' | '\\' => format!("'{character}'"),
+        other if other.escape_debug().count() > 1 || is_invisible(other) => {
+            format!("U+{:04X}", u32::from(other))
+        }
+        other => format!("'{other}'"),
+    }
+}
+
 /// Returns true for invisible characters: Unicode's format characters, which change the text around them, and letters
 /// without a shape of their own, such as the Hangul filler. Untrusted text must not hide anything with them.
 pub(crate) fn is_invisible(character: char) -> bool {
@@ -82,7 +94,14 @@ fn cut(text: &str, longest: usize) -> String {
 
 #[cfg(all(test, feature = "json"))]
 mod tests {
-    use crate::quote::did_you_mean;
+    use crate::quote::{did_you_mean, quoted_character};
+
+    #[test]
+    fn a_character_is_quoted_as_it_is_typed() {
+        let quoted = ['a', '\'', '"', '\\', '\u{301}', '\t', '\u{200b}'].map(quoted_character);
+        let expected = ["'a'", "\"'\"", "'\"'", "'\\'", "U+0301", "U+0009", "U+200B"];
+        assert_eq!(quoted, expected);
+    }
 
     #[test]
     fn a_slip_of_the_keys_finds_the_name_that_was_meant() {

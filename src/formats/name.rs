@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::quote::is_invisible;
+use crate::quote::{is_invisible, quoted_character};
 
 /// The most characters of a name.
 pub const LONGEST: usize = 64;
@@ -48,7 +48,8 @@ impl fmt::Display for NameError {
             ),
             Self::Character(found) => write!(
                 f,
-                "{found:?} cannot be in a name, only letters, digits, space, - _ ."
+                "{} cannot be in a name, only letters, digits, space, - _ .",
+                quoted_character(*found)
             ),
             Self::Start(found) => write!(f, "a name cannot start with {found:?}"),
             Self::End => f.write_str("a name cannot end with a space"),

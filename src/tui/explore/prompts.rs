@@ -1,5 +1,6 @@
 //! Handles messages in the prompts over the results: the filter of the list, and the letters of marks.
 
+use crate::quote::quoted_character;
 use crate::tui::app::change::{inform, refuse};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
@@ -103,7 +104,10 @@ pub(in crate::tui) fn in_mark(
     let results = results(app)?;
     if !letter.is_alphabetic() {
         app.dialogs.push(Dialog::Mark(dialog));
-        refuse(app, format!("{letter:?}: expected a letter"));
+        refuse(
+            app,
+            format!("{}: expected a letter", quoted_character(letter)),
+        );
         return None;
     }
     match dialog.purpose {

@@ -7,6 +7,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::imprint::Imprint;
+use crate::quote::quoted_character;
 use crate::recognition::below;
 use crate::sensor::Sensor;
 use crate::touch::Plane;
@@ -126,7 +127,8 @@ impl Quiz {
         };
         let rows = (self.selected + 1..self.count()).chain(0..=self.selected);
         let row = rows.clone().find(begins);
-        self.selected = row.ok_or_else(|| format!("no shape begins with {character:?}"))?;
+        let none = || format!("no shape begins with {}", quoted_character(character));
+        self.selected = row.ok_or_else(none)?;
         Ok(false)
     }
 }
