@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use crate::atlas::distinct::Atlas;
 use crate::atlas::feature::{ImprintSummary, features};
+use crate::parameter::number;
 use crate::quote::shortened;
 
 /// A filter: conditions that must all hold.
@@ -58,13 +59,21 @@ pub enum FilterError {
         name: String,
     },
     /// There is no number after a sign.
-    #[error("{before}: expected a number after it, found {found:?}")]
+    #[error(
+        "{before}: expected a number after it, found {found:?}{}",
+        advice(found)
+    )]
     Number {
         /// The name and the sign.
         before: String,
         /// The text in place of the number.
         found: String,
     },
+}
+
+/// Returns the end of a message about a number with a decimal comma.
+fn advice(found: &str) -> String {
+    number::with_point(found).map_or_else(String::new, |number| format!("; write {number}"))
 }
 
 /// The quantity that a condition compares.
@@ -381,6 +390,7 @@ mod tests {
             error("na>=4holes=0"),
             "na>=: expected a number after it, found \"4holes=0\""
         );
+        assert!(error("f>2,5").ends_with("found \"2,5\"; write 2.5"));
         for text in ["na=inf", "na=nan", "na=1e999"] {
             assert!(error(text).contains("expected a number"), "{text}");
         }

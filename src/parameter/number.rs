@@ -59,11 +59,17 @@ pub fn to_decimals(value: f64, decimals: i32) -> f64 {
 /// assert_eq!(number::complaint("2,5"), "not a number; write 2.5");
 /// ```
 pub fn complaint(text: &str) -> String {
+    with_point(text).map_or_else(
+        || "not a number".to_owned(),
+        |number| format!("not a number; write {number}"),
+    )
+}
+
+/// Returns a number that was written with a decimal comma with a point instead; None for any other text.
+pub(crate) fn with_point(text: &str) -> Option<String> {
     let with_point = text.trim().replace(',', ".");
-    match read(&with_point) {
-        Some(_) if with_point != text.trim() => format!("not a number; write {with_point}"),
-        _ => "not a number".to_owned(),
-    }
+    let is_number = with_point != text.trim() && read(&with_point).is_some();
+    is_number.then_some(with_point)
 }
 
 /// Formats a count with its digits in groups of three.

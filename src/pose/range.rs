@@ -10,7 +10,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::index::narrow;
-use crate::parameter::number::grouped;
+use crate::parameter::number::{self, grouped};
 use crate::quote::shortened;
 
 /// The largest number of values of a range.
@@ -349,6 +349,15 @@ impl fmt::Display for DecimalRange {
     }
 }
 
+/// Returns the message about text that is not a plain decimal.
+fn not_a_number(text: &str) -> String {
+    match number::with_point(text) {
+        Some(number) => format!("\"{text}\" is not a number; write {number}"),
+        None if text.trim().is_empty() => "missing, expected a number such as 0.25".to_owned(),
+        None => format!("\"{text}\" is not a decimal number, such as 0.25"),
+    }
+}
+
 /// The error for numbers or text that are not a range.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -360,7 +369,7 @@ pub enum RangeError {
         text: String,
     },
     /// A part of the text is not a plain decimal.
-    #[error("\"{text}\" is not a decimal number, such as 0.25")]
+    #[error("{}", not_a_number(text))]
     Number {
         /// The text, shortened.
         text: String,

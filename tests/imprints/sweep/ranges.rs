@@ -50,6 +50,8 @@ fn ranges_are_exact_or_refused() {
         refused("1:2:x"),
         "\"x\" is not a decimal number, such as 0.25"
     );
+    assert_eq!(refused("1:2,5:1"), "\"2,5\" is not a number; write 2.5");
+    assert_eq!(refused(""), "missing, expected a number such as 0.25");
     for (exponent, plain) in [
         ("1e-3", "0.001"),
         ("-2.5E-1:5e-1:2.5e-2", "-0.25:0.5:0.025"),
