@@ -98,13 +98,25 @@ pub fn measured(number: f64, width: usize) -> String {
 /// assert_eq!([0.0, 1e-5, 0.984, 0.9999, 1.0].map(percent), ["0.0 %", "<0.1 %", "98.4 %", ">99.9 %", "100.0 %"]);
 /// ```
 pub fn percent(share: f64) -> String {
-    let percent = share * 100.0;
-    if share > 0.0 && percent < 0.05 {
-        "<0.1 %".to_owned()
-    } else if share < 1.0 && percent >= 99.95 {
-        ">99.9 %".to_owned()
+    format!("{} %", percentage(share, 1))
+}
+
+/// Formats a share as a number of percent, with at least one decimal. A share that is not exactly 0 or 1 is not shown
+/// as 0 or 100.
+///
+/// ```
+/// use taxel::formats::value::percentage;
+/// assert_eq!([0.0, 1e-5, 0.5, 0.99999, 1.0].map(|share| percentage(share, 2)), ["0.00", "<0.01", "50.00", ">99.99", "100.00"]);
+/// ```
+pub fn percentage(share: f64, decimals: usize) -> String {
+    let text = format!("{:.decimals$}", share * 100.0);
+    let is_shown_as = |percent: f64| text == format!("{percent:.decimals$}");
+    if share > 0.0 && is_shown_as(0.0) {
+        format!("<0.{:0>decimals$}", 1)
+    } else if share < 1.0 && is_shown_as(100.0) {
+        format!(">99.{}", "9".repeat(decimals))
     } else {
-        format!("{percent:.1} %")
+        text
     }
 }
 

@@ -14,7 +14,7 @@ use ratatui::layout::{Position, Rect};
 
 use crate::atlas::Histogram;
 use crate::description::Dimension;
-use crate::formats::value::{counted, fitting, grouped};
+use crate::formats::value::{counted, fitting, grouped, percentage};
 use crate::tui::app::page::Wheel;
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
@@ -139,10 +139,10 @@ fn bars(theme: &Theme, histogram: &Histogram, unit: Dimension, buffer: &mut Buff
             bar.push(half);
         }
         #[expect(clippy::cast_precision_loss, reason = "for reading")]
-        let share = poses as f64 * 100.0 / all.max(1) as f64;
+        let share = percentage(poses as f64 / all.max(1) as f64, 2);
         let label = format!("{label:>longest$} |");
         let bar = format!("{bar:room$}");
-        let numbers = format!(" {:>count$} {share:>6.2} %", grouped(poses));
+        let numbers = format!(" {:>count$} {share:>6} %", grouped(poses));
         let pieces = [
             (label.as_str(), Role::Quiet),
             (bar.as_str(), Role::Chosen),

@@ -16,7 +16,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::atlas::AtlasEntry;
-use crate::formats::value::{counted, fitting, grouped};
+use crate::formats::value::{counted, fitting, grouped, percentage};
 use crate::pose::Axis;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
@@ -189,12 +189,17 @@ impl ImprintList {
     }
 }
 
+/// Returns the text for a list without a row.
+pub(super) fn no_row(results: &Results) -> String {
+    format!("no imprint fits {}", results.filter())
+}
+
 /// Draws the page. Returns the position of the selected row.
 fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Option<Position> {
     let list = ImprintList::of(page, results);
     draw_headings(theme, results, &list, buffer);
     if results.row_count() == 0 {
-        let text = format!("no imprint fits {}", results.filter());
+        let text = no_row(results);
         write::line(buffer, list.rows, theme, [(text.as_str(), Role::Quiet)]);
     }
     let visible = usize::from(list.rows.height);
@@ -296,8 +301,7 @@ fn row_text(theme: &Theme, results: &Results, list: &ImprintList, entry: &AtlasE
 
 /// Returns the share of an imprint's poses in percent.
 fn share(results: &Results, entry: &AtlasEntry) -> String {
-    let share = crate::formats::atlas::share(results.sweep(), entry) * 100.0;
-    format!("{share:.2}")
+    percentage(crate::formats::atlas::share(results.sweep(), entry), 2)
 }
 
 /// Returns the chosen descriptor's value of an imprint.

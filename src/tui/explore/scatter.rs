@@ -18,6 +18,7 @@ use crate::formats::value::{counted, fitting};
 use crate::formats::{DrawingFormat, PointPlot, axis_ends};
 use crate::tui::app::message::Message;
 use crate::tui::app::page::Wheel;
+use crate::tui::explore::imprints::no_row;
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::explore::page::{ResultsPage, choose_descriptor};
 use crate::tui::explore::results::Results;
@@ -117,8 +118,13 @@ fn draw(results: &Results, theme: &Theme, buffer: &mut Buffer, page: Rect) -> Op
     let title = title(results, points.len());
     write::line(buffer, page, theme, [(title.as_str(), Role::Title)]);
     if points.is_empty() {
-        let text = "no imprint has both values";
-        write::line(buffer, write::row(page, 1), theme, [(text, Role::Quiet)]);
+        let text = if results.row_count() == 0 {
+            no_row(results)
+        } else {
+            "no imprint has both values".to_owned()
+        };
+        let pieces = [(text.as_str(), Role::Quiet)];
+        write::line(buffer, write::row(page, 1), theme, pieces);
         return None;
     }
     let selected = results.rows_from(results.selected()).next();

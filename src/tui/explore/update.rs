@@ -119,6 +119,9 @@ fn change_view(app: &mut App, results: &mut Results, asked: &ExploreMessage) {
     match *asked {
         ExploreMessage::Page(page) => results.turn_to(page),
         ExploreMessage::NextPage(by) => results.next_page(by),
+        ExploreMessage::Feature(_) if results.page() == ExplorePage::Map => {
+            refuse(app, "the map shows no descriptor");
+        }
         ExploreMessage::Feature(by) => results.next_feature(by),
         ExploreMessage::Sort(by) => results.sort(by),
         ExploreMessage::SortHere => results.sort(results.heading()),

@@ -91,6 +91,8 @@ impl Page for Results {
             (Message::Explore(ExploreMessage::Angle(_)), _) => {
                 self.sweep().grid.counts()[Axis::Angle] > 1
             }
+            // The map shows no descriptor.
+            (Message::Explore(ExploreMessage::Feature(_)), ExplorePage::Map) => false,
             (Message::Zoom(_), ExplorePage::Map) => MapPane::of(page(), self).closest > 0,
             _ => true,
         }

@@ -382,6 +382,31 @@ fn keys_of_explore_that_can_do_nothing_say_so() {
     );
     shows(&session(&format!("{one}+")), &["every pose has its letter"]);
     shows(&session(&format!("{one}-")), &["this is the whole range"]);
+    shows(
+        &session(&format!("{one}d")),
+        &["! the map shows no descriptor"],
+    );
+}
+
+#[test]
+fn a_filter_that_leaves_nothing_is_named_on_each_page_that_it_empties() {
+    for page in ["1", "5"] {
+        let keys = format!("fr<Enter>{SHORT}/na>>500<Enter>{page}");
+        shows(
+            &session(&keys.replace(">>", "<gt>")),
+            &["no imprint fits na>500"],
+        );
+    }
+}
+
+#[test]
+fn a_map_that_shows_only_some_poses_says_so_where_there_is_little_room() {
+    let keys = "f<Enter>:explore --x0 5:5.99:0.01 --y0 5:5.99:0.01 --angle 0<Enter>4";
+    for size in [(60, 20), (40, 12)] {
+        for ascii in [false, true] {
+            shows(&sized(size, ascii, keys), &["1 pose in "]);
+        }
+    }
 }
 
 #[test]

@@ -42,19 +42,20 @@ const COVERAGES: [f64; 5] = [0.0, 0.1, 0.3, 0.7, 1.0];
 /// The maximum number of cells along a side of a drawing: more would not be distinguishable.
 const DRAWN: u64 = 400;
 
-/// Returns the legend: what letters, colours or shades mean, and which part of the poses is shown.
-fn meaning(theme: &Theme, pane: &MapPane) -> String {
+/// Returns the legend: what letters, colours or shades mean, and which part of the poses is shown; and a shorter one,
+/// the part alone.
+fn meaning(theme: &Theme, pane: &MapPane) -> [String; 2] {
     let sign = match (pane.is_picture(), has_colours(theme)) {
         (false, _) => "letter",
         (true, true) => "colour",
         (true, false) => "shade",
     };
-    let part = if pane.stride > 1 {
-        format!("; 1 pose in {0} × {0}", pane.stride)
-    } else {
-        String::new()
-    };
-    format!("  each {sign} an imprint{part}")
+    let full = format!("  each {sign} an imprint");
+    if pane.stride == 1 {
+        return [full, String::new()];
+    }
+    let part = format!("1 pose in {0} × {0}", pane.stride);
+    [format!("{full}; {part}"), format!("  {part}")]
 }
 
 /// Draws the page. Returns the position of the cursor.
@@ -68,10 +69,11 @@ pub(in crate::tui) fn draw(
     let grid = &results.sweep().grid;
     let head = heading(results);
     let end = write::line(buffer, pane.head, theme, [(head.as_str(), Role::Title)]);
-    // The legend is drawn only if there is room for all of it.
+    // A legend is drawn only if there is room for all of it.
     let legend = write::right_of(pane.head, end);
-    let text = meaning(theme, &pane);
-    if write::width(&text) <= usize::from(legend.width) {
+    let texts = meaning(theme, &pane);
+    let fits = |text: &&String| write::width(text) <= usize::from(legend.width);
+    if let Some(text) = texts.iter().find(fits) {
         write::line(buffer, legend, theme, [(text.as_str(), Role::Quiet)]);
     }
     let cursor = draw_cells(theme, results, &pane, buffer);
