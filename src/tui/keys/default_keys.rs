@@ -67,8 +67,8 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Char('e') => EXPLORE] "explore" "Explore: all imprints of the shape, over all poses";
         [Char('r') => RECOGNISE] "recognise" "Recognise: name the shape from its touch";
         [Char('c') => COVERAGE] "coverage" "coverage in shades, in percent, the imprint again";
-        [Char('o') => OUTLINE, Char('b') => RECTANGLE]
-            "" "the true outline; the rectangle with CG (G), CD (D)";
+        [Char('o') => OUTLINE] "" "the true outline of the shape";
+        [Char('b') => RECTANGLE] "" "the rectangle with CG (G), CD (D)";
         [Char('g') => GRAB] "grab" "hold the shape, to move it with the arrows";
         [Char('w') => WATCH] "" "Watch: back to the frames of the watched sensor";
         [ShiftArrow(Left) => NUDGE_LEFT, ShiftArrow(Right) => NUDGE_RIGHT,
