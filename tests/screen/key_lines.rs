@@ -13,11 +13,12 @@ fn lines(of: &(impl Screen + ?Sized)) -> (String, String) {
     (menu, lines.last().unwrap_or_default().to_owned())
 }
 
-/// Clicks on a text in the first or the last line.
+/// Clicks on a text in the first or the last line, or in one of the lines of a page.
 fn click(session: &mut Session, text: &str) {
     let screen = Session::screen(session);
-    let rows = [0, screen.lines().count() - 1];
-    let found = rows.into_iter().find_map(|row| {
+    let last = screen.lines().count() - 1;
+    let mut rows = [0, last].into_iter().chain(1..last);
+    let found = rows.find_map(|row| {
         let line = screen.lines().nth(row)?;
         let column = line[..line.find(text)?].chars().count();
         Some((u16::try_from(row).ok()?, u16::try_from(column).ok()?))
@@ -106,6 +107,8 @@ fn the_menu_shows_the_keys_of_the_page() {
             "j find",
             "compare",
         ),
+        // The map shows no descriptor.
+        ("f<CR>:explore --angle 0<CR>4", "+ - zoom", "descriptor"),
     ] {
         let (_, last) = lines(keys);
         assert!(
@@ -142,6 +145,15 @@ fn clicks_on_the_lines_of_keys_do_what_the_keys_do() {
     shows(&session, &["NA 0 in all"]);
     click(&mut session, "Figure");
     shows(&session, &["Radius x"]);
+    // The brackets and the letters of the kind.
+    click(&mut session, "< ellipse");
+    shows(&session, &["< octagon "]);
+    click(&mut session, ">");
+    shows(&session, &["< ellipse "]);
+    click(&mut session, "t p h o");
+    shows(&session, &["< triangle "]);
+    click(&mut session, "e r t");
+    shows(&session, &["< ellipse "]);
     click(&mut session, "? help");
     shows(&session, &["In a form"]);
     click(&mut session, "close");

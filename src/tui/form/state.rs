@@ -288,8 +288,12 @@ impl FormDialog {
     /// Handles an arrow: chooses the kind, moves in a field or to another field.
     pub fn choose(&mut self, arrow: Arrow) {
         match (self.form.focus(), arrow) {
-            (None, Arrow::Left) => self.next_kind(FigureKind::ALL.len() - 1, |_| true),
-            (None, Arrow::Right) => self.next_kind(1, |_| true),
+            (None, Arrow::Left) => {
+                self.next_kind(FigureKind::ALL.len() - 1, |_| true);
+            }
+            (None, Arrow::Right) => {
+                self.next_kind(1, |_| true);
+            }
             (Some(_), Arrow::Left | Arrow::Right) => self.form.take(&Message::Choose(arrow)),
             (_, Arrow::Up) => self.move_focus(-1),
             (_, Arrow::Down) => self.move_focus(1),
@@ -297,18 +301,18 @@ impl FormDialog {
     }
 
     /// Handles a character: types it into the field; on the kind, chooses the next kind that begins with it. No kind
-    /// begins with a digit, a sign or a point: such a character begins the number in the first field.
-    pub fn insert(&mut self, character: char) {
+    /// begins with a digit, a sign or a point: such a character begins the number in the first field. Returns false if
+    /// no kind begins with the character.
+    pub fn insert(&mut self, character: char) -> bool {
         if self.form.focus().is_none() && begins_number(character) {
             self.move_focus(1);
         }
         if self.form.focus().is_some() {
             self.edit(|form| form.take(&Message::Type(character)));
-        } else {
-            self.next_kind(1, |kind| {
-                kind.name().starts_with(character.to_ascii_lowercase())
-            });
+            return true;
         }
+        let letter = character.to_ascii_lowercase();
+        self.next_kind(1, |kind| kind.name().starts_with(letter))
     }
 
     /// Handles pasted text: types it into the field; on the kind, chooses the kind with that name. Returns false if
@@ -320,19 +324,18 @@ impl FormDialog {
             self.move_focus(1);
         } else if on_kind {
             let kind = FigureKind::from_name(&name);
-            self.next_kind(1, |other| Some(other) == kind);
-            return kind.is_some();
+            return self.next_kind(1, |other| Some(other) == kind);
         }
         self.edit(|form| form.take(&Message::Paste(text.to_owned())));
         true
     }
 
-    /// Chooses the first kind that fits, in steps of `step` from the present one; keeps the present one if none fits.
-    fn next_kind(&mut self, step: usize, fits: impl Fn(FigureKind) -> bool) {
+    /// Chooses the first kind that fits, in steps of `step` from the present one; returns false if none fits.
+    fn next_kind(&mut self, step: usize, fits: impl Fn(FigureKind) -> bool) -> bool {
         let kinds = FigureKind::ALL;
         let own = |kind: FigureKind| kinds.iter().position(|&other| other == kind);
         let Some(now) = self.kind().and_then(own) else {
-            return;
+            return false;
         };
         let next = (1..=kinds.len())
             .map(|count| kinds[(now + count * step) % kinds.len()])
@@ -342,6 +345,7 @@ impl FormDialog {
             self.fill();
             self.edit(|_| {});
         }
+        next.is_some()
     }
 }
 

@@ -4,6 +4,7 @@
 //! invalid field and shows its error. Every other message edits the fields, and the matrix follows.
 
 use crate::figure::FigureKind;
+use crate::quote::quoted_character;
 use crate::tui::app::change::{let_go, refuse, replace};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::Message;
@@ -38,11 +39,15 @@ pub(in crate::tui) fn update(
         Message::ToField(None) if dialog.form().focus().is_none() => dialog.choose(Arrow::Right),
         Message::ToField(field) => dialog.edit(|form| form.set_focus(field)),
         Message::Choose(arrow) => dialog.choose(arrow),
-        Message::Type(character) => dialog.insert(character),
+        Message::Type(character) => {
+            if !dialog.insert(character) {
+                let kind = quoted_character(character);
+                refuse(app, format!("no kind begins with {kind}: {}", kinds()));
+            }
+        }
         Message::Paste(text) => {
             if !dialog.paste(&text) {
-                let kinds = FigureKind::ALL.map(FigureKind::name).join(", ");
-                refuse(app, format!("no kind is called {text:?}: {kinds}"));
+                refuse(app, format!("no kind is called {text:?}: {}", kinds()));
             }
         }
         Message::Defaults => dialog.set_defaults(),
@@ -51,4 +56,9 @@ pub(in crate::tui) fn update(
     }
     app.dialogs.push(Dialog::Form(dialog));
     None
+}
+
+/// Returns the names of all kinds.
+fn kinds() -> String {
+    FigureKind::ALL.map(FigureKind::name).join(", ")
 }

@@ -27,6 +27,7 @@ use crate::tui::form::fields::ParameterField;
 use crate::tui::form::layout::FormRows;
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::binding::Context;
+use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
@@ -34,6 +35,10 @@ use crate::tui::widget::write;
 
 /// The width of a label, in columns.
 const LABEL: usize = 10;
+/// The number of characters of the name of a kind.
+const NAME: usize = 9;
+/// The column of the letters that choose a kind, behind the name in its brackets.
+const LETTERS: usize = LABEL + 2 + NAME + 3;
 /// The width of a field's text, in columns.
 const INPUT: usize = 9;
 
@@ -62,7 +67,12 @@ impl Page for FormDialog {
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
         let (rows, line) = (FormRows::of(area, self), at.y - area.y);
         if rows.kind == Some(line) {
-            return Some(Message::ToField(None));
+            let is_focused = self.form().focus().is_none();
+            return Some(if is_focused {
+                click_on_kind(usize::from(at.x - area.x))
+            } else {
+                Message::ToField(None)
+            });
         }
         let mut fields = rows.fields(self.form().fields().len());
         let field = fields.find(|(_, first)| (*first..first + rows.spacing).contains(&line));
@@ -132,18 +142,37 @@ fn draw(theme: &Theme, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> 
     cursor
 }
 
-/// Draws the kind between angle brackets, and the letters that choose one.
-fn draw_kind(theme: &Theme, kind: FigureKind, focused: bool, buffer: &mut Buffer, row: Rect) {
-    let label = format!("{:LABEL$}", "Kind");
-    let name = format!("{:<9}", kind.name());
-    let role = if focused { Role::Focus } else { Role::Text };
+/// Returns the letters that choose a kind.
+fn kind_letters() -> Vec<&'static str> {
     let mut letters: Vec<&str> = FigureKind::ALL
         .iter()
         .map(|kind| &kind.name()[..1])
         .collect();
     letters.dedup();
+    letters
+}
+
+/// Returns the message of a click in a column of the line of the kind, which has the focus: on the left bracket the
+/// previous kind, on a letter the kind that begins with it, elsewhere the next kind.
+fn click_on_kind(column: usize) -> Message {
+    let letter = column
+        .checked_sub(LETTERS)
+        .filter(|place| place.is_multiple_of(2));
+    let letter = letter.and_then(|place| kind_letters().get(place / 2).copied());
+    match letter.and_then(|letter| letter.chars().next()) {
+        Some(letter) => Message::Type(letter),
+        None if column == LABEL => Message::Choose(Arrow::Left),
+        None => Message::ToField(None),
+    }
+}
+
+/// Draws the kind between angle brackets, and the letters that choose one.
+fn draw_kind(theme: &Theme, kind: FigureKind, focused: bool, buffer: &mut Buffer, row: Rect) {
+    let label = format!("{:LABEL$}", "Kind");
+    let name = format!("{:NAME$}", kind.name());
+    let role = if focused { Role::Focus } else { Role::Text };
     let letters = if focused {
-        letters.join(" ")
+        kind_letters().join(" ")
     } else {
         String::new()
     };
