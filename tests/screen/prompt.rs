@@ -50,6 +50,10 @@ fn the_cursor_and_the_shape_are_moved_by_commands() {
             "! there is no such taxel: columns are 0 to 15, rows 0 to 15",
         ),
         (
+            "cursor -1 0",
+            "! there is no such taxel: columns are 0 to 15, rows 0 to 15",
+        ),
+        (
             "cursor far",
             "! cursor takes left, right, up, down, start, end, top, bottom or COLUMN ROW",
         ),
@@ -297,7 +301,7 @@ fn commands_do_what_keys_do() {
     then(
         &mut session,
         "<Esc>:delete mine<Enter>",
-        &["Delete mine? (y/n)"],
+        &["Delete \"mine\"? (y/n)"],
     );
     then(&mut session, "y:restore mine<Enter>", &["mine is back"]);
     then(

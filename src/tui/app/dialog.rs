@@ -153,9 +153,9 @@ impl Question {
         }
     }
 
-    /// Creates the question whether to replace a file or a shape that exists; yes sends the message `yes`.
-    pub fn replaces(file: &str, yes: Message) -> Self {
-        Self::new(format!("{file} already exists. Replace it?"), yes)
+    /// Creates the question whether to replace a file or a shape of a name that exists; yes sends the message `yes`.
+    pub fn replaces(name: &str, yes: Message) -> Self {
+        Self::new(format!("{name:?} already exists. Replace it?"), yes)
     }
 }
 

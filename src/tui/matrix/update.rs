@@ -65,7 +65,7 @@ pub(in crate::tui) fn act(app: &mut App, message: Message) -> Option<Effect> {
             None => inform(app, "nothing to compare with: this is the first state"),
         },
         Message::Replace(shape, stamp) => {
-            let name = format!("{:?}", shape.name.as_str());
+            let name = shape.name.to_string();
             let store = LibraryRequest::Store(shape, Expected::Stamp(stamp));
             let question = Question::replaces(&name, Message::Request(store));
             app.dialogs.push(Dialog::Question(question));

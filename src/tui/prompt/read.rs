@@ -140,7 +140,7 @@ fn degrees(text: &str) -> Result<Message, String> {
 /// Reads a taxel of the sensor.
 fn taxel(column: &str, row: &str, sensor: &Sensor) -> Result<Message, String> {
     for text in [column, row] {
-        if text.parse::<u64>().is_err() {
+        if text.parse::<i64>().is_err() {
             let text = shortened(text);
             return Err(format!(
                 "cursor takes a column and a row like 3 4, found {text:?}"

@@ -301,7 +301,7 @@ fn choose(app: &mut App, mut list: ListDialog) -> Option<Effect> {
 
 /// Asks whether to delete a shape.
 fn ask_removal(app: &mut App, name: String) {
-    let text = format!("Delete {name}?");
+    let text = format!("Delete {name:?}?");
     let question = Question::new(text, Message::Request(LibraryRequest::Remove(name)));
     app.dialogs.push(Dialog::Question(question));
 }

@@ -136,7 +136,7 @@ fn undo_also_restores_the_name() {
 fn deleting_asks_and_can_be_undone() {
     let mut session = session("<Space>sone<Enter>dn");
     shows(&session, &["Delete  filter: n", "> one"]);
-    then(&mut session, "<Enter>", &["Delete one? (y/n)"]);
+    then(&mut session, "<Enter>", &["Delete \"one\"? (y/n)"]);
     then(
         &mut session,
         "nd<Enter>y",
