@@ -5,7 +5,7 @@ use taxel::tui::keys::binding::Context;
 use taxel::tui::keys::default_keys::DEFAULT_KEYS;
 use taxel::tui::keys::keymap::{Keymap, help};
 
-use crate::session::{hides, session, shows, then};
+use crate::session::{hides, session, shows, sized, then};
 
 #[test]
 fn the_cursor_stays_on_the_matrix() {
@@ -122,6 +122,8 @@ fn the_step_is_shown_if_there_is_something_to_move() {
     shows("f<Enter>+", &["NA 52 in all  step 0.1"]);
     shows("f<Enter>++-", &["NA 52 in all  step 0.1"]);
     shows("f<Enter>+<S-Right>", &["at 4.10, 4.00"]);
+    shows("f<Enter>-", &["0.01 is the smallest step"]);
+    shows("f<Enter>+++", &["1 is the largest step"]);
     shows("+", &["! nothing to move"]);
 }
 
@@ -134,7 +136,13 @@ fn kinds_are_chosen_by_arrows_and_letters() {
     shows("fhh", &["< heptagon "]);
     shows("fhhh", &["< hexagon "]);
     shows("ft<Enter>", &["triangle side 4.00 at 4.00, 4.00"]);
-    shows("fz", &["< ellipse "]);
+    shows(
+        "fz",
+        &[
+            "< ellipse ",
+            "! no kind begins with 'z': ellipse, rectangle",
+        ],
+    );
     // Values remain when the kind changes, and are there again when it changes back.
     shows("f<Tab><Tab><Tab>1.5<4x:S-Tab>", &["< ellipse ", "1.5 "]);
     shows("f<Tab>2<S-Tab>rp<S-Tab>", &["< pentagon "]);
@@ -695,6 +703,7 @@ fn a_random_touch_is_named_by_row_letter_or_number_and_scored() {
     for (key, refused) in [
         ("9", "no shape 9: they are 1 to 7"),
         ("x", "no shape begins with 'x'"),
+        ("'", "no shape begins with \"'\""),
     ] {
         shows(&format!("{touch}{key}"), &["Which shape is this?", refused]);
     }
@@ -789,6 +798,34 @@ fn a_count_is_refused_before_what_is_done_only_once() {
     shows("f<Enter>g<Right>2<Esc>", &["held", "at 4.01"]);
     hides("f<Enter>g<Right>2<Esc>", &["2 times"]);
     hides("2<C-c>", &["2 times"]);
+}
+
+/// A smaller sensor that is undone leaves the cursor where it was.
+#[test]
+fn the_cursor_is_back_when_the_sensor_is_as_large_as_before() {
+    let smaller = "S4<Tab>4<Enter>";
+    shows(smaller, &["column 3, row 3"]);
+    shows(&format!("{smaller}u"), &["column  8, row  8"]);
+    shows(&format!("{smaller}<Left>u"), &["column  2, row  3"]);
+    shows(
+        &format!("{smaller}<Space><Home>"),
+        &["column 0, row 3", "NA 1 in all"],
+    );
+}
+
+#[test]
+fn help_of_recognise_describes_only_keys_that_work_there() {
+    let help = sized((100, 70), false, "f<Enter>r?");
+    shows(&help, &["the rectangle with CG (G), CD (D)"]);
+    hides(&help, &["outline of the shape"]);
+}
+
+#[test]
+fn the_key_of_narrow_screens_says_that_nothing_is_hidden() {
+    let text = "both sides of the screen are visible";
+    for keys in ["i", "f<Enter>ri", "rt<Tab>"] {
+        shows(keys, &[text]);
+    }
 }
 
 #[test]

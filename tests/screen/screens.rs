@@ -238,7 +238,12 @@ fn a_list_shows_how_many_rows_are_out_of_view() {
 #[test]
 fn matrix_and_descriptors_are_swapped_only_if_one_is_visible() {
     let mut wide = sized((80, 24), false, "i");
-    assert!(wide.screen().contains("both visible"), "{}", wide.screen());
+    assert!(
+        wide.screen()
+            .contains("both sides of the screen are visible"),
+        "{}",
+        wide.screen()
+    );
     wide.resize(40, 24);
     assert!(!wide.screen().contains("NA     –"), "{}", wide.screen());
     // The hint names what the key will show.

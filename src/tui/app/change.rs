@@ -52,10 +52,7 @@ pub(in crate::tui) fn begin(app: &mut App, origin: DocumentOrigin, document: Doc
 pub(in crate::tui) fn settle(app: &mut App) {
     app.removed.clear();
     app.moves = None;
-    let present = app.history.present();
-    app.cursor.0 = app.cursor.0.min(present.sensor.columns() - 1);
-    app.cursor.1 = app.cursor.1.min(present.sensor.rows() - 1);
-    if present.source.is_none() {
+    if app.history.present().source.is_none() {
         app.mode = Mode::Draw;
     }
     app.read();

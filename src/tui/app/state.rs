@@ -192,7 +192,8 @@ pub struct App {
     pub(in crate::tui) history: History,
     /// The document that the matrix shows, with its last reading.
     shown: ReadDocument,
-    /// The taxel under the cursor: column, row.
+    /// The taxel that the cursor was put on: column, row. It may lie beyond a sensor that became smaller; so if the
+    /// sensor is larger again, the cursor is back.
     pub(in crate::tui) cursor: (u8, u8),
     /// The part of a large matrix that its window follows.
     pub(in crate::tui) followed: Followed,
@@ -523,8 +524,8 @@ impl App {
         Some(shown.to_shape(name, self.reading()))
     }
 
-    /// Returns the taxel under the cursor: column, row. While a form shows a smaller sensor, the cursor stands at its
-    /// rim.
+    /// Returns the taxel under the cursor: column, row. On a smaller sensor than the one that the cursor was put on,
+    /// this is at the rim.
     pub fn cursor(&self) -> (u8, u8) {
         let (sensor, (column, row)) = (&self.shown().sensor, self.cursor);
         (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1))

@@ -253,11 +253,12 @@ fn edit(app: &mut App, message: &Message) {
         Message::PointAt(column, row) => {
             app.cursor = (column.min(sensor.columns() - 1), row.min(sensor.rows() - 1));
         }
-        Message::ToColumn(end) => app.cursor.0 = at_end(end, sensor.columns()),
-        Message::ToRow(end) => app.cursor.1 = at_end(end, sensor.rows()),
+        Message::ToColumn(end) => app.cursor = (at_end(end, sensor.columns()), app.cursor().1),
+        Message::ToRow(end) => app.cursor = (app.cursor().0, at_end(end, sensor.rows())),
         Message::Toggle => {
             let mut document = app.history.present().clone();
-            document.edits.toggle(app.cursor.0, app.cursor.1);
+            let (column, row) = app.cursor();
+            document.edits.toggle(column, row);
             change(app, document);
         }
         Message::Undo => travel(app, History::undo, "undone", "nothing to undo"),
@@ -276,7 +277,7 @@ fn edit(app: &mut App, message: &Message) {
         Message::Display => next_display(app),
         Message::Layer(layer) => switch_layer(app, layer),
         Message::SwitchPage if app.panes().is_some_and(|panes| !app.has_pages(&panes)) => {
-            inform(app, "matrix and descriptors are both visible");
+            inform(app, "both sides of the screen are visible");
         }
         Message::SwitchPage => {
             app.page = match app.page {
@@ -296,9 +297,7 @@ fn edit(app: &mut App, message: &Message) {
             let centre = ["the origin", "the picture's centre"][usize::from(app.zoom_centre)];
             inform(app, format!("zoom about {centre}"));
         }
-        Message::NudgeStep(direction) if movable(app).is_some() => {
-            app.step = app.step.other(direction);
-        }
+        Message::NudgeStep(direction) if movable(app).is_some() => change_step(app, direction),
         _ => {}
     }
 }
@@ -378,20 +377,24 @@ fn at_end(end: Endpoint, count: u8) -> u8 {
     }
 }
 
+/// Takes the next larger or smaller step; at the end, the step stays, and a notice says so.
+fn change_step(app: &mut App, direction: i8) {
+    let step = app.step.other(direction);
+    if step == app.step {
+        let end = ["smallest", "largest"][usize::from(direction > 0)];
+        inform(app, format!("{} is the {end} step", step.length()));
+    }
+    app.step = step;
+}
+
 /// Moves the cursor by one taxel; it stays at the edge.
 fn move_cursor(app: &mut App, arrow: Arrow) {
     let sensor = app.history.present().sensor;
-    let (dx, dy) = arrow.step();
-    app.cursor.0 = app
-        .cursor
-        .0
-        .saturating_add_signed(dx)
-        .min(sensor.columns() - 1);
-    app.cursor.1 = app
-        .cursor
-        .1
-        .saturating_add_signed(dy)
-        .min(sensor.rows() - 1);
+    let ((dx, dy), (column, row)) = (arrow.step(), app.cursor());
+    app.cursor = (
+        column.saturating_add_signed(dx).min(sensor.columns() - 1),
+        row.saturating_add_signed(dy).min(sensor.rows() - 1),
+    );
 }
 
 /// Selects the region that comes `by` further on, the first after the last. Until a region is chosen, the main region
