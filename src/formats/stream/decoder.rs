@@ -9,6 +9,7 @@
 use std::mem::take;
 
 use crate::formats::byte_order_mark::without_mark;
+use crate::formats::json;
 use crate::formats::recording::text::row::is_parted_by_cr;
 use crate::formats::stream::documents::{JsonChannels, JsonDecoder, RosDecoder};
 use crate::formats::stream::event::{StreamCounts, StreamFormat, StreamOptions, StreamSink};
@@ -226,10 +227,12 @@ impl StreamDecoder {
         }
     }
 
-    /// Decodes a line without its end; skips the first one if the stream was joined in the middle.
+    /// Decodes a line without its end; skips the first one if the stream was joined in the middle. An object of JSON
+    /// is whole: the end of a line does not open what it closes.
     fn line(&mut self, line: &[u8], sink: &mut StreamSink<'_>) {
         let line = self.without_mark(line);
-        if take(&mut self.torn) {
+        if take(&mut self.torn) && !(matches!(self.state, State::Json(_)) && json::is_object(line))
+        {
             return;
         }
         match &mut self.state {
@@ -290,6 +293,27 @@ mod tests {
                 assert_eq!(decoder.format(), Some(StreamFormat::Flexitac), "{joined}");
                 let whole = if joined == 0 { 6 } else { 5 };
                 assert_eq!(decoder.counts().frames, whole, "{joined}");
+            }
+        }
+    }
+
+    #[test]
+    fn joining_json_lines_between_two_frames_costs_no_frame() {
+        for (text, frames) in [
+            ("{\"frame\":[[1,NaN]]}\n{\"frame\":[[3,4]]}\n", 2),
+            ("[[1,2]]}\n{\"frame\":[[3,4]]}\n", 1),
+            ("{\"frame\":[[1,2]]},\"t\":1}\n{\"frame\":[[3,4]]}\n", 1),
+        ] {
+            for format in [None, Some(StreamFormat::JsonLines)] {
+                let options = StreamOptions {
+                    format,
+                    ..StreamOptions::default()
+                };
+                let mut decoder = StreamDecoder::new(options);
+                let mut sink = |_: crate::formats::stream::StreamEvent<'_>| {};
+                decoder.push(text.as_bytes(), &mut sink);
+                let counts = decoder.counts();
+                assert_eq!((counts.frames, counts.dropped), (frames, 0), "{text}");
             }
         }
     }
