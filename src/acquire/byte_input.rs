@@ -28,6 +28,9 @@ const MOMENT: Timespec = Timespec {
 /// The time between two checks whether a connection is still wanted.
 const ASKED: Duration = Duration::from_millis(100);
 
+/// How often a pipe that is still open is tried again before it counts as that of another program.
+const RELEASES: u32 = 5;
+
 /// The time that making a connection may take.
 const CONNECTING: Duration = Duration::from_secs(5);
 
@@ -79,7 +82,10 @@ impl ByteInput {
                 None => return Ok(None),
             },
             FrameSource::Serial(path) => Self::Device(serial::open_line(path, options.baud)?),
-            FrameSource::Fifo(path) => Self::Device(open_fifo(path)?),
+            FrameSource::Fifo(path) => match open_fifo_unless(path, waiting)? {
+                Some(pipe) => Self::Device(pipe),
+                None => return Ok(None),
+            },
             FrameSource::File(path) if options.playback == Playback::Once => {
                 Self::File(File::open(path)?)
             }
@@ -141,10 +147,38 @@ impl ByteInput {
     }
 }
 
-/// Opens a named pipe. Opening it in the usual way would wait for a writer, and no signal could end the wait.
+/// Opens a named pipe. A watch that was left a moment ago may still have it open.
+///
+/// # Errors
+/// Returns the errors of [`open_fifo`].
+fn open_fifo_unless(
+    path: &Path,
+    waiting: &mut dyn FnMut() -> ControlFlow<()>,
+) -> io::Result<Option<File>> {
+    for _ in 0..RELEASES {
+        match open_fifo(path) {
+            Err(error) if error.kind() == ErrorKind::ResourceBusy => {}
+            opened => return opened.map(Some),
+        }
+        if waiting().is_break() {
+            return Ok(None);
+        }
+        std::thread::sleep(ASKED);
+    }
+    open_fifo(path).map(Some)
+}
+
+/// Opens a named pipe. Opening it in the usual way would wait for a writer, and no signal could end the wait. Of two
+/// readers, each would get some of the bytes, so the pipe is locked for this one.
+///
+/// # Errors
+/// Returns an error of the kind [`io::ErrorKind::ResourceBusy`] if another taxel reads it; otherwise the system's
+/// error.
 fn open_fifo(path: &Path) -> io::Result<File> {
     let flags = OFlags::RDONLY | OFlags::NONBLOCK | OFlags::CLOEXEC;
-    Ok(open(path, flags, Mode::empty())?.into())
+    let pipe = open(path, flags, Mode::empty())?;
+    serial::lock(&pipe)?;
+    Ok(pipe.into())
 }
 
 /// Connects on a thread of its own. The thread is abandoned if the connection is no longer wanted, because looking up
@@ -258,7 +292,11 @@ mod tests {
         assert_eq!(read(), ReadOutcome::Bytes(0));
         writer.write_all(b"1 2").expect("written");
         assert_eq!(read(), ReadOutcome::Bytes(3));
+        let second = open_fifo(&path).expect_err("it is read already");
+        assert_eq!(second.kind(), ErrorKind::ResourceBusy);
         drop(writer);
         assert_eq!(read(), ReadOutcome::End);
+        drop(input);
+        assert!(open_fifo(&path).is_ok());
     }
 }

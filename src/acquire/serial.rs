@@ -11,6 +11,22 @@ use rustix::termios::{
     ControlModes, OptionalActions, QueueSelector, ioctl_tiocexcl, tcflush, tcgetattr, tcsetattr,
 };
 
+/// Returns the error for a source that must not have two readers.
+fn busy() -> io::Error {
+    io::Error::new(io::ErrorKind::ResourceBusy, "another program has it open")
+}
+
+/// Locks a line or a pipe until it is closed. Not every system locks devices: then two programs may read them.
+///
+/// # Errors
+/// Returns an error of the kind [`io::ErrorKind::ResourceBusy`] if another program has locked it.
+pub(super) fn lock(file: &OwnedFd) -> io::Result<()> {
+    match flock(file, FlockOperation::NonBlockingLockExclusive) {
+        Err(Errno::WOULDBLOCK) => Err(busy()),
+        _ => Ok(()),
+    }
+}
+
 /// Opens a line at a speed in bits per second. Many boards restart when a line is opened; bytes that they sent before
 /// are discarded.
 ///
@@ -20,15 +36,11 @@ use rustix::termios::{
 /// system's error.
 pub(super) fn open_line(path: &Path, baud: u32) -> io::Result<File> {
     let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
-    let busy = || io::Error::new(io::ErrorKind::ResourceBusy, "another program has it open");
     let line: OwnedFd = match open(path, flags, Mode::empty()) {
         Err(Errno::BUSY) => return Err(busy()),
         opened => opened?,
     };
-    // Not every system locks devices.
-    if flock(&line, FlockOperation::NonBlockingLockExclusive) == Err(Errno::WOULDBLOCK) {
-        return Err(busy());
-    }
+    lock(&line)?;
     let mut settings = match tcgetattr(&line) {
         // Devices that do not know this request report one or the other.
         Err(Errno::NOTTY | Errno::INVAL) => {
