@@ -8,68 +8,102 @@ use crate::formats::seconds::to_nanoseconds;
 /// have come late.
 const LATE: f64 = 1.0;
 
-/// A clock that continues the frames' own times over gaps.
+/// A clock that gives each frame a time: its own, else that of its arrival. Times go on growing if only some frames
+/// have one of their own.
 #[derive(Debug, Default)]
-struct ContinuedTime {
-    /// The time of the last frame that had one of its own, and when it came.
-    given: Option<(f64, Instant)>,
-    /// Whether there was a gap since then.
+pub(super) struct ArrivalClock {
+    /// The time of the last frame that had one of its own, else of the first frame, and when it came.
+    base: Option<(f64, Instant)>,
+    /// The time of the last frame.
+    last: f64,
+    /// Whether the next time of a frame's own may be that of another clock.
     rejoined: bool,
     /// The seconds added to the frames' own times after the source's clock restarted.
     shift: Option<f64>,
 }
 
-/// A clock that gives each frame a time: its own, else that of its arrival since the first frame without one.
-#[derive(Debug, Default)]
-pub(super) struct ArrivalClock {
-    /// The clock for frames with a time of their own.
-    own: ContinuedTime,
-    /// The arrival of the first frame without a time of its own.
-    first: Option<Instant>,
-}
-
 impl ArrivalClock {
     /// Notes a gap: the source is read anew from here on.
     pub(super) fn rejoin(&mut self) {
-        self.own.rejoin();
+        self.rejoined = true;
     }
 
     /// Returns the time of a frame that came now, given its own; None for a frame without one that arrived at some
     /// other time.
     pub(super) fn time(&mut self, own: Option<f64>, arrives: bool) -> Option<f64> {
-        let now = Instant::now();
-        if let Some(own) = own {
-            return Some(self.own.of(own, now));
-        }
-        let first = arrives.then(|| *self.first.get_or_insert(now))?;
-        Some(to_nanoseconds((now - first).as_secs_f64()))
+        self.time_at(own, arrives, Instant::now())
     }
-}
 
-impl ContinuedTime {
-    /// Notes a gap: the source is read anew from here on.
-    fn rejoin(&mut self) {
-        self.rejoined = true;
+    fn time_at(&mut self, own: Option<f64>, arrives: bool, now: Instant) -> Option<f64> {
+        let time = match own {
+            Some(own) => self.continued(own, now),
+            None if arrives => self.arrival(now),
+            None => return None,
+        };
+        self.last = time;
+        Some(time)
+    }
+
+    /// Returns the time of arrival of a frame without a time of its own.
+    fn arrival(&mut self, now: Instant) -> f64 {
+        let Some((base, when)) = self.base else {
+            self.base = Some((0.0, now));
+            // The clock of the source has not been read yet.
+            self.rejoined = true;
+            return 0.0;
+        };
+        to_nanoseconds(base + (now - when).as_secs_f64())
     }
 
     /// Returns the time of a frame, given its own. After a gap the source's clock may have restarted or been set;
     /// then the length of the gap is taken from this machine's clock, so that times keep growing.
-    fn of(&mut self, own: f64, now: Instant) -> f64 {
+    fn continued(&mut self, own: f64, now: Instant) -> f64 {
         let mut time = self.shifted(own);
         if std::mem::take(&mut self.rejoined)
-            && let Some((last, when)) = self.given
+            && let Some((base, when)) = self.base
         {
-            let continued = last + (now - when).as_secs_f64();
-            if time <= last || time > continued + LATE {
+            let continued = base + (now - when).as_secs_f64();
+            if time <= self.last || time > continued + LATE {
                 self.shift = Some(continued - own);
                 time = self.shifted(own);
             }
         }
-        self.given = Some((time, now));
+        self.base = Some((time, now));
         time
     }
 
     fn shifted(&self, own: f64) -> f64 {
         self.shift.map_or(own, |shift| to_nanoseconds(own + shift))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    /// Each frame comes a second after the one before.
+    fn times(frames: &[Option<f64>]) -> Vec<f64> {
+        let (mut clock, begun) = (ArrivalClock::default(), Instant::now());
+        let frames = (0..).zip(frames);
+        frames
+            .filter_map(|(second, &own)| {
+                clock.time_at(own, true, begun + Duration::from_secs(second))
+            })
+            .collect()
+    }
+
+    #[test]
+    fn times_go_on_if_only_some_frames_have_one() {
+        let own = |time| Some(time);
+        for (frames, expected) in [
+            ([None, None, None, None], [0.0, 1.0, 2.0, 3.0]),
+            ([own(0.0), own(0.5), None, None], [0.0, 0.5, 1.5, 2.5]),
+            ([own(0.0), None, own(1.7), None], [0.0, 1.0, 1.7, 2.7]),
+            ([None, None, own(0.0), own(0.9)], [0.0, 1.0, 2.0, 2.9]),
+        ] {
+            assert_eq!(times(&frames), expected, "{frames:?}");
+        }
     }
 }
