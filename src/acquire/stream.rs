@@ -15,8 +15,14 @@ use crate::formats::stream::{StreamDecoder, StreamEvent, StreamOptions, StreamSi
 /// The number of bytes read at a time.
 const CHUNK: usize = 1 << 16;
 
-/// The time without a frame after which a stream is reported as silent.
+/// The time without a frame after which a stream is reported as silent, unless its frames come more rarely.
 const SILENCE: Duration = Duration::from_secs(2);
+
+/// The number of times that frames must have failed to come.
+const MISSED: u32 = 3;
+
+/// The longest time between two frames that counts as usual.
+const LONGEST_INTERVAL: Duration = Duration::from_secs(20);
 
 /// The time after which a lost source is tried again.
 const RETRY: Duration = Duration::from_secs(1);
@@ -30,12 +36,19 @@ struct StreamClock {
     is_live: bool,
     /// Whether a frame without a time of its own gets the time of its arrival.
     timed: bool,
+    /// When the last frame came, or the source was opened.
     last_frame: Instant,
+    /// The time between the last two frames that did not come together; None before the first frame.
+    interval: Option<Duration>,
     last_tick: Instant,
     /// Whether a frame has come since the last tick.
     frame_came: bool,
-    /// The number of bytes up to the last frame or the last message of silence.
+    /// The number of bytes up to the last frame or the last look at the silence.
     bytes: u64,
+    /// The time of the last look at the silence.
+    looked: Option<Instant>,
+    /// Whether the silence was reported: without bytes, and with bytes that are no frame.
+    reported: [bool; 2],
     /// The times of frames.
     times: ArrivalClock,
 }
@@ -48,11 +61,47 @@ impl StreamClock {
             // The present content of a file has arrived at some other time.
             timed: options.playback != Playback::Once && !matches!(source, FrameSource::File(_)),
             last_frame: now,
+            interval: None,
             last_tick: now,
             frame_came: false,
             bytes: 0,
+            looked: None,
+            reported: [false; 2],
             times: ArrivalClock::default(),
         }
+    }
+
+    /// Notes a frame that came now.
+    fn note_frame(&mut self, now: Instant) {
+        if !std::mem::replace(&mut self.frame_came, true) {
+            let since_last = now - self.last_frame;
+            let usual = since_last.min(LONGEST_INTERVAL);
+            self.interval = Some(self.interval.map_or(Duration::ZERO, |_| usual));
+        }
+        self.begin_silence(now);
+    }
+
+    /// Notes that the next frame is waited for from now on.
+    fn begin_silence(&mut self, now: Instant) {
+        (self.last_frame, self.looked, self.reported) = (now, None, [false; 2]);
+    }
+
+    /// Returns the bytes per second that came in a silence, if that is to be reported: once without bytes, and once
+    /// with bytes. `bytes` is the number of bytes so far.
+    fn silence(&mut self, bytes: u64, now: Instant) -> Option<f64> {
+        let usual = self.interval.unwrap_or_default() * MISSED;
+        let since = self.looked.unwrap_or(self.last_frame);
+        if now - self.last_frame < usual.max(SILENCE) || now - since < SILENCE {
+            return None;
+        }
+        let came = bytes - std::mem::replace(&mut self.bytes, bytes);
+        self.looked = Some(now);
+        if std::mem::replace(&mut self.reported[usize::from(came > 0)], true) {
+            return None;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a rate for a message")]
+        let bytes = came as f64;
+        Some(bytes / (now - since).as_secs_f64())
     }
 }
 
@@ -114,7 +163,7 @@ pub(super) fn run(
             None => return Ok(()),
         }
         clock.times.rejoin();
-        clock.last_frame = Instant::now();
+        clock.begin_silence(Instant::now());
         clock.bytes = decoder.counts().bytes;
     }
     finish(&mut decoder, &mut clock, consumer, stop);
@@ -252,8 +301,7 @@ fn report(
 ) -> ControlFlow<()> {
     match event {
         StreamEvent::Frame(frame) => {
-            clock.last_frame = Instant::now();
-            clock.frame_came = true;
+            clock.note_frame(Instant::now());
             let time = clock.times.time(frame.time, clock.timed);
             consumer(AcquireEvent::Frame { frame, time })
         }
@@ -279,18 +327,13 @@ fn tick(
     if std::mem::take(&mut clock.frame_came) {
         clock.bytes = counts.bytes;
     }
-    let silent = now - clock.last_frame;
-    if silent < SILENCE {
-        return ControlFlow::Continue(());
+    match clock.silence(counts.bytes, now) {
+        Some(bytes_per_second) => consumer(AcquireEvent::Silent {
+            bytes_per_second,
+            counts,
+        }),
+        None => ControlFlow::Continue(()),
     }
-    clock.last_frame = now;
-    #[expect(clippy::cast_precision_loss, reason = "a rate for a message")]
-    let bytes_per_second = (counts.bytes - clock.bytes) as f64 / silent.as_secs_f64();
-    clock.bytes = counts.bytes;
-    consumer(AcquireEvent::Silent {
-        bytes_per_second,
-        counts,
-    })
 }
 
 #[cfg(test)]
@@ -328,6 +371,36 @@ mod tests {
             assert!(flow.is_continue());
         }
         assert_eq!(said, [100.0]);
+    }
+
+    /// Returns the seconds at which a silence is reported while the source is looked at each second, with the bytes
+    /// per second. Frames come at the given seconds, and 10 bytes each second from `junk` on.
+    fn silences(frames: &[u64], junk: u64) -> Vec<(u64, f64)> {
+        let mut clock = StreamClock::new(&FrameSource::Standard, &AcquireOptions::default());
+        let begun = clock.last_frame;
+        let looks = 1..=60;
+        let found = looks.filter_map(|second| {
+            let now = begun + Duration::from_secs(second);
+            clock.frame_came = false;
+            if frames.contains(&second) {
+                clock.note_frame(now);
+            }
+            let bytes = 10 * second.saturating_sub(junk);
+            let rate = clock.silence(bytes, now)?;
+            Some((second, rate))
+        });
+        found.collect()
+    }
+
+    #[test]
+    fn a_silence_is_reported_once_and_only_if_it_is_unusual() {
+        assert_eq!(silences(&[], 60), [(2, 0.0)], "nothing comes");
+        let each_second: Vec<u64> = (1..=9).collect();
+        assert_eq!(silences(&each_second, 60), [(12, 0.0)]);
+        let slow: Vec<u64> = (1..=9).map(|n| 4 * n).collect();
+        // The time between two frames is not known yet.
+        assert_eq!(silences(&slow, 60), [(2, 0.0), (6, 0.0), (48, 0.0)]);
+        assert_eq!(silences(&[], 9), [(2, 0.0), (10, 5.0)], "then junk comes");
     }
 
     /// Two connections: the first ends with the last byte of a frame, the second one byte later.
@@ -418,15 +491,21 @@ mod tests {
             };
             format!("{hour}:{:04.1},1,2\n", second + time)
         };
-        let formats: [&(dyn Fn(f64) -> String + Sync); 4] = [&json, &stamped, &dated, &clock];
+        // The first line of a connection may be torn, but an object of JSON is whole.
+        let (whole, torn) = ([0.0, 0.1, 0.2, 0.3, 1.8], [0.0, 0.1, 0.2, 1.8, 1.9]);
+        let formats: [(&(dyn Fn(f64) -> String + Sync), _); 4] = [
+            (&json, whole),
+            (&stamped, whole),
+            (&dated, torn),
+            (&clock, torn),
+        ];
         std::thread::scope(|scope| {
-            for line in formats {
+            for (line, expected) in formats {
                 scope.spawn(move || {
                     let text = |times: &[f64]| times.iter().map(|&time| line(time)).collect();
                     let connections = [text(&[0.0, 0.1, 0.2, 0.3]), text(&[1.8, 1.9, 2.0])];
                     let times = times_over_a_gap(connections);
-                    let expected = [0.0, 0.1, 0.2, 1.8, 1.9].map(Some);
-                    assert_eq!(times, expected, "{}", line(0.0));
+                    assert_eq!(times, expected.map(Some), "{}", line(0.0));
                 });
             }
         });

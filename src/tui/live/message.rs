@@ -191,7 +191,7 @@ pub enum SourceState {
     Waiting,
     /// Frames come.
     Live,
-    /// No frame has come for two seconds, or since the source came back; the likely cause.
+    /// No frame has come for two seconds or longer, or since the source came back; the likely cause.
     Silent(String),
     /// The source is gone or not there yet, and why; it is tried again each second.
     Lost(String),
