@@ -447,14 +447,20 @@ impl Live {
         done
     }
 
-    /// Subtracts the median of the last frames up to the shown one. Returns the number of these frames.
+    /// Subtracts the median of the last frames up to the shown one, as far as they are of its size. Returns the number
+    /// of these frames.
     ///
     /// # Errors
-    /// Returns an error before the first frame, for a frame that has left the history, and if the frames are of
-    /// different sizes.
+    /// Returns an error before the first frame, for a frame that has left the history, and for one that does not fit
+    /// the crop.
     pub fn tare_now(&mut self) -> Result<u64, LiveRefusal> {
         let shown = self.confirmed().ok_or(LiveRefusal::NoFrame)?;
-        let frames: Vec<_> = self.history.back_from(shown, TARED).cloned().collect();
+        let frames = self.history.back_from(shown, TARED).cloned();
+        // Those before a change of the sensor have no part in it.
+        let size = self.history.get(shown).map(|frame| frame.size());
+        let frames: Vec<_> = frames
+            .take_while(|frame| Some(frame.size()) == size)
+            .collect();
         if frames.is_empty() {
             return Err(LiveRefusal::LeftHistory);
         }
