@@ -89,6 +89,17 @@ impl FrameSource {
         checked.map_err(|error| self.not_opened(error))
     }
 
+    /// Returns why bits per second have no effect on the source, in words that follow the name of the flag; None if
+    /// they have, or if the source may be a serial line that is not plugged in.
+    #[cfg(feature = "tui")]
+    pub(crate) fn unused_baud(&self) -> Option<String> {
+        match self {
+            Self::Serial(_) => None,
+            Self::File(path) if !path.exists() => None,
+            _ => Some(format!("on {}: it is for serial lines", self.name())),
+        }
+    }
+
     /// Creates the error for a source that cannot be opened. If the name looks like a connection, the message says
     /// how one is written.
     pub(super) fn not_opened(&self, error: io::Error) -> AcquireError {

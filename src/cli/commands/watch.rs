@@ -157,13 +157,8 @@ pub(crate) fn watch(
 /// Refuses flags that have no effect for a source: those of serial lines for others, those of playing for a stream,
 /// and a channel that a recording does not have.
 fn check(source: &FrameSource, asked: &WatchArguments) -> Result<(), CliError> {
-    // A serial line that is not plugged in may have any name.
-    let is_missing = matches!(source, FrameSource::File(path) if !path.exists());
-    if asked.baud_named && !is_missing && !matches!(source, FrameSource::Serial(_)) {
-        let (flag, reason) = (
-            "baud",
-            format!("on {}: it is for serial lines", source.name()),
-        );
+    if let Some(reason) = source.unused_baud().filter(|_| asked.baud_named) {
+        let flag = "baud";
         return Err(CliError::Unused { flag, reason });
     }
     // A source that cannot be read is reported when it is watched.

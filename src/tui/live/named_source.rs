@@ -119,6 +119,7 @@ impl NamedSource {
     /// Returns the request for this source; `settings` provides what is not given.
     pub fn request(&self, settings: &WatchRequest) -> WatchRequest {
         let mut request = settings.for_source(&self.name);
+        request.baud_named = self.baud.is_some();
         let options = &mut request.options;
         options.size = FrameSize::of_sides(self.columns, self.rows).or(options.size);
         options.format = self.format.or(options.format);

@@ -18,6 +18,8 @@ pub struct WatchRequest {
     pub source: OsString,
     /// The options for reading the source.
     pub options: AcquireOptions,
+    /// Whether the bits per second were given for this source.
+    pub baud_named: bool,
     /// The processing of frames: crop, flip, turn, mask and gain.
     pub processing: Processing,
     /// The threshold; None takes the threshold of the recording, if it has one.
@@ -49,6 +51,7 @@ impl WatchRequest {
         Self {
             source: source.into(),
             options: AcquireOptions::default(),
+            baud_named: false,
             processing: Processing::default(),
             rule: None,
             tare: 0,

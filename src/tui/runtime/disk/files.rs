@@ -34,12 +34,24 @@ pub(in crate::tui) fn perform(request: FileRequest, access: &WriteAccess) -> Fil
         },
         FileRequest::Source(request) => {
             let source = source::readable(&request.source, access);
-            match source.and_then(|source| refuse_imprint(&source, &request)) {
+            let checked = source.and_then(|source| {
+                refuse_baud(&source, &request)?;
+                refuse_imprint(&source, &request)
+            });
+            match checked {
                 Ok(()) => FileEvent::Source(request),
                 Err(refused) => FileEvent::Failed(refused),
             }
         }
         FileRequest::Paths(start) => FileEvent::Paths(paths(&start)),
+    }
+}
+
+/// Refuses bits per second for a source that is no serial line.
+fn refuse_baud(source: &FrameSource, request: &WatchRequest) -> Result<(), String> {
+    match source.unused_baud() {
+        Some(reason) if request.baud_named => Err(format!("--baud has no effect {reason}")),
+        _ => Ok(()),
     }
 }
 
