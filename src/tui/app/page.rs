@@ -125,6 +125,12 @@ pub trait Page {
         None
     }
 
+    /// Returns true if the page ends above a notice of several lines instead of being covered by it: where messages
+    /// stay as long as their reason. False by default.
+    fn makes_room(&self) -> bool {
+        false
+    }
+
     /// Returns an error that a notice must not hide: it is shown after the notice. None by default.
     fn alarm(&self) -> Option<String> {
         None

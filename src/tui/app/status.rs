@@ -55,24 +55,47 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
         page.draw_over(theme, buffer, panes.body);
     }
     let cursor = prompt.and_then(|page| page.draw(theme, app.keymap(), buffer, panes.notice));
-    if let Some((text, role)) = notice(app, panes) {
-        // The prompt keeps its line, and the notice stands above it.
-        let last = Rect {
-            y: panes.notice.y - u16::from(cursor.is_some()),
-            ..panes.notice
-        };
-        let lines = write::broken(&theme.text(&text), usize::from(last.width)).len();
-        let room = last.bottom().saturating_sub(panes.body.y);
-        let height = u16::try_from(lines).unwrap_or(room).clamp(1, room.max(1));
-        let block = Rect {
-            y: last.bottom() - height,
-            height,
-            ..last
-        };
+    let top = app.dialogs.last().map(Dialog::page);
+    if let Some((text, role)) = notice(app, panes, top) {
+        let block = notice_block(app, panes, &text);
         write::clear(buffer, block);
         write::wrapped(buffer, block, theme, &text, role);
     }
     cursor
+}
+
+/// Returns the lines that a notice takes. A prompt keeps its line, and the notice stands above it.
+fn notice_block(app: &App, panes: &Panes, text: &str) -> Rect {
+    let is_typed = |page: &dyn Page| page.slot() == Slot::Prompt;
+    let is_typed = app.dialogs.last().map(Dialog::page).is_some_and(is_typed);
+    let last = Rect {
+        y: panes.notice.y - u16::from(is_typed),
+        ..panes.notice
+    };
+    let lines = write::broken(&app.theme().text(text), usize::from(last.width)).len();
+    let room = last.bottom().saturating_sub(panes.body.y);
+    let height = u16::try_from(lines).unwrap_or(room).clamp(1, room.max(1));
+    Rect {
+        y: last.bottom() - height,
+        height,
+        ..last
+    }
+}
+
+/// Returns the area of a page; it ends above the notice if the page makes room for it.
+pub fn page_area(app: &App, panes: &Panes, page: &dyn Page) -> Rect {
+    let area = panes.area(page.slot());
+    if !page.makes_room() {
+        return area;
+    }
+    let top = app.dialogs.last().map(Dialog::page);
+    let over = top.filter(|top| matches!(top.slot(), Slot::Prompt | Slot::Question));
+    let text = notice(app, panes, over.or(Some(page))).map(|(text, _)| text);
+    let end = text.map_or(area.bottom(), |text| notice_block(app, panes, &text).y);
+    Rect {
+        height: end.min(area.bottom()).saturating_sub(area.y),
+        ..area
+    }
 }
 
 /// Returns the line about the source of the imprint.
@@ -178,8 +201,7 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
 
 /// Returns the notice, else the request to the disk that the user waits for, else the text of the top page. A
 /// question stands after the notice.
-fn notice(app: &App, panes: &Panes) -> Option<(String, Role)> {
-    let top = app.dialogs.last().map(Dialog::page);
+fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(String, Role)> {
     let remark = top.and_then(|page| page.remark(app.keymap(), panes.body));
     let is_question = top.is_some_and(|page| page.slot() == Slot::Question);
     if is_question && let Some((question, role)) = remark {

@@ -76,7 +76,7 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
                     panel(buffer, area);
                 }
             }
-            let area = panes.area(page.slot());
+            let area = status::page_area(app, &panes, page);
             cursor = page.draw(theme, app.keymap(), buffer, area);
         }
         (None, Some(beside)) => {

@@ -14,8 +14,8 @@ use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::DocumentOrigin;
 use crate::tui::app::message::{Endpoint, Message};
-use crate::tui::app::page::Page;
 use crate::tui::app::state::App;
+use crate::tui::app::status;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
@@ -233,7 +233,8 @@ fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
         let key = app.keymap().label(Context::Live, &action::PANEL);
         return inform(app, format!("the taxels are hidden; {key} shows them"));
     }
-    let area = app.panes().map(|panes| panes.area(page.slot()));
+    let area = app.panes();
+    let area = area.map(|panes| status::page_area(app, &panes, page));
     let next = area.and_then(|area| view::beyond(page, app.theme(), area, towards));
     if next.is_none() {
         let hides = area.is_some_and(|area| view::hides_taxels(page, area));

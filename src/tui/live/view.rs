@@ -103,6 +103,10 @@ impl Page for Live {
 
     fn alarm(&self) -> Option<String> {
         self.trouble()
+    fn makes_room(&self) -> bool {
+        true
+    }
+
     }
 }
 
