@@ -11,7 +11,7 @@ use taxel::sensor::MatrixSize;
 use taxel::tui::app::message::Message;
 use taxel::tui::app::worker_event::WorkerEvent;
 use taxel::tui::live::message::{
-    FrameBatch, LiveEvent, LiveMessage, ProvisionalChange, SourceState,
+    FrameBatch, LiveEvent, LiveMessage, ProvisionalChange, RecordedFrames, SourceState,
 };
 use taxel::tui::live::request::WatchRequest;
 use taxel::tui::script::Session;
@@ -243,6 +243,84 @@ fn a_notice_does_not_hide_a_lost_source() {
         hides(&page, &["tare of the last"]);
         then(&mut page, "T", &["tare removed; ! lost: Connection reset"]);
     }
+}
+
+/// Sends an event of the source of the first page.
+fn send(page: &mut Session, event: LiveEvent) {
+    page.send(Message::Worker(WorkerEvent::Live(1, event)));
+}
+
+/// Sends frames of these sides.
+fn send_frames(page: &mut Session, sides: &[u16]) {
+    let frame = |&side| Arc::new(Frame::new(FrameSize::new(side, side).expect("in range")));
+    let batch = FrameBatch {
+        frames: sides.iter().map(frame).collect(),
+        ..FrameBatch::default()
+    };
+    send(page, LiveEvent::Arrived(Arc::new(batch)));
+}
+
+#[test]
+fn a_recording_that_leaves_out_frames_says_so() {
+    let mut page = watched(3, "");
+    let path = "/a/long/name/of/a/folder/left_gripper.npy";
+    send(&mut page, LiveEvent::Recording(path.to_owned()));
+    let recorded = RecordedFrames {
+        frames: 5,
+        left_out: 60,
+    };
+    let mut batch = FrameBatch::default();
+    batch.status.recorded = Some(recorded);
+    send(&mut page, LiveEvent::Arrived(Arc::new(batch)));
+    let said = "! frames of another size are not recorded";
+    let counts = "recording  5 frames; 60 left out";
+    shows(&page, &[said, counts]);
+    page.resize(60, 20);
+    shows(&page, &[said]);
+    send(
+        &mut page,
+        LiveEvent::Recorded("left.npy".to_owned(), recorded),
+    );
+    shows(
+        &page,
+        &["left.npy: 5 frames recorded, 60 of another size left out"],
+    );
+}
+
+#[test]
+fn a_tare_by_key_is_made_of_frames_of_the_present_size() {
+    let mut page = watched(0, "");
+    send_frames(&mut page, &[2, 2, 2, 3, 3, 3, 3]);
+    then(&mut page, "t", &["tare of the last 4 frames"]);
+    then(&mut page, "<Home>t", &["tare of the last 1 frame"]);
+}
+
+#[test]
+fn taxels_are_not_hidden_by_a_message_of_several_lines() {
+    let mut page = watched(6, "#");
+    page.resize(60, 20);
+    // The last row of the window, as the title says, and whether the ruler shows it.
+    let last_row = |page: &Session| {
+        let screen = page.screen();
+        let title = screen.lines().nth(1).expect("a title").trim_end();
+        let (_, last) = title.rsplit_once('-').expect("a window");
+        let last: u8 = last.parse().expect("a row");
+        let is_shown = screen
+            .lines()
+            .any(|line| line.starts_with(&format!("{last:>2} ")));
+        (last, is_shown)
+    };
+    let (all, is_shown) = last_row(&page);
+    assert!(is_shown);
+    let mut batch = FrameBatch::default();
+    batch.status.state = SourceState::Silent("no frame for more than 2 s: ".repeat(5));
+    send(&mut page, LiveEvent::Arrived(Arc::new(batch)));
+    then(&mut page, "<S-Up><S-Up><S-Up><S-Up>", &[]);
+    let (with_message, is_shown) = last_row(&page);
+    assert!(with_message < all && is_shown, "{with_message} of {all}");
+    then(&mut page, "<S-Down>", &[]);
+    let (further, is_shown) = last_row(&page);
+    assert!(further > with_message && is_shown, "{further}");
 }
 
 #[test]
@@ -711,6 +789,12 @@ fn watch_accepts_the_flags_of_the_command_line() {
         &mut page,
         &line(" --rows 2"),
         &["! --rows and --columns go together"],
+    );
+    then(&mut page, "<Esc>", &[]);
+    then(
+        &mut page,
+        &line(" --baud 9600"),
+        &["! --baud has no effect on"],
     );
 }
 

@@ -59,8 +59,8 @@ pub enum LiveEvent {
     Arrived(Arc<FrameBatch>),
     /// A recording has begun in this file.
     Recording(String),
-    /// The recording has ended; the file, and the number of frames in it.
-    Recorded(String, u64),
+    /// The recording has ended; the file, and the frames in it and not in it.
+    Recorded(String, RecordedFrames),
     /// The reason why the recording cannot be begun.
     NotRecorded(String),
     /// The reason why the recording could not be finished.

@@ -227,7 +227,7 @@ impl Live {
         self.seen_gaps = self.status.gaps;
     }
 
-    /// Returns why a requested recording is missing, why no frames come, and which gaps the user has not seen yet;
+    /// Returns why a requested recording is missing or leaves out frames, why no frames come, and which gaps the user has not seen yet;
     /// None if all is well.
     pub fn trouble(&self) -> Option<String> {
         let source = match &self.status.state {
@@ -237,7 +237,11 @@ impl Live {
             SourceState::Waiting | SourceState::Live | SourceState::Ended => None,
         };
         let gaps = self.status.gaps.since(self.seen_gaps).sentence();
-        let troubles = self.recording.refusal().into_iter().chain(source);
+        let recorded = self.recording.name().and(self.status.recorded);
+        let left_out = recorded.filter(|recorded| recorded.left_out > 0);
+        let left_out = left_out.map(|_| "frames of another size are not recorded");
+        let recording = self.recording.refusal().or(left_out);
+        let troubles = recording.into_iter().chain(source);
         let troubles: Vec<&str> = troubles.chain(gaps.as_deref()).collect();
         (!troubles.is_empty()).then(|| troubles.join("; "))
     }

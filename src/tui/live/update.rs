@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::formats::recording::{ChannelInfo, RecordingMetadata};
-use crate::formats::value::counted;
+use crate::formats::value::{counted, grouped};
 use crate::parameter::Parameter;
 use crate::sensor::Sensor;
 use crate::storage::Existing;
@@ -19,7 +19,7 @@ use crate::tui::app::status;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
-use crate::tui::live::message::{LiveEvent, LiveMessage};
+use crate::tui::live::message::{LiveEvent, LiveMessage, RecordedFrames};
 use crate::tui::live::named_source::NamedSource;
 use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
@@ -333,15 +333,19 @@ fn page(app: &mut App) -> Option<&mut Live> {
 /// reports of a finished recording, because a recording is finished after its source is left.
 pub(in crate::tui) fn on_worker(app: &mut App, number: u64, event: &LiveEvent) {
     match event {
-        LiveEvent::Recorded(name, 0) => {
+        LiveEvent::Recorded(name, RecordedFrames { frames: 0, .. }) => {
             return inform(
                 app,
                 format!("{name}: no frame came, so nothing was written"),
             );
         }
-        LiveEvent::Recorded(name, frames) => {
+        LiveEvent::Recorded(name, RecordedFrames { frames, left_out }) => {
             let frames = counted(*frames, "frame");
-            return inform(app, format!("{name}: {frames} recorded"));
+            let mut text = format!("{name}: {frames} recorded");
+            if *left_out > 0 {
+                text += &format!(", {} of another size left out", grouped(*left_out));
+            }
+            return inform(app, text);
         }
         LiveEvent::NotFinished(reason) => return refuse(app, reason.clone()),
         _ => {}

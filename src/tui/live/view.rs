@@ -7,6 +7,8 @@
 //!                   NA, NAE, P, F, CG …
 //! ```
 
+use std::path::Path;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
@@ -24,7 +26,7 @@ use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Keymap;
 use crate::tui::live::heat::{HeatMap, cells, scale};
 use crate::tui::live::layout::{HeatGrid, LivePanes};
-use crate::tui::live::message::LiveMessage;
+use crate::tui::live::message::{LiveMessage, RecordedFrames};
 use crate::tui::live::naming::{NamedImprint, Naming};
 use crate::tui::live::reading::LiveReading;
 use crate::tui::live::state::Live;
@@ -101,12 +103,12 @@ impl Page for Live {
         Some((format!("! {text}"), Role::Error))
     }
 
-    fn alarm(&self) -> Option<String> {
-        self.trouble()
     fn makes_room(&self) -> bool {
         true
     }
 
+    fn alarm(&self) -> Option<String> {
+        self.trouble()
     }
 }
 
@@ -208,8 +210,9 @@ fn lines(live: &Live, theme: &Theme, keymap: &Keymap, marks: Option<String>) -> 
     if let Some(text) = marked(live) {
         say("marked", text);
     }
-    if let Some(text) = recording(live) {
-        say("recording", text);
+    let recording = recording(live);
+    if !recording.is_empty() {
+        lines.push(PanelLine::of_forms("recording", recording, ""));
     }
     lines
 }
@@ -286,27 +289,36 @@ fn gaps(live: &Live) -> Option<String> {
     (gaps.count > 0).then(|| format!("{}, {missing} s missing", grouped(gaps.count)))
 }
 
-/// Returns the file that is written and the number of its frames, or why nothing is recorded although it was
-/// requested.
-fn recording(live: &Live) -> Option<String> {
-    let Some(name) = live.recording().name() else {
-        return live
-            .recording()
-            .refusal()
-            .map(|reason| format!("none: {reason}"));
+/// Returns the file that is written and the number of its frames, longer forms first; or why nothing is recorded
+/// although it was requested.
+fn recording(live: &Live) -> Vec<String> {
+    let Some(path) = live.recording().name() else {
+        let reason = live.recording().refusal();
+        return reason
+            .map(|reason| format!("none: {reason}"))
+            .into_iter()
+            .collect();
     };
-    let (frames, others) = match live.status().recorded {
-        Some(recorded) => (recorded.frames, recorded.left_out),
-        None => (0, 0),
-    };
+    let name = Path::new(path)
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy();
+    let RecordedFrames { frames, left_out } = live.status().recorded.unwrap_or_default();
     let frames = counted(frames, "frame");
-    Some(match others {
-        0 => format!("{name}, {frames}"),
-        _ => format!(
-            "{name}, {frames}; {} of another size left out",
-            grouped(others)
-        ),
-    })
+    if left_out == 0 {
+        return vec![
+            format!("{path}, {frames}"),
+            format!("{name}, {frames}"),
+            frames,
+        ];
+    }
+    let left_out = grouped(left_out);
+    vec![
+        format!("{path}, {frames}; {left_out} of another size left out"),
+        format!("{name}, {frames}; {left_out} of another size left out"),
+        format!("{frames}; {left_out} of another size left out"),
+        format!("{frames}; {left_out} left out"),
+    ]
 }
 
 /// Returns the line with the number of regions. If there are several, the largest one is described above, and the

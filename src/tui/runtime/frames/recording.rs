@@ -186,14 +186,16 @@ impl Recording {
         })
     }
 
-    /// Ends the recording; the frames in the file stay. Returns their number; None if the recording was ended before.
-    /// After a failure, the caller reports that first error and drops this result.
-    fn close(&self) -> Option<Result<u64, RecorderError>> {
+    /// Ends the recording; the frames in the file stay. Returns how many there are; None if the recording was ended
+    /// before. After a failure, the caller reports that first error and drops this result.
+    fn close(&self) -> Option<Result<RecordedFrames, RecorderError>> {
         let before = std::mem::replace(&mut *locked(&self.recorder), RecorderState::Closed);
         let RecorderState::Open(recorder) = before else {
             return None;
         };
         let _one_at_a_time = locked(&self.description);
-        Some(recorder.finish())
+        let left_out = recorder.left_out();
+        let finished = recorder.finish();
+        Some(finished.map(|frames| RecordedFrames { frames, left_out }))
     }
 }

@@ -281,6 +281,7 @@ impl Drop for FrameWatcher {
 mod tests {
     use super::*;
     use crate::formats::recording::RecordingMetadata;
+    use crate::tui::live::message::RecordedFrames;
     use crate::tui::runtime::disk::write_access::WriteAccess;
 
     #[test]
@@ -306,7 +307,10 @@ mod tests {
         assert!(over.path().ends_with("a.npy"));
         assert_eq!(
             over.finish(),
-            Some(LiveEvent::Recorded(over.path().to_string_lossy().into(), 0))
+            Some(LiveEvent::Recorded(
+                over.path().to_string_lossy().into(),
+                RecordedFrames::default(),
+            ))
         );
     }
 
