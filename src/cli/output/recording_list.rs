@@ -43,6 +43,8 @@ pub(crate) struct ListedChannel {
     first: Option<FirstCell>,
     /// The times of its frames; None if they have no times.
     times: Option<FrameTimes>,
+    /// The numbers of the marked frames. The recording knows them by their labels, the numbers of the source.
+    marked: Vec<u64>,
 }
 
 /// The times at which frames were taken, in seconds.
@@ -104,6 +106,15 @@ impl ListedChannel {
             });
             self.times = Some(begun.with(frame.number, time));
         }
+        let label = frame.label.and_then(|label| u64::try_from(label).ok());
+        if self
+            .info
+            .marks
+            .iter()
+            .any(|mark| Some(mark.number) == label)
+        {
+            self.marked.push(frame.number);
+        }
         self.frames += 1;
         self.values = self.info.values.unwrap_or(frame.values().len() as u64);
         self.first = self.first.or(frame.first);
@@ -125,9 +136,8 @@ impl Serialize for ListedChannel {
         map.serialize_entry("pitch_mm", &info.pitch_mm)?;
         map.serialize_entry("threshold", &info.threshold)?;
         map.serialize_entry("peak", &self.peak.number())?;
-        if !info.marks.is_empty() {
-            let numbers: Vec<u64> = info.marks.iter().map(|mark| mark.number).collect();
-            map.serialize_entry("marks", &numbers)?;
+        if !self.marked.is_empty() {
+            map.serialize_entry("marks", &self.marked)?;
         }
         if let Some(FirstCell { column, row }) = self.first {
             map.serialize_entry("first_row", &row)?;
@@ -199,8 +209,8 @@ fn channel_lines(channel: &ListedChannel) -> Vec<String> {
         Some(side) => format!("{} mm", short(side)),
         None => format!("{} mm across, {} mm down", short(x), short(y)),
     });
-    let marks = info.marks.iter().map(|mark| mark.number.to_string());
-    let marks = (!info.marks.is_empty()).then(|| marks.collect::<Vec<_>>().join(", "));
+    let marks = channel.marked.iter().map(u64::to_string);
+    let marks = (!channel.marked.is_empty()).then(|| marks.collect::<Vec<_>>().join(", "));
     let unit = info.unit.clone();
     let in_unit = |value: f64| match &unit {
         Some(unit) => format!("{} {unit}", short(value)),
