@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 use taxel::acquire::FrameRecorder;
-use taxel::formats::recording::RecordingMetadata;
+use taxel::formats::recording::{FrameMark, RecordingMetadata};
 use taxel::frame::Frame;
 use taxel::storage::Existing;
 
@@ -480,6 +480,59 @@ fn a_recording_on_a_full_disk_ends_with_its_last_whole_record() {
 /// Returns the description beside a recording, as JSON.
 fn beside(file: &std::path::Path) -> Value {
     let beside = fs::read(file.with_extension("json")).expect("it is there");
+#[test]
+fn a_channel_that_appears_after_the_first_answers_is_left_out() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("two.jsonl");
+    let channels = ["left", "left", "right", "left", "top", "right"];
+    let lines_of = |(value, channel): (u32, &str)| {
+        format!("{{\"channel\":\"{channel}\",\"frame\":[[{value},0]]}}\n")
+    };
+    let input: String = (1..).zip(channels).map(lines_of).collect();
+    fs::write(&file, &input).expect("written");
+    let path = file.to_str().expect("UTF-8");
+    for (source, name, input) in [("-", "standard input", input.as_str()), (path, path, "")] {
+        let target = folder.path().join(format!("{}.npy", input.len()));
+        let command = format!("watch {source} --once --write {}", target.display());
+        let run = taxel(&command, input);
+        let sums = lines(&run.stdout)
+            .into_iter()
+            .map(|line| line["sum"].clone());
+        assert_eq!(sums.collect::<Vec<_>>(), [1, 2, 4], "{source}");
+        let said = ["right", "top"].map(|other| {
+            format!("{name}: channel {other} is left out, since left came first; --channel {other} takes it\n")
+        });
+        assert_eq!((run.status, run.stderr), (Some(0), said.concat()));
+        let recorded = fs::read(&target).expect("written");
+        assert_eq!(array::records(&recorded), Some(3));
+    }
+}
+
+#[test]
+fn the_marks_of_a_recording_are_listed_by_the_numbers_of_its_frames() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("touch-1.npy");
+    let mut metadata = RecordingMetadata::default();
+    let mark = |number| FrameMark { number, time: None };
+    metadata.marks = [52, 59].map(mark).to_vec();
+    let recorder = FrameRecorder::create(&path, Existing::Kept, &metadata);
+    let mut recorder = recorder.expect("begun");
+    for number in 50..60 {
+        let mut frame = Frame::default();
+        frame.number = number;
+        recorder.add(&frame, None).expect("recorded");
+    }
+    recorder.finish().expect("finished");
+    let command = format!("frames {}", path.display());
+    let listed = taxel(&command, "").stdout;
+    assert!(listed.contains("marks     2, 9\n"), "{listed}");
+    let listed = taxel(&format!("{command} --json"), "").stdout;
+    assert_eq!(
+        lines(&listed)[0]["channels"][0]["marks"],
+        serde_json::json!([2, 9])
+    );
+}
+
     serde_json::from_slice(&beside).expect("JSON")
 }
 

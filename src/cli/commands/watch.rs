@@ -325,12 +325,12 @@ impl Watcher<'_> {
         }
     }
 
-    /// Adds a channel of a recording. With the watched channel come unit and pitch, and threshold and tare unless
-    /// flags set them.
+    /// Adds a channel. With the watched channel come unit and pitch, and threshold and tare unless flags set them.
+    /// Other channels that appear once frames are answered are left out.
     ///
     /// # Errors
-    /// Returns an error if there are several channels and none is chosen. It names all channels of a file; a pipe
-    /// cannot be read again.
+    /// Returns an error if there are several channels before that and none is chosen. It names all channels of a file;
+    /// a pipe cannot be read again.
     fn add_channel(&mut self, info: &ChannelInfo) -> Result<(), CliError> {
         self.channels.push(info.clone());
         let is_chosen = self.choice.add(info);
@@ -340,6 +340,14 @@ impl Watcher<'_> {
                 FrameSource::File(path) => channels(&path, self.asked, None)?.0,
                 _ => names.to_vec(),
             };
+            if self.begun && self.held.is_none() {
+                let (own, other) = (&names[0], info.shown_name());
+                let text = format!(
+                    "channel {other} is left out, since {own} came first; --channel {other} takes it"
+                );
+                self.say(&text);
+                return Ok(());
+            }
             let names = all.join(", ");
             let message = format!("several channels, choose one with --channel: {names}");
             return Err(self.refused(&message));
