@@ -2,8 +2,8 @@
 //!
 //! Every frame is recorded before it is answered. A live source that is recorded is never held up: if the reader of the
 //! answers is slow, some frames get no answer, and their number is reported. Otherwise answers wait, as in any
-//! pipeline. If the reader is gone, as in `| head -1`, a recording continues, and without a recording the command
-//! ends.
+//! pipeline. If the reader is gone, as in `| head -1`, or answers cannot be written, a recording continues; without a
+//! recording the command ends.
 //!
 //! ```text
 //! $ taxel watch /dev/ttyUSB0 --at-least 20 --write grip.npy | jq .na
@@ -73,6 +73,8 @@ struct Watcher<'a> {
     begun: bool,
     /// The writer of standard output, on a thread of its own; None once its reader is gone while frames are recorded.
     lines: Option<LineWriter>,
+    /// Why answers cannot be written any more, while frames are still recorded.
+    unwritten: Option<CliError>,
     /// The memory of a frame, reused for the next one.
     frame: Frame,
     /// Rows and columns of the last frame; None before the first.
@@ -132,6 +134,7 @@ pub(crate) fn watch(
         held: None,
         begun: false,
         lines: Some(lines),
+        unwritten: None,
         frame: Frame::default(),
         size: None,
         answered: 0,
@@ -510,15 +513,20 @@ impl Watcher<'_> {
         self.end_answers()
     }
 
-    /// Ends the answers, once no more can be written. If only their reader is gone, a recording continues.
+    /// Ends the answers, once no more can be written. A recording continues: its frames do not come again.
     ///
     /// # Errors
-    /// Returns the reason why no more can be written.
+    /// Returns the reason why no more can be written, without a recording.
     fn end_answers(&mut self) -> Result<(), CliError> {
         let written = self.lines.take().map_or(Ok(()), LineWriter::finish);
         match written {
-            Err(error) if error.is_closed_pipe() && self.recorder.is_some() => {
-                self.say("standard output is closed; the recording continues");
+            Err(error @ CliError::Write(_)) if self.recorder.is_some() => {
+                if error.is_closed_pipe() {
+                    self.say("standard output is closed; the recording continues");
+                } else {
+                    self.say(&format!("{error}; the recording continues"));
+                    self.unwritten = Some(error);
+                }
                 Ok(())
             }
             written => written,
@@ -657,11 +665,11 @@ impl Watcher<'_> {
             self.say(&format!("{frames} recorded but not printed"));
         }
         let written = self.lines.take().map_or(Ok(()), LineWriter::finish);
-        let is_recorded = recorded.is_some();
-        recorded.transpose().map_err(CliError::Recorder)?;
+        let written = self.unwritten.take().map_or(written, Err);
+        let recorded = recorded.transpose().map_err(CliError::Recorder)?;
         // A recording does not need a reader of the answers.
         written.or_else(|error| match error {
-            error if is_recorded && error.is_closed_pipe() => Ok(()),
+            error if recorded.is_some() && error.is_closed_pipe() => Ok(()),
             error => Err(error),
         })?;
         failure.or(damage).map_or(Ok(()), Err)
