@@ -23,12 +23,14 @@ pub(super) struct Growth {
     length: u64,
     has_grown: Cell<bool>,
     has_caught_up: Cell<bool>,
+    /// Whether all that was in the file when it was opened is gone, so that everything in it has arrived since.
+    is_new: Cell<bool>,
 }
 
 impl Growth {
     /// Returns true if everything that was in the file has been read, so that frames now arrive as they are written.
     pub(super) fn has_caught_up(&self) -> bool {
-        self.has_caught_up.get()
+        self.has_caught_up.get() || self.is_new.get()
     }
 
     /// Returns true if the file has become longer since it was opened, or is another file by now.
@@ -83,6 +85,7 @@ pub(super) fn open(path: &Path) -> io::Result<(GrowingFile, Growth)> {
         file: file.try_clone()?,
         has_grown: Cell::new(false),
         has_caught_up: Cell::new(false),
+        is_new: Cell::new(false),
     };
     Ok((GrowingFile::new(path, file), growth))
 }
@@ -117,6 +120,7 @@ impl Read for FollowedFile<'_> {
         while self.end.is_none() {
             if let Some(how) = self.file.anew()? {
                 self.growth.has_grown.set(true);
+                self.growth.is_new.set(true);
                 self.end = Some(FollowEnd::Anew(how));
                 break;
             }

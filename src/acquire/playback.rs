@@ -29,6 +29,14 @@ const MOMENT: Duration = Duration::from_millis(100);
 /// The longest wait for a frame, in seconds: a day.
 const LONGEST: f64 = 86_400.0;
 
+/// A time between two frames counts as a change of the clock, not as a pause, if it is longer than this many seconds
+/// and than this many times the one before.
+const PAUSE: f64 = 60.0;
+const PAUSE_RATIO: f64 = 10.0;
+
+/// The seconds that such a time is played as.
+const PLAYED: f64 = 2.0;
+
 /// Creates the error for a followed file whose place a recording of another kind has taken.
 fn replaced_by(format: RecordingFormat) -> RecordingError {
     RecordingError::damaged(format!(
@@ -45,8 +53,12 @@ struct Pace<'a> {
     speed: f64,
     /// The number of frames of the channel so far.
     frames: u32,
-    /// The times when the first and the last of them were due, in seconds of the recording.
-    span: Option<(f64, f64)>,
+    /// The time when the last of them was due, in seconds of the recording.
+    last: Option<f64>,
+    /// The seconds from the first to the last of them, without changes of the clock.
+    played: f64,
+    /// The seconds between the last two.
+    before: f64,
     /// The channel that sets the pace. Frames of other channels, before, between or after its own, are not waited
     /// for.
     channel: ChannelChoice,
@@ -67,7 +79,9 @@ impl Pace<'_> {
             step: STEP,
             speed,
             frames: 0,
-            span: None,
+            last: None,
+            played: 0.0,
+            before: STEP,
             channel: ChannelChoice::new(options.channel.as_deref()),
             unshaped: None,
             growth: None,
@@ -78,6 +92,7 @@ impl Pace<'_> {
     fn add(&mut self, info: &ChannelInfo) {
         if self.channel.add(info) {
             self.step = info.seconds_per_frame.unwrap_or(STEP);
+            self.before = self.step;
             self.unshaped = info.values.filter(|_| info.size.is_none());
         }
     }
@@ -101,23 +116,34 @@ impl Pace<'_> {
         self.frames = self.frames.saturating_add(1);
         let due = frame.time.unwrap_or(own);
         // Times may count from another channel's first frame, or from the start of a longer recording.
-        let first = self.span.map_or(due, |(first, _)| first);
-        self.span = Some((first, due));
-        self.until(due - first, stop, consumer)
+        let last = self.last.replace(due).unwrap_or(due);
+        // A clock that was set back is a change, too.
+        let gap = (due - last).max(0.0);
+        let is_pause = gap <= PAUSE.max(PAUSE_RATIO * self.before);
+        if gap > 0.0 && is_pause {
+            self.before = gap;
+        }
+        if !is_pause && !self.growth.is_some_and(Growth::has_grown) {
+            let (frame, seconds) = (frame.number, gap);
+            let note = RecordingNote::Gap { frame, seconds };
+            consumer(AcquireEvent::Note(&note))?;
+        }
+        self.played += if is_pause { gap } else { PLAYED };
+        self.until(self.played, stop, consumer)
     }
 
     /// Waits after the last frame as long as one frame lasts, so that a repeated recording keeps its pace.
     fn last_frame(&self, stop: &AtomicBool, consumer: &mut Consumer<'_>) -> ControlFlow<()> {
-        let Some((first, last)) = self.span else {
+        if self.frames == 0 {
             return ControlFlow::Continue(());
-        };
-        let mean = (last - first) / f64::from(self.frames - 1);
+        }
+        let mean = self.played / f64::from(self.frames - 1);
         let step = if mean > 0.0 && mean.is_finite() {
             mean
         } else {
             self.step
         };
-        self.until(last - first + step, stop, consumer)
+        self.until(self.played + step, stop, consumer)
     }
 
     /// Waits until this many seconds have been played.
@@ -160,6 +186,7 @@ pub(super) fn run(
         stop,
         description,
         consumer: RefCell::new(consumer),
+        counts: RefCell::default(),
     };
     let file = File::open(path).map_err(AcquireError::opening)?;
     let format = format_of(file, ReadOptions::default())?;
@@ -178,6 +205,8 @@ struct Player<'a, 'b> {
     description: Option<RecordingMetadata>,
     /// The consumer of what is read, and of a tick now and then while more is waited for.
     consumer: RefCell<&'a mut Consumer<'b>>,
+    /// The counts of wrong frames in a followed file.
+    counts: RefCell<StreamCounts>,
 }
 
 /// A channel that was reported.
@@ -233,6 +262,11 @@ impl Round<'_> {
         let number = channel.first + frame.number;
         channel.next = number + 1;
         (index, number)
+    }
+
+    /// Returns true if any round had a frame.
+    fn has_frames(&self) -> bool {
+        self.channels.iter().any(|channel| channel.next > 0)
     }
 
     /// Begins the next round. Its frames are counted on if it has another file.
@@ -307,7 +341,32 @@ impl Player<'_, '_> {
         if self.stop.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
         }
-        (self.consumer.borrow_mut())(AcquireEvent::Tick(&StreamCounts::default()))
+        (self.consumer.borrow_mut())(AcquireEvent::Tick(&self.counts.borrow()))
+    }
+
+    /// Leaves out and counts a wrong frame of a followed file if there were frames before it: a program that was
+    /// interrupted writes on behind a torn line. A file that may be about to grow is waited for. Returns `Break` if
+    /// the error ends the reading.
+    fn leave_out(
+        &self,
+        error: &RecordingError,
+        bytes: &[u8],
+        round: &Round<'_>,
+    ) -> ControlFlow<()> {
+        let Some(growth) = round.growth.filter(|_| round.has_frames()) else {
+            return ControlFlow::Break(());
+        };
+        while !growth.has_grown() {
+            if !growth.may_go_on() {
+                return ControlFlow::Break(());
+            }
+            self.tick()?;
+            std::thread::sleep(MOMENT);
+        }
+        let mut counts = self.counts.borrow_mut();
+        counts.drop_frames(1, bytes);
+        counts.reason = Some(error.to_string());
+        ControlFlow::Continue(())
     }
 
     /// Reads a recording from its beginning to its end. Returns the pace that it reached, and whether no more is
@@ -320,12 +379,16 @@ impl Player<'_, '_> {
     ) -> (Pace<'r>, Result<ControlFlow<()>, RecordingError>) {
         let reading = ReadOptions {
             size: self.options.size,
+            leaves_out: round.growth.is_some(),
         };
         let mut pace = Pace::new(self.options);
         pace.growth = round.growth;
         let mut flow = ControlFlow::Continue(());
         let mut renumbered = Frame::default();
         let read = read_as(format, input, reading, &mut |event| {
+            if let RecordingEvent::Damage { error, bytes } = event {
+                return self.leave_out(error, bytes, round);
+            }
             let consumer = &mut **self.consumer.borrow_mut();
             flow = match event {
                 RecordingEvent::Channel(info) => {
@@ -357,6 +420,7 @@ impl Player<'_, '_> {
                     }
                 }
                 RecordingEvent::Note(note) => consumer(AcquireEvent::Note(note)),
+                RecordingEvent::Damage { .. } => flow,
             };
             flow
         });
@@ -402,7 +466,7 @@ mod tests {
             },
             ..AcquireOptions::default()
         });
-        pace.step = 10_000.0;
+        (pace.step, pace.before) = (10_000.0, 10_000.0);
         for (name, is_watched) in [("left", false), ("right", true)] {
             let name = Some(name.to_owned());
             let info = ChannelInfo {
@@ -439,6 +503,38 @@ mod tests {
     }
 
     #[test]
+    fn a_change_of_the_clock_is_said_and_played_as_a_moment() {
+        let notes = |times: &[f64]| {
+            let mut pace = Pace::new(&AcquireOptions::default());
+            // All frames are due.
+            let begun = Instant::now().checked_sub(Duration::from_secs(36_000));
+            pace.begun = begun.expect("later");
+            pace.channel.add(&ChannelInfo::default());
+            let mut frame = Frame::default();
+            let mut notes = Vec::new();
+            for (number, &time) in (0..).zip(times) {
+                (frame.number, frame.time) = (number, Some(time));
+                let flow = pace.wait(&frame, &AtomicBool::new(false), &mut |event| {
+                    match event {
+                        AcquireEvent::Note(note) => notes.push(note.to_string()),
+                        _ => return ControlFlow::Break(()),
+                    }
+                    ControlFlow::Continue(())
+                });
+                assert!(flow.is_continue(), "frame {number} is not due");
+            }
+            (notes, pace.played)
+        };
+        let (said, played) = notes(&[0.0, 0.5, 1e9, 1e9 + 0.5, 3.0, 3.5]);
+        let expected = "frame 2 comes 11,574 days after the one before, which is played as 2 s";
+        assert_eq!((said, played), (vec![expected.to_owned()], 3.5));
+        for pauses in [[0.0, 0.1, 59.0, 59.1], [0.0, 50.0, 500.0, 3000.0]] {
+            let (said, played) = notes(&pauses);
+            assert!(said.is_empty() && (played - pauses[3]).abs() < 1e-9);
+        }
+    }
+
+    #[test]
     fn a_recording_that_plays_for_days_keeps_its_pace() {
         let mut pace = Pace::new(&AcquireOptions::default());
         let begun = Instant::now().checked_sub(Duration::from_secs(48 * 3600));
@@ -461,7 +557,7 @@ mod tests {
             pace.begun = Instant::now()
                 .checked_sub(Duration::from_secs(2 * 3600))
                 .expect("later");
-            pace.step = 4000.0;
+            (pace.step, pace.before) = (4000.0, 4000.0);
             let stop = AtomicBool::new(false);
             let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
             let mut frame = Frame::default();

@@ -173,6 +173,97 @@ fn read_on(flags: &[&str]) {
     assert_eq!(count("was replaced"), 2, "{said}");
 }
 
+/// The name of a growing file, its header, its frame of a given sum, and wrong pieces.
+type GrowingCase<'a> = (&'a str, &'a str, &'a dyn Fn(u32) -> String, &'a [&'a str]);
+
+/// Each piece is appended to the file behind two frames of 2 × 2, and followed by whole frames.
+#[test]
+fn a_wrong_frame_in_a_growing_file_is_counted_and_the_watch_goes_on() {
+    let json = |sum: u32| format!("{{\"frame\":[[{sum},0],[0,0]]}}\n");
+    let rows = |sum: u32| format!("{sum} 0\n0 0\n\n");
+    let table = |sum: u32| format!("0.{sum},{sum},0,0,0\n");
+    let echo = |sum: u32| format!("data: [{sum}, 0, 0, 0]\n---\n");
+    let header = "time,r0c0,r0c1,r1c0,r1c1\n";
+    let cases: [GrowingCase<'_>; 4] = [
+        (
+            "g.jsonl",
+            "",
+            &json,
+            &[
+                "garbage\n",
+                "{\"frame\":[[1,2\n",
+                "\0\0\0\n",
+                "{\"status\":\"ok\"}\n",
+                "{\"frame\":[[1,2],[3,4],[5,6]]}\n",
+            ],
+        ),
+        (
+            "g.txt",
+            "",
+            &rows,
+            &[
+                "garbage\n1 2\n3 4\n\n",
+                "1 2\n\n",
+                "1 2\n3\n\n",
+                "1 2\n3 4\n5 6\n7 8\n\n",
+            ],
+        ),
+        (
+            "g.csv",
+            header,
+            &table,
+            &["0.6,1,2\n", "0.6,1,2,3,x\n", "0.6,1,2,3,4,5\n"],
+        ),
+        (
+            "g.yaml",
+            "",
+            &echo,
+            &["data: [1, 2, 3]\n---\n", "data: [1, x]\n- 3\n---\n"],
+        ),
+    ];
+    let folder = tempfile::tempdir().expect("a folder");
+    std::thread::scope(|scope| {
+        for (name, header, frame, pieces) in cases {
+            let file = folder.path().join(name);
+            fs::write(&file, header.to_owned() + &frame(1) + &frame(2)).expect("written");
+            let texts: Vec<_> = (3..)
+                .zip(pieces)
+                .map(|(n, wrong)| (n, (*wrong).to_owned() + &frame(n)))
+                .collect();
+            scope.spawn(move || go_on_behind(&file, &texts));
+        }
+    });
+}
+
+/// Watches a growing file of frames of 2 × 2 with the sums 1 and 2, and appends texts, each with a wrong frame before
+/// one of that sum.
+fn go_on_behind(file: &std::path::Path, texts: &[(u32, String)]) {
+    let path = file.to_str().expect("UTF-8");
+    let mut child = started(&["watch", path, "--rows", "2", "--columns", "2"]);
+    let mut output = BufReader::new(child.stdout.take().expect("piped"));
+    let mut sum = || {
+        let mut answer = String::new();
+        output.read_line(&mut answer).expect("it answers");
+        lines(&answer)[0]["sum"].clone()
+    };
+    assert_eq!([sum(), sum()], [1, 2].map(Value::from));
+    let mut grown = fs::File::options().append(true).open(file).expect("opened");
+    for (number, text) in texts {
+        grown.write_all(text.as_bytes()).expect("written");
+        assert_eq!(sum(), *number, "{text}");
+    }
+    // The last wrong frame is reported a second after the one before.
+    std::thread::sleep(std::time::Duration::from_millis(1300));
+    child.kill().expect("it is killed");
+    let said = finish(child, b"").stderr;
+    let wrong = texts.len();
+    assert!(
+        said.contains(&format!("{wrong} frames dropped so far")),
+        "{said}"
+    );
+    assert!(said.contains(" (line "), "{said}");
+}
+
 #[test]
 fn an_incomplete_first_frame_is_waited_for() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -390,97 +481,6 @@ fn the_channels_of_json_lines_are_chosen_by_name() {
 }
 
 #[test]
-fn only_frames_that_arrive_later_in_a_file_have_the_time_of_arrival() {
-    let folder = tempfile::tempdir().expect("a folder");
-    for flags in [&["--format", "lines"][..], &[]] {
-        let file = folder.path().join("g.txt");
-        fs::write(&file, stream(0..3)).expect("written");
-        let target = folder.path().join(format!("touch-{}.npy", flags.len()));
-        let arguments = ["watch", file.to_str().expect("UTF-8"), "--write"];
-        let target = target.to_str().expect("UTF-8");
-        let mut child = started(&[&arguments[..], &[target], flags].concat());
-        let mut output = BufReader::new(child.stdout.take().expect("piped"));
-        let mut time = || {
-            let mut answer = String::new();
-            output.read_line(&mut answer).expect("it answers");
-            lines(&answer)[0]["time"].clone()
-        };
-        assert_eq!(
-            [time(), time(), time()],
-            [Value::Null, Value::Null, Value::Null]
-        );
-        let mut grown = fs::File::options()
-            .append(true)
-            .open(&file)
-            .expect("opened");
-        let mut last = -1.0;
-        for number in 3..6 {
-            // Waits until everything has been read.
-            std::thread::sleep(std::time::Duration::from_millis(300));
-            let added = grown.write_all(stream(number..number + 1).as_bytes());
-            added.expect("written");
-            let time = time().as_f64().expect("a time");
-            assert!(
-                time == 0.0 && number == 3 || time >= last + 0.2,
-                "{time} after {last}"
-            );
-            last = time;
-        }
-        child.kill().expect("it is killed");
-        assert_eq!(finish(child, b"").stderr, "");
-    }
-}
-
-/// A limit of the system acts as a full disk: it cuts off the last record.
-#[test]
-fn a_recording_on_a_full_disk_ends_with_its_last_whole_record() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("touch.npy");
-    let own = program(&["watch", "-", "--format", "lines", "--write"], "C.UTF-8");
-    let child = Command::new("sh")
-        .args(["-c", "trap '' XFSZ; ulimit -f 9; exec \"$0\" \"$@\""])
-        .arg(own.get_program())
-        .args(own.get_args())
-        .arg(&file)
-        .env("TAXEL_CONFIG", "/dev/null")
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("there is a shell");
-    // More frames than are kept in memory.
-    let run = finish(child, stream(0..6000).as_bytes());
-    assert_eq!(run.status, Some(1), "{}", run.stderr);
-    assert!(run.stderr.contains("cannot record: File too large"));
-    let bytes = fs::read(&file).expect("it is there");
-    let records = (bytes.len() - 256) / 48;
-    assert_eq!(bytes.len(), 256 + 48 * records);
-    assert_eq!(array::records(&bytes), Some(records));
-    let beside = fs::read(file.with_extension("json")).expect("it is there");
-    let beside: Value = serde_json::from_slice(&beside).expect("JSON");
-    assert_eq!(beside["ended"], true);
-    let reason = beside["ended_by"].as_str().expect("a reason");
-    assert!(reason.contains("File too large"), "{reason}");
-    let line = format!("frames {} --all --at-least 1 --json", file.display());
-    let again = taxel(&line, "");
-    for (number, frame) in lines(&again.stdout).iter().enumerate() {
-        assert_eq!(frame["sum"], 9 + number, "{frame}");
-    }
-    assert_eq!(lines(&again.stdout).len(), records);
-    assert!(
-        again
-            .stderr
-            .contains("the recording ended early: File too large")
-            && !again.stderr.contains("killed"),
-        "{}",
-        again.stderr
-    );
-}
-
-/// Returns the description beside a recording, as JSON.
-fn beside(file: &std::path::Path) -> Value {
-    let beside = fs::read(file.with_extension("json")).expect("it is there");
-#[test]
 fn a_channel_that_appears_after_the_first_answers_is_left_out() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("two.jsonl");
@@ -533,6 +533,104 @@ fn the_marks_of_a_recording_are_listed_by_the_numbers_of_its_frames() {
     );
 }
 
+#[test]
+fn only_frames_that_arrive_later_in_a_file_have_the_time_of_arrival() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for flags in [&["--format", "lines"][..], &[]] {
+        let file = folder.path().join("g.txt");
+        fs::write(&file, stream(0..3)).expect("written");
+        let target = folder.path().join(format!("touch-{}.npy", flags.len()));
+        let arguments = ["watch", file.to_str().expect("UTF-8"), "--write"];
+        let target = target.to_str().expect("UTF-8");
+        let mut child = started(&[&arguments[..], &[target], flags].concat());
+        let mut output = BufReader::new(child.stdout.take().expect("piped"));
+        let mut time = || {
+            let mut answer = String::new();
+            output.read_line(&mut answer).expect("it answers");
+            lines(&answer)[0]["time"].clone()
+        };
+        assert_eq!(
+            [time(), time(), time()],
+            [Value::Null, Value::Null, Value::Null]
+        );
+        let mut grown = fs::File::options()
+            .append(true)
+            .open(&file)
+            .expect("opened");
+        let mut last = -1.0;
+        for number in 3..6 {
+            // Waits until everything has been read.
+            std::thread::sleep(std::time::Duration::from_millis(300));
+            let added = grown.write_all(stream(number..number + 1).as_bytes());
+            added.expect("written");
+            let time = time().as_f64().expect("a time");
+            assert!(
+                time == 0.0 && number == 3 || time >= last + 0.2,
+                "{time} after {last}"
+            );
+            last = time;
+        }
+        // All of a file that takes its place has arrived just now.
+        fs::write(&file, stream(6..8)).expect("written");
+        assert!(time().as_f64() >= Some(last));
+        child.kill().expect("it is killed");
+        let said = finish(child, b"").stderr;
+        assert!(
+            said.ends_with("reading it again from its start\n"),
+            "{said}"
+        );
+    }
+}
+
+/// A limit of the system acts as a full disk: it cuts off the last record.
+#[test]
+fn a_recording_on_a_full_disk_ends_with_its_last_whole_record() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("touch.npy");
+    let own = program(&["watch", "-", "--format", "lines", "--write"], "C.UTF-8");
+    let child = Command::new("sh")
+        .args(["-c", "trap '' XFSZ; ulimit -f 9; exec \"$0\" \"$@\""])
+        .arg(own.get_program())
+        .args(own.get_args())
+        .arg(&file)
+        .env("TAXEL_CONFIG", "/dev/null")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("there is a shell");
+    // More frames than are kept in memory.
+    let run = finish(child, stream(0..6000).as_bytes());
+    assert_eq!(run.status, Some(1), "{}", run.stderr);
+    assert!(run.stderr.contains("cannot record: File too large"));
+    let bytes = fs::read(&file).expect("it is there");
+    let records = (bytes.len() - 256) / 48;
+    assert_eq!(bytes.len(), 256 + 48 * records);
+    assert_eq!(array::records(&bytes), Some(records));
+    let beside = fs::read(file.with_extension("json")).expect("it is there");
+    let beside: Value = serde_json::from_slice(&beside).expect("JSON");
+    assert_eq!(beside["ended"], true);
+    let reason = beside["ended_by"].as_str().expect("a reason");
+    assert!(reason.contains("File too large"), "{reason}");
+    let line = format!("frames {} --all --at-least 1 --json", file.display());
+    let again = taxel(&line, "");
+    for (number, frame) in lines(&again.stdout).iter().enumerate() {
+        assert_eq!(frame["sum"], 9 + number, "{frame}");
+    }
+    assert_eq!(lines(&again.stdout).len(), records);
+    assert!(
+        again
+            .stderr
+            .contains("the recording ended early: File too large")
+            && !again.stderr.contains("killed"),
+        "{}",
+        again.stderr
+    );
+}
+
+/// Returns the description beside a recording, as JSON.
+fn beside(file: &std::path::Path) -> Value {
+    let beside = fs::read(file.with_extension("json")).expect("it is there");
     serde_json::from_slice(&beside).expect("JSON")
 }
 

@@ -67,6 +67,7 @@ impl Scan {
                         scan.more_notes += 1;
                     }
                 }
+                RecordingEvent::Damage { .. } => {}
             }
             ControlFlow::Continue(())
         });

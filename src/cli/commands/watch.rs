@@ -206,6 +206,7 @@ fn channels(
 ) -> Result<(Vec<String>, bool), CliError> {
     let options = ReadOptions {
         size: asked.options.size,
+        ..ReadOptions::default()
     };
     Ok(RecordingFile::open(path, options)?.channel_names(up_to))
 }
@@ -339,10 +340,6 @@ impl Watcher<'_> {
         let is_chosen = self.choice.add(info);
         let names = self.choice.names();
         if self.asked.processing.channel.is_none() && names.len() > 1 {
-            let all = match FrameSource::new(&self.asked.source) {
-                FrameSource::File(path) => channels(&path, self.asked, None)?.0,
-                _ => names.to_vec(),
-            };
             if self.begun && self.held.is_none() {
                 let (own, other) = (&names[0], info.shown_name());
                 let text = format!(
@@ -351,6 +348,10 @@ impl Watcher<'_> {
                 self.say(&text);
                 return Ok(());
             }
+            let all = match FrameSource::new(&self.asked.source) {
+                FrameSource::File(path) => channels(&path, self.asked, None)?.0,
+                _ => names.to_vec(),
+            };
             let names = all.join(", ");
             let message = format!("several channels, choose one with --channel: {names}");
             return Err(self.refused(&message));

@@ -95,6 +95,8 @@ named!(RecordingFormat, "format", &RecordingFormat::ALL);
 pub struct ReadOptions {
     /// The size of a frame, for files that do not state it.
     pub size: Option<FrameSize>,
+    /// Whether wrong frames may be left out, as in a file that is written meanwhile: [`RecordingEvent::Damage`].
+    pub(crate) leaves_out: bool,
 }
 
 impl ReadOptions {
@@ -103,6 +105,27 @@ impl ReadOptions {
     pub fn with_size(mut self, size: FrameSize) -> Self {
         self.size = Some(size);
         self
+    }
+
+    /// Handles a wrong frame, given some of its bytes.
+    ///
+    /// # Errors
+    /// Returns the error, unless the frame is left out.
+    pub(super) fn damage(
+        self,
+        error: RecordingError,
+        bytes: &[u8],
+        sink: &mut Sink<'_>,
+    ) -> Result<(), EarlyEnd> {
+        let damage = RecordingEvent::Damage {
+            error: &error,
+            bytes,
+        };
+        if self.leaves_out && sink(damage).is_ok() {
+            Ok(())
+        } else {
+            Err(error.into())
+        }
     }
 }
 
@@ -252,6 +275,13 @@ pub enum RecordingNote {
         /// The number of records according to the header.
         counted: u64,
     },
+    /// A time between two frames that is too long for a pause: a clock was set.
+    Gap {
+        /// The number of the frame after it, from 0.
+        frame: u64,
+        /// The seconds between the frames.
+        seconds: f64,
+    },
     /// A picture that is left out because it is the maximum of the others (zebris).
     Maximum,
     /// A description beside the recording that is ignored, because it is broken or cannot be read.
@@ -300,12 +330,33 @@ impl fmt::Display for RecordingNote {
                 f,
                 "the file was cut off: it has {records} of the {counted} frames that its header counts"
             ),
+            Self::Gap { frame, seconds } => write!(
+                f,
+                "frame {frame} comes {} after the one before, which is played as 2 s",
+                in_words(*seconds)
+            ),
             Self::Maximum => f.write_str(
                 "the picture [Data] is the maximum of the numbered ones and is left out",
             ),
             Self::Description { complaint } => f.write_str(complaint),
         }
     }
+}
+
+/// Returns a time in whole units, at least two of them.
+fn in_words(seconds: f64) -> String {
+    let units = [(86_400.0, "day"), (3600.0, "hour"), (60.0, "minute")];
+    let unit = units
+        .into_iter()
+        .find(|(length, _)| seconds >= 2.0 * length);
+    let (length, unit) = unit.unwrap_or((1.0, "second"));
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a number for a message"
+    )]
+    let count = (seconds / length) as u64;
+    counted(count, unit)
 }
 
 /// An event that a reader reports.
@@ -318,6 +369,13 @@ pub enum RecordingEvent<'a> {
     Frame(&'a Frame),
     /// An oddity.
     Note(&'a RecordingNote),
+    /// A wrong frame, if such frames may be left out: `Break` ends the reading with this error.
+    Damage {
+        /// What is wrong, and where.
+        error: &'a RecordingError,
+        /// Some bytes of the frame.
+        bytes: &'a [u8],
+    },
 }
 
 /// A function that takes the events of a recording; `Break` ends the reading without an error.

@@ -29,6 +29,7 @@
 //! channel_choice   one channel of several, by its name
 //! answer           a frame as a line of JSON
 //! side             numbers of rows and columns
+//! stream_size      the rows and columns of a stream, which may change
 //! text             lines, fields and numbers
 //! time             the times of frames
 //! table            numbers in rows and columns, with or without a header
@@ -51,6 +52,8 @@ mod channel_choice;
 mod answer;
 
 pub(super) mod side;
+
+pub(super) mod stream_size;
 
 pub(super) mod text;
 

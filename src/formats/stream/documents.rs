@@ -9,8 +9,8 @@ use crate::formats::recording::json::clock::JsonClock;
 use crate::formats::recording::json::lines::FrameLine;
 use crate::formats::recording::ros::echo::{self, RosLine, RosMessage};
 use crate::formats::recording::side::arranged;
+use crate::formats::recording::stream_size::StreamSize;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
-use crate::formats::stream::size::StreamSize;
 use crate::formats::stream::source_clock::SourceClock;
 use crate::frame::{Frame, FrameSize};
 

@@ -161,7 +161,7 @@ impl StreamCounts {
     }
 
     /// Counts dropped frames.
-    pub(super) fn drop_frames(&mut self, frames: u64, bytes: &[u8]) {
+    pub(crate) fn drop_frames(&mut self, frames: u64, bytes: &[u8]) {
         self.dropped += frames;
         self.reason = None;
         let mut sample = String::new();

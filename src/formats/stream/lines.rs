@@ -18,11 +18,11 @@
 //! never joined. If frames are known to be single lines, each line that is not a frame counts as a lost one.
 
 use crate::formats::recording::side::frame_size;
+use crate::formats::recording::stream_size::StreamSize;
 use crate::formats::recording::text::separator::is_comment;
 use crate::formats::recording::time::moment;
 use crate::formats::stream::event::{StreamCounts, StreamEvent, StreamSink};
 use crate::formats::stream::numbers;
-use crate::formats::stream::size::StreamSize;
 use crate::formats::stream::source_clock::SourceClock;
 use crate::frame::{Frame, FrameSize, MAX_FRAME_CELLS, MAX_FRAME_SIDE};
 use crate::parameter::number::counted;

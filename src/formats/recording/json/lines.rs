@@ -10,7 +10,8 @@
 //! [`clock`](super::clock). `label` is a whole number; `channel` is the name or the number of one of several
 //! sensors; other keys are ignored. All frames of a channel have the same size.
 //! These are errors, with line and column: rows of different lengths, lists within cells, infinite values, and two
-//! frames, times or labels in one line.
+//! frames, times or labels in one line. If wrong lines may be left out, so is a frame of another size, unless three
+//! in succession have it.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -29,6 +30,7 @@ use crate::formats::recording::event::{
 use crate::formats::recording::json::cells::CellsSeed;
 use crate::formats::recording::json::clock::{JsonClock, TimeCandidates};
 use crate::formats::recording::side::{changed, frame_size};
+use crate::formats::recording::stream_size::StreamSize;
 use crate::formats::recording::text::lines::TextLines;
 use crate::formats::seconds::since;
 use crate::frame::{Frame, FrameSize, LARGEST_VALUE};
@@ -44,26 +46,34 @@ pub(in crate::formats::recording) fn read(
     let mut line = FrameLine::new(options.size);
     let (mut clock, mut start) = (JsonClock::default(), None);
     // The name of each channel, the size of its frames, and their number so far.
-    let mut channels: Vec<(Option<String>, FrameSize, u64)> = Vec::new();
+    let mut channels: Vec<(Option<String>, StreamSize, u64)> = Vec::new();
     let mut frame = Frame::default();
     while lines.advance_to_content()? {
         let number = lines.number();
-        line.read(lines.line(), &mut clock)
-            .map_err(|error| error.in_line(number))?;
+        if let Err(error) = line.read(lines.line(), &mut clock) {
+            options.damage(error.in_line(number), lines.line(), sink)?;
+            let sizes = channels.iter_mut().map(|(_, size, _)| size);
+            sizes.for_each(StreamSize::pass_torn);
+            continue;
+        }
         let known = channels.iter().position(|(name, ..)| *name == line.channel);
         if known.is_none() {
             if channels.len() == MOST_CHANNELS {
                 let message = format!("more than {MOST_CHANNELS} channels");
-                return Err(RecordingError::in_line(number, message).into());
+                let error = RecordingError::in_line(number, message);
+                options.damage(error, lines.line(), sink)?;
+                continue;
             }
-            channels.push((line.channel.clone(), line.size, 0));
+            channels.push((line.channel.clone(), StreamSize::new(options.size), 0));
             sink(RecordingEvent::Channel(&line.channel_info()))?;
         }
         frame.channel = known.unwrap_or(channels.len() - 1);
         let (_, size, count) = &mut channels[frame.channel];
-        if *size != line.size {
-            let message = changed(line.size, *size);
-            return Err(RecordingError::in_line(number, message).into());
+        let before = size.present().unwrap_or(line.size);
+        if !size.admits(line.size) {
+            let error = RecordingError::in_line(number, changed(line.size, before));
+            options.damage(error, lines.line(), sink)?;
+            continue;
         }
         frame.number = *count;
         *count += 1;

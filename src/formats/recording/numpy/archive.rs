@@ -352,7 +352,7 @@ mod tests {
             match event {
                 RecordingEvent::Frame(frame) => found.push(frame.time),
                 RecordingEvent::Note(note) => notes.push(note.to_string()),
-                RecordingEvent::Channel(_) => {}
+                RecordingEvent::Channel(_) | RecordingEvent::Damage { .. } => {}
             }
             Ok(())
         });

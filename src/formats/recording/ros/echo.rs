@@ -23,6 +23,7 @@ use std::io::BufRead;
 use crate::formats::recording::error::RecordingError;
 use crate::formats::recording::event::{ChannelInfo, EarlyEnd, ReadOptions, RecordingEvent, Sink};
 use crate::formats::recording::side::{arranged, changed, matrix_size};
+use crate::formats::recording::stream_size::StreamSize;
 use crate::formats::recording::text::lines::TextLines;
 use crate::formats::recording::text::row::{self, Field};
 use crate::frame::{Frame, FrameSize, MAX_FRAME_CELLS};
@@ -305,9 +306,11 @@ fn is_number(field: &[u8]) -> bool {
 /// Returns the rows and columns of a message that ends in this line.
 ///
 /// # Errors
-/// Returns an error if rows and columns are neither in the message nor given, or if it has another number of values.
+/// Returns an error if rows and columns are neither in the message nor given, if it has another number of values, or
+/// if it has other rows and columns than those before it.
 fn size(
     message: &RosMessage,
+    expected: &mut StreamSize,
     named: Option<FrameSize>,
     line: u64,
 ) -> Result<FrameSize, RecordingError> {
@@ -317,12 +320,17 @@ fn size(
         values: values as u64,
     })?;
     if values != size.cells() {
+        expected.pass_torn();
         return Err(row::count(line, values, size.cells()));
+    }
+    let before = expected.present().unwrap_or(size);
+    if !expected.admits(size) {
+        return Err(RecordingError::in_line(line, changed(size, before)));
     }
     Ok(size)
 }
 
-/// Reads a recording.
+/// Reads a recording. A message that is wrong anywhere is read up to its end: the next one may be right.
 pub(in crate::formats::recording) fn read(
     input: impl BufRead,
     options: ReadOptions,
@@ -331,7 +339,8 @@ pub(in crate::formats::recording) fn read(
     let mut lines = TextLines::new(input);
     let mut message = RosMessage::default();
     let mut frame = Frame::default();
-    let mut first = None;
+    let mut expected = StreamSize::new(None);
+    let mut wrong = None;
     loop {
         let ended = !lines.advance()?;
         let number = lines.number();
@@ -340,44 +349,60 @@ pub(in crate::formats::recording) fn read(
         } else {
             message.line(lines.line())
         };
-        match state {
+        let error = match state {
             RosLine::More => continue,
             RosLine::Whole if ended && !message.begun() => return Ok(()),
             RosLine::Whole if message.is_open() && ended => {
                 let text = "ends inside a message, expected '---'";
-                return Err(RecordingError::in_line(number + 1, text).into());
+                Some(RecordingError::in_line(number + 1, text))
             }
-            RosLine::Whole => {}
+            RosLine::Whole => None,
             RosLine::Cut => {
                 let text = "the echo leaves out values ('...'): record it with --full-length";
-                return Err(RecordingError::in_line(number, text).into());
+                Some(RecordingError::in_line(number, text))
             }
             RosLine::Wrong(column) => {
                 let text = "found something other than a number";
-                return Err(RecordingError::in_field(number, column, text).into());
+                Some(RecordingError::in_field(number, column, text))
             }
+        };
+        wrong = wrong.or(error);
+        // A message of a single line has no other end.
+        if !matches!(state, RosLine::Whole) && !is_csv(lines.line().trim_ascii()) {
+            continue;
         }
-        let size = size(&message, options.size, number)?;
-        if frame.number == 0 {
-            let info = ChannelInfo {
-                size: Some(size),
-                ..ChannelInfo::default()
-            };
-            sink(RecordingEvent::Channel(&info))?;
+        let read = match wrong.take() {
+            Some(error) => Err(error),
+            None => size(&message, &mut expected, options.size, number),
+        };
+        match read {
+            Ok(size) => give(&message, size, &mut frame, sink)?,
+            Err(error) => options.damage(error, lines.line(), sink)?,
         }
-        if let Some(first) = first.replace(size)
-            && first != size
-        {
-            let message = changed(size, first);
-            return Err(RecordingError::in_line(number, message).into());
-        }
-        frame.reset(size);
-        frame.values_mut().copy_from_slice(message.cells());
         message.clear();
-        sink(RecordingEvent::Frame(&frame))?;
         if ended {
             return Ok(());
         }
-        frame.number += 1;
     }
+}
+
+/// Reports a message as the next frame, and its channel before the first.
+fn give(
+    message: &RosMessage,
+    size: FrameSize,
+    frame: &mut Frame,
+    sink: &mut Sink<'_>,
+) -> Result<(), EarlyEnd> {
+    if frame.number == 0 {
+        let info = ChannelInfo {
+            size: Some(size),
+            ..ChannelInfo::default()
+        };
+        sink(RecordingEvent::Channel(&info))?;
+    }
+    frame.reset(size);
+    frame.values_mut().copy_from_slice(message.cells());
+    sink(RecordingEvent::Frame(frame))?;
+    frame.number += 1;
+    Ok(())
 }

@@ -20,7 +20,8 @@
 //! is an empty line as spreadsheet programs write it.
 //!
 //! Errors, with line and field, are words in place of numbers, and lines or blocks of another length. Nothing is
-//! padded, since a missing value in the middle would shift all later ones.
+//! padded, since a missing value in the middle would shift all later ones. If wrong frames may be left out, that is a
+//! line, or all rows up to an empty line; without empty lines between frames, the next one cannot be found.
 
 use std::io::{BufRead, Seek};
 
@@ -64,9 +65,10 @@ pub(in crate::formats::recording) fn read(
     let mut lines = TextLines::new(input);
     match &layout.lines {
         LineLayout::Row { parted } => {
-            RowBlock::new(layout.separator, layout.size, *parted).read(&mut lines, sink)
+            let block = RowBlock::new(layout.separator, layout.size, *parted);
+            block.read(&mut lines, options, sink)
         }
-        LineLayout::Frame(fields) => frames(&mut lines, &layout, fields, sink),
+        LineLayout::Frame(fields) => frames(&mut lines, &layout, fields, options, sink),
     }
 }
 
@@ -96,7 +98,10 @@ pub(crate) fn read_rows(
     }
     let size = FrameSize::of_sides(columns, side(rows)).ok_or(RecordingError::Unknown)?;
     let block = RowBlock::new(separator, size, false);
-    until_enough(consumer, |sink| block.read(&mut TextLines::new(text), sink))
+    let options = ReadOptions::default();
+    until_enough(consumer, |sink| {
+        block.read(&mut TextLines::new(text), options, sink)
+    })
 }
 
 /// Reads frames of one line each.
@@ -104,6 +109,7 @@ fn frames(
     lines: &mut TextLines<impl BufRead>,
     layout: &TableLayout,
     fields: &FrameFields,
+    options: ReadOptions,
     sink: &mut Sink<'_>,
 ) -> Result<(), EarlyEnd> {
     // The index of the cell in each field; None if the field is not a cell.
@@ -130,7 +136,13 @@ fn frames(
             sink(RecordingEvent::Frame(&frame))?;
             frame.number += 1;
         }
-        let time = fields.fill(&slots, &mut frame, layout.separator, (line, number))?;
+        let time = match fields.fill(&slots, &mut frame, layout.separator, (line, number)) {
+            Ok(time) => time,
+            Err(error) => {
+                options.damage(error, line, sink)?;
+                continue;
+            }
+        };
         let had_unit = clock.unit().is_some();
         frame.time = clock.seconds(time);
         if let Some(unit) = clock.unit().filter(|_| !had_unit)
@@ -209,6 +221,8 @@ struct RowBlock {
     found: u16,
     /// Whether an empty line ends a frame.
     parted: bool,
+    /// Whether the rest of a wrong frame is being left out.
+    skipping: bool,
     /// The clock that reads the timestamp at the beginning of the first row.
     clock: TableClock,
 }
@@ -221,6 +235,7 @@ impl RowBlock {
             frame: Frame::new(size),
             found: 0,
             parted,
+            skipping: false,
             clock: TableClock::new(separator, None),
         }
     }
@@ -232,26 +247,40 @@ impl RowBlock {
     fn read(
         mut self,
         lines: &mut TextLines<impl BufRead>,
+        options: ReadOptions,
         sink: &mut Sink<'_>,
     ) -> Result<(), EarlyEnd> {
-        while lines.advance()? {
+        loop {
+            let ended = !lines.advance()?;
             let (line, number) = (lines.line(), lines.number());
-            if is_blank(line) {
-                self.end(number, sink)?;
-            } else if !is_comment(line) {
-                self.row(line, number)?;
-                // Without empty lines, frames are separated by their number of rows alone.
-                if !self.parted {
-                    self.give(sink)?;
+            let read = if ended || is_blank(line) {
+                self.end(number + u64::from(ended), sink)
+            } else if self.skipping || is_comment(line) {
+                continue;
+            } else {
+                self.row(line, number)
+                    .map_err(EarlyEnd::from)
+                    // Without empty lines, frames are separated by their number of rows alone.
+                    .and_then(|()| if self.parted { Ok(()) } else { self.give(sink) })
+            };
+            match read {
+                Err(EarlyEnd::Failed(error)) if self.parted => {
+                    options.damage(error, line, sink)?;
+                    self.found = 0;
+                    self.skipping = !is_blank(line);
                 }
+                read => read?,
+            }
+            if ended {
+                return Ok(());
             }
         }
-        self.end(lines.number() + 1, sink)
     }
 
     /// Ends the frame at an empty line or at the end of the file. There may be any number of empty lines between
     /// frames.
     fn end(&mut self, number: u64, sink: &mut Sink<'_>) -> Result<(), EarlyEnd> {
+        self.skipping = false;
         self.give(sink)?;
         if self.found == 0 {
             return Ok(());

@@ -11,7 +11,7 @@ const AGAIN: u8 = 3;
 
 /// The size of the frames of a stream.
 #[derive(Clone, Debug)]
-pub(super) struct StreamSize {
+pub(in crate::formats) struct StreamSize {
     /// The current rows and columns: the given ones, otherwise those of the first whole frame, until others arrive
     /// repeatedly.
     present: Option<FrameSize>,
@@ -23,7 +23,7 @@ pub(super) struct StreamSize {
 
 impl StreamSize {
     /// Starts with the given rows and columns, if any.
-    pub(super) fn new(named: Option<FrameSize>) -> Self {
+    pub(in crate::formats) fn new(named: Option<FrameSize>) -> Self {
         Self {
             present: named,
             is_named: named.is_some(),
@@ -32,22 +32,22 @@ impl StreamSize {
     }
 
     /// Sets the rows and columns, if none are known yet.
-    pub(super) fn begin(&mut self, own: FrameSize) {
+    pub(in crate::formats) fn begin(&mut self, own: FrameSize) {
         self.present.get_or_insert(own);
     }
 
     /// Returns the current rows and columns; None before the first frame if none were given.
-    pub(super) fn present(&self) -> Option<FrameSize> {
+    pub(in crate::formats) fn present(&self) -> Option<FrameSize> {
         self.present
     }
 
     /// Returns the rows and columns if they were given.
-    pub(super) fn named(&self) -> Option<FrameSize> {
+    pub(in crate::formats) fn named(&self) -> Option<FrameSize> {
         self.present.filter(|_| self.is_named)
     }
 
     /// Notes a whole frame of these rows and columns, and returns true if they are those of the stream.
-    pub(super) fn admits(&mut self, own: FrameSize) -> bool {
+    pub(in crate::formats) fn admits(&mut self, own: FrameSize) -> bool {
         let size = *self.present.get_or_insert(own);
         if own == size || self.is_named {
             self.other = None;
@@ -66,7 +66,7 @@ impl StreamSize {
     }
 
     /// Notes a frame that is not whole, which interrupts a succession of frames of another size.
-    pub(super) fn pass_torn(&mut self) {
+    pub(in crate::formats) fn pass_torn(&mut self) {
         self.other = None;
     }
 }
