@@ -173,8 +173,7 @@ impl Classifier {
             Self::Knn => {
                 let table = features();
                 let touches = Sample::new(model, sample);
-                let neighbours = settings.neighbours.max(1);
-                let scores = |key| touches.scores(&table, neighbours, key);
+                let scores = |key| touches.scores(&table, settings.neighbours.max(1), key);
                 (evaluate(&scores), Some(table))
             }
             Self::Template => {

@@ -88,7 +88,7 @@ impl Beside {
 
 #[test]
 fn a_picture_is_explored_at_its_zoom() {
-    let placed = "pbutton<Enter><3x:Tab>0.5<Tab>0.25<Enter>";
+    let placed = ":picture button<Enter><3x:Tab>0.5<Tab>0.25<Enter>";
     shows(
         &session(&format!("{placed}e")),
         &["Zoom x  0.5 ", "Zoom y  0.25 "],
@@ -96,7 +96,7 @@ fn a_picture_is_explored_at_its_zoom() {
     let swept = session(&format!("{placed}:explore --x0 5 --y0 5 --angle 0<Enter>"));
     shows(&swept, &["zoom x 0.50", "zoom y 0.25"]);
     // A zoom that was typed in another form does not stay for this shape.
-    let typed = format!("pwasher<Enter><Enter>e<Tab><Tab><C-u>0<Enter><Esc>{placed}e");
+    let typed = format!(":picture washer<Enter><Enter>e<Tab><Tab><C-u>0<Enter><Esc>{placed}e");
     shows(&session(&typed), &["Zoom x  0.5 ", "Zoom y  0.25 "]);
 }
 
