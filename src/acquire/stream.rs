@@ -89,9 +89,10 @@ impl StreamClock {
     /// Returns the bytes per second that came in a silence, if that is to be reported: once without bytes, and once
     /// with bytes. `bytes` is the number of bytes so far.
     fn silence(&mut self, bytes: u64, now: Instant) -> Option<f64> {
-        let usual = self.interval.unwrap_or_default() * MISSED;
+        let missed = |interval: Duration| (interval * MISSED).max(SILENCE);
+        let usual = self.interval.map_or(SILENCE, missed);
         let since = self.looked.unwrap_or(self.last_frame);
-        if now - self.last_frame < usual.max(SILENCE) || now - since < SILENCE {
+        if now - self.last_frame < usual || now - since < SILENCE {
             return None;
         }
         let came = bytes - std::mem::replace(&mut self.bytes, bytes);

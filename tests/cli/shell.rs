@@ -61,12 +61,13 @@ fn examples(help: &str) -> Vec<String> {
 fn furnished(folder: &Path) {
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).expect("written");
     write("imprint.txt", ".##.\n#..#\n.##.\n");
+    write("touch.txt", include_str!("../../examples/touch.txt"));
     write("washer.json", super::describe::SHAPE);
     write("poses.jsonl", "{\"imprint\":[\"##\",\"#.\"]}\n");
     for (name, text) in [
         (
             "recording.csv",
-            include_str!("../files/frames/samples/tekscan.asf"),
+            include_str!("../../examples/recording.csv"),
         ),
         (
             "plain.csv",

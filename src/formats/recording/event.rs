@@ -371,7 +371,7 @@ pub enum RecordingEvent<'a> {
     Note(&'a RecordingNote),
     /// A wrong frame, if such frames may be left out: `Break` ends the reading with this error.
     Damage {
-        /// What is wrong, and where.
+        /// The error, with its place.
         error: &'a RecordingError,
         /// Some bytes of the frame.
         bytes: &'a [u8],

@@ -17,8 +17,8 @@ use ratatui::layout::{Position, Rect};
 use crate::tui::app::dialog::Dialog;
 use crate::tui::app::layout::Panes;
 use crate::tui::app::message::Message;
+use crate::tui::app::notice;
 use crate::tui::app::state::{App, NarrowPage};
-use crate::tui::app::status;
 use crate::tui::explore::message::ExploreMessage;
 use crate::tui::keys::binding::{Binding, Context};
 use crate::tui::keys::default_keys::{DEFAULT_KEYS, MENU};
@@ -182,7 +182,7 @@ fn useful(app: &App, row: &Binding) -> bool {
     let Some((page, panes)) = page.zip(app.panes()) else {
         return true;
     };
-    let area = status::page_area(app, &panes, page);
+    let area = notice::page_area(app, &panes, page);
     let mut messages = row.keys.iter().filter_map(|(_, action)| action.message());
     messages.any(|message| page.has_use_for(message, area))
 }

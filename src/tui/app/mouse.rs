@@ -11,7 +11,7 @@ use crate::tui::app::dialog::Dialog;
 use crate::tui::app::message::{Message, Mouse, MouseKind};
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::app::state::{App, NarrowPage};
-use crate::tui::app::{menu, status};
+use crate::tui::app::{menu, notice};
 use crate::tui::widget::number::taxels;
 
 /// The thing that the mouse points at.
@@ -116,7 +116,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
         // A narrow screen shows the matrix or the panel.
         let hidden =
             page.slot() == Slot::Panel && panes.panel.is_none() && app.page == NarrowPage::Matrix;
-        let area = status::page_area(app, &panes, page);
+        let area = notice::page_area(app, &panes, page);
         if inside(area) && !hidden {
             return page.click(area, place).map(Target::Page);
         }

@@ -10,7 +10,7 @@
 //! notices, and on the lowest the first line is missing. A notice that needs several lines grows upwards.
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Position, Rect};
+use ratatui::layout::Position;
 
 use crate::description::Descriptor;
 use crate::formats::value;
@@ -18,8 +18,9 @@ use crate::tui::app::dialog::Dialog;
 use crate::tui::app::document::Reading;
 use crate::tui::app::layout::Panes;
 use crate::tui::app::menu;
+use crate::tui::app::notice;
 use crate::tui::app::page::{Page, Slot};
-use crate::tui::app::state::{App, Mode, Notice};
+use crate::tui::app::state::{App, Mode};
 use crate::tui::app::title::name;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
@@ -56,46 +57,12 @@ pub fn draw(app: &App, buffer: &mut Buffer, panes: &Panes) -> Option<Position> {
     }
     let cursor = prompt.and_then(|page| page.draw(theme, app.keymap(), buffer, panes.notice));
     let top = app.dialogs.last().map(Dialog::page);
-    if let Some((text, role)) = notice(app, panes, top) {
-        let block = notice_block(app, panes, &text);
+    if let Some((text, role)) = notice::notice(app, panes, top) {
+        let block = notice::block(app, panes, &text);
         write::clear(buffer, block);
         write::wrapped(buffer, block, theme, &text, role);
     }
     cursor
-}
-
-/// Returns the lines that a notice takes. A prompt keeps its line, and the notice stands above it.
-fn notice_block(app: &App, panes: &Panes, text: &str) -> Rect {
-    let is_typed = |page: &dyn Page| page.slot() == Slot::Prompt;
-    let is_typed = app.dialogs.last().map(Dialog::page).is_some_and(is_typed);
-    let last = Rect {
-        y: panes.notice.y - u16::from(is_typed),
-        ..panes.notice
-    };
-    let lines = write::broken(&app.theme().text(text), usize::from(last.width)).len();
-    let room = last.bottom().saturating_sub(panes.body.y);
-    let height = u16::try_from(lines).unwrap_or(room).clamp(1, room.max(1));
-    Rect {
-        y: last.bottom() - height,
-        height,
-        ..last
-    }
-}
-
-/// Returns the area of a page; it ends above the notice if the page makes room for it.
-pub fn page_area(app: &App, panes: &Panes, page: &dyn Page) -> Rect {
-    let area = panes.area(page.slot());
-    if !page.makes_room() {
-        return area;
-    }
-    let top = app.dialogs.last().map(Dialog::page);
-    let over = top.filter(|top| matches!(top.slot(), Slot::Prompt | Slot::Question));
-    let text = notice(app, panes, over.or(Some(page))).map(|(text, _)| text);
-    let end = text.map_or(area.bottom(), |text| notice_block(app, panes, &text).y);
-    Rect {
-        height: end.min(area.bottom()).saturating_sub(area.y),
-        ..area
-    }
 }
 
 /// Returns the line about the source of the imprint.
@@ -197,30 +164,4 @@ fn taxel(app: &App, seen: &Reading, panes: &Panes) -> String {
         line(&[&place, &state, &step]),
     ];
     write::first_fitting(&lines.each_ref().map(String::as_str), width).to_owned()
-}
-
-/// Returns the notice, else the request to the disk that the user waits for, else the text of the top page. A
-/// question stands after the notice.
-fn notice(app: &App, panes: &Panes, top: Option<&dyn Page>) -> Option<(String, Role)> {
-    let remark = top.and_then(|page| page.remark(app.keymap(), panes.body));
-    let is_question = top.is_some_and(|page| page.slot() == Slot::Question);
-    if is_question && let Some((question, role)) = remark {
-        let text = match &app.notice {
-            Some(Notice::Info(said) | Notice::Refusal(said)) => format!("{said}. {question}"),
-            None => question,
-        };
-        return Some((text, role));
-    }
-    let notice = app.notice.as_ref().map(|notice| match notice {
-        Notice::Info(text) => (text.clone(), Role::Key),
-        Notice::Refusal(text) => (format!("! {text}"), Role::Error),
-    });
-    let waiting = || Some((app.waiting()?.to_owned(), Role::Key));
-    let notice = notice.or_else(waiting);
-    match (notice, top.and_then(Page::alarm)) {
-        (Some((text, Role::Error)), Some(alarm)) => Some((format!("{text}; {alarm}"), Role::Error)),
-        // The mark of an error stands before the error alone.
-        (Some((text, _)), Some(alarm)) => Some((format!("{text}; ! {alarm}"), Role::Error)),
-        (notice, _) => notice.or(remark),
-    }
 }

@@ -29,7 +29,7 @@ use crate::tui::app::layout::{Panes, SMALLEST};
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::app::state::{App, NarrowPage};
 use crate::tui::app::title::title;
-use crate::tui::app::{menu, status};
+use crate::tui::app::{menu, notice, status};
 use crate::tui::matrix::panel;
 use crate::tui::matrix::view::MatrixView;
 use crate::tui::widget::theme::{Role, Theme};
@@ -76,7 +76,7 @@ pub(in crate::tui) fn draw(app: &App, buffer: &mut Buffer) -> Option<Position> {
                     panel(buffer, area);
                 }
             }
-            let area = status::page_area(app, &panes, page);
+            let area = notice::page_area(app, &panes, page);
             cursor = page.draw(theme, app.keymap(), buffer, area);
         }
         (None, Some(beside)) => {

@@ -14,8 +14,8 @@ use crate::tui::app::dialog::{Dialog, topmost};
 use crate::tui::app::document::Document;
 use crate::tui::app::history::DocumentOrigin;
 use crate::tui::app::message::{Endpoint, Message};
+use crate::tui::app::notice;
 use crate::tui::app::state::App;
-use crate::tui::app::status;
 use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
@@ -234,7 +234,7 @@ fn look_further(app: &mut App, page: &mut Live, towards: Arrow) {
         return inform(app, format!("the taxels are hidden; {key} shows them"));
     }
     let area = app.panes();
-    let area = area.map(|panes| status::page_area(app, &panes, page));
+    let area = area.map(|panes| notice::page_area(app, &panes, page));
     let next = area.and_then(|area| view::beyond(page, app.theme(), area, towards));
     if next.is_none() {
         let hides = area.is_some_and(|area| view::hides_taxels(page, area));
