@@ -6,7 +6,6 @@ use std::borrow::Cow;
 use std::io::{self, Write};
 
 use serde::Serialize;
-use serde::de::IgnoredAny;
 
 use crate::quote::shortened_message;
 
@@ -122,12 +121,6 @@ impl<'a> WithoutNan<'a> {
         let before = self.replaced.iter().filter(|&&start| start + 4 < column);
         column - before.count()
     }
-}
-
-/// Returns true if a line is a whole object of JSON, with or without `NaN`.
-pub(crate) fn is_object(line: &[u8]) -> bool {
-    let line = WithoutNan::new(line.trim_ascii()).line;
-    line.starts_with(b"{") && serde_json::from_slice::<IgnoredAny>(&line).is_ok()
 }
 
 /// Returns what is wrong with a JSON text, in words that require no knowledge of the parser, and without the

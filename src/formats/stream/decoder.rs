@@ -8,8 +8,10 @@
 
 use std::mem::take;
 
+use serde::de::IgnoredAny;
+
 use crate::formats::byte_order_mark::without_mark;
-use crate::formats::json;
+use crate::formats::json::WithoutNan;
 use crate::formats::recording::text::row::is_parted_by_cr;
 use crate::formats::stream::documents::{JsonChannels, JsonDecoder, RosDecoder};
 use crate::formats::stream::event::{StreamCounts, StreamFormat, StreamOptions, StreamSink};
@@ -231,8 +233,7 @@ impl StreamDecoder {
     /// is whole: the end of a line does not open what it closes.
     fn line(&mut self, line: &[u8], sink: &mut StreamSink<'_>) {
         let line = self.without_mark(line);
-        if take(&mut self.torn) && !(matches!(self.state, State::Json(_)) && json::is_object(line))
-        {
+        if take(&mut self.torn) && !(matches!(self.state, State::Json(_)) && is_object(line)) {
             return;
         }
         match &mut self.state {
@@ -267,6 +268,12 @@ impl StreamDecoder {
         self.counts.bytes -= bytes.len() as u64;
         self.push(&bytes, sink);
     }
+}
+
+/// Returns true if a line is a whole object of JSON, with or without `NaN`.
+fn is_object(line: &[u8]) -> bool {
+    let line = WithoutNan::new(line.trim_ascii()).line;
+    line.starts_with(b"{") && serde_json::from_slice::<IgnoredAny>(&line).is_ok()
 }
 
 #[cfg(test)]
