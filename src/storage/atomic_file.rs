@@ -2,10 +2,11 @@
 //! place, and the folder synced.
 //!
 //! Whenever the program dies or the power fails, the old file or the new one is there as a whole; [`persist_pair`] says
-//! what is there of two files that belong together. The stages are types: content goes into an [`UnfinishedFile`]; a [`FinishedFile`] is on disk and lacks only its name. Either one
-//! removes its temporary file when it is dropped, so an error or an early return leaves nothing behind. If a program
-//! is killed, the next writer removes the file that it left: see [`crate::storage::temporary`] for files from
-//! [`UnfinishedFile::new`]; the name given to [`UnfinishedFile::with_temporary`] is taken over by the next caller.
+//! what is there of two files that belong together. The stages are types: content goes into an [`UnfinishedFile`]; a
+//! [`FinishedFile`] is on disk and lacks only its name. Either one removes its temporary file when it is dropped, so an
+//! error or an early return leaves nothing behind. If a program is killed, the next writer removes the file that it
+//! left: see [`crate::storage::temporary`] for files from [`UnfinishedFile::new`]; the name given to
+//! [`UnfinishedFile::with_temporary`] is taken over by the next caller.
 
 use std::fs::{self, File, FileType, Metadata, Permissions, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -243,8 +244,8 @@ pub(super) fn kind_in_words(kind: FileType) -> &'static str {
 /// Gives two files that belong together their names: both, or neither. If the program dies, a new file never stands
 /// beside an old version of the other one: the file that has the second name is moved away first, and the second name
 /// is given last. So a program that dies in between leaves no file of the second name. The old one is then called
-/// `.taxel-XXXXXX`, until a program that writes into the folder a minute later or more removes it. Of two programs that name such files in one folder at once, one waits for the other. Returns the
-/// first file, open, for further writing.
+/// `.taxel-XXXXXX`, until a program that writes into the folder a minute later or more removes it. Of two programs that
+/// name such files in one folder at once, one waits for the other. Returns the first file, open, for further writing.
 ///
 /// # Errors
 /// Returns the errors of [`FinishedFile::persist`]. If one of the files got no name, the old files are there again;
