@@ -16,7 +16,7 @@ pub(super) struct ArrivalClock {
     base: Option<(f64, Instant)>,
     /// The time of the last frame.
     last: f64,
-    /// Whether the next time of a frame's own may be that of another clock.
+    /// Whether the next time of a frame's own may be that of another clock, or before the last time.
     rejoined: bool,
     /// The seconds added to the frames' own times after the source's clock restarted.
     shift: Option<f64>,
@@ -46,12 +46,9 @@ impl ArrivalClock {
 
     /// Returns the time of arrival of a frame without a time of its own.
     fn arrival(&mut self, now: Instant) -> f64 {
-        let Some((base, when)) = self.base else {
-            self.base = Some((0.0, now));
-            // The clock of the source has not been read yet.
-            self.rejoined = true;
-            return 0.0;
-        };
+        // The next time of a frame's own may be before this one.
+        self.rejoined = true;
+        let (base, when) = *self.base.get_or_insert((0.0, now));
         to_nanoseconds(base + (now - when).as_secs_f64())
     }
 
@@ -102,6 +99,7 @@ mod tests {
             ([own(0.0), own(0.5), None, None], [0.0, 0.5, 1.5, 2.5]),
             ([own(0.0), None, own(1.7), None], [0.0, 1.0, 1.7, 2.7]),
             ([None, None, own(0.0), own(0.9)], [0.0, 1.0, 2.0, 2.9]),
+            ([own(0.0), None, own(0.5), own(0.6)], [0.0, 1.0, 2.0, 2.1]),
         ] {
             assert_eq!(times(&frames), expected, "{frames:?}");
         }
