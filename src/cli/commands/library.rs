@@ -236,8 +236,12 @@ pub(crate) fn delete(shelf: &Shelf, name: &str) -> Result<String, CliError> {
     let deleted = shelf.library()?.delete(name);
     let name = deleted.map_err(|error| shelf.refused(error))?;
     let argument = as_argument(&name);
+    let library = shelf.named()?.map_or_else(String::new, |library| {
+        let folder = library.folder().to_string_lossy();
+        format!(" --library {}", as_argument(&folder))
+    });
     Ok(format!(
-        "deleted {name}; to restore it: taxel library restore {argument}\n"
+        "deleted {name}; to restore it: taxel library restore {argument}{library}\n"
     ))
 }
 

@@ -42,6 +42,7 @@ use crate::formats::recording::{
 use crate::formats::stream::{StreamCounts, StreamRefusal};
 use crate::formats::value::counted;
 use crate::frame::{Frame, FrameError, FrameSize, Processing, SetRule, Tare, TareFrames};
+use crate::quote::as_argument;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::runtime::check_source;
 
@@ -342,8 +343,9 @@ impl Watcher<'_> {
         if self.asked.processing.channel.is_none() && names.len() > 1 {
             if self.begun && self.held.is_none() {
                 let (own, other) = (&names[0], info.shown_name());
+                let flag = as_argument(other);
                 let text = format!(
-                    "channel {other} is left out, since {own} came first; --channel {other} takes it"
+                    "channel {other} is left out, since {own} came first; --channel {flag} takes it"
                 );
                 self.say(&text);
                 return Ok(());
