@@ -44,8 +44,8 @@ impl Wanted {
     }
 }
 
-/// Returns the grid to sweep, and notes about it: the ranges of x0 and y0 that were not given, whether they span less than
-/// a cell, and how many poses are cut off nevertheless.
+/// Returns the grid to sweep, and notes about it: the ranges of x0 and y0 that were not given, whether they span less
+/// than a cell, and how many poses are cut off nevertheless.
 ///
 /// A figure gets the paper's cell, which starts at 5, if nothing is cut off there; a picture gets the cell that it
 /// lies in.
@@ -79,8 +79,9 @@ pub(crate) fn grid(
         .iter()
         .map(|&axis| format!("{} {}", axis.name(), grid.ranges()[axis]));
     let mut notes = vec![format!("range: {}", taken.collect::<Vec<_>>().join(", "))];
-    let least = [Axis::ZoomX, Axis::ZoomY].map(|axis| grid.ranges()[axis].value(0));
-    if anchor == Anchor::Corner && least.iter().any(|&zoom| zoom < 1.0) {
+    let zoomed = [(Axis::X0, Axis::ZoomX), (Axis::Y0, Axis::ZoomY)];
+    let mut zoomed = zoomed.iter().filter(|(axis, _)| missing.contains(axis));
+    if anchor == Anchor::Corner && zoomed.any(|&(_, zoom)| grid.ranges()[zoom].value(0) < 1.0) {
         let note = "the corner is zoomed, too: it moves by less than a cell; '--anchor centre' moves the shape by a cell";
         notes.push(note.to_owned());
     }
