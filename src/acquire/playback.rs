@@ -29,9 +29,10 @@ const MOMENT: Duration = Duration::from_millis(100);
 /// The longest wait for a frame, in seconds: a day.
 const LONGEST: f64 = 86_400.0;
 
-/// A time between two frames counts as a change of the clock, not as a pause, if it is longer than this many seconds
-/// and than this many times the one before.
+/// A time between two frames is not waited for if it is longer than this many seconds …
 const PAUSE: f64 = 60.0;
+
+/// … and than this many times the one before.
 const PAUSE_RATIO: f64 = 10.0;
 
 /// The seconds that such a time is played as.
@@ -117,15 +118,18 @@ impl Pace<'_> {
         let due = frame.time.unwrap_or(own);
         // Times may count from another channel's first frame, or from the start of a longer recording.
         let last = self.last.replace(due).unwrap_or(due);
-        // A clock that was set back is a change, too.
+        // After a clock was set back, the frame is due at once.
         let gap = (due - last).max(0.0);
         let is_pause = gap <= PAUSE.max(PAUSE_RATIO * self.before);
         if gap > 0.0 && is_pause {
             self.before = gap;
         }
         if !is_pause && !self.growth.is_some_and(Growth::has_grown) {
-            let (frame, seconds) = (frame.number, gap);
-            let note = RecordingNote::Gap { frame, seconds };
+            let note = RecordingNote::Gap {
+                frame: frame.number,
+                seconds: gap,
+                played: PLAYED,
+            };
             consumer(AcquireEvent::Note(&note))?;
         }
         self.played += if is_pause { gap } else { PLAYED };
@@ -526,7 +530,7 @@ mod tests {
             (notes, pace.played)
         };
         let (said, played) = notes(&[0.0, 0.5, 1e9, 1e9 + 0.5, 3.0, 3.5]);
-        let expected = "frame 2 comes 11,574 days after the one before, which is played as 2 s";
+        let expected = "frame 2 comes 11,574 days after the one before, which is played as 2 s at normal speed";
         assert_eq!((said, played), (vec![expected.to_owned()], 3.5));
         for pauses in [[0.0, 0.1, 59.0, 59.1], [0.0, 50.0, 500.0, 3000.0]] {
             let (said, played) = notes(&pauses);

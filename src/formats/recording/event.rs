@@ -275,12 +275,14 @@ pub enum RecordingNote {
         /// The number of records according to the header.
         counted: u64,
     },
-    /// A time between two frames that is too long for a pause: a clock was set.
+    /// A long time between two frames, which is not waited for: perhaps a clock was set.
     Gap {
         /// The number of the frame after it, from 0.
         frame: u64,
         /// The seconds between the frames.
         seconds: f64,
+        /// The seconds that are played instead, at normal speed.
+        played: f64,
     },
     /// A picture that is left out because it is the maximum of the others (zebris).
     Maximum,
@@ -330,9 +332,13 @@ impl fmt::Display for RecordingNote {
                 f,
                 "the file was cut off: it has {records} of the {counted} frames that its header counts"
             ),
-            Self::Gap { frame, seconds } => write!(
+            Self::Gap {
+                frame,
+                seconds,
+                played,
+            } => write!(
                 f,
-                "frame {frame} comes {} after the one before, which is played as 2 s",
+                "frame {frame} comes {} after the one before, which is played as {played} s at normal speed",
                 in_words(*seconds)
             ),
             Self::Maximum => f.write_str(
@@ -343,7 +349,7 @@ impl fmt::Display for RecordingNote {
     }
 }
 
-/// Returns a time in whole units, at least two of them.
+/// Returns a time in the largest unit of which there are two or more, rounded.
 fn in_words(seconds: f64) -> String {
     let units = [(86_400.0, "day"), (3600.0, "hour"), (60.0, "minute")];
     let unit = units
@@ -355,7 +361,7 @@ fn in_words(seconds: f64) -> String {
         clippy::cast_sign_loss,
         reason = "a number for a message"
     )]
-    let count = (seconds / length) as u64;
+    let count = (seconds / length).round() as u64;
     counted(count, unit)
 }
 
