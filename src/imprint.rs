@@ -8,6 +8,7 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::parameter::number::counted;
+use crate::quote::quoted_character;
 use crate::sensor::{MAX_SIDE, MatrixSize};
 
 /// A binary matrix of 1 × 1 to 64 × 64 taxels.
@@ -414,7 +415,8 @@ impl fmt::Display for ImprintError {
             }
             Self::Character { row, column, found } => write!(
                 f,
-                "row {row}, column {column}: found {found:?}, expected '#' or '.'"
+                "row {row}, column {column}: found {}, expected '#' or '.'",
+                quoted_character(*found)
             ),
         }
     }

@@ -51,7 +51,9 @@ impl fmt::Display for NameError {
                 "{} cannot be in a name, only letters, digits, space, - _ .",
                 quoted_character(*found)
             ),
-            Self::Start(found) => write!(f, "a name cannot start with {found:?}"),
+            Self::Start(found) => {
+                write!(f, "a name cannot start with {}", quoted_character(*found))
+            }
             Self::End => f.write_str("a name cannot end with a space"),
         }
     }

@@ -7,6 +7,7 @@ use std::fmt;
 
 use crate::imprint::{Imprint, ImprintError};
 use crate::parameter::number::counted;
+use crate::quote::quoted_character;
 
 /// The error for bytes that are not an imprint as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,7 +41,8 @@ impl fmt::Display for TextError {
                 (line, column, message)
             }
             Self::Row(ImprintError::Character { row, column, found }) => {
-                (row, column, format!("found {found:?}, expected '#' or '.'"))
+                let found = quoted_character(found);
+                (row, column, format!("found {found}, expected '#' or '.'"))
             }
             Self::Row(ImprintError::Ragged {
                 row,

@@ -86,7 +86,7 @@ fn a_bad_imprint_is_reported_with_line_and_column() {
     );
     bad(
         b"##\n#\x1b",
-        "line 2, column 2: found '\\u{1b}', expected '#' or '.'",
+        "line 2, column 2: found U+001B, expected '#' or '.'",
     );
     bad(
         b"##\n#\0",
