@@ -85,7 +85,10 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
             return None;
         }
         Message::Mouse(mouse) => {
-            app.count = None;
+            // A count belongs to the next key, and so does the notice that shows it.
+            if app.count.take().is_some() {
+                app.notice = None;
+            }
             let meant = mouse::act(app, mouse)?;
             return handle(app, meant);
         }

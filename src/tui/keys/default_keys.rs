@@ -56,7 +56,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Home => FIRST_COLUMN, End => LAST_COLUMN] "" "cursor to the first, the last column";
         [PageUp => FIRST_ROW, PageDown => LAST_ROW] "" "cursor to the first, the last row";
         [Char('1') => COUNT_ONE, Char('2') => COUNT_TWO, Char('3') => COUNT_THREE, Char('4') => COUNT_FOUR, Char('5') => COUNT_FIVE, Char('6') => COUNT_SIX, Char('7') => COUNT_SEVEN, Char('8') => COUNT_EIGHT, Char('9') => COUNT_NINE, Char('0') => COUNT_ZERO]
-            "" "a count: repeats the next key, as in 12 Right";
+            "" "a count: repeats the next step, as in 12 Right";
         [Char(' ') => TOGGLE] "toggle" "turn the taxel under the cursor on or off";
         [Char('u') => UNDO] "undo" "undo the last change, then earlier ones";
         [Char('U') => REDO, Ctrl('r') => REDO] "" "redo what was undone";
@@ -207,7 +207,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Tab => NEXT_PAGE, BackTab => PREVIOUS_PAGE]
             "page" "next, previous page";
         [Char('d') => NEXT_DESCRIPTOR, Char('D') => PREVIOUS_DESCRIPTOR]
-            "descriptor" "next, previous descriptor";
+            "descriptor" "next, previous descriptor, except on the map";
         [Char('m') => MARK, Char('\'') => JUMP]
             "" "mark the selection with a letter; go to a mark";
         [Char('x') => EXPORT]
@@ -243,7 +243,7 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
             "" "choose a descriptor";
         [Home => FIRST, End => LAST] "" "first, last descriptor";
         [LEFT => COLUMNS_LEFT, RIGHT => COLUMNS_RIGHT]
-            "columns" "earlier, later columns";
+            "columns" "columns further left, further right";
         [Enter => HISTOGRAM] "histogram" "its histogram";
     }
 
@@ -354,7 +354,8 @@ pub static DEFAULT_KEYS: &[Binding] = table! {
         [Esc => CANCEL, Ctrl('g') => CANCEL, Char('q') => CANCEL] "close" "back to Recognise";
     }
 
-    /// While sizes are being checked, Enter is refused, and Esc stops the work and leaves the page open.
+    /// While sizes are being checked, Enter is refused. The first Esc stops the work and leaves the page open, a second
+    /// one closes it.
     Separate {
         [UP => SCROLL_UP, DOWN => SCROLL_DOWN] "size" "previous, next size";
         [PageUp => PAGE_UP, PageDown => PAGE_DOWN] "" "ten sizes back, forward";
