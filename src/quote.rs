@@ -70,7 +70,6 @@ pub(crate) fn as_argument(word: &str) -> String {
 }
 
 /// Joins names as in a sentence: `a, b or c`, with `word` before the last.
-#[cfg(feature = "tui")]
 pub(crate) fn joined(names: impl IntoIterator<Item: Into<String>>, word: &str) -> String {
     let names: Vec<String> = names.into_iter().map(Into::into).collect();
     match names.split_last() {

@@ -122,8 +122,8 @@ pub enum AcquireEvent<'a> {
     /// The counts so far. Reported about ten times a second, with or without frames, unless a source is read as fast
     /// as possible.
     Tick(&'a StreamCounts),
-    /// No frame for at least two seconds, and for three times as long as the source took for the last one. Reported
-    /// once until the next frame, and again if bytes begin to come.
+    /// No frame for at least two seconds, and for three times as long as the source took for the last one (but a
+    /// minute is enough). Reported once until the next frame, and again if bytes begin to come.
     Silent {
         /// Bytes per second that came meanwhile.
         bytes_per_second: f64,

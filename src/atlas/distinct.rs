@@ -48,8 +48,8 @@ impl Atlas {
         &self.layout
     }
 
-    /// Adds the imprints of a counter, with their counts times `multiplicity`. Returns the number that each imprint has in
-    /// this atlas.
+    /// Adds the imprints of a counter, with their counts times `multiplicity`. Returns the number that each imprint has
+    /// in this atlas.
     pub(crate) fn add(&mut self, other: &ImprintCounter, multiplicity: u64) -> Vec<u32> {
         let tallies = other.tallies().iter().enumerate();
         tallies

@@ -187,8 +187,8 @@ pub fn read(input: impl Read + Seek) -> Result<Model, ArchiveError> {
     Ok(Model::of_table(head, &keys, counts_of)?)
 }
 
-/// Reads the keys in the order of the file. A duplicate is refused at once, so the table never takes much more memory than
-/// the file.
+/// Reads the keys in the order of the file. A duplicate is refused at once, so the table never takes much more memory
+/// than the file.
 fn keys<R: Read + Seek>(archive: &mut ArrayReader<R>) -> Result<KeyTable, ArchiveError> {
     let heights = archive.bytes("height", Dtype::U8)?;
     let widths = archive.bytes("width", Dtype::U8)?;

@@ -5,6 +5,7 @@ use std::fmt;
 use crate::parameter::number::{complaint, short};
 use crate::parameter::range::Range;
 use crate::parameter::table::{Parameter, Unit};
+use crate::quote::joined;
 
 /// The error for a value that is not allowed. The message names the parameter, the value, and what is expected.
 #[derive(Clone, Debug, PartialEq)]
@@ -135,9 +136,5 @@ fn whole(parameter: Parameter) -> &'static str {
 }
 
 fn keys(parameters: &[Parameter]) -> String {
-    let keys: Vec<&str> = parameters.iter().map(|own| own.row().key).collect();
-    match keys.split_last() {
-        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
-        _ => keys.concat(),
-    }
+    joined(parameters.iter().map(|own| own.row().key), "or")
 }

@@ -155,8 +155,8 @@ fn union(one: Extent, other: Extent) -> Extent {
 /// Returns the ranges of a sweep of `source`, with defaults for those that are not given: for x0 and y0, the cell in
 /// which the shape lies if no pose is cut off there, otherwise one around the middle.
 ///
-/// A zoom without a range stays that of the shape. Its angle matters only if it is in the ranges. Given ranges stay as
-/// they are.
+/// The shape's own position matters. Its zoom is kept if that axis has no range; its angle matters only if it is in
+/// the ranges. Given ranges stay as they are.
 ///
 /// # Errors
 /// Returns an error if a given range exceeds that of its parameter, or a figure has zooms other than 1.
@@ -172,7 +172,7 @@ fn union(one: Extent, other: Extent) -> Extent {
 /// assert_eq!(ranges[Axis::X0].to_string(), "1:1.99:0.01");
 ///
 /// // A picture keeps its zooms.
-/// let bar = Picture::new("###".parse().unwrap()).zoom(0.5, 2.0).on(&sensor)?;
+/// let bar = Picture::of("###".parse().unwrap()).zoom(0.5, 2.0).on(&sensor)?;
 /// let ranges = default_ranges(&bar.into(), &sensor, Anchor::Centre, &given)?;
 /// assert_eq!((ranges[Axis::ZoomX].to_string(), ranges[Axis::ZoomY].to_string()), ("0.5".into(), "2".into()));
 ///

@@ -156,7 +156,7 @@ fn surprising_changes_of_keys_are_refused_with_their_places() {
     );
     refused(
         "keys.matrix.x = 'increase'\n",
-        "1:17: \"increase\" is no action of [keys.matrix]; 'taxel config' lists the actions",
+        "1:17: \"increase\" is not an action of [keys.matrix]; 'taxel config' lists them",
     );
     refused(
         "[keys.list]\nj = 'scroll-down'\n",

@@ -111,7 +111,7 @@ Examples:
   echo '{"imprint":["##","#."]}' | taxel batch"###;
 
 /// `taxel script`: all commands of a script.
-pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command per line; places are column,row of the screen, from 0:
+pub(crate) const SCRIPT_EXAMPLES: &str = r#"One command per line; positions are column,row of the screen, from 0:
   Size 80x24          Set ascii on        Set theme light   Set columns 8
   Set library "DIR"   Set shape {...}     Set leftover {}   Set mouse off
   Resize 100x30       Seed 7 (of random touches)

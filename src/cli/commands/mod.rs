@@ -1,8 +1,9 @@
 //! The commands, one file each.
 //!
 //! A command takes its checked arguments and returns its answer as text or bytes, which [`crate::cli::run`] prints.
-//! `batch`, `recognise`, `frames`, `watch` and `script`, whose answers come one by one, write them themselves. Notes and
-//! progress go to standard error meanwhile. Files that a command writes are complete or do not exist: they get their names last.
+//! `batch`, `recognise`, `frames`, `watch` and `script`, whose answers come one by one, write them themselves. Notes
+//! and progress go to standard error meanwhile. Files that a command writes are complete or do not exist: they get
+//! their names last.
 
 pub(super) mod export;
 

@@ -26,6 +26,7 @@ use crate::cli::input::lines::{self, LineInput, MAX_LINE};
 use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{AnswerJson, AnswerText};
 use crate::cli::output::charset::Charset;
+use crate::cli::output::note::note;
 use crate::cli::output::pose::PoseReport;
 use crate::cli::output::progress::Progress;
 use crate::formats::Content;
@@ -66,8 +67,8 @@ pub(crate) fn recognise(
     };
     match input {
         RecogniseInput::Touch(content) => {
-            if let Some(note) = recogniser.other_threshold(&content) {
-                crate::cli::note(&note, charset);
+            if let Some(text) = recogniser.other_threshold(&content) {
+                note(&text, charset);
             }
             recogniser.answer_imprint(content.imprint(), charset, output)
         }

@@ -195,8 +195,8 @@ fn set(
         let model = model.ready(&|poses| Progress::new(poses, asked.quiet, charset))?;
         let positions = asked.positions.or_else(|| positions_of(&model));
         let positions = positions.unwrap_or(CellPositions::FINE);
-        for note in departures(&model, asked) {
-            crate::cli::note(&note, charset);
+        for text in departures(&model, asked) {
+            note(&text, charset);
         }
         let separation = Separation::new(model.shapes().to_vec())?
             .positions(positions)

@@ -73,8 +73,8 @@ impl LineWriter {
         self.thread.is_finished()
     }
 
-    /// Sends a line. If too many are waiting, it waits until there is room or a signal comes, or drops the line if
-    /// `may_give_up`. Returns false once nothing can be written.
+    /// Sends a line. If too many are waiting, it waits until there is room, or drops the line if `may_give_up`; after
+    /// a signal, it drops the line, uncounted. Returns false once nothing can be written.
     pub(crate) fn send(&mut self, mut line: PendingLine, may_give_up: bool) -> bool {
         loop {
             line = match self.lines.try_send(line) {

@@ -1,7 +1,7 @@
 //! Changes of the document: touching, moving, turning, zooming, undo and redo.
 //!
 //! Each change calls `change`, `begin` or `travel`, which bring everything that depends on the document back into
-//! range: the cursor, the chosen region, the mode.
+//! range: the chosen region, the mode. The cursor stays where it was put; [`App::cursor`] keeps it on the sensor.
 
 use crate::formats::value::counted;
 use crate::imprint::Imprint;

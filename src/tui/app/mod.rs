@@ -11,7 +11,7 @@
 //! quit       the end, and the question before it
 //! steps      the steps of the history, in words
 //! layout     the panes of the screen                   view: draws them
-//! notice  what is said at the bottom, and the area that it leaves to a page
+//! notice     what is said at the bottom, and the area that it leaves to a page
 //! menu  title  status      the lines above and below
 //! ```
 

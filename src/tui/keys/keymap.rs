@@ -52,7 +52,7 @@ pub enum KeymapError {
     #[error("{0} is bound twice here")]
     Twice(Key),
     /// The place does not have the action.
-    #[error("{action:?} is no action of [keys.{}]; 'taxel config' lists the actions", context.name())]
+    #[error("{action:?} is not an action of [keys.{}]; 'taxel config' lists them", context.name())]
     Elsewhere {
         /// The name of the action.
         action: &'static str,
@@ -392,7 +392,7 @@ mod tests {
             (change(Matrix, "x", "undo"), "x is bound twice here"),
             (
                 change(Matrix, "a", "increase"),
-                "\"increase\" is no action of [keys.matrix]; 'taxel config' lists the actions",
+                "\"increase\" is not an action of [keys.matrix]; 'taxel config' lists them",
             ),
             (
                 change(Matrix, "d", "undo"),

@@ -227,8 +227,8 @@ impl Live {
         self.seen_gaps = self.status.gaps;
     }
 
-    /// Returns why a requested recording is missing or leaves out frames, why no frames come, and which gaps the user has not seen yet;
-    /// None if all is well.
+    /// Returns why a requested recording is missing or leaves out frames, why no frames come, and which gaps the user
+    /// has not seen yet; None if all is well.
     pub fn trouble(&self) -> Option<String> {
         let source = match &self.status.state {
             SourceState::Silent(why) | SourceState::Lost(why) | SourceState::Failed(why) => {

@@ -68,7 +68,7 @@ impl ListDialog {
         }
         self.entries = entries;
         self.listed = true;
-        self.sift();
+        self.apply_filter();
     }
 
     /// Returns true if the shapes of the list are known.
@@ -136,12 +136,12 @@ impl ListDialog {
     /// Types or deletes in the filter, if the message does that.
     pub fn edit(&mut self, message: &Message) {
         if self.filter.take(message) {
-            self.sift();
+            self.apply_filter();
         }
     }
 
     /// Applies the filter; the best match is selected.
-    fn sift(&mut self) {
+    fn apply_filter(&mut self) {
         let wanted = folded(self.filter());
         // The order: the name itself, names that begin with the typed filter, names that contain it.
         let rank = |entry: &LibraryEntry| {

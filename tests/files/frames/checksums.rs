@@ -81,7 +81,7 @@ fn a_wrong_checksum_of_an_array_is_reported_as_damage() {
     assert_eq!(error(&damaged).as_deref(), Some(expected));
     // A byte after the last frame.
     let longer = recorded(&archive("pad.npy", &[&array[..], &[7]].concat()), None);
-    let expected = "pad: the file has more bytes than its header states for 3 frames";
+    let expected = "pad: more bytes than the header states for 3 frames";
     assert_eq!(
         (longer.frames.len(), error(&longer).as_deref()),
         (3, Some(expected))

@@ -299,7 +299,7 @@ pub(in crate::formats::recording) fn read(
 pub(super) fn end(input: &mut impl Read, layout: &ArrayLayout) -> Result<(), RecordingError> {
     if fill(input, &mut [0])? > 0 {
         let frames = counted(layout.frames, "frame");
-        let message = format!("the file has more bytes than its header states for {frames}");
+        let message = format!("more bytes than the header states for {frames}");
         return Err(RecordingError::damaged(message));
     }
     Ok(())

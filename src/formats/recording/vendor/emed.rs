@@ -18,9 +18,9 @@
 //! …
 //! Force    0.00    0.00    0.38    …
 //! ```
-//! `Matrix` counts columns × rows of the whole sensor, of which only the loaded part is printed. Values are in kPa;
-//! the forces of rows, of columns and of all cells are in N, and are checked. The time counts
-//! from the first picture: the difference of their numbers times `Time/picture`. Source: exports of novel's emed software.
+//! `Matrix` counts columns × rows of the whole sensor, of which only the loaded part is printed. Values are in kPa; the
+//! forces of rows, of columns and of all cells are in N, and are checked. The time counts from the first picture: the
+//! difference of their numbers times `Time/picture`. Source: exports of novel's emed software.
 
 use std::io::BufRead;
 

@@ -2,8 +2,8 @@
 //!
 //! A range is `start:end:step` or a single number, as on the command line. The zooms of a picture are proposed, and the
 //! ranges of x0 and y0: the cell that the shape lies in if the sensor cuts nothing off there at any of the angles,
-//! otherwise a cell around the middle. The proposals follow the other fields until they are edited. Each valid grid is sent to a worker once,
-//! which measures how long its sweep would take; an estimate for another grid is ignored.
+//! otherwise a cell around the middle. The proposals follow the other fields until they are edited. Each valid grid is
+//! sent to a worker once, which measures how long its sweep would take; an estimate for another grid is ignored.
 
 use std::time::Duration;
 
