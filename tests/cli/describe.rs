@@ -90,7 +90,7 @@ fn a_bad_imprint_is_reported_with_line_and_column() {
     );
     bad(
         b"##\n#\0",
-        "line 2, column 2: found '\\0', expected '#' or '.'",
+        "line 2, column 2: found U+0000, expected '#' or '.'",
     );
     bad(
         b"##\n.\xff",
