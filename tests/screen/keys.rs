@@ -656,6 +656,10 @@ fn touches_are_kept_combined_and_forgotten() {
     shows(&format!("{same}a"), &["2 touches kept"]);
     shows(&format!("{same}aa"), &["this touch is already kept"]);
     shows(
+        &format!("{same}a<Space><Space>a"),
+        &["this touch is already kept"],
+    );
+    shows(
         &format!("{one}a><gt>"),
         &["likely: octagon", "1 touch kept; x forgets"],
     );
@@ -797,7 +801,8 @@ fn a_count_is_refused_before_what_is_done_only_once() {
     shows("2<Space><Space>1<Left><Space>", &["NA 2 in all"]);
     shows("f<Enter>g<Right>2<Esc>", &["held", "at 4.01"]);
     hides("f<Enter>g<Right>2<Esc>", &["2 times"]);
-    hides("2<C-c>", &["2 times"]);
+    assert!(session("2<C-c>").app().ended());
+    shows("f<Enter>2q", &["Quit anyway?"]);
 }
 
 /// A smaller sensor that is undone leaves the cursor where it was.

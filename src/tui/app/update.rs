@@ -102,12 +102,12 @@ fn handle(app: &mut App, message: Message) -> Option<Effect> {
 }
 
 /// Handles a message of the user as often as the count before it says. What is done only once is refused after a
-/// count, and what closes something only cancels the count.
+/// count, Esc only cancels the count, and what quits or closes a page ignores it.
 fn with_count(app: &mut App, message: &Message) -> Option<Effect> {
     let count = app.count.take().unwrap_or(1);
-    if count > 1 && !message.repeats() {
+    if count > 1 && !message.repeats() && *message != Message::Quit {
         app.notice = None;
-        if !matches!(message, Message::Cancel | Message::PutBack | Message::Quit) {
+        if !matches!(message, Message::Cancel | Message::PutBack) {
             refuse(
                 app,
                 "a count repeats only steps: moves, turns, zooms, regions, undo, redo",
@@ -115,7 +115,8 @@ fn with_count(app: &mut App, message: &Message) -> Option<Effect> {
         }
         return None;
     }
-    repeat(app, message, count)
+    let times = if message.repeats() { count } else { 1 };
+    repeat(app, message, times)
 }
 
 /// Takes a digit of a count and shows the count, or that it was cut to the largest one.

@@ -118,6 +118,8 @@ pub struct Recognition {
     source: Option<Source>,
     /// The threshold at which a shape touched the matrix; None if no shape does.
     threshold: Option<f64>,
+    /// The shape that left the last kept touch, if that is known.
+    kept_source: Option<Source>,
     /// Whether the last kept touch is the one on the matrix.
     present_kept: bool,
     /// The answer about all touches; None without a model or a touch.
@@ -147,6 +149,7 @@ impl Recognition {
             present: Imprint::empty(MatrixSize::SMALLEST),
             source: None,
             threshold: None,
+            kept_source: None,
             present_kept: false,
             answer: None,
             searched: None,
@@ -391,7 +394,8 @@ impl Recognition {
     pub fn show(&mut self, imprint: Imprint, source: Option<&Source>) {
         if imprint != self.present || source != self.source.as_ref() {
             (self.present, self.source) = (imprint, source.cloned());
-            self.present_kept = false;
+            let is_last = self.kept.last() == Some(&self.present);
+            self.present_kept = is_last && self.kept_source == self.source;
             self.ask();
         }
     }
@@ -402,6 +406,7 @@ impl Recognition {
             return false;
         }
         self.kept.push(self.present);
+        self.kept_source = self.source.clone();
         self.present_kept = true;
         true
     }
@@ -409,7 +414,7 @@ impl Recognition {
     /// Replaces the kept touches by those of a shape; the last one is on the matrix.
     pub fn set_touches(&mut self, touches: Vec<Imprint>) {
         if let Some(&last) = touches.last() {
-            (self.present, self.source) = (last, None);
+            (self.present, self.source, self.kept_source) = (last, None, None);
         }
         // A single touch is the one on the matrix, which need not be kept.
         self.present_kept = touches.len() > 1;
