@@ -29,13 +29,14 @@ const MOMENT: Duration = Duration::from_millis(100);
 /// The longest wait for a frame, in seconds: a day.
 const LONGEST: f64 = 86_400.0;
 
-/// A time between two frames is not waited for if it is longer than this many seconds …
+/// The longest time between two frames, in seconds, that always counts as a pause and is waited for. A longer one
+/// counts as a change of the clock if it is also longer than [`PAUSE_RATIO`] times the one before.
 const PAUSE: f64 = 60.0;
 
-/// … and than this many times the one before.
+/// See [`PAUSE`].
 const PAUSE_RATIO: f64 = 10.0;
 
-/// The seconds that such a time is played as.
+/// The seconds that a change of the clock is played as.
 const PLAYED: f64 = 2.0;
 
 /// Creates the error for a followed file whose place a recording of another kind has taken.

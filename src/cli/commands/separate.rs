@@ -225,7 +225,7 @@ fn is_model(what: &OsStr, shelf: &Shelf) -> bool {
     ending(Path::new(what)) == "npz" || model::is_kept(&name, shelf) || built_in()
 }
 
-/// Returns notes about what is different from the model, even at scale 1 and its threshold; none if they are not wanted.
+/// Returns notes about what differs from the model, even at scale 1 and its threshold; none with `--quiet`.
 fn departures(model: &Model, asked: &SeparateArguments) -> Vec<String> {
     let mut notes = Vec::new();
     if asked.quiet {

@@ -153,7 +153,7 @@ impl Question {
         }
     }
 
-    /// Creates the question whether to replace a file or a shape of a name that exists; yes sends the message `yes`.
+    /// Creates the question whether to replace the file or the shape of this name; yes sends the message `yes`.
     pub fn replaces(name: &str, yes: Message) -> Self {
         Self::new(format!("{name:?} already exists. Replace it?"), yes)
     }
