@@ -44,11 +44,13 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use arguments::definitions;
+use arguments::form::Form;
 use arguments::frames::FramesArguments;
+use arguments::kept::Kept;
+use arguments::library::LibraryCommand;
 use arguments::model::ModelRequest;
-use arguments::request::{
-    self, Form, Invocation, Kept, LibraryCommand, Request, SweepArguments, Swept,
-};
+use arguments::request::{self, Invocation, Request};
+use arguments::sweep::{SweepArguments, Swept};
 use commands::export::Exported;
 use commands::frames::FramesOutput;
 use commands::naming::FrameNamer;

@@ -2,8 +2,53 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, ArgMatches, Command, value_parser};
+
+use crate::cli::arguments::flags::{self, misused, of_sensor, replace, what};
+use crate::cli::arguments::help::EXPORT_EXAMPLES;
+use crate::cli::arguments::{form, parameters};
+use crate::cli::error::CliError;
+use crate::cli::settings::pitch::Pitch;
+use crate::cli::settings::resolved::Effective;
 use crate::formats::{DrawingFormat, ImprintFormat};
+use crate::parameter::Parameter;
 use crate::storage::Existing;
+
+/// Defines `taxel export NAME|FILE TO`, such as `taxel export washer washer.svg`. Standard output is `-` with
+/// `--format`.
+pub(super) fn command() -> Command {
+    let to = Arg::new("to")
+        .value_name("TO")
+        .required(true)
+        .value_parser(value_parser!(PathBuf))
+        .help("File to write; '-' for standard output");
+    Command::new("export")
+        .about("Write a shape for other programs, or draw it")
+        .after_help(EXPORT_EXAMPLES)
+        .arg(what(
+            "Shape of the library, or file; '-' for standard input",
+        ))
+        .arg(to)
+        .args(of_sensor(&[Parameter::Pitch]))
+        .arg(format())
+        .arg(replace())
+}
+
+/// Defines `--format`, for file names whose extension does not tell the format.
+pub(super) fn format() -> Arg {
+    let names = names();
+    let help = format!(
+        "Format, if not given by the extension: {}",
+        names.join(", ")
+    );
+    Arg::new("format")
+        .long("format")
+        .value_name("FORMAT")
+        .value_parser(PossibleValuesParser::new(names))
+        .hide_possible_values(true)
+        .help(parameters::wrapped(&help, 52))
+}
 
 /// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,6 +121,38 @@ impl Export {
             format,
             existing,
         })
+    }
+
+    /// Returns the file to write, in the format given by `--format` or by its extension.
+    pub(super) fn of(
+        matches: &ArgMatches,
+        path: &Path,
+        command: &mut Command,
+        name: &str,
+    ) -> Result<Self, CliError> {
+        let format = matches.get_one::<String>("format").map(String::as_str);
+        let export = Self::new(path, format, flags::existing(matches));
+        export.map_err(|message| misused(command, name, &message))
+    }
+
+    /// Returns the pitch for an export.
+    ///
+    /// # Errors
+    /// Returns [`CliError::Unused`] if a flag gives one and nothing is drawn.
+    pub(super) fn pitch(
+        &self,
+        matches: &ArgMatches,
+        settings: &Effective,
+    ) -> Result<Pitch, CliError> {
+        let pitch = form::pitch_of(matches, settings)?;
+        if pitch.given.is_some() && !self.is_drawing() {
+            let reason = "on this format: it is for drawings".to_owned();
+            return Err(CliError::Unused {
+                flag: "pitch",
+                reason,
+            });
+        }
+        Ok(pitch)
     }
 
     /// Returns true if it is a drawing.

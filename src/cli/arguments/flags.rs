@@ -13,7 +13,7 @@ use std::str::FromStr;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::error::ErrorKind;
-use clap::{Arg, ArgAction, ArgGroup, ArgMatches};
+use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command};
 
 use crate::cli::arguments::parameters;
 use crate::cli::error::CliError;
@@ -22,6 +22,7 @@ use crate::memory::MemorySize;
 use crate::parameter::{Parameter, number};
 use crate::pose::{Anchor, Axis, DecimalRange, GivenRanges, Ranges};
 use crate::sensor::SENSOR_PARAMETERS;
+use crate::storage::Existing;
 use crate::sweep::Shard;
 
 /// Defines a flag without a value, `--NAME`.
@@ -175,6 +176,45 @@ pub(super) fn resume() -> Arg {
 /// Defines `--force` for commands that write a file.
 pub(super) fn replace() -> Arg {
     force().help("Replace an existing file")
+}
+
+/// The action if the file of a shard exists already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ShardFile {
+    /// Report an error: the default.
+    Refused,
+    /// Replace it: `--force`.
+    Replaced,
+    /// Compute nothing if the file is this shard and complete; otherwise report an error: `--resume`.
+    Resumed,
+}
+
+impl ShardFile {
+    /// Returns what the flags ask for. A merge has no `--resume`.
+    pub(super) fn of(matches: &ArgMatches) -> Self {
+        match (existing(matches), matches.try_get_one("resume")) {
+            (Existing::Replaced, _) => Self::Replaced,
+            (Existing::Kept, Ok(Some(true))) => Self::Resumed,
+            (Existing::Kept, _) => Self::Refused,
+        }
+    }
+
+    /// Returns whether to replace a file that appears meanwhile.
+    pub(crate) fn existing(self) -> Existing {
+        match self {
+            Self::Replaced => Existing::Replaced,
+            Self::Refused | Self::Resumed => Existing::Kept,
+        }
+    }
+}
+
+/// Returns what to do about files that exist: `--force` replaces them.
+pub(crate) fn existing(matches: &ArgMatches) -> Existing {
+    if matches.get_flag("force") {
+        Existing::Replaced
+    } else {
+        Existing::Kept
+    }
 }
 
 /// Defines `--quiet`.
@@ -337,4 +377,13 @@ pub(super) fn number_of<T: Copy + Send + Sync + 'static>(
     default: T,
 ) -> T {
     matches.get_one(id).copied().unwrap_or(default)
+}
+
+/// Returns a usage error with the usage of the command `name`.
+pub(super) fn misused(command: &mut Command, name: &str, message: &str) -> CliError {
+    let error = command.find_subcommand_mut(name).map_or_else(
+        || clap::Error::raw(ErrorKind::ArgumentConflict, format!("{message}\n")),
+        |command| command.error(ErrorKind::ArgumentConflict, message),
+    );
+    error.into()
 }

@@ -13,14 +13,17 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
-use crate::cli::arguments::flags::{name_or_path, option, parse_number, switch, whole};
+use crate::cli::arguments::flags::{
+    json, name_or_path, of_sensor, option, parse_number, required, switch, whole,
+};
 use crate::cli::arguments::help::FRAMES_EXAMPLES;
 use crate::cli::arguments::recognise::parse_noise;
+use crate::cli::arguments::{kept, parameters};
 use crate::cli::error::CliError;
 use crate::cli::settings::sensors::{LEAST, SensorSettings};
 use crate::frame::{Crop, FrameError, FrameSize, Rule, RuleOrigin, SetRule};
 use crate::imprint::Imprint;
-use crate::parameter::number;
+use crate::parameter::{Parameter, number};
 use crate::recognition::Noise;
 
 /// The frames that are answered.
@@ -83,7 +86,7 @@ pub(crate) struct FramesArguments {
     pub(crate) naming: NamingArguments,
 }
 
-/// Defines `taxel frames FILE`, without the flags about answers, which [`definitions`](super::definitions) adds.
+/// Defines `taxel frames FILE`.
 pub(crate) fn command() -> Command {
     let file = Arg::new("file")
         .value_name("FILE")
@@ -118,14 +121,37 @@ pub(crate) fn command() -> Command {
         }))
         .args(rules().map(|arg| arg.requires("choice")))
         .args(naming().map(|arg| arg.requires("choice").conflicts_with("noise-report")))
+        .args(
+            of_sensor(&[Parameter::Pitch])
+                .into_iter()
+                .map(|arg| arg.requires("choice").conflicts_with("noise-report")),
+        )
+        .args(keeping())
+        .group(kept::group())
+        .args([json().conflicts_with("heat"), heat()])
 }
 
 /// Defines `--heat`, which shows values. It excludes `--json`, which has no place for values, and a report on many
 /// frames.
-pub(crate) fn heat() -> Arg {
+fn heat() -> Arg {
     switch("heat", "Show the values in shades, in drawings too")
         .requires("choice")
         .conflicts_with("noise-report")
+}
+
+/// Defines the flags that keep frames. With `--export`, each frame gets a file of its own. `--save` stores a single
+/// shape, so it excludes `--all`, and fails for a label that several frames have.
+fn keeping() -> [Arg; 4] {
+    kept::flags().map(|arg| match arg.get_id().as_str() {
+        "save" => arg
+            .requires("choice")
+            .conflicts_with_all(["all", "noise-report"]),
+        "export" => arg.requires("choice").help(parameters::wrapped(
+            "Write the imprint, or a drawing of it, with the frame's number in the name; with --noise-report the mask",
+            52,
+        )),
+        _ => arg,
+    })
 }
 
 /// Defines the flags that prepare frames. `--rows` and `--columns` have ids of their own: they are not those of a
@@ -287,11 +313,8 @@ impl FramesArguments {
     ///
     /// # Errors
     /// Returns an error if a threshold is out of range.
-    pub(crate) fn of(
-        matches: &ArgMatches,
-        file: PathBuf,
-        settings: &SensorSettings,
-    ) -> Result<Self, CliError> {
+    pub(crate) fn of(matches: &ArgMatches, settings: &SensorSettings) -> Result<Self, CliError> {
+        let file = required(matches, "file")?;
         let choice = match (matches.get_one("frame"), matches.get_one("label")) {
             (Some(&number), _) => Some(FrameChoice::Number(number)),
             (_, Some(&label)) => Some(FrameChoice::Label(label)),

@@ -2,14 +2,19 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `definitions` | the commands and their flags, for clap |
+//! | `definitions` | the program: all commands, and the order of their flags |
+//! | `touch` | the commands `figure`, `picture`, `describe` and `batch` |
+//! | `export` | the command `export`; the file and format of an export |
+//! | `kept` | `--save` and `--export` of a touch |
+//! | `form` | the form of an answer: JSON or a table, with the pitch |
+//! | `sweep` | the commands `sweep` and `merge` |
+//! | `model/` | the command `model`, with a file for each subcommand |
+//! | `recognise` | the command `recognise` |
+//! | `frames`, `watch` | the commands `frames` and `watch`, which share the flags of processing |
+//! | `library` | the command `library` |
 //! | `program` | `script`, `config`, `completions`, `man` and the screen's own flags |
 //! | `flags` | flags that several commands have |
 //! | `parameters` | flags made from the table of parameters, and their values |
-//! | `export` | the file and format of an export |
-//! | `frames`, `watch` | the commands `frames` and `watch`, which share the flags of processing |
-//! | `model/` | the command `model`, with a file for each subcommand |
-//! | `recognise` | the command `recognise` |
 //! | `groups` | the commands grouped by purpose, as the help lists them |
 //! | `help` | the longer texts of the help |
 //! | `advice` | tips for arguments that are refused |
@@ -27,7 +32,17 @@ pub(super) mod program;
 
 pub(super) mod flags;
 
+pub(super) mod touch;
+
 pub(super) mod export;
+
+pub(super) mod kept;
+
+pub(super) mod form;
+
+pub(super) mod sweep;
+
+pub(super) mod library;
 
 pub(super) mod frames;
 

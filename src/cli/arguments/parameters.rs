@@ -12,7 +12,6 @@ use crate::figure::{Figure, FigureKind};
 use crate::parameter::{PARAMETERS, Parameter, ParameterError, Unit, number};
 use crate::picture::{PICTURE_PARAMETERS, Picture};
 use crate::sensor::{SENSOR_PARAMETERS, Sensor};
-use crate::storage::Existing;
 use crate::tui::widget::columns::broken;
 
 /// The width of help texts, in characters; with the flags on their left they fit into 80 columns.
@@ -196,44 +195,5 @@ impl Given {
         self.fold(&PICTURE_PARAMETERS, picture, |picture, parameter, value| {
             picture.with(parameter, value, sensor)
         })
-    }
-}
-
-/// The action if the file of a shard exists already.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ShardFile {
-    /// Report an error: the default.
-    Refused,
-    /// Replace it: `--force`.
-    Replaced,
-    /// Compute nothing if the file is this shard and complete; otherwise report an error: `--resume`.
-    Resumed,
-}
-
-impl ShardFile {
-    /// Returns what the flags ask for. A merge has no `--resume`.
-    pub(super) fn of(matches: &ArgMatches) -> Self {
-        match (existing(matches), matches.try_get_one("resume")) {
-            (Existing::Replaced, _) => Self::Replaced,
-            (Existing::Kept, Ok(Some(true))) => Self::Resumed,
-            (Existing::Kept, _) => Self::Refused,
-        }
-    }
-
-    /// Returns whether to replace a file that appears meanwhile.
-    pub(crate) fn existing(self) -> Existing {
-        match self {
-            Self::Replaced => Existing::Replaced,
-            Self::Refused | Self::Resumed => Existing::Kept,
-        }
-    }
-}
-
-/// Returns what to do about files that exist: `--force` replaces them.
-pub(crate) fn existing(matches: &ArgMatches) -> Existing {
-    if matches.get_flag("force") {
-        Existing::Replaced
-    } else {
-        Existing::Kept
     }
 }

@@ -6,11 +6,12 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Command, value_parser};
 
-use crate::cli::arguments::flags::{option, switch};
+use crate::cli::arguments::flags::{self, misused, option, switch};
 use crate::cli::arguments::help::{
     COMPLETIONS_EXAMPLES, CONFIG_EXAMPLES, MAN_EXAMPLES, SCRIPT_EXAMPLES,
 };
 use crate::cli::arguments::parameters;
+use crate::cli::error::CliError;
 use crate::cli::input::content::InputSource;
 use crate::cli::settings::file::AUTO;
 use crate::storage::Existing;
@@ -56,7 +57,7 @@ impl Script {
             styles: matches.get_flag("styles"),
             json: matches.get_flag("json"),
             drawings: matches.get_one::<PathBuf>("svg").cloned(),
-            existing: parameters::existing(matches),
+            existing: flags::existing(matches),
             allow_outside: matches.get_flag("allow-outside"),
         }
     }
@@ -217,4 +218,25 @@ pub(crate) fn size() -> Arg {
 /// the flag before clap does, because messages about wrong arguments need it.
 pub(crate) fn ascii() -> Arg {
     switch("ascii", "Use ASCII only, as if the locale were not UTF-8")
+}
+
+/// Returns the folder for manual pages, if one is given.
+///
+/// # Errors
+/// Returns a usage error if the folder is the name of a command: its page was meant.
+pub(super) fn man_folder(
+    matches: &ArgMatches,
+    command: &mut Command,
+) -> Result<Option<PathBuf>, CliError> {
+    let folder = matches.get_one::<PathBuf>("folder").cloned();
+    let named = folder.as_ref().and_then(|folder| folder.to_str());
+    match named.filter(|name| command.find_subcommand(name).is_some()) {
+        Some(name) => {
+            let message = format!(
+                "'{name}' is a command, which 'taxel help {name}' explains; as a folder, write './{name}'"
+            );
+            Err(misused(command, "man", &message))
+        }
+        None => Ok(folder),
+    }
 }

@@ -14,7 +14,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Command};
 
 use crate::acquire::{AcquireOptions, Playback};
-use crate::cli::arguments::flags::{self, option, switch, whole};
+use crate::cli::arguments::flags::{self, option, required, switch, whole};
 use crate::cli::arguments::frames::{self, NamingArguments, ProcessingArguments};
 use crate::cli::arguments::help::WATCH_EXAMPLES;
 use crate::cli::arguments::{parameters, program};
@@ -115,11 +115,8 @@ impl WatchArguments {
     ///
     /// # Errors
     /// Returns an error if a threshold is out of range.
-    pub(crate) fn of(
-        matches: &ArgMatches,
-        source: OsString,
-        settings: &SensorSettings,
-    ) -> Result<Self, CliError> {
+    pub(crate) fn of(matches: &ArgMatches, settings: &SensorSettings) -> Result<Self, CliError> {
+        let source = required(matches, "source")?;
         let processing = ProcessingArguments::of(matches, settings)?;
         let format = matches.get_one::<String>("format");
         let mut options = AcquireOptions::default();
@@ -138,7 +135,7 @@ impl WatchArguments {
             processing,
             naming: NamingArguments::of(matches),
             write: matches.get_one::<PathBuf>("write").cloned(),
-            existing: parameters::existing(matches),
+            existing: flags::existing(matches),
             history_bytes: settings.history_bytes(),
             json: matches.get_flag("json"),
         })

@@ -1,6 +1,6 @@
 //! `taxel describe`: prints an imprint or a stored shape with its descriptors.
 
-use crate::cli::arguments::request::Form;
+use crate::cli::arguments::form::Form;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::report;
 use crate::formats::Content;

@@ -24,8 +24,9 @@ use std::ops::ControlFlow;
 use std::slice;
 
 use crate::cli::arguments::export::Export;
+use crate::cli::arguments::form::Form;
 use crate::cli::arguments::frames::{FrameChoice, FramesArguments};
-use crate::cli::arguments::request::{Form, Kept, Saving};
+use crate::cli::arguments::kept::{Kept, Saving};
 use crate::cli::commands::export::{Begun, Exported};
 use crate::cli::commands::naming::FrameNamer;
 use crate::cli::commands::noise_report;

@@ -18,7 +18,9 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
-use crate::cli::arguments::request::{Form, NameSet, Saving};
+use crate::cli::arguments::form::Form;
+use crate::cli::arguments::kept::Saving;
+use crate::cli::arguments::library::NameSet;
 use crate::cli::commands::describe;
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;

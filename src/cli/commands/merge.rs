@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::cli::arguments::model::train::model_file;
-use crate::cli::arguments::request::Wanted;
+use crate::cli::arguments::sweep::Wanted;
 use crate::cli::commands::confusion::fits_in_table;
 use crate::cli::commands::sweep::leave;
 use crate::cli::error::CliError;

@@ -18,9 +18,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde_json::json;
 
+use crate::cli::arguments::flags::ShardFile;
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
 use crate::cli::arguments::model::train::{ModelTarget, TrainArguments};
-use crate::cli::arguments::parameters::ShardFile;
 use crate::cli::commands::resume::{self, KEPT};
 use crate::cli::commands::training_grid::TrainingGrid;
 use crate::cli::error::CliError;

@@ -13,9 +13,9 @@
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+use crate::cli::arguments::flags::ShardFile;
 use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
-use crate::cli::arguments::parameters::ShardFile;
-use crate::cli::arguments::request::Wanted;
+use crate::cli::arguments::sweep::Wanted;
 use crate::cli::commands::export::written;
 use crate::cli::commands::resume::{self, KEPT};
 use crate::cli::error::CliError;

@@ -3,8 +3,9 @@
 
 use std::ffi::OsStr;
 
+use crate::cli::arguments::form::Form;
+use crate::cli::arguments::kept::{Kept, Saving};
 use crate::cli::arguments::parameters::Given;
-use crate::cli::arguments::request::{Form, Kept, Saving};
 use crate::cli::commands::export::{Begun, Exported};
 use crate::cli::error::CliError;
 use crate::cli::input::shapes::Shelf;

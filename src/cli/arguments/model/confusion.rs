@@ -22,7 +22,6 @@ use crate::cli::arguments::flags::{
     which_model, whole,
 };
 use crate::cli::arguments::help::MODEL_CONFUSION_EXAMPLES;
-use crate::cli::arguments::parameters;
 use crate::cli::error::CliError;
 use crate::index::wide;
 use crate::pose::{DecimalRange, RangeError};
@@ -243,7 +242,7 @@ impl ConfusionArguments {
             classifiers: classifiers(matches),
             form: EvaluationForm::of(matches),
             export: matches.get_one::<PathBuf>("export").cloned(),
-            existing: parameters::existing(matches),
+            existing: flags::existing(matches),
             quiet: matches.get_flag("quiet"),
         })
     }

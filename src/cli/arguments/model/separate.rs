@@ -18,7 +18,6 @@ use crate::cli::arguments::flags::{
 };
 use crate::cli::arguments::help::MODEL_SEPARATE_EXAMPLES;
 use crate::cli::arguments::model::shape_set::{self, SetArguments};
-use crate::cli::arguments::parameters;
 use crate::cli::error::CliError;
 use crate::parameter::number::short;
 use crate::pose::{Axis, DecimalRange};
@@ -166,7 +165,7 @@ impl SeparateArguments {
             jobs: flags::jobs_of(matches),
             form: EvaluationForm::of(matches),
             export: matches.get_one::<PathBuf>("export").cloned(),
-            existing: parameters::existing(matches),
+            existing: flags::existing(matches),
             quiet: matches.get_flag("quiet"),
         })
     }

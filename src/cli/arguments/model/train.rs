@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
-    self, anchor, jobs, json, memory, of_sensor, option, quiet, range, replace, resume, shard,
-    switch,
+    self, ShardFile, anchor, jobs, json, memory, of_sensor, option, quiet, range, replace, resume,
+    shard, switch,
 };
 use crate::cli::arguments::help::MODEL_TRAIN_EXAMPLES;
 use crate::cli::arguments::model::shape_set::{self, SetArguments};
-use crate::cli::arguments::parameters::{self, Given, ShardFile};
+use crate::cli::arguments::parameters::{self, Given};
 use crate::cli::error::CliError;
 use crate::formats::Name;
 use crate::memory::MemorySize;

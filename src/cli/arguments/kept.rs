@@ -1,0 +1,108 @@
+//! The flags that keep the result of a touch: `--save` and `--export`. `figure`, `picture` and `frames` have them.
+
+use std::path::PathBuf;
+
+use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
+
+use crate::cli::arguments::export::{self, Export};
+use crate::cli::arguments::flags::{force, misused, option};
+use crate::cli::arguments::parameters;
+use crate::cli::error::CliError;
+use crate::formats::Name;
+
+/// The places in which a touch is kept, in addition to printing it.
+#[derive(Clone, Debug)]
+pub(crate) struct Kept {
+    /// The name to store the shape under: `--save`.
+    pub(crate) saving: Option<Saving>,
+    /// The file to write: `--export`.
+    pub(crate) export: Option<Export>,
+}
+
+/// How to store a shape.
+#[derive(Clone, Debug)]
+pub(crate) struct Saving {
+    /// The name of the stored shape.
+    pub(crate) name: Name,
+    /// Whether to replace an own shape of this name.
+    pub(crate) force: bool,
+}
+
+/// Defines the flags that keep the result of a touch: `--save`, `--export` with `--format`, and `--force`. They are
+/// for commands that answer with one imprint: `figure`, `picture` and `frames`.
+pub(super) fn flags() -> [Arg; 4] {
+    let save = option("save", "NAME", "Store the shape in the library too")
+        .value_parser(Name::new)
+        .help_heading("Library");
+    let file = Arg::new("export")
+        .long("export")
+        .value_name("FILE")
+        .value_parser(value_parser!(PathBuf))
+        .help_heading("Export")
+        .help(parameters::wrapped(
+            "Write the imprint, or a drawing of it; '-' for standard output, in place of the table",
+            52,
+        ));
+    let force = force().help("Replace an existing shape or file");
+    [
+        save,
+        file,
+        export::format().help_heading("Export").requires("export"),
+        force.requires("kept"),
+    ]
+}
+
+/// Groups `--save` and `--export`: `--force` requires at least one of them.
+pub(super) fn group() -> ArgGroup {
+    ArgGroup::new("kept")
+        .args(["save", "export"])
+        .multiple(true)
+}
+
+impl Kept {
+    /// Reads what to keep of a touch.
+    ///
+    /// # Errors
+    /// Returns an error if standard output would get more than one export: an answer too, or several frames.
+    pub(super) fn of(
+        matches: &ArgMatches,
+        command: &mut Command,
+        name: &str,
+    ) -> Result<Self, CliError> {
+        let path = matches.get_one::<PathBuf>("export");
+        if path.is_some_and(|path| path.as_os_str() == "-") {
+            if matches.get_flag("json") {
+                return Err(CliError::Unused {
+                    flag: "json",
+                    reason: "with '--export -', which writes to standard output in its place"
+                        .to_owned(),
+                });
+            }
+            // Only `taxel frames` has this flag.
+            if let Ok(Some(true)) = matches.try_get_one::<bool>("all") {
+                let message = "the argument '--all' cannot be used with '--export -', which takes one frame; \
+                               with a name each frame has a file of its own";
+                return Err(misused(command, name, message));
+            }
+        }
+        let export = path.map(|path| Export::of(matches, path, command, name));
+        Ok(Self {
+            saving: Saving::of(matches),
+            export: export.transpose()?,
+        })
+    }
+
+    /// Returns true if anything is to be kept.
+    pub(crate) fn is_asked(&self) -> bool {
+        self.saving.is_some() || self.export.is_some()
+    }
+}
+
+impl Saving {
+    /// Reads `--save` with its `--force`.
+    fn of(matches: &ArgMatches) -> Option<Self> {
+        let name = matches.get_one::<Name>("save")?.clone();
+        let force = matches.get_flag("force");
+        Some(Self { name, force })
+    }
+}

@@ -1,0 +1,117 @@
+//! The command `library` and its subcommands.
+
+use std::ffi::OsString;
+
+use clap::{ArgMatches, Command};
+
+use crate::cli::arguments::flags::{
+    alone, force, json, name, of_sensor, required, switch, unhandled_subcommand, what,
+};
+use crate::cli::arguments::form::Form;
+use crate::cli::arguments::help::{
+    CHECK_EXAMPLES, DELETE_EXAMPLES, LIBRARY_EXAMPLES, LIST_EXAMPLES, PATH_EXAMPLES,
+    RESTORE_EXAMPLES, SAVE_EXAMPLES, SHOW_EXAMPLES,
+};
+use crate::cli::arguments::kept::Saving;
+use crate::cli::error::CliError;
+use crate::cli::settings::resolved::Effective;
+use crate::formats::Name;
+use crate::parameter::Parameter;
+
+/// A subcommand of `taxel library`.
+#[derive(Clone, Debug)]
+pub(crate) enum LibraryCommand {
+    /// List all shapes; true for JSON.
+    List(bool),
+    /// Print the names of some shapes.
+    Names(NameSet),
+    /// Describe a shape.
+    Show(Name, Form),
+    /// Store a shape of the library or of a file under a name.
+    Save(Saving, OsString),
+    /// Move a shape to the trash.
+    Delete(Name),
+    /// Restore a deleted shape.
+    Restore(Name),
+    /// Print the library's folder.
+    Path,
+    /// Read every shape and report what is damaged or left over; true for JSON.
+    Check(bool),
+}
+
+/// The shapes whose names are listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NameSet {
+    /// All shapes: the user's own and those that come with the program.
+    All,
+    /// The user's own shapes.
+    Own,
+    /// The deleted shapes, the last deleted first.
+    Deleted,
+}
+
+/// Defines `taxel library` and its subcommands, one of which is required: `taxel library list --json`,
+/// `taxel library save NAME FILE` and so on.
+pub(super) fn command() -> Command {
+    let command = |name: &'static str, about: &'static str, examples: &'static str| {
+        Command::new(name).about(about).after_help(examples)
+    };
+    let names = switch("names", "Print only the names, one per line").conflicts_with("json");
+    let own = switch("own", "With --names: only your own shapes").requires("with_names");
+    let deleted = switch("deleted", "With --names: only those in the trash")
+        .requires("with_names")
+        .conflicts_with("own");
+    let list =
+        command("list", "List all shapes", LIST_EXAMPLES).args([names, own, deleted, json()]);
+    let list = list.group(alone("with_names", "names"));
+    let show = command("show", "Show a shape and describe it", SHOW_EXAMPLES)
+        .arg(name("Name of the shape"))
+        .args(of_sensor(&[Parameter::Pitch]))
+        .arg(json());
+    let save = command("save", "Store a shape under a name", SAVE_EXAMPLES)
+        .arg(name("Name to store it under"))
+        .arg(what(
+            "Shape of the library, or file; '-' for standard input",
+        ))
+        .arg(force());
+    let delete = command("delete", "Move a shape to the trash", DELETE_EXAMPLES);
+    let restore = command("restore", "Restore a deleted shape", RESTORE_EXAMPLES);
+    Command::new("library")
+        .about("List, show, save, delete and check stored shapes")
+        .after_help(LIBRARY_EXAMPLES)
+        .subcommand_required(true)
+        .subcommand(list)
+        .subcommand(show)
+        .subcommand(save)
+        .subcommand(delete.arg(name("Name of the shape")))
+        .subcommand(restore.arg(name("Name of the shape")))
+        .subcommand(command("path", "Print the library's folder", PATH_EXAMPLES))
+        .subcommand(command("check", "Check every file", CHECK_EXAMPLES).arg(json()))
+}
+
+impl LibraryCommand {
+    /// Reads the subcommand of `taxel library`.
+    pub(super) fn of(matches: &ArgMatches, settings: &Effective) -> Result<Self, CliError> {
+        let Some((command, own)) = matches.subcommand() else {
+            // clap requires a subcommand, so there is always one.
+            return Err(unhandled_subcommand("library"));
+        };
+        let name = own.try_get_one::<Name>("name").ok().flatten().cloned();
+        Ok(match (command, name) {
+            ("list", _) if own.get_flag("own") => Self::Names(NameSet::Own),
+            ("list", _) if own.get_flag("deleted") => Self::Names(NameSet::Deleted),
+            ("list", _) if own.get_flag("names") => Self::Names(NameSet::All),
+            ("list", _) => Self::List(own.get_flag("json")),
+            ("show", Some(name)) => Self::Show(name, Form::of(own, settings)?),
+            ("save", Some(name)) => {
+                let force = own.get_flag("force");
+                Self::Save(Saving { name, force }, required(own, "what")?)
+            }
+            ("delete", Some(name)) => Self::Delete(name),
+            ("restore", Some(name)) => Self::Restore(name),
+            ("check", _) => Self::Check(own.get_flag("json")),
+            ("path", _) => Self::Path,
+            (other, _) => return Err(unhandled_subcommand(other)),
+        })
+    }
+}

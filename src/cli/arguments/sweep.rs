@@ -1,0 +1,203 @@
+//! The commands `sweep` and `merge`, which write the same files.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
+
+use crate::cli::arguments::flags::{
+    self, ShardFile, anchor, jobs, json, memory, misused, name_or_path, npy, option, quiet, range,
+    replace, resume, sensor_of_imprints, shard,
+};
+use crate::cli::arguments::help::{MERGE_EXAMPLES, SWEEP_EXAMPLES};
+use crate::cli::arguments::parameters::{self, Given};
+use crate::cli::arguments::touch;
+use crate::cli::error::CliError;
+use crate::cli::settings::resolved::Effective;
+use crate::figure::FigureKind;
+use crate::memory::MemorySize;
+use crate::pose::{Anchor, Axis, GivenRanges};
+use crate::sensor::Sensor;
+use crate::source::Source;
+use crate::storage::AtlasFile;
+use crate::sweep::Shard;
+
+/// The arguments of `taxel sweep`.
+#[derive(Clone, Debug)]
+pub(crate) struct SweepArguments {
+    /// The shape to sweep.
+    pub(crate) what: Swept,
+    /// The point of the shape that x0 and y0 place.
+    pub(crate) anchor: Anchor,
+    /// The axes that are given. The others use the range of the paper, or for x0 and y0 a cell that suits the shape.
+    pub(crate) ranges: GivenRanges,
+    /// The part of the grid to sweep.
+    pub(crate) shard: Shard,
+    /// The number of threads; 0 means one per core.
+    pub(crate) jobs: usize,
+    /// The files to write, and the form of the summary.
+    pub(crate) wanted: Wanted,
+}
+
+/// The files that a sweep or a merge writes, and the form of its summary.
+#[derive(Clone, Debug)]
+pub(crate) struct Wanted {
+    /// `--atlas`: the file of all distinct imprints.
+    pub(crate) atlas: Option<AtlasFile>,
+    /// `--poses`: the file of each pose's imprint.
+    pub(crate) poses: Option<PathBuf>,
+    /// The action if a file exists already.
+    pub(crate) there: ShardFile,
+    /// Whether the summary is one line of JSON.
+    pub(crate) json: bool,
+    /// Whether to show no progress and no notes.
+    pub(crate) quiet: bool,
+    /// `--memory`: the most memory to use.
+    pub(crate) memory: Option<MemorySize>,
+}
+
+/// The shape of a sweep.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
+pub(crate) enum Swept {
+    /// A figure on a sensor.
+    Figure(Source, Sensor),
+    /// A stored shape, which is read later, and the given values of its sensor.
+    Picture(OsString, Given),
+}
+
+/// Defines `taxel sweep KIND` and `taxel sweep --picture NAME|FILE`. Axes are ranges here, not numbers:
+/// `--x0 5:5.99:0.01`. Their flags have the names of parameters, so these parameters are left out of the flags of
+/// sizes.
+pub(super) fn command() -> Command {
+    let kind = Arg::new("kind")
+        .value_name("KIND")
+        .value_parser(parameters::one_of(
+            FigureKind::ALL.map(FigureKind::name),
+            FigureKind::from_name,
+        ))
+        .hide_possible_values(true)
+        .help("Kind of figure, as in 'taxel figure'; or --picture");
+    let picture =
+        option("picture", "NAME|FILE", "Sweep a stored shape instead").value_parser(name_or_path());
+    let sizes = parameters::figure_parameters()
+        .filter(|&parameter| Axis::ALL.iter().all(|axis| axis.parameter() != parameter));
+    let poses = option("poses", "FILE.npy", "Write which imprint each pose leaves")
+        .value_parser(npy())
+        .conflicts_with("shard");
+    Command::new("sweep")
+        .about("Find every imprint that a shape can leave")
+        .after_help(SWEEP_EXAMPLES)
+        .arg(kind)
+        .arg(picture)
+        .group(
+            ArgGroup::new("shape")
+                .args(["kind", "picture"])
+                .required(true),
+        )
+        .args(sizes.map(|parameter| parameters::arg(parameter).help_heading("Figure")))
+        .args(Axis::ALL.map(|axis| match axis {
+            Axis::X0 | Axis::Y0 => range(axis, "one cell that suits the shape"),
+            _ => range(axis, ""),
+        }))
+        .arg(anchor())
+        .args(sensor_of_imprints())
+        .args([
+            atlas(),
+            poses,
+            replace().requires("files"),
+            jobs(),
+            memory(),
+            shard(),
+            resume().requires("atlas").conflicts_with("poses"),
+            json(),
+            quiet(),
+        ])
+        .group(
+            ArgGroup::new("files")
+                .args(["atlas", "poses"])
+                .multiple(true),
+        )
+}
+
+/// Defines `taxel merge FILE.npz…`. Shards of a training are merged by the same command, such as
+/// `taxel merge part-*.npz --out whole.npz`; the content of the files decides.
+pub(super) fn merge_command() -> Command {
+    let files = Arg::new("files")
+        .value_name("FILE.npz")
+        .required(true)
+        .num_args(1..)
+        .value_parser(value_parser!(PathBuf))
+        .help("Atlases or models of all shards, in any order");
+    Command::new("merge")
+        .about("Merge the shards of a sweep or a training")
+        .after_help(MERGE_EXAMPLES)
+        .args([
+            files,
+            atlas()
+                .long("out")
+                .alias("atlas")
+                .help("Write the atlas (.csv, .jsonl, .npz) or the model\n(.npz); --atlas means the same")
+                .required(true),
+            replace(),
+            memory(),
+            json(),
+            quiet(),
+        ])
+}
+
+/// Defines `--atlas`, the file that a sweep or a merge writes. Its extension decides the format, so there is no flag
+/// for this; only `.npz` can be read again.
+fn atlas() -> Arg {
+    option("atlas", "FILE", "Write the atlas, as .csv, .jsonl or .npz")
+        .value_parser(|path: &str| AtlasFile::new(path))
+}
+
+impl SweepArguments {
+    /// Reads the arguments of `taxel sweep`.
+    ///
+    /// # Errors
+    /// Returns a usage error for sizes of a figure given with a picture, and the errors of [`touch::source`].
+    pub(super) fn of(
+        matches: &ArgMatches,
+        command: &mut Command,
+        settings: &Effective,
+    ) -> Result<Self, CliError> {
+        let given = Given::of(matches);
+        let what = if let Some(picture) = matches.get_one::<OsString>("picture") {
+            let size = parameters::figure_parameters().find(|&parameter| given.has(parameter));
+            if let Some(size) = size {
+                let message = format!("'--{}' does not belong to a picture", size.flag());
+                return Err(misused(command, "sweep", &message));
+            }
+            Swept::Picture(picture.clone(), given)
+        } else {
+            let (figure, sensor) = touch::source(matches, command, "sweep", settings)?;
+            Swept::Figure(figure, sensor)
+        };
+        let anchor = matches.get_one::<Anchor>("anchor").copied();
+        Ok(Self {
+            what,
+            anchor: anchor.unwrap_or_default(),
+            ranges: flags::ranges_of(matches),
+            shard: flags::shard_of(matches),
+            jobs: flags::jobs_of(matches),
+            wanted: Wanted::of(matches),
+        })
+    }
+}
+
+impl Wanted {
+    /// Reads what a sweep or a merge is to write and print.
+    pub(super) fn of(matches: &ArgMatches) -> Self {
+        let poses = matches.try_get_one::<PathBuf>("poses");
+        Self {
+            atlas: matches.get_one::<AtlasFile>("atlas").cloned(),
+            poses: poses.ok().flatten().cloned(),
+            there: ShardFile::of(matches),
+            json: matches.get_flag("json"),
+            quiet: matches.get_flag("quiet"),
+            memory: flags::memory_of(matches),
+        }
+    }
+}
