@@ -31,7 +31,7 @@ enum FieldGrowth {
     Rising,
     /// The field rises by about the same amount with each line, in at least three lines.
     Steady,
-    /// The field rises by 1 with each line.
+    /// The field is whole and rises by 1 with each line.
     Counting,
 }
 
@@ -63,7 +63,7 @@ impl FieldGrowth {
             Self::Constant
         } else if steps.contains(&0.0) {
             Self::NotFalling
-        } else if steps.iter().all(|step| *step == 1.0) {
+        } else if value(&lines[0]).fract() == 0.0 && steps.iter().all(|step| *step == 1.0) {
             Self::Counting
         } else if steps.len() > 1
             && steps
@@ -141,8 +141,8 @@ impl UnnamedFields {
         let growth = match (self.label, self.time) {
             (Some(_), None) => FieldGrowth::Counting,
             (Some(_), Some(time)) => growth_of(time.field)?,
-            // A constant field is not a time, unless there is a number beside it. A field that counts up by 1 is a
-            // number.
+            // A constant field is not a time, unless there is a number beside it. A whole field that counts up by 1 is
+            // a number.
             (None, Some(time)) => growth_of(time.field).filter(|growth| {
                 !matches!(growth, FieldGrowth::Constant | FieldGrowth::Counting)
             })?,
@@ -281,6 +281,10 @@ mod tests {
         assert_eq!(lines(both, none), Ok((2, Some(0), Some(1))));
         assert_eq!(lines(counting, none), Ok((1, Some(0), None)));
         assert_eq!(lines(none, steady), Ok((0, None, Some(4))));
+        // The times of one frame a second rise by 1, too, but are not whole.
+        let seconds: [&[f64]; 3] = [&[0.5], &[1.5], &[2.5]];
+        assert_eq!(lines(seconds, none), Ok((1, None, Some(0))));
+        assert_eq!(lines(none, seconds), Ok((0, None, Some(4))));
         assert_eq!(lines(counting, steady), Ok((1, Some(0), Some(5))));
     }
 
