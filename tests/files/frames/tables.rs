@@ -56,6 +56,16 @@ fn a_first_line_with_a_text_is_a_frame_if_the_next_one_has_a_text_there() {
     ] {
         assert_eq!(values(text, Some((2, 2))), both[1..], "{text}");
     }
+    // A misspelt number does not make a line of names.
+    for (line, column, word) in [
+        ("1,inf,3,4", 2, "inf"),
+        ("12,13,1O,14", 3, "1O"),
+        ("1,2,3,4mV", 4, "4mV"),
+    ] {
+        let found = recorded(format!("{line}\n5,6,7,8\n").as_bytes(), Some((2, 2)));
+        let expected = format!("line 1, column {column}: found {word:?}, expected a number");
+        assert_eq!(error(&found), expected);
+    }
     // A text between the cells is not a cell.
     let found = recorded(b"1,2,x,3,4\n5,6,x,7,8\n", Some((2, 2)));
     assert_eq!(

@@ -106,6 +106,26 @@ pub(super) fn is_like_next(names: &[&str], separator: Separator, next: &[u8]) ->
     repeats || !counts
 }
 
+/// Returns the field of a misspelt number, such as `1O`, `inf` or `4mV`, among numbers; None if the line may hold names
+/// or texts. A single such field does not make a line of values a header.
+pub(super) fn misspelt_number(names: &[&str], separator: Separator) -> Option<usize> {
+    let mut words =
+        (0..names.len()).filter(|&field| !separator.is_numeric(names[field].as_bytes()));
+    let (word, only) = (words.next()?, words.next().is_none());
+    (only && names.len() > 2 && is_like_number(names[word])).then_some(word)
+}
+
+/// Returns true if a word begins as a number does. Dates and times of day do, too, but are not meant as numbers.
+fn is_like_number(word: &str) -> bool {
+    let word = word.trim_start_matches(['+', '-']);
+    let is_date = word.contains(['/', ':', '-']) || moment::read(word.as_bytes()).is_some();
+    let is_infinite = ["inf", "infinity"]
+        .iter()
+        .any(|name| word.eq_ignore_ascii_case(name));
+    is_infinite
+        || !is_date && word.starts_with(|first: char| first.is_ascii_digit() || first == '.')
+}
+
 /// Returns true if at least half of the fields of a line are numbers.
 pub(super) fn is_mostly_numeric(separator: Separator, line: &[u8]) -> bool {
     let (mut all, mut numeric) = (0, 0);
@@ -152,6 +172,34 @@ mod tests {
         assert!(!is_frame(&["a", "b", "c"], "1,2,3"));
         assert_eq!(count_from_0(&["", "0", "1", "2"]), Some(3));
         assert_eq!(count_from_0(&["1", "2", "3"]), None);
+    }
+
+    #[test]
+    fn a_misspelt_number_does_not_make_a_header() {
+        let found = |line: &str| {
+            let names: Vec<&str> = line.split(',').collect();
+            misspelt_number(&names, Separator::Byte(b','))
+        };
+        for line in [
+            "1,inf,3,4",
+            "12,13,1O,14",
+            "1,2,3,1e301",
+            "4mV,1,2",
+            "-Inf,3,4",
+        ] {
+            assert!(found(line).is_some(), "{line}");
+        }
+        for line in [
+            "label,0,1,2",
+            "a,b,c",
+            "1a,1b,1c",
+            "01/02/2024,1,2",
+            "12:00:00,1,2",
+            "2024-05-01,7,5",
+            "1,2,3",
+        ] {
+            assert_eq!(found(line), None, "{line}");
+        }
     }
 
     #[test]

@@ -13,7 +13,8 @@ use crate::formats::recording::side::side;
 use crate::formats::recording::table::cell_names::{NamedCells, cells};
 use crate::formats::recording::table::clock::TimeFields;
 use crate::formats::recording::table::header::{
-    COMPARED, count_from_0, first_line, is_like_next, is_mostly_numeric, is_ramp, moment_of_row,
+    COMPARED, count_from_0, first_line, is_like_next, is_mostly_numeric, is_ramp, misspelt_number,
+    moment_of_row,
 };
 use crate::formats::recording::table::unnamed_fields::unnamed_fields;
 use crate::formats::recording::text::lines::{TextLines, is_blank, text};
@@ -128,6 +129,9 @@ pub(super) fn layout(
     if has_words && units.is_none() && is_like_next(&names, separator, lines.line()) {
         let next = lines.line().to_owned();
         return of_numbers(&mut lines, separator, (number, &[&first, &next]), options);
+    }
+    if let Some(field) = misspelt_number(&names, separator) {
+        return Err(row::wrong(number, field + 1, names[field].as_bytes()));
     }
     let header = TableHeader {
         names: &names,
