@@ -3,13 +3,13 @@
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, Read};
-use std::os::fd::AsFd;
-use std::os::unix::fs::{FileTypeExt, MetadataExt};
+use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 
 use crate::acquire::event::{AcquireError, AcquireOptions};
 use crate::acquire::recorder::RecorderError;
 use crate::formats::recording::{ReadOptions, RecordingError, format_of};
+use crate::storage::FileId;
 
 /// A source of frames.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -120,22 +120,18 @@ impl FrameSource {
     /// # Errors
     /// Returns [`RecorderError::IsSource`].
     pub fn refuse_as_target(&self, target: &Path) -> Result<(), RecorderError> {
-        let identity = |file: fs::Metadata| (file.dev(), file.ino());
         let source = match self {
-            Self::Standard => io::stdin()
-                .as_fd()
-                .try_clone_to_owned()
-                .and_then(|input| File::from(input).metadata()),
-            Self::File(path) => fs::metadata(path),
+            Self::Standard => FileId::of_stream(io::stdin()),
+            Self::File(path) => FileId::behind(path),
             Self::Tcp(_) | Self::Serial(_) | Self::Fifo(_) => return Ok(()),
         };
         // A source that does not exist cannot be overwritten.
-        let Ok(source) = source.map(identity) else {
+        let Ok(source) = source else {
             return Ok(());
         };
         let both = [target.to_owned(), target.with_extension("json")];
         for path in both {
-            if fs::metadata(&path).is_ok_and(|found| identity(found) == source) {
+            if FileId::behind(&path).is_ok_and(|found| found == source) {
                 return Err(RecorderError::IsSource { path });
             }
         }

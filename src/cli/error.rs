@@ -80,6 +80,12 @@ pub(crate) enum CliError {
         /// The system's reason.
         error: io::Error,
     },
+    /// Standard output appends to the file whose lines are answered.
+    #[error("{name} is the output as well; write the answers to another file")]
+    OwnInput {
+        /// The file, or standard input.
+        name: String,
+    },
     /// Standard output cannot be written to.
     #[error("cannot write to standard output: {0}")]
     Write(io::Error),

@@ -159,8 +159,8 @@ impl Surroundings {
             Request::Batch(file, sensor, jobs) => {
                 let by_name = |name: &str| shelf.imprint(name).map_err(|error| error.to_string());
                 let input = match file {
-                    Some(path) => LineInput::of_file(&path)?,
-                    None => LineInput::standard(),
+                    Some(path) => LineInput::at(path)?,
+                    None => LineInput::standard()?,
                 };
                 batch::answer_lines(sensor, jobs, &by_name, input, io::stdout().lock())?;
             }

@@ -17,7 +17,8 @@ pub(crate) struct FileId {
 
 #[cfg(unix)]
 impl FileId {
-    fn in_metadata(found: &std::fs::Metadata) -> Self {
+    /// Returns the identity of the file that this metadata describes.
+    pub(crate) fn in_metadata(found: &std::fs::Metadata) -> Self {
         use std::os::unix::fs::MetadataExt;
         Self {
             device: found.dev(),
@@ -31,6 +32,25 @@ impl FileId {
     /// Returns the system's error.
     pub(crate) fn of(file: &File) -> io::Result<Self> {
         file.metadata().map(|found| Self::in_metadata(&found))
+    }
+
+    /// Returns the identity of the file that a stream, such as standard input, reads or writes.
+    ///
+    /// # Errors
+    /// Returns the system's error.
+    #[cfg(feature = "acquire")]
+    pub(crate) fn of_stream(stream: impl std::os::fd::AsFd) -> io::Result<Self> {
+        let stream = stream.as_fd().try_clone_to_owned()?;
+        Self::of(&File::from(stream))
+    }
+
+    /// Returns the identity of the file at a path; of a link, that of the file that it leads to.
+    ///
+    /// # Errors
+    /// Returns the system's error.
+    #[cfg(feature = "acquire")]
+    pub(crate) fn behind(path: &Path) -> io::Result<Self> {
+        path.metadata().map(|found| Self::in_metadata(&found))
     }
 
     /// Returns true if the file has this path.

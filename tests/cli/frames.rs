@@ -371,6 +371,63 @@ fn frames_are_exported_with_their_number_and_saved() {
 }
 
 #[test]
+fn the_recording_being_read_is_never_replaced() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (plain, numbered) = (
+        folder.path().join("rec.npy"),
+        folder.path().join("rec-1.npy"),
+    );
+    let frames = array("(3, 2, 2)", false, &[1.0, 0.0, 9.0, 1.0].repeat(3));
+    std::fs::write(&numbered, &frames).expect("written");
+    std::fs::hard_link(&numbered, &plain).expect("linked");
+    let [plain, numbered] = [&plain, &numbered].map(|path| path.to_str().expect("UTF-8"));
+    for (flags, target) in [
+        (format!("{plain} --noise-report --export {plain}"), plain),
+        (format!("{numbered} --frame 1 --export {plain}"), numbered),
+        // Nothing is written, not even the first frame.
+        (format!("{numbered} --all --export {plain}"), numbered),
+        (format!("- --peak --export {plain}"), ""),
+    ] {
+        let line = format!("frames {flags} --at-least 2 --force");
+        let arguments: Vec<&str> = line.split_whitespace().collect();
+        let mut command = super::program(&arguments, "C.UTF-8");
+        command.stdin(std::fs::File::open(plain).expect("there is one"));
+        let run = command.output().expect("the program runs");
+        if target.is_empty() {
+            assert_eq!(run.status.code(), Some(0), "frame 0 has another name");
+        } else {
+            let message = String::from_utf8(run.stderr).expect("UTF-8");
+            let expected =
+                format!("error: {target}: is the recording being read; export to another file\n");
+            assert_eq!((run.status.code(), message), (Some(1), expected), "{flags}");
+        }
+        assert_eq!(std::fs::read(plain).expect("there"), frames, "{flags}");
+        let first = folder.path().join("rec-0.npy");
+        assert_eq!(first.exists(), target.is_empty(), "{flags}");
+    }
+}
+
+#[test]
+fn no_frame_is_exported_if_a_later_one_cannot_be() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let taken = folder.path().join("touch-2.txt");
+    std::fs::write(&taken, "mine").expect("written");
+    let flags = format!(
+        "--all --at-least 9 --export {}/touch.txt",
+        folder.path().display()
+    );
+    let message = format!(
+        "{:?} already exists; --force replaces it",
+        taken.display().to_string()
+    );
+    refused("tekscan.asf", &flags, &message);
+    let files = std::fs::read_dir(&folder).expect("a folder").count();
+    assert_eq!(files, 1);
+    let forced = frames("tekscan.asf", &format!("{flags} --force"));
+    assert_eq!((forced.status, forced.stderr.as_str()), (Some(0), ""));
+}
+
+#[test]
 fn a_report_on_noise_accepts_no_pitch() {
     misused(
         &format!(

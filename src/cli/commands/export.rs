@@ -8,6 +8,7 @@ use std::path::Path;
 
 use crate::cli::arguments::export::{Export, ExportFormat};
 use crate::cli::error::CliError;
+use crate::cli::input::recording::RecordingFile;
 use crate::cli::input::shapes::Shelf;
 use crate::cli::settings::pitch::Pitch;
 use crate::formats::{Content, Drawing};
@@ -30,6 +31,23 @@ impl Export {
             path.with_file_name(name)
         });
         Self { path, ..*self }
+    }
+
+    /// Refuses a file that would replace the recording being read, or another one without `--force`. So one of several
+    /// files that cannot be written is an error before the first of them is.
+    ///
+    /// # Errors
+    /// Returns [`CliError::Frames`] or [`CliError::Taken`].
+    pub(crate) fn check(&self, recording: &RecordingFile) -> Result<(), CliError> {
+        let Some(path) = &self.path else {
+            return Ok(());
+        };
+        recording.refuse_as_target(path)?;
+        if self.existing == Existing::Kept && path.symlink_metadata().is_ok() {
+            let name = path.to_string_lossy().into_owned();
+            return Err(CliError::Taken { name });
+        }
+        Ok(())
     }
 
     /// Like [`Self::begin`], for a frame. A drawing shows its values in shades, if they are given.

@@ -20,7 +20,7 @@
 //! error.
 
 use std::io::Write;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::slice;
 
 use crate::cli::arguments::export::Export;
@@ -174,6 +174,8 @@ fn report_noise(
     processing: &mut Processing,
     output: &mut FramesOutput<'_>,
 ) -> Result<bool, CliError> {
+    let export = output.kept.export.as_ref();
+    export.map_or(Ok(()), |export| export.check(recording))?;
     let found = noise_report::gather(recording, channel, processing)?;
     let found = found.map(|found| write_noise(&found, recording.name(), output));
     Ok(found.transpose()?.is_some())
@@ -287,11 +289,43 @@ impl Selection {
         }
     }
 
-    /// Refuses a label that several frames have: it is not clear which of them is meant.
+    /// Checks what can be checked of the frames to keep before the first of them is answered: that no file that may
+    /// not be replaced has the name of an export.
+    ///
+    /// # Errors
+    /// Returns an error if several frames have the label, and the errors of [`Export::check`].
+    fn check_kept(
+        &self,
+        recording: &mut RecordingFile,
+        listed: &ListedChannel,
+        kept: &Kept,
+    ) -> Result<(), CliError> {
+        if !kept.is_asked() {
+            return Ok(());
+        }
+        let numbers = match (self.choice, self.number) {
+            (FrameChoice::Label(label), _) => self.numbers_labelled(recording, label)?,
+            (_, Some(number)) => number..number + 1,
+            _ => 0..listed.frames,
+        };
+        let export = kept.export.as_ref();
+        export.map_or(Ok(()), |export| {
+            numbers
+                .map(|number| export.numbered(number))
+                .try_for_each(|export| export.check(recording))
+        })
+    }
+
+    /// Returns the number of the frame with a label, if there is one. A label that several frames have is refused: it is
+    /// not clear which of them is meant.
     ///
     /// # Errors
     /// Returns [`CliError::Frames`] with the numbers of the first two.
-    fn check_label(&self, recording: &mut RecordingFile, label: i64) -> Result<(), CliError> {
+    fn numbers_labelled(
+        &self,
+        recording: &mut RecordingFile,
+        label: i64,
+    ) -> Result<Range<u64>, CliError> {
         let mut numbers = Vec::new();
         recording.frames_again(self.channel, |frame| {
             numbers.extend(self.has(frame).then_some(frame.number));
@@ -304,7 +338,8 @@ impl Selection {
             [first, second] => Err(recording.refused(&format!(
                 "frames {first} and {second} are both labelled {label}; choose one with --frame"
             ))),
-            _ => Ok(()),
+            [number] => Ok(number..number + 1),
+            _ => Ok(0..0),
         }
     }
 
@@ -312,7 +347,7 @@ impl Selection {
     /// but not beyond a frame whose number is known.
     ///
     /// # Errors
-    /// Returns an error if one of several frames with the same label would be kept, and the errors of [`Self::give`].
+    /// Returns the errors of [`Self::check_kept`] and of [`Self::give`].
     fn answer(
         &self,
         recording: &mut RecordingFile,
@@ -320,11 +355,7 @@ impl Selection {
         processing: &mut Processing,
         output: &mut FramesOutput<'_>,
     ) -> Result<bool, CliError> {
-        if let FrameChoice::Label(label) = self.choice
-            && output.kept.is_asked()
-        {
-            self.check_label(recording, label)?;
-        }
+        self.check_kept(recording, listed, &output.kept)?;
         let mut answered = false;
         let name = recording.name().to_owned();
         recording.frames_again(self.channel, |frame| {

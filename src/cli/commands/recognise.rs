@@ -21,7 +21,6 @@ use crate::cli::arguments::recognise::RecogniseArguments;
 use crate::cli::commands::model;
 use crate::cli::error::CliError;
 use crate::cli::input::content;
-use crate::cli::input::content::InputSource;
 use crate::cli::input::lines::{self, LineInput, MAX_LINE};
 use crate::cli::input::shapes::{Located, Shelf};
 use crate::cli::output::answer::{AnswerJson, AnswerText};
@@ -309,22 +308,16 @@ enum RecogniseInput {
 
 /// Decides what the argument means: a stored shape, a file or standard input; and whether its content is lines.
 fn input(what: &OsStr, shelf: &Shelf) -> Result<RecogniseInput, CliError> {
-    let (name, input): (String, Box<dyn Read + Send>) = match shelf.locate(what)? {
+    let LineInput { name, read, file } = match shelf.locate(what)? {
         Located::Shape(shape) => return Ok(RecogniseInput::Touch(Content::Shape(shape))),
-        Located::File(path, file) => (path.to_string_lossy().into_owned(), Box::new(file)),
-        Located::Standard => {
-            let name = InputSource::Standard.name();
-            match content::standard() {
-                Ok(input) => (name, Box::new(input)),
-                Err(error) => return Err(CliError::Read { name, error }),
-            }
-        }
+        Located::File(path, file) => LineInput::of_file(path, file),
+        Located::Standard => LineInput::standard()?,
     };
     let refused = |error: content::InputError| CliError::Input {
         name: name.clone(),
         error,
     };
-    let mut input = BufReader::new(input);
+    let mut input = BufReader::new(read);
     let (mut blank, mut start) = (0, Vec::new());
     loop {
         let length = line(&mut input, &mut start).map_err(|error| refused(error.into()))?;
@@ -352,7 +345,7 @@ fn input(what: &OsStr, shelf: &Shelf) -> Result<RecogniseInput, CliError> {
     let whole = blank.chain(Cursor::new(start)).chain(input);
     if is_line {
         let read = Box::new(whole);
-        return Ok(RecogniseInput::Lines(LineInput { name, read }));
+        return Ok(RecogniseInput::Lines(LineInput { name, read, file }));
     }
     Ok(RecogniseInput::Touch(
         content::read_from(whole).map_err(refused)?,

@@ -18,6 +18,7 @@ use crate::formats::recording::{
 };
 use crate::frame::Frame;
 use crate::imprint::Imprint;
+use crate::storage::FileId;
 
 /// The most bytes that are read of a table. A table of 64 × 64 factors is much smaller.
 const LARGEST_TABLE: u64 = 1 << 20;
@@ -29,6 +30,8 @@ pub(crate) struct RecordingFile {
     name: String,
     /// The content, which can be read again from its beginning.
     file: Box<dyn ReadAgain>,
+    /// The file that holds the content, so that it is not replaced.
+    id: FileId,
     /// Rows and columns, for formats that do not state them.
     options: ReadOptions,
     /// The description in the file beside it, if taxel made the recording.
@@ -47,16 +50,18 @@ impl RecordingFile {
     pub(crate) fn open(path: &Path, options: ReadOptions) -> Result<Self, CliError> {
         let source = InputSource::of(path);
         let name = source.name();
-        let opened = || {
+        let opened = || -> io::Result<(FileId, Box<dyn ReadAgain>)> {
             if source == InputSource::Standard {
-                return spooled(content::standard()?);
+                let input = content::standard()?;
+                return Ok((FileId::of_stream(&input)?, spooled(input)?));
             }
             let file = File::open(path)?;
+            let id = FileId::of(&file)?;
             // A pipe cannot be read twice.
             if file.metadata()?.is_file() || file.metadata()?.is_dir() {
-                Ok(Box::new(file))
+                Ok((id, Box::new(file)))
             } else {
-                spooled(file)
+                Ok((id, spooled(file)?))
             }
         };
         let (description, complaint) = match description_beside(path) {
@@ -68,9 +73,10 @@ impl RecordingFile {
             None => (None, None),
         };
         match opened() {
-            Ok(file) => Ok(Self {
+            Ok((id, file)) => Ok(Self {
                 name,
                 file,
+                id,
                 options,
                 description,
                 complaint,
@@ -86,6 +92,20 @@ impl RecordingFile {
     /// Returns its name in messages.
     pub(crate) fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Refuses to write to the recording, under any path: a recording cannot be made again.
+    ///
+    /// # Errors
+    /// Returns [`CliError::Frames`] with the path.
+    pub(crate) fn refuse_as_target(&self, target: &Path) -> Result<(), CliError> {
+        match FileId::behind(target) {
+            Ok(id) if id == self.id => Err(CliError::Frames {
+                name: target.to_string_lossy().into_owned(),
+                message: "is the recording being read; export to another file".to_owned(),
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// Puts the flag that gave the file before its name in messages.

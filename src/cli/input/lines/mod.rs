@@ -11,16 +11,18 @@
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::num::NonZero;
-use std::path::Path;
+use std::os::fd::AsFd;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread;
 
 use crate::cli::error::CliError;
-use crate::cli::input::content::InputSource;
+use crate::cli::input::content::{self, InputSource};
 use crate::cli::input::lines::block::{Block, BlockReader};
 use crate::cli::input::lines::buffers::Buffers;
 use crate::formats::byte_order_mark::without_mark;
 use crate::formats::json;
+use crate::storage::FileId;
 
 pub(crate) mod block;
 mod buffers;
@@ -34,14 +36,24 @@ pub(crate) struct LineInput {
     pub(crate) name: String,
     /// The lines.
     pub(crate) read: Box<dyn Read + Send>,
+    /// The file that they are in, if it is known.
+    pub(crate) file: Option<FileId>,
 }
 
 impl LineInput {
     /// Returns the lines of standard input.
-    pub(crate) fn standard() -> Self {
-        Self {
-            name: InputSource::Standard.name(),
-            read: Box::new(io::stdin()),
+    ///
+    /// # Errors
+    /// Returns [`CliError::Read`] if standard input was taken before.
+    pub(crate) fn standard() -> Result<Self, CliError> {
+        let name = InputSource::Standard.name();
+        match content::standard() {
+            Ok(input) => Ok(Self {
+                name,
+                file: FileId::of_stream(&input).ok(),
+                read: Box::new(input),
+            }),
+            Err(error) => Err(CliError::Read { name, error }),
         }
     }
 
@@ -49,15 +61,34 @@ impl LineInput {
     ///
     /// # Errors
     /// Returns [`CliError::Read`] if the file cannot be opened.
-    pub(crate) fn of_file(path: &Path) -> Result<Self, CliError> {
-        let name = InputSource::File(path.to_owned()).name();
-        match File::open(path) {
-            Ok(file) => Ok(Self {
-                name,
-                read: Box::new(file),
-            }),
-            Err(error) => Err(CliError::Read { name, error }),
+    pub(crate) fn at(path: PathBuf) -> Result<Self, CliError> {
+        match File::open(&path) {
+            Ok(file) => Ok(Self::of_file(path, file)),
+            Err(error) => {
+                let name = InputSource::File(path).name();
+                Err(CliError::Read { name, error })
+            }
         }
+    }
+
+    /// Returns the lines of an open file.
+    pub(crate) fn of_file(path: PathBuf, file: File) -> Self {
+        Self {
+            name: InputSource::File(path).name(),
+            file: FileId::of(&file).ok(),
+            read: Box::new(file),
+        }
+    }
+
+    /// Returns true if standard output appends to the file: answers would be read as lines, and answered again without
+    /// end. A file that the shell has emptied has no lines.
+    fn is_output(&self) -> bool {
+        let output = io::stdout().as_fd().try_clone_to_owned();
+        let output = output.and_then(|output| File::from(output).metadata());
+        output.is_ok_and(|output| {
+            let id = FileId::in_metadata(&output);
+            output.is_file() && output.len() > 0 && self.file == Some(id)
+        })
     }
 }
 
@@ -67,8 +98,8 @@ impl LineInput {
 /// long.
 ///
 /// # Errors
-/// Returns [`CliError::Lines`] at the end if some lines were wrong; [`CliError::Read`] or [`CliError::Write`] at
-/// once.
+/// Returns [`CliError::Lines`] at the end if some lines were wrong; [`CliError::Read`], [`CliError::Write`] or, if the
+/// answers would be appended to the input, [`CliError::OwnInput`] at once.
 pub(crate) fn answer_all<A>(
     jobs: usize,
     input: LineInput,
@@ -79,6 +110,9 @@ pub(crate) fn answer_all<A>(
 where
     A: FnMut(&[u8], &mut Vec<u8>) -> Result<(), String>,
 {
+    if input.is_output() {
+        return Err(CliError::OwnInput { name: input.name });
+    }
     let jobs = match jobs {
         0 => thread::available_parallelism().map_or(1, NonZero::get),
         jobs => jobs,
@@ -224,6 +258,7 @@ mod tests {
         let input = LineInput {
             name: "a test".to_owned(),
             read: Box::new(input),
+            file: None,
         };
         let done = answer_all(jobs, input, &mut output, "line", || {
             |line: &[u8], text: &mut Vec<u8>| {
