@@ -1,10 +1,11 @@
-//! Opens recordings: files, or standard input, which is kept in a temporary file because a recording is read several
-//! times.
+//! Opens recordings: files, or standard input; a pipe is copied to a temporary file because a recording is read
+//! several times.
 
 use std::fmt::Debug;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::ControlFlow;
+use std::os::fd::AsFd;
 use std::path::Path;
 
 use crate::acquire::description_beside;
@@ -53,7 +54,18 @@ impl RecordingFile {
         let opened = || -> io::Result<(FileId, Box<dyn ReadAgain>)> {
             if source == InputSource::Standard {
                 let input = content::standard()?;
-                return Ok((FileId::of_stream(&input)?, spooled(input)?));
+                let file = File::from(input.as_fd().try_clone_to_owned()?);
+                let id = FileId::of(&file)?;
+                // A file is read again from its beginning, so that must be where the shell has it.
+                let is_whole = file.metadata()?.is_file() && (&file).stream_position()? == 0;
+                return Ok((
+                    id,
+                    if is_whole {
+                        Box::new(file)
+                    } else {
+                        spooled(input)?
+                    },
+                ));
             }
             let file = File::open(path)?;
             let id = FileId::of(&file)?;

@@ -32,7 +32,7 @@ impl SpooledInput {
     pub(crate) fn new(input: impl Read + 'static) -> io::Result<Self> {
         Ok(Self {
             rest: Some(Box::new(input)),
-            copy: tempfile::tempfile()?,
+            copy: tempfile::tempfile().map_err(|error| not_copied(&error))?,
             length: 0,
             place: 0,
             most: MOST,
@@ -48,7 +48,8 @@ impl SpooledInput {
         if count == 0 && !bytes.is_empty() {
             self.rest = None;
         }
-        self.copy.write_all_at(&bytes[..count], self.length)?;
+        let copied = self.copy.write_all_at(&bytes[..count], self.length);
+        copied.map_err(|error| not_copied(&error))?;
         self.length += count as u64;
         if self.length > self.most {
             return Err(io::Error::other(
@@ -57,6 +58,13 @@ impl SpooledInput {
         }
         Ok(count)
     }
+}
+
+/// Returns the error of the copy: it names the folder, which has nothing to do with the input.
+fn not_copied(error: &io::Error) -> io::Error {
+    let folder = std::env::temp_dir();
+    let text = format!("no copy in {} (TMPDIR): {error}", folder.display());
+    io::Error::new(error.kind(), text)
 }
 
 impl fmt::Debug for SpooledInput {
