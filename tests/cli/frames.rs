@@ -408,6 +408,44 @@ fn the_recording_being_read_is_never_replaced() {
 }
 
 #[test]
+fn a_copy_that_cannot_be_made_is_not_a_fault_of_the_input() {
+    let sample = sample("tekscan.asf");
+    let command = || {
+        let mut command = super::program(&["frames", "-", "--peak", "--at-least", "9"], "C");
+        command.env("TMPDIR", "/nonexistent");
+        command
+    };
+    let child = command().spawn().expect("the program starts");
+    let piped = super::finish(child, &std::fs::read(&sample).expect("a sample"));
+    let message =
+        "error: standard input: cannot read: no copy in /nonexistent (TMPDIR): No such file";
+    assert!(piped.stderr.starts_with(message), "{}", piped.stderr);
+    // A file needs no copy.
+    let file = std::fs::File::open(&sample).expect("a sample");
+    let run = command().stdin(file).output().expect("the program runs");
+    assert_eq!(run.status.code(), Some(0));
+}
+
+#[test]
+fn an_empty_field_at_either_end_of_a_line_is_a_missing_cell() {
+    let flags = "--rows 1 --columns 3 --at-least 1";
+    let row = |row: &str| serde_json::json!([row]);
+    for (text, frames) in [
+        ("1,2,3\n4,5,\n", ["###", "##."]),
+        ("1,2,\n4,5,6\n", ["##.", "###"]),
+        ("1,2,\n4,5,\n", ["##.", "##."]),
+        (",2,3\n4,,6\n", [".##", "#.#"]),
+        ("r0c0\tr0c1\tr0c2\n\t2\t3\n4\t5\t\n", [".##", "##."]),
+        ("1\t2\t3\n\t2\t\n", ["###", ".#."]),
+        // Tabs around a whole line are no cells.
+        ("\t1\t2\t3\t\n\t4\t5\t6\t\n", ["###", "###"]),
+    ] {
+        let found = imprints_of("ends.csv", text.as_bytes(), flags);
+        assert_eq!(found, frames.map(row), "{text:?}");
+    }
+}
+
+#[test]
 fn no_frame_is_exported_if_a_later_one_cannot_be() {
     let folder = tempfile::tempdir().expect("a folder");
     let taken = folder.path().join("touch-2.txt");

@@ -233,14 +233,10 @@ fn of_numbers(
     (number, read): (u64, &[&[u8]]),
     options: ReadOptions,
 ) -> Result<TableLayout, RecordingError> {
-    let fields: Vec<&[u8]> = separator.fields(read[0]).collect();
+    let fields = first_fields(separator, read[0], options.size);
     let numeric = (0..fields.len()).filter(|&field| separator.is_numeric(fields[field]));
     let numeric: Vec<usize> = numeric.collect();
-    let numbers = |line: &[u8]| -> Vec<f64> {
-        let all = separator.numbers(line, fields.len());
-        let of_field = |&field: &usize| all.get(field).copied().unwrap_or(f64::NAN);
-        numeric.iter().map(of_field).collect()
-    };
+    let numbers = |line: &[u8]| numbers_in(separator, line, fields.len(), &numeric);
     let values = numeric.len();
     let moment = moment_of_row(separator, read[0]);
     let width = match moment {
@@ -286,6 +282,28 @@ fn of_numbers(
         note: None,
         unit: None,
     })
+}
+
+/// Returns the numbers in the fields `numeric` of a line that has `count` fields; NaN for those that have none.
+fn numbers_in(separator: Separator, line: &[u8], count: usize, numeric: &[usize]) -> Vec<f64> {
+    let fields: Vec<&[u8]> = separator.fields_of(line, count).take(count).collect();
+    let number = |&field: &usize| {
+        fields
+            .get(field)
+            .map_or(f64::NAN, |own| separator.number(own))
+    };
+    numeric.iter().map(number).collect()
+}
+
+/// Returns the fields of the first line of a table without names: with an empty one at the end if the line is a row or a
+/// frame of the given size only then.
+fn first_fields(separator: Separator, line: &[u8], size: Option<FrameSize>) -> Vec<&[u8]> {
+    let counts = size.map(|size| [usize::from(size.columns()), size.cells()]);
+    let whole = counts.into_iter().flatten().find_map(|count| {
+        let fields: Vec<&[u8]> = separator.fields_of(line, count).collect();
+        (fields.len() == count).then_some(fields)
+    });
+    whole.unwrap_or_else(|| separator.fields(line).collect())
 }
 
 /// Continues the first block, of which `read` lines have been read, until there are enough lines or an empty line

@@ -93,31 +93,44 @@ impl Separator {
         line.split(is_end).map(unquoted)
     }
 
-    /// Returns the fields of a line like [`Self::fields`]; but if one is missing to the `expected` number, a
-    /// separator at the end of the line is followed by an empty field.
+    /// Returns the fields of a line like [`Self::fields`]; but if the line has the `expected` number of them only with
+    /// the empty ones at its ends, these are fields, too.
     pub(in crate::formats::recording) fn fields_of(
         self,
         line: &[u8],
         expected: usize,
     ) -> impl Iterator<Item = &[u8]> {
-        let is_short = match self {
-            Self::Byte(_) => self.fields(line).count() + 1 == expected,
-            Self::Spaces => false,
-        };
-        let ends_empty = |mark| line.trim_ascii().ends_with(&[mark]);
-        let has_empty = is_short && matches!(self, Self::Byte(mark) if ends_empty(mark));
-        self.fields(line).chain(has_empty.then_some(&line[..0]))
+        let (whole, ended) = (self.without_blanks(line), self.without_ends(line));
+        let is_whole = whole.len() > ended.len() && self.split(whole).count() == expected;
+        self.split_into_fields(if is_whole { whole } else { ended })
     }
 
-    /// Returns the fields of a line, without blanks and quotes around them; an empty field at the end is left out.
+    /// Returns the fields of a line, without blanks and quotes around them; an empty field at the end is left out, as
+    /// are those between tabs at both ends.
     pub(in crate::formats::recording) fn fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
-        let line = line.trim_ascii();
-        let line = match self {
-            Self::Byte(mark) => line.strip_suffix(&[mark]).unwrap_or(line),
-            Self::Spaces => line,
-        };
+        self.split_into_fields(self.without_ends(line))
+    }
+
+    fn split_into_fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
         let fields = self.split(line);
         fields.filter(move |field| self != Self::Spaces || !field.is_empty())
+    }
+
+    /// Removes the blanks at both ends of a line that are not separators.
+    fn without_blanks(self, line: &[u8]) -> &[u8] {
+        let is_end = |byte: &u8| !byte.is_ascii_whitespace() || self == Self::Byte(*byte);
+        let start = line.iter().position(is_end).unwrap_or(line.len());
+        let end = line.iter().rposition(is_end).map_or(start, |end| end + 1);
+        &line[start..end]
+    }
+
+    /// Removes all blanks at both ends of a line, and a separator at its end.
+    fn without_ends(self, line: &[u8]) -> &[u8] {
+        let line = line.trim_ascii();
+        match self {
+            Self::Byte(mark) => line.strip_suffix(&[mark]).unwrap_or(line),
+            Self::Spaces => line,
+        }
     }
 
     /// Reads the content of a field. With semicolons as separators, a comma is the decimal sign.
@@ -136,13 +149,15 @@ impl Separator {
         !matches!(self.value(field), Field::Wrong)
     }
 
+    /// Returns the number in a field; NaN if there is none.
+    pub(in crate::formats::recording) fn number(self, field: &[u8]) -> f64 {
+        self.value(field).cell().unwrap_or(f64::NAN)
+    }
+
     /// Returns the first `most` fields of a line as numbers; NaN for fields that are not numbers.
     pub(in crate::formats::recording) fn numbers(self, line: &[u8], most: usize) -> Vec<f64> {
-        let value = |field| match self.value(field) {
-            Field::Value(value) => value,
-            _ => f64::NAN,
-        };
-        self.fields(line).take(most).map(value).collect()
+        let fields = self.fields(line).take(most);
+        fields.map(|field| self.number(field)).collect()
     }
 }
 
@@ -190,6 +205,11 @@ mod tests {
     fn an_empty_field_at_the_end_counts_if_it_is_expected() {
         let count = |expected| Separator::Byte(b',').fields_of(b"1,2,", expected).count();
         assert_eq!([2, 3, 4].map(count), [2, 3, 2]);
+        let count = |expected| {
+            let fields = Separator::Byte(b'\t').fields_of(b" \t1\t\r", expected);
+            fields.count()
+        };
+        assert_eq!([1, 2, 3, 4].map(count), [1, 1, 3, 1]);
     }
 
     #[test]
