@@ -18,6 +18,8 @@ use crate::frame::{Frame, FrameSize};
 pub struct AcquireOptions {
     /// The format of a stream; None to detect it. If it is given, a file is a stream, not a recording.
     pub format: Option<StreamFormat>,
+    /// The format of streams only, if `format` is not given; a file that is a recording is still played as one.
+    pub stream_format: Option<StreamFormat>,
     /// The size of frames of streams, and of recordings that do not state it.
     pub size: Option<FrameSize>,
     /// The size of frames of streams only, if `size` is not given; recordings state their own.
@@ -89,6 +91,7 @@ impl Default for AcquireOptions {
         Self {
             format: None,
             size: None,
+            stream_format: None,
             stream_size: None,
             channel: None,
             baud: 115_200,

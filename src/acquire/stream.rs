@@ -117,7 +117,7 @@ pub(super) fn run(
     consumer: &mut Consumer<'_>,
 ) -> Result<(), AcquireError> {
     let stream = StreamOptions {
-        format: options.format,
+        format: options.format.or(options.stream_format),
         size: options.size.or(options.stream_size),
         from_start: !source.comes_back(),
     };

@@ -123,6 +123,7 @@ impl WatchArguments {
         settings.apply(&mut options);
         if let Some(name) = format {
             options.format = StreamFormat::from_name(name);
+            options.stream_format = None;
         }
         options.size = processing.size;
         options.channel.clone_from(&processing.channel);

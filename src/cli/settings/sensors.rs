@@ -248,7 +248,7 @@ impl SensorSettings {
             ..
         }) = self.get(SensorKey::Format)
         {
-            options.format = *format;
+            options.stream_format = *format;
         }
         options.baud = self.whole(SensorKey::Baud).unwrap_or(options.baud);
         let sides = [SensorKey::Columns, SensorKey::Rows].map(|key| self.whole(key));
