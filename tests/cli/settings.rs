@@ -221,6 +221,32 @@ fn a_named_settings_file_must_exist_and_be_text() {
     assert_eq!(run.status, Some(2), "it comes to an end");
 }
 
+/// The disk that a link leads to may not be mounted; then the usual settings would be a surprise.
+#[cfg(unix)]
+#[test]
+fn a_link_to_settings_that_are_missing_is_reported() {
+    let home = tempfile::tempdir().expect("a folder");
+    let folder = home.path().join(".config");
+    fs::create_dir_all(&folder).expect("made");
+    assert_eq!(run(&mut at_home("config", home.path())).status, Some(0));
+    std::os::unix::fs::symlink("/nonexistent/taxel", folder.join("taxel")).expect("linked");
+    let run = run(&mut at_home("config", home.path()));
+    assert_eq!(run.status, Some(2));
+    let message = "config.toml: cannot read: No such file or directory";
+    assert!(run.stderr.contains(message), "{}", run.stderr);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_library_whose_path_is_not_utf_8_is_a_comment_in_the_settings() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = std::ffi::OsStr::from_bytes(b"/srv/caf\xe9");
+    let run = run(taxel("config").env("TAXEL_LIBRARY", folder));
+    let line = "# library: /srv/caf\u{fffd}, which is not UTF-8";
+    assert!(run.stdout.contains(line), "{}", run.stdout);
+    assert!(!run.stdout.contains("library = "), "{}", run.stdout);
+}
+
 /// A flag of the screen before a command would have no effect, so it is refused.
 #[test]
 fn flags_of_the_screen_are_refused_before_a_command() {
@@ -308,14 +334,13 @@ fn settings_for_frames_are_used() {
         let of_flag = said("--tare 9");
         assert!(of_flag.ends_with(&format!("{lacking}\n")), "{of_flag}");
     }
-    // A stream has the rows and columns of the settings; a recording has its own.
-    let stream = answered(format!(
-        "watch {samples}/flexitac.bin --once --format flexitac"
-    ));
+    // A stream has the format, rows and columns of the settings; a recording has its own.
+    let mut stream = at_home("watch - --once", home.path());
+    let bytes = fs::File::open(format!("{samples}/flexitac.bin"));
+    let stream = stream.stdin(bytes.expect("a sample")).output();
+    let stream = String::from_utf8(stream.expect("it runs").stdout).expect("UTF-8");
     assert_eq!(stream.lines().count(), 3, "{stream}");
-    let own = answered(format!(
-        "watch {samples}/tekscan.asf --once --format auto --tare 0"
-    ));
+    let own = answered(format!("watch {samples}/tekscan.asf --once --tare 0"));
     assert_eq!(own.lines().count(), 3, "{own}");
 }
 

@@ -74,12 +74,7 @@ impl Loaded {
         let limit = MAX_BYTES as u64;
         let read = open(&path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes));
         let there = match read {
-            Err(error)
-                if may_be_missing
-                    && matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) =>
-            {
-                false
-            }
+            Err(error) if may_be_missing && is_missing(&path, &error) => false,
             Err(error) => return Err(failure(format!("cannot read: {error}"))),
             Ok(_) => true,
         };
@@ -97,6 +92,14 @@ impl Loaded {
             config,
         })
     }
+}
+
+/// Returns true if there is no settings file at all. A link that leads nowhere counts as one: what it leads to may be on
+/// a disk that is not mounted.
+fn is_missing(path: &Path, error: &io::Error) -> bool {
+    let leads_nowhere = |path: &Path| path.is_symlink() && !path.exists();
+    matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)
+        && !path.ancestors().any(leads_nowhere)
 }
 
 /// Opens the settings file. A pipe is refused: opening one waits for a writer, which may never come.
@@ -332,7 +335,12 @@ impl Effective {
             // The path is made absolute: a settings file means the same in every folder.
             Some(folder) => {
                 let whole = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
-                format!("library = {}", quoted(&whole.to_string_lossy()))
+                let lossy = || charset.line(&whole.to_string_lossy()).into_owned();
+                // A settings file is UTF-8, so any other path cannot be in one.
+                whole.to_str().map_or_else(
+                    || format!("# library: {}, which is not UTF-8", lossy()),
+                    |whole| format!("library = {}", quoted(whole)),
+                )
             }
             None => "# no library: no home folder".to_owned(),
         };
