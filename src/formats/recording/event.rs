@@ -182,6 +182,9 @@ impl ChannelInfo {
             info.pitch_mm = info.pitch_mm.or(description.pitch_mm);
             info.seconds_per_frame = info.seconds_per_frame.or(description.seconds_per_frame);
             info.rule = info.rule.or(description.rule);
+            if let Some(Rule::AtLeast(threshold)) = info.rule.map(|set| set.rule) {
+                info.threshold.get_or_insert(threshold);
+            }
             info.tare = info.tare.or_else(|| description.tare.clone());
             info.marks.clone_from(&description.marks);
         }
@@ -454,6 +457,22 @@ mod tests {
         assert_eq!((completed.unit, completed.rule), (own.unit, own.rule));
         assert_eq!(completed.seconds_per_frame, own.seconds_per_frame);
         assert_eq!(completed.pitch_mm, description.pitch_mm);
+    }
+
+    #[test]
+    fn a_threshold_of_the_description_is_that_of_the_recording() {
+        let threshold = |rule| {
+            let (least, from) = (0, RuleOrigin::File);
+            let rule = Some(SetRule { rule, least, from });
+            let description = RecordingMetadata {
+                rule,
+                ..RecordingMetadata::default()
+            };
+            let own = ChannelInfo::default();
+            own.completed(Some(&description)).threshold
+        };
+        assert_eq!(threshold(Rule::AtLeast(10.0)), Some(10.0));
+        assert_eq!(threshold(Rule::Percent(10.0)), None);
     }
 
     #[test]
