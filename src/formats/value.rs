@@ -30,8 +30,20 @@ pub fn in_millimetres(value: Value, unit: Dimension, pitch_mm: f64) -> Option<St
     }
 }
 
-/// Formats the numbers of a value times a factor, with at most `decimals` decimals; None if the value does not exist.
+/// Formats the numbers of a value times a factor, with at most `decimals` decimals, or as many more as a factor below 1
+/// takes away; None if the value does not exist.
+///
+/// ```
+/// use taxel::description::Value;
+/// use taxel::formats::value::times;
+/// assert_eq!([0.5, 1e-4].map(|pitch| times(Value::Number(3.25), pitch, 4).unwrap()), ["1.625", "0.000325"]);
+/// ```
 pub fn times(value: Value, factor: f64, decimals: usize) -> Option<String> {
+    let lost = [
+        1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12,
+    ];
+    let lost = lost.into_iter().take_while(|&power| factor <= power);
+    let decimals = decimals + lost.count();
     let number = |number: f64| decimal(number * factor, decimals);
     match value {
         Value::None => None,
