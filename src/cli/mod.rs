@@ -284,7 +284,7 @@ impl Surroundings {
             LibraryCommand::Save(saving, what) => {
                 charset.lines(&library::save(shelf, saving, &what)?)
             }
-            LibraryCommand::Delete(name) => charset.lines(&library::delete(shelf, name.as_str())?),
+            LibraryCommand::Delete(name) => library::delete(shelf, name.as_str(), charset)?,
             LibraryCommand::Restore(name) => {
                 charset.lines(&library::restore(shelf, name.as_str())?)
             }

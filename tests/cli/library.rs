@@ -88,8 +88,9 @@ fn a_shape_is_saved_listed_shown_deleted_and_restored() {
             .contains("in mm²")
     );
     let deleted = shelf.does("library|delete|My Ring", "");
-    let restores = "deleted my ring; to restore it: taxel library restore 'my ring' --library ";
+    let restores = "deleted my ring; to restore it: taxel library restore --library ";
     assert!(deleted.starts_with(restores), "{deleted}");
+    assert!(deleted.ends_with(" 'my ring'\n"), "{deleted}");
     shelf.refuses("library|show|my ring", "no shape is called \"my ring\"");
     shelf.refuses("library|delete|my ring", "no shape is called \"my ring\"");
     // A typing error in the name of a shape, in the library and in its trash.
@@ -406,4 +407,41 @@ fn saving_with_name_and_file_swapped_explains_the_order() {
     let told = missing("my ring") + order + " 'my ring' imprint.txt";
     refused(&save("my ring"), 1, &told);
     shelf.refuses("library|save|none.txt|ring", &missing("ring"));
+}
+
+/// A command that cannot be typed, or that would be refused, is not proposed.
+#[test]
+fn the_command_that_restores_a_deleted_shape_can_be_typed() {
+    use std::os::unix::ffi::OsStringExt;
+    let folder = tempfile::tempdir().expect("a folder");
+    let plain = folder.path().join("plain").into_os_string();
+    let mut latin = folder.path().join("caf").into_os_string().into_vec();
+    latin.push(0xe9);
+    let latin = std::ffi::OsString::from_vec(latin);
+    for (library, name, locale, hint) in [
+        (&plain, "-x", "C.UTF-8", Some(" -- -x\n")),
+        (
+            &plain,
+            "schl\u{fc}ssel",
+            "C.UTF-8",
+            Some(" schl\u{fc}ssel\n"),
+        ),
+        (&plain, "schl\u{fc}ssel", "C", None),
+        (&latin, "ring", "C.UTF-8", None),
+    ] {
+        let run = |words: &[&str], input: &str| {
+            let mut arguments: Vec<&std::ffi::OsStr> = vec!["library".as_ref()];
+            arguments.extend([std::ffi::OsStr::new("--library"), library.as_os_str()]);
+            arguments.extend(words.iter().map(std::ffi::OsStr::new));
+            let run = run_in(locale, &arguments, input.as_bytes());
+            assert_eq!(run.status, Some(0), "{words:?}: {}", run.stderr);
+            run.stdout
+        };
+        run(&["save", "--", name, "-"], "##\n#.\n");
+        let deleted = run(&["delete", "--", name], "");
+        match hint {
+            Some(ending) => assert!(deleted.ends_with(ending), "{deleted}"),
+            None => assert!(!deleted.contains("restore"), "{deleted}"),
+        }
+    }
 }

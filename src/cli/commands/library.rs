@@ -141,7 +141,7 @@ fn lines(library: &Library) -> Result<Vec<ListLine>, CliError> {
 /// # Errors
 /// Returns an error if the folder cannot be listed.
 pub(crate) fn names(shelf: &Shelf, which: NameSet) -> Result<String, CliError> {
-    let library = shelf.library()?;
+    let library = shelf.readable();
     let is_asked = |entry: &LibraryEntry| which == NameSet::All || entry.origin == ShapeOrigin::Own;
     let names: Vec<String> = match which {
         NameSet::Deleted => library.in_trash()?,
@@ -156,7 +156,7 @@ pub(crate) fn names(shelf: &Shelf, which: NameSet) -> Result<String, CliError> {
 
 /// Lists all shapes: a table, or an array of objects in JSON.
 pub(crate) fn list(shelf: &Shelf, as_json: bool, charset: Charset) -> Result<String, CliError> {
-    let lines = lines(&shelf.library()?)?;
+    let lines = lines(&shelf.readable())?;
     if as_json {
         return Ok(json::ascii(&lines) + "\n");
     }
@@ -192,7 +192,7 @@ pub(crate) fn show(
     form: Form,
     charset: Charset,
 ) -> Result<String, CliError> {
-    let loaded = shelf.library()?.load(name);
+    let loaded = shelf.readable().load(name);
     let shape = loaded.map_err(|error| shelf.refused(error))?.shape;
     Ok(describe::content(&Content::Shape(shape), form, charset))
 }
@@ -230,21 +230,31 @@ fn in_order(error: CliError, file: &str) -> CliError {
     }
 }
 
-/// Moves an own shape to the trash.
+/// Moves an own shape to the trash. Returns the text to print, with the command that restores the shape.
 ///
 /// # Errors
 /// Returns an error if there is no such shape, or it comes with the program.
-pub(crate) fn delete(shelf: &Shelf, name: &str) -> Result<String, CliError> {
+pub(crate) fn delete(shelf: &Shelf, name: &str, charset: Charset) -> Result<String, CliError> {
     let deleted = shelf.library()?.delete(name);
     let name = deleted.map_err(|error| shelf.refused(error))?;
-    let argument = as_argument(&name);
-    let library = shelf.named()?.map_or_else(String::new, |library| {
-        let folder = library.folder().to_string_lossy();
-        format!(" --library {}", as_argument(&folder))
-    });
-    Ok(format!(
-        "deleted {name}; to restore it: taxel library restore {argument}{library}\n"
-    ))
+    let hint = restoring(shelf.named()?.as_ref(), &name);
+    // A command whose characters are escaped, or whose folder is not UTF-8, cannot be typed.
+    let hint = hint.filter(|hint| charset.line(hint) == *hint);
+    let hint = hint.map_or(String::new(), |hint| format!("; to restore it: {hint}"));
+    Ok(charset.lines(&format!("deleted {name}{hint}\n")))
+}
+
+/// Returns the command that restores a shape, from the library if `--library` names it; None if the library's path
+/// is not UTF-8.
+fn restoring(library: Option<&Library>, name: &str) -> Option<String> {
+    let mut command = "taxel library restore".to_owned();
+    if let Some(library) = library {
+        command += " --library ";
+        command += &as_argument(library.folder().to_str()?);
+    }
+    // Otherwise a name with a dash would be taken for a flag.
+    command += if name.starts_with('-') { " -- " } else { " " };
+    Some(command + &as_argument(name))
 }
 
 /// Restores the shape of this name that was deleted last.
@@ -325,7 +335,7 @@ pub(crate) fn check(
     as_json: bool,
     charset: Charset,
 ) -> Result<(String, Result<(), CliError>), CliError> {
-    let library = shelf.library()?;
+    let library = shelf.readable();
     let lines = lines(&library)?;
     let shapes = lines.len();
     let names = unclear_names(&lines);

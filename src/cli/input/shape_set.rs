@@ -104,7 +104,7 @@ fn no_shape(error: LibraryError, shelf: &Shelf) -> CliError {
 /// # Errors
 /// Returns an error if one of them is damaged.
 fn library_shapes(shelf: &Shelf) -> Result<Vec<NamedShape>, CliError> {
-    let library = shelf.library()?;
+    let library = shelf.readable();
     let mut shapes = Vec::new();
     for entry in library.list()? {
         let name = entry.name.clone();

@@ -34,6 +34,9 @@ pub(crate) struct Shelf {
     found: Arc<Mutex<HashMap<String, Imprint>>>,
 }
 
+/// A folder that cannot exist, because it would be below a device.
+const NO_FOLDER: &str = "/dev/null/library";
+
 /// The meaning of a `NAME|FILE` argument.
 #[derive(Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one of these at a time")]
@@ -66,6 +69,12 @@ impl Shelf {
         let library = || self.folder.clone().map(Library::open);
         let library = self.library.get_or_init(library);
         library.clone().ok_or(LibraryError::NoPlace)
+    }
+
+    /// Returns the library to read from. Without a folder for one, it has the shapes that come with the program.
+    pub(crate) fn readable(&self) -> Library {
+        self.library()
+            .unwrap_or_else(|_| Library::open(PathBuf::from(NO_FOLDER)))
     }
 
     /// Returns a warning that only the shapes that come with the program can be read, if the library was used and a
@@ -120,9 +129,7 @@ impl Shelf {
         if what == "-" {
             return Ok(Located::Standard);
         }
-        let named = what
-            .to_str()
-            .map(|name| self.library().and_then(|library| library.load(name)));
+        let named = what.to_str().map(|name| self.readable().load(name));
         let nowhere = match named {
             Some(Ok(loaded)) => return Ok(Located::Shape(loaded.shape)),
             // A similar name is searched only if there is no such file.
@@ -130,8 +137,8 @@ impl Shelf {
                 let near = String::new();
                 Some(CliError::Nowhere { name, near })
             }
-            // A text that cannot be a name may be a path, and paths do not need a library.
-            Some(Err(LibraryError::Name(_) | LibraryError::NoPlace)) | None => None,
+            // A text that cannot be a name may be a path.
+            Some(Err(LibraryError::Name(_))) | None => None,
             // An error of the library is reported only if there is no such file.
             Some(Err(error)) => Some(error.into()),
         };
@@ -174,8 +181,7 @@ impl Shelf {
 
     /// Returns the end of a message about an unknown name: a shape with a similar name, if there is one.
     fn suggestion(&self, error: &LibraryError) -> String {
-        let library = self.library();
-        library.map_or_else(|_| String::new(), |library| library.suggestion(error))
+        self.readable().suggestion(error)
     }
 
     /// Returns the imprint of a stored shape, for the lines of a batch. Each shape is read once.
@@ -191,7 +197,7 @@ impl Shelf {
         if let Some(imprint) = found().get(&own) {
             return Ok(*imprint);
         }
-        let shape = self.library()?.load(name)?.shape;
+        let shape = self.readable().load(name)?.shape;
         Ok(*found().entry(own).or_insert(shape.imprint))
     }
 
@@ -212,5 +218,21 @@ impl Shelf {
         };
         saved?;
         Ok(library.stored_name(&shape.name)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shipped_shapes_need_no_folder() {
+        let shelf = Shelf::new(None, false);
+        let washer = shelf.locate(OsStr::new("washer"));
+        assert!(matches!(washer, Ok(Located::Shape(_))), "{washer:?}");
+        assert!(shelf.imprint("washer").is_ok());
+        assert!(!shelf.readable().list().expect("shipped shapes").is_empty());
+        assert!(matches!(shelf.library(), Err(LibraryError::NoPlace)));
+        assert_eq!(shelf.complaint(), None);
     }
 }
