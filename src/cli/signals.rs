@@ -22,18 +22,18 @@ pub(crate) fn outlive_file_limit() {
     let _ = flag::register(SIGXFSZ, Arc::default());
 }
 
-/// Returns true if SIGHUP is ignored and must stay so, as `nohup` asks. If the system does not tell, SIGHUP counts as
-/// ignored when standard error is not a terminal.
-fn hangup_is_ignored() -> bool {
+/// Returns true if a signal is ignored and must stay so: as `nohup` asks for SIGHUP, and a script for SIGINT in its
+/// background jobs. If the system does not tell, SIGHUP counts as ignored when standard error is not a terminal.
+fn is_ignored(signal: i32) -> bool {
     let ignored = || {
         let status = fs::read_to_string("/proc/self/status").ok()?;
         let mask = status
             .lines()
             .find_map(|line| line.strip_prefix("SigIgn:"))?;
         let mask = u64::from_str_radix(mask.trim(), 16).ok()?;
-        Some(mask >> (SIGHUP - 1) & 1 == 1)
+        Some(mask >> (signal - 1) & 1 == 1)
     };
-    ignored().unwrap_or_else(|| !io::stderr().is_terminal())
+    ignored().unwrap_or_else(|| signal == SIGHUP && !io::stderr().is_terminal())
 }
 
 /// Records whether a signal asks to stop the work. A second signal ends the program at once, as if it were not
@@ -53,7 +53,7 @@ impl Signals {
     pub(crate) fn catch() -> io::Result<Self> {
         let (stopped, last) = (Arc::default(), Arc::default());
         for (index, &(signal, status)) in STOPPING.iter().enumerate() {
-            if signal == SIGHUP && hangup_is_ignored() {
+            if is_ignored(signal) {
                 continue;
             }
             flag::register_conditional_shutdown(signal, status.into(), Arc::clone(&stopped))?;

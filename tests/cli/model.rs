@@ -805,13 +805,13 @@ fn an_interrupted_training_leaves_no_files() {
     let start = Instant::now();
     let id = i32::try_from(child.id()).expect("a process");
     let id = rustix::process::Pid::from_raw(id).expect("a process");
-    rustix::process::kill_process(id, rustix::process::Signal::INT).expect("it runs still");
+    rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("it runs still");
     let mut rest = String::new();
     notes.read_to_string(&mut rest).expect("text");
     let run = finish(child, b"");
     println!("stopped after {:?}", start.elapsed());
     assert_eq!(rest, "error: stopped; nothing was written\n");
-    assert_eq!((run.status, run.stdout.as_str()), (Some(130), ""));
+    assert_eq!((run.status, run.stdout.as_str()), (Some(143), ""));
     assert_eq!(names(place.0.path()), ["parts.jsonl", "rectangles.jsonl"]);
 }
 
@@ -1000,6 +1000,12 @@ fn a_shard_of_a_model_can_be_shown_and_merged_but_not_evaluated() {
     place.done(&format!("{train} --out half.npz"));
     place.done(&format!("{train} --name half"));
     assert!(place.done("model show half.npz").contains("shard 1/2"));
+    let list = place.done("model list");
+    assert!(
+        list.contains("\nhalf: ") && list.contains(", shard 1/2 of a model\n"),
+        "{list}"
+    );
+    assert_eq!(place.json("model list --json")["shard"], "1/2");
     let said = "half.npz: shard 1/2 of a model only; 'taxel merge' puts shards together";
     for line in [
         "model confusion half.npz",

@@ -325,6 +325,64 @@ fn an_interrupted_study_can_be_resumed() {
     }
 }
 
+/// A job that a cluster has queued again may run beside the first one.
+#[test]
+fn two_jobs_may_resume_one_shard_at_the_same_time() {
+    let scratch = folder();
+    let atlas = scratch.path().join("part.npz");
+    let sweep = "sweep octagon --side 6 --columns 32 --rows 32 --angle 0:44:4 --shard 1/2 --jobs 1 --resume --atlas";
+    let mut arguments: Vec<&std::ffi::OsStr> = sweep.split(' ').map(std::ffi::OsStr::new).collect();
+    arguments.push(atlas.as_os_str());
+    let jobs = [(); 2].map(|()| {
+        let child = super::program(&arguments, "C.UTF-8").spawn();
+        child.expect("the program starts")
+    });
+    for run in jobs.map(|job| super::finish(job, b"")) {
+        assert_eq!(run.status, Some(0), "{}", run.stderr);
+    }
+}
+
+#[test]
+fn a_sweep_goes_on_if_a_signal_is_ignored() {
+    let sweep = "sweep octagon --side 6 --columns 32 --rows 32 --angle 0:44:4 --jobs 1 --quiet";
+    let taxel = env!("CARGO_BIN_EXE_taxel");
+    let script = format!("trap '' INT TERM; exec {taxel} {sweep}");
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &script]).env("TAXEL_CONFIG", "/dev/null");
+    let mut child = shell
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .expect("there is a shell");
+    let id = rustix::process::Pid::from_child(&child);
+    for signal in [rustix::process::Signal::INT, rustix::process::Signal::TERM] {
+        std::thread::sleep(std::time::Duration::from_millis(100));
+        // It may have ended already.
+        let _ = rustix::process::kill_process(id, signal);
+    }
+    let status = child.wait().expect("it ends");
+    assert_eq!(status.code(), Some(0));
+}
+
+#[test]
+fn paths_of_atlases_need_not_be_utf_8() {
+    use std::os::unix::ffi::OsStrExt;
+    let scratch = folder();
+    let path = |name: &[u8]| scratch.path().join(std::ffi::OsStr::from_bytes(name));
+    let (one, all) = (path(b"caf\xe9.npz"), path(b"caf\xe9-all.csv"));
+    let sweep = "sweep hexagon --side 3 --x0 5:5.9:0.1 --y0 5:5.9:0.1 --quiet";
+    let run = |line: &str, files: &[&std::ffi::OsStr]| {
+        let mut arguments: Vec<&std::ffi::OsStr> =
+            line.split(' ').map(std::ffi::OsStr::new).collect();
+        arguments.extend(files);
+        let run = super::run_in("C.UTF-8", &arguments, b"");
+        assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""), "{line}");
+    };
+    run(&format!("{sweep} --atlas"), &[one.as_os_str()]);
+    let files = [one.as_os_str(), "--atlas".as_ref(), all.as_os_str()];
+    run("merge --quiet", &files);
+    assert!(all.exists());
+}
+
 #[test]
 fn the_memory_of_a_merge_is_limited_and_printed() {
     let scratch = folder();

@@ -45,10 +45,10 @@ fn an_interrupt_stops_at_once_and_leaves_no_files() {
     std::thread::sleep(Duration::from_millis(200));
     let start = Instant::now();
     let id = rustix::process::Pid::from_raw(id).expect("a process");
-    rustix::process::kill_process(id, rustix::process::Signal::INT).expect("it runs still");
+    rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("it runs still");
     let run = finish(child, b"");
     println!("stopped after {:?}", start.elapsed());
-    refused(&run, 130, "stopped; nothing was written");
+    refused(&run, 143, "stopped; nothing was written");
     assert_eq!(names(folder), [""; 0]);
 }
 

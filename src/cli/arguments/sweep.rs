@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 
 use crate::cli::arguments::flags::{
@@ -150,7 +151,7 @@ pub(super) fn merge_command() -> Command {
 /// for this; only `.npz` can be read again.
 fn atlas() -> Arg {
     option("atlas", "FILE", "Write the atlas, as .csv, .jsonl or .npz")
-        .value_parser(|path: &str| AtlasFile::new(path))
+        .value_parser(OsStringValueParser::new().try_map(AtlasFile::new))
 }
 
 impl SweepArguments {

@@ -45,6 +45,7 @@ use crate::storage::{
     load_whole_model, model_hash, save_model,
 };
 use crate::storage::{ModelChoice, unknown_set};
+use crate::sweep::Shard;
 
 /// Trains a model and writes it. Returns the text to print. The path is tried before the work begins. A signal stops
 /// the training and leaves no file.
@@ -66,9 +67,12 @@ pub(crate) fn train(
     let training = Training::new(shapes, sensor, anchor, ranges)?
         .shard(asked.shard)
         .allow_cut(asked.allow_cut);
-    if asked.there == ShardFile::Resumed
-        && let Some(model) = resume::model(&path, &training, asked.shard, asked.allow_cut)?
-    {
+    let wanted = training.clone();
+    let kept = || match asked.there {
+        ShardFile::Resumed => resume::model(&path, &wanted, asked.shard, asked.allow_cut),
+        ShardFile::Refused | ShardFile::Replaced => Ok(None),
+    };
+    if let Some(model) = kept()? {
         return trained(&model, &path, KEPT, asked, charset);
     }
     // A path that cannot be written is an error before the work, not after it.
@@ -88,8 +92,14 @@ pub(crate) fn train(
         error => signals.training_failure(error, &memory),
     })?;
     let saved = save_model(&model, &path, asked.there.existing(), stopped);
-    saved.map_err(|error| signals.failure_or(error.into()))?;
-    trained(&model, &path, "written", asked, charset)
+    match saved {
+        // Another job may have written this shard meanwhile: it was queued again, or started twice.
+        Err(error) if error.exists() && kept()?.is_some() => {
+            trained(&model, &path, KEPT, asked, charset)
+        }
+        Err(error) => Err(signals.failure_or(error.into())),
+        Ok(()) => trained(&model, &path, "written", asked, charset),
+    }
 }
 
 /// Runs a training until it is done, memory runs short or `stopped` becomes true.
@@ -323,7 +333,7 @@ pub(crate) fn show(
         "prior: shapes are as likely as their weights say\n"
     };
     text += &format!("{} each", counted(model.poses(), "pose"));
-    if model.shard() != crate::sweep::Shard::WHOLE {
+    if model.shard() != Shard::WHOLE {
         text += &format!(", shard {}", model.shard());
     }
     let cut: u64 = model.cut().iter().sum();
@@ -461,6 +471,7 @@ pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String
                     "file": path.to_string_lossy(),
                     "shapes": model.shapes().iter().map(|shape| &shape.name).collect::<Vec<_>>(),
                     "keys": model.keys().len(),
+                    "shard": model.shard().to_string(),
                 }),
                 Err(error) => json!({"name": name.as_str(), "error": error.to_string()}),
             };
@@ -469,12 +480,18 @@ pub(crate) fn list(json: bool, shelf: &Shelf, charset: Charset) -> Result<String
             continue;
         }
         let said = match &model {
-            Ok(model) => format!(
-                "{}, {}, error {}",
-                counted(model.shapes().len() as u64, "shape"),
-                counted(model.keys().len() as u64, "key"),
-                percent(Evaluation::of(model).error())
-            ),
+            Ok(model) => {
+                let shapes = counted(model.shapes().len() as u64, "shape");
+                let keys = counted(model.keys().len() as u64, "key");
+                match model.shard() {
+                    Shard::WHOLE => {
+                        let error = percent(Evaluation::of(model).error());
+                        format!("{shapes}, {keys}, error {error}")
+                    }
+                    // Its error would be that of a part of the touches.
+                    shard => format!("{shapes}, {keys}, shard {shard} of a model"),
+                }
+            }
             Err(error) => error.to_string(),
         };
         text += &charset.lines(&format!("{name}: {said}\n"));

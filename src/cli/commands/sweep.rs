@@ -3,7 +3,7 @@
 //! Files are written under another name in the same folder and renamed when all of them are complete. A file that
 //! exists is replaced only with `--force`; this is checked before the work begins.
 //!
-//! SIGINT, SIGTERM and, unless it is ignored, SIGHUP stop a sweep within a few thousand poses and a file at its next
+//! SIGINT, SIGTERM and SIGHUP, unless they are ignored, stop a sweep within a few thousand poses and a file at its next
 //! block. Incomplete files are removed, and the exit status is 128 plus the number of the signal. A second signal
 //! ends the program at once.
 //!
@@ -112,16 +112,10 @@ pub(crate) fn sweep(
     let start = Instant::now();
     let signals = Signals::catch().map_err(CliError::System)?;
     let stopped = &signals.stopped;
+    if let Some(kept) = kept(grid, shard, wanted, charset)? {
+        return Ok(summary(&kept, start, wanted, charset));
+    }
     if let Some(file) = &wanted.atlas {
-        if wanted.there == ShardFile::Resumed
-            && let Some(kept) = kept(file, grid, shard)?
-        {
-            if !wanted.quiet {
-                let name = file.path().to_string_lossy();
-                note(&format!("{KEPT}: {name}"), charset);
-            }
-            return Ok(summary(&kept, start, wanted, charset));
-        }
         file.check(wanted.there.existing())?;
     }
     let pool = threads::pool(jobs)?;
@@ -156,9 +150,16 @@ pub(crate) fn sweep(
     if !result.complete() {
         return Err(signals.failure());
     }
-    let summary = leave(&result, start, wanted, poses, charset, &signals)?;
+    let left = leave(&result, start, wanted, poses, charset, &signals);
+    // Another job may have written this shard meanwhile: it was queued again, or started twice.
+    if matches!(left, Err(CliError::Taken { .. }))
+        && let Some(kept) = kept(grid, shard, wanted, charset)?
+    {
+        return Ok(summary(&kept, start, wanted, charset));
+    }
+    let text = left?;
     wanted.note_written(charset);
-    Ok(summary)
+    Ok(text)
 }
 
 /// Writes the atlas, gives the files their names, and returns the summary to print.
@@ -199,17 +200,35 @@ fn summary(result: &SweepResult, start: Instant, wanted: &Wanted, charset: Chars
     }
 }
 
-/// Returns the atlas of an earlier run of this shard, for `--resume`.
+/// Returns the atlas of an earlier run of this shard, and notes that it is kept; None without `--resume`, or if there is
+/// none.
 ///
 /// # Errors
 /// Returns an error if the file is something else, or if its format is one that cannot be read.
-fn kept(file: &AtlasFile, grid: &PoseGrid, shard: Shard) -> Result<Option<SweepResult>, CliError> {
+fn kept(
+    grid: &PoseGrid,
+    shard: Shard,
+    wanted: &Wanted,
+    charset: Charset,
+) -> Result<Option<SweepResult>, CliError> {
+    let Some(file) = wanted
+        .atlas
+        .as_ref()
+        .filter(|_| wanted.there == ShardFile::Resumed)
+    else {
+        return Ok(None);
+    };
+    let name = file.path().to_string_lossy().into_owned();
     if !file.is_archive() {
         return Err(CliError::Ending {
-            name: file.path().to_string_lossy().into_owned(),
+            name,
             what: "an atlas for --resume",
             expected: ".npz",
         });
     }
-    resume::atlas(file.path(), grid, shard)
+    let kept = resume::atlas(file.path(), grid, shard)?;
+    if kept.is_some() && !wanted.quiet {
+        note(&format!("{KEPT}: {name}"), charset);
+    }
+    Ok(kept)
 }
