@@ -168,7 +168,8 @@ Examples:
 pub(crate) const MAN_EXAMPLES: &str = "\
 Examples:
   taxel man | man -l -
-  taxel man ~/.local/share/man/man1 && man taxel-figure";
+  taxel man ~/.local/share/man/man1
+  MANPATH=~/.local/share/man: man taxel-figure";
 
 /// The environment variables, for the manual page; `--help` leaves them out.
 pub(crate) const ENVIRONMENT: &str = "

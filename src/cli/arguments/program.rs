@@ -144,7 +144,7 @@ pub(crate) fn man() -> Command {
     let folder = Arg::new("folder")
         .value_name("DIR")
         .value_parser(value_parser!(PathBuf))
-        .help("Write the pages of all commands into this folder");
+        .help("Write the pages of all commands into this folder,\nin place of older ones");
     Command::new("man")
         .about("Print the man page, or write all man pages to a folder")
         .after_help(MAN_EXAMPLES)

@@ -201,7 +201,7 @@ fn write_noise(
         }
         return output.write(noise_report::json(found));
     }
-    let text = noise_report::text(found) + &said.map_or(String::new(), |said| said + "\n");
+    let text = said.map_or(String::new(), |said| said + "\n") + &noise_report::text(found);
     output.write(output.charset.lines(&text))
 }
 

@@ -81,7 +81,9 @@ fn page(command: &Command) -> io::Result<Vec<u8>> {
         .manual("taxel");
     man.render_title(&mut page)?;
     let mut roff = Roff::new();
-    roff.control("SH", ["NAME"])
+    // A hyphen at the end of a line would change a key or a flag that is copied from there.
+    roff.control("nh", [])
+        .control("SH", ["NAME"])
         .text([roman(format!("{} - {short}", name(command)))]);
     let usage = command.clone().render_usage().to_string();
     roff.control("SH", ["SYNOPSIS"]).control("nf", []);
