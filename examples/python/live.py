@@ -61,4 +61,7 @@ def main(source):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1] if len(sys.argv) > 1 else None))
+    try:
+        sys.exit(main(sys.argv[1] if len(sys.argv) > 1 else None))
+    except BrokenPipeError:
+        sys.stdout = None  # nobody reads on, as in | head
