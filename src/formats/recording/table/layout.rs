@@ -87,17 +87,7 @@ pub(super) fn layout(
     let first = first_line(&mut lines)?;
     let separator = Separator::of(&first);
     let number = lines.number();
-    if separator
-        .fields(&first)
-        .nth(MAX_FRAME_CELLS + MOST_BESIDE)
-        .is_some()
-    {
-        let message = format!(
-            "more than {} fields, expected at most {MAX_FRAME_SIDE} × {MAX_FRAME_SIDE} cells and {MOST_BESIDE} beside them",
-            grouped((MAX_FRAME_CELLS + MOST_BESIDE) as u64)
-        );
-        return Err(RecordingError::in_line(number, message));
-    }
+    check_width(separator, &first, number)?;
     let names: Vec<String> = separator.fields(&first).map(text).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let has_words = names
@@ -139,6 +129,19 @@ pub(super) fn layout(
         units: units.as_ref(),
     };
     with_header(header, separator, lines.line(), options)
+}
+
+/// Refuses a line with too many fields before they take memory.
+fn check_width(separator: Separator, line: &[u8], number: u64) -> Result<(), RecordingError> {
+    let most = MAX_FRAME_CELLS + MOST_BESIDE;
+    if separator.fields(line).nth(most).is_none() {
+        return Ok(());
+    }
+    let message = format!(
+        "more than {} fields, expected at most {MAX_FRAME_SIDE} × {MAX_FRAME_SIDE} cells and {MOST_BESIDE} beside them",
+        grouped(most as u64)
+    );
+    Err(RecordingError::in_line(number, message))
 }
 
 /// The header of a table: the lines above its values.
