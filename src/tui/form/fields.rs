@@ -64,9 +64,9 @@ impl ParameterField {
         self.text() != self.initial_text
     }
 
-    /// Returns the position of the cursor, in columns.
-    pub fn cursor(&self) -> usize {
-        self.input.cursor()
+    /// Returns the text with its cursor.
+    pub fn input(&self) -> &TextField {
+        &self.input
     }
 
     /// Whether the next character replaces the text.

@@ -1,9 +1,9 @@
 //! The forms of Figure, Picture and the sensor.
 //!
 //! ```text
-//! fields   text fields of parameters                       layout   which line a field has
-//! state    a form, and the document that it makes          update   keys
-//! view     impl Page for FormDialog                        memory   the last values
+//! fields   text fields of parameters                       update   keys
+//! state    a form, and the document that it makes          memory   the last values
+//! view     impl Page for FormDialog
 //! ```
 
 pub mod fields;
@@ -11,8 +11,6 @@ pub mod fields;
 pub mod state;
 
 pub mod memory;
-
-pub mod layout;
 
 pub mod view;
 

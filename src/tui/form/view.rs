@@ -4,32 +4,27 @@
 //! Figure                                              title
 //! Kind      < ellipse   > e r t p h o                 kind, and the letters that choose one (figures only)
 //!
-//! Radius x  4.00      above 0, up to 16 cells         label, text, what the field takes
-//!   ! expected a number                               what is wrong with it
+//! Radius x  4.00      above 0, up to 16 cells         fields, drawn by widget::field_rows
 //! Thickness           above 0, up to 16 cells
 //!   empty: solid                                      a remark on a field that may be empty
 //! ! 3 active taxels will be cut                       what would be lost (sensor only)
 //! ```
-//! In a narrow pane, the range of a field stands under it, and an error replaces the range there. In a low pane every
-//! field has one line, and an error replaces the range. The matrix beside the form shows the shape or sensor that the
-//! fields make.
+//! The matrix beside the form shows the shape or sensor that the fields make.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::figure::{FigureKind, NO_ROOM};
 use crate::parameter::Parameter;
-use crate::sensor::Sensor;
 use crate::source::Source;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
 use crate::tui::form::fields::ParameterField;
-use crate::tui::form::layout::FormRows;
 use crate::tui::form::state::FormDialog;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::number::narrow;
+use crate::tui::widget::field_rows::{FieldRow, FieldRows};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -41,9 +36,6 @@ const NAME: usize = 9;
 const LETTERS: usize = LABEL + 2 + NAME + 3;
 /// The width of a field's text, in columns.
 const INPUT: usize = 9;
-
-/// The least width of a pane in which the range stands beside the field, in columns.
-const WIDE: u16 = 40;
 
 impl Page for FormDialog {
     fn context(&self) -> Context {
@@ -65,8 +57,7 @@ impl Page for FormDialog {
     }
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
-        let (rows, line) = (FormRows::of(area, self), at.y - area.y);
-        if rows.kind == Some(line) {
+        if self.kind().is_some() && at.y == area.y + 1 {
             let is_focused = self.form().focus().is_none();
             return Some(if is_focused {
                 click_on_kind(usize::from(at.x - area.x))
@@ -74,70 +65,47 @@ impl Page for FormDialog {
                 Message::ToField(None)
             });
         }
-        let mut fields = rows.fields(self.form().fields().len());
-        let field = fields.find(|(_, first)| (*first..first + rows.spacing).contains(&line));
-        field.map(|(index, _)| Message::ToField(Some(index)))
+        let field = rows(self, area).at(at.y)?;
+        Some(Message::ToField(Some(field)))
     }
+}
+
+/// Returns the places of the fields in the area of the form: below the title and the kind, which has a row of its own.
+fn rows(dialog: &FormDialog, area: Rect) -> FieldRows {
+    let (fixed, fields) = (dialog.kind().is_some().into(), dialog.form().fields());
+    let focus = dialog.form().focus();
+    FieldRows::of(write::below(area, 1), fixed, fields.len(), focus)
 }
 
 /// Draws the form. Returns the position of the text cursor.
 fn draw(theme: &Theme, dialog: &FormDialog, buffer: &mut Buffer, area: Rect) -> Option<Position> {
     write::clear(buffer, area);
-    write::line(
-        buffer,
-        area,
-        theme,
-        [(dialog.title().as_str(), Role::Title)],
-    );
-    let (focus, rows) = (dialog.form().focus(), FormRows::of(area, dialog));
+    let title = dialog.title();
+    write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
+    let (form, rows) = (dialog.form(), rows(dialog, area));
     let mut cursor = None;
-    if let (Some(kind), Some(line)) = (dialog.kind(), rows.kind) {
-        let row = write::row(area, usize::from(line));
-        draw_kind(theme, kind, focus.is_none(), buffer, row);
-        cursor = focus.is_none().then(|| Position::new(row.x, row.y));
+    if let Some(kind) = dialog.kind() {
+        let (row, focused) = (write::row(area, 1), form.focus().is_none());
+        draw_kind(theme, kind, focused, buffer, row);
+        cursor = focused.then(|| row.as_position());
     }
-    let fields = dialog.form().fields();
-    let mut end = 0;
-    for (index, row) in rows.fields(fields.len()) {
-        let (field, row) = (&fields[index], usize::from(row));
-        end = row + usize::from(rows.spacing);
-        let error = field
-            .value(dialog.form().sensor())
-            .err()
-            .map(|error| error.expected());
-        let marked = focus == Some(index);
-        let at = draw_field(theme, field, marked, buffer, write::row(area, row));
-        let remark = remark(field, dialog).filter(|_| error.is_none());
-        let beside = write::right_of(write::row(area, row), area.x + narrow(LABEL + INPUT + 1));
-        let under = write::right_of(write::row(area, row + 1), area.x + 2);
-        let (error_at, range_at) = match (rows.spacing, area.width >= WIDE) {
-            (2, true) => (under, Some(beside)),
-            (2, false) => (under, error.is_none().then_some(under)),
-            _ => (beside, error.is_none().then_some(beside)),
+    for (index, place) in rows.visible() {
+        let field = &form.fields()[index];
+        let error = field.value(form.sensor()).err();
+        let row = FieldRow {
+            parameter: field.parameter(),
+            field: field.input(),
+            focused: form.focus() == Some(index),
+            range: form.sensor().range(field.parameter()),
+            remark: remark(field, dialog),
+            error: error.map(|error| error.expected()),
         };
-        if let Some(range_at) = range_at {
-            let under = (rows.spacing == 2 && range_at == beside).then_some(under);
-            let taken = (field, dialog.form().sensor());
-            draw_range(theme, taken, remark, buffer, range_at, under);
-        }
-        if let Some(error) = error {
-            write::line(
-                buffer,
-                error_at,
-                theme,
-                [("! ", Role::Error), (error.as_str(), Role::Error)],
-            );
-        }
-        cursor = cursor.or(marked.then_some(at));
+        let at = row.draw(theme, (LABEL, INPUT), buffer, place);
+        cursor = cursor.or(row.focused.then_some(at));
     }
     if let Some(warning) = dialog.warning() {
-        write::wrapped(
-            buffer,
-            write::below(area, narrow(end)),
-            theme,
-            &format!("! {warning}"),
-            Role::Error,
-        );
+        let warning = format!("! {warning}");
+        write::wrapped(buffer, rows.rest(area), theme, &warning, Role::Error);
     }
     cursor
 }
@@ -187,28 +155,6 @@ fn draw_kind(theme: &Theme, kind: FigureKind, focused: bool, buffer: &mut Buffer
     write::line(buffer, row, theme, pieces);
 }
 
-/// Draws label and text of a field. Returns the position that the text cursor has in this field.
-fn draw_field(
-    theme: &Theme,
-    field: &ParameterField,
-    focused: bool,
-    buffer: &mut Buffer,
-    row: Rect,
-) -> Position {
-    let label = format!("{:LABEL$}", field.parameter().row().label);
-    // Without the focus a field is shown from its start; with the focus, its cursor must be visible.
-    let at = if focused { field.cursor() } else { 0 };
-    let (shown, cursor) = write::field_columns(field.text(), at, INPUT, theme);
-    let role = if focused { Role::Focus } else { Role::Text };
-    write::line(
-        buffer,
-        row,
-        theme,
-        [(label.as_str(), Role::Text), (shown.as_str(), role)],
-    );
-    Position::new(row.x + narrow(LABEL + cursor), row.y)
-}
-
 /// Returns a remark about a field, and whether it is about the present value: what an empty field means, or which
 /// pitch means that none is set.
 fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<(&'static str, bool)> {
@@ -227,39 +173,5 @@ fn remark(field: &ParameterField, dialog: &FormDialog) -> Option<(&'static str, 
             Some((NO_ROOM, true))
         }
         _ => Some(("empty: solid", field.text().is_empty())),
-    }
-}
-
-/// Draws the range of a field, and the remark under or behind it. If there is no room for everything, the unit is
-/// left out first, then the remark, or the range if the remark is about the present value.
-fn draw_range(
-    theme: &Theme,
-    (field, sensor): (&ParameterField, &Sensor),
-    remark: Option<(&str, bool)>,
-    buffer: &mut Buffer,
-    area: Rect,
-    under: Option<Rect>,
-) {
-    let bare = sensor.range(field.parameter()).to_string();
-    let range = field.parameter().row().unit.after(&bare);
-    let mut write = |area: Rect, texts: &[&str]| {
-        let text = write::first_fitting(texts, usize::from(area.width));
-        write::line(buffer, area, theme, [(text, Role::Quiet)]);
-    };
-    match (remark, under) {
-        (None, _) => write(area, &[&range, &bare]),
-        (Some((remark, _)), Some(under)) => {
-            write(area, &[&range, &bare]);
-            write(under, &[remark]);
-        }
-        (Some((remark, of_value)), None) => {
-            let (both, barely) = (format!("{range}; {remark}"), format!("{bare}; {remark}"));
-            let (first, second) = if of_value {
-                (remark, remark)
-            } else {
-                (&*range, &*bare)
-            };
-            write(area, &[&both, &barely, first, second]);
-        }
     }
 }

@@ -2,15 +2,17 @@
 //!
 //! ```text
 //! text_field   a line of text that is edited         theme       styles and characters
-//! number       numbers of columns, lines, taxels     write       text into the buffer
-//! curve        a curve with axes                  found       a text that was searched for, marked
-//! rows         the selected row of a list
-//! columns      widths and word wrap                  thumbnail   a small imprint
-//! dots         lines and points in Braille           plot        two axes around a field of dots
+//! field_rows   the rows of a form                    write       text into the buffer
+//! number       numbers of columns, lines, taxels     found       a text that was searched for, marked
+//! rows         the selected row of a list            thumbnail   a small imprint
+//! columns      widths and word wrap                  plot        two axes around a field of dots
+//! curve        a curve with axes                     dots        lines and points in Braille
 //! heat         shades and colours of values
 //! ```
 
 pub mod text_field;
+
+pub mod field_rows;
 
 pub mod number;
 

@@ -51,9 +51,9 @@ impl RangeField {
         self.input.text()
     }
 
-    /// Returns the place of the text cursor, in columns.
-    pub fn cursor(&self) -> usize {
-        self.input.cursor()
+    /// Returns the text with its cursor.
+    pub fn input(&self) -> &TextField {
+        &self.input
     }
 }
 

@@ -2,14 +2,14 @@
 //!
 //! ```text
 //! Explore: hexagon                          what is swept
-//! x0      5:5.99:0.01    -16 to 16 cells    label, range, allowed values
+//! x0      5:5.99:0.01    -16 to 16 cells    a field
 //! y0      5:5.99:0.01    -16 to 16 cells
 //! Anchor  < corner >     top left, before turning
 //! 3,600,000 poses, about 20 seconds         the number of poses, and the time that a sweep takes
 //! ! the sensor cuts off 1,200 poses         the number of poses in which the shape reaches beyond the sensor
 //! without 1 taxel set by hand               what the sweep ignores
 //! ```
-//! An error is shown under its field, or in place of the allowed values if there is too little room.
+//! Fields are drawn by [`crate::tui::widget::field_rows`].
 
 use std::time::Duration;
 
@@ -20,10 +20,10 @@ use crate::formats::value::counted;
 use crate::pose::Anchor;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
-use crate::tui::explore::ranges::layout::RangeRows;
-use crate::tui::explore::ranges::state::{RangeField, RangesForm};
+use crate::tui::explore::ranges::state::RangesForm;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
+use crate::tui::widget::field_rows::{FieldRow, FieldRows, WIDE};
 use crate::tui::widget::number::narrow;
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
@@ -34,9 +34,6 @@ const LABEL: usize = 8;
 const INPUT: usize = 16;
 /// The number of columns of the text of a field in a narrow pane.
 const NARROW_INPUT: usize = 14;
-
-/// The width from which a pane has room for the allowed values beside the field.
-const WIDE: u16 = 40;
 
 impl Page for RangesForm {
     fn context(&self) -> Context {
@@ -58,9 +55,19 @@ impl Page for RangesForm {
     }
 
     fn click(&self, area: Rect, at: Position) -> Option<Message> {
-        let row = RangeRows::of(area, self).row(at.y - area.y)?;
+        let row = rows(self, area).at(at.y)?;
         Some(Message::ToField(Some(row)))
     }
+}
+
+/// Returns the places of the fields and of the anchor, the last row, in the area of the form. The title is above them;
+/// below them are three lines, or as many as the rows leave, but at least one.
+fn rows(form: &RangesForm, area: Rect) -> FieldRows {
+    let (below, rows) = (write::below(area, 1), form.fields().len() + 1);
+    let foot = below.height.saturating_sub(narrow(rows)).clamp(1, 3);
+    let height = below.height.saturating_sub(foot);
+    let focus = form.focus().unwrap_or(rows - 1);
+    FieldRows::of(Rect { height, ..below }, 0, rows, Some(focus))
 }
 
 /// Draws the form. Returns the position of the text cursor.
@@ -68,65 +75,32 @@ fn draw(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rect) -> Op
     write::clear(buffer, area);
     let title = form.title();
     write::line(buffer, area, theme, [(title.as_str(), Role::Title)]);
-    let rows = RangeRows::of(area, form);
-    let mut cursor = None;
-    for (index, line) in rows.lines() {
-        let row = write::row(area, line.into());
-        let Some(field) = form.fields().get(index) else {
-            let at = draw_anchor(theme, form, buffer, row);
-            cursor = cursor.or(form.focus().is_none().then_some(at));
-            continue;
-        };
-        let marked = form.focus() == Some(index);
-        let at = draw_field(theme, field, marked, buffer, row);
-        cursor = cursor.or(marked.then_some(at));
-        let under = write::right_of(write::row(area, usize::from(line) + 1), area.x + 2);
-        let beside = write::right_of(row, area.x.saturating_add(narrow(LABEL + input(row) + 1)));
-        let unit = field.parameter().row().unit;
-        let allowed = unit.after(&form.allowed(field).to_string());
-        let allowed = (allowed, Role::Quiet);
-        let error = form.trouble(index);
-        let error = error.map(|trouble| (format!("! {}", trouble.brief), Role::Error));
-        let (first, second) = match (rows.spacing, area.width >= WIDE) {
-            (2, true) => (Some((beside, allowed)), error.map(|error| (under, error))),
-            (2, false) => (Some((under, error.unwrap_or(allowed))), None),
-            _ => (Some((beside, error.unwrap_or(allowed))), None),
-        };
-        for (place, (text, role)) in [first, second].into_iter().flatten() {
-            write::line(buffer, place, theme, [(text.as_str(), role)]);
-        }
-    }
-    draw_summary(theme, form, buffer, write::below(area, rows.end()));
-    cursor
-}
-
-/// Draws label and text of a field. Returns the position that the text cursor has if this field has the focus.
-fn draw_field(
-    theme: &Theme,
-    field: &RangeField,
-    focused: bool,
-    buffer: &mut Buffer,
-    row: Rect,
-) -> Position {
-    let label = format!("{:LABEL$}", field.parameter().row().label);
-    let room = input(row);
-    // A field without focus is shown from its start; in a field with focus, the text at the cursor must be visible.
-    let at = if focused { field.cursor() } else { 0 };
-    let (shown, cursor) = write::field_columns(field.text(), at, room, theme);
-    let role = if focused { Role::Focus } else { Role::Text };
-    let pieces = [(label.as_str(), Role::Text), (shown.as_str(), role)];
-    write::line(buffer, row, theme, pieces);
-    let column = narrow(LABEL + cursor);
-    Position::new(row.x.saturating_add(column), row.y)
-}
-
-/// Returns the number of columns of a field's text in a row.
-fn input(row: Rect) -> usize {
-    if row.width >= WIDE {
+    let rows = rows(form, area);
+    let input = if area.width >= WIDE {
         INPUT
     } else {
         NARROW_INPUT
+    };
+    let mut cursor = None;
+    for (index, place) in rows.visible() {
+        let focused = index == form.focus().unwrap_or(form.fields().len());
+        let at = if let Some(field) = form.fields().get(index) {
+            let row = FieldRow {
+                parameter: field.parameter(),
+                field: field.input(),
+                focused,
+                range: form.allowed(field),
+                remark: None,
+                error: form.trouble(index).map(|trouble| trouble.brief),
+            };
+            row.draw(theme, (LABEL, input), buffer, place)
+        } else {
+            draw_anchor(theme, form, buffer, place)
+        };
+        cursor = cursor.or(focused.then_some(at));
     }
+    draw_summary(theme, form, buffer, rows.rest(area));
+    cursor
 }
 
 /// Draws the anchor between angle brackets, and its meaning as far as there is room. Returns the position of the

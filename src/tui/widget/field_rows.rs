@@ -1,0 +1,160 @@
+//! The rows of a form: labels, text fields, what the fields take, and what is wrong with them.
+//!
+//! ```text
+//! Radius x  4.00      above 0, up to 16 cells         label, text, range
+//!   ! expected a number                               what is wrong with it
+//! Thickness           above 0, up to 16 cells
+//!   empty: solid                                      a remark
+//! ```
+//! With enough room a row has two lines. In a narrow pane the range stands under the field, and an error replaces it
+//! there. In a low pane every row has one line, and an error replaces the range. The row with the focus is always
+//! visible: in a low pane, rows above it scroll out.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::parameter::{Parameter, Range};
+use crate::tui::widget::number::narrow;
+use crate::tui::widget::text_field::TextField;
+use crate::tui::widget::theme::{Role, Theme};
+use crate::tui::widget::write;
+
+/// The least width of a pane in which the range stands beside the field, in columns.
+pub const WIDE: u16 = 40;
+
+/// The places of the visible rows.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldRows {
+    /// The area from the first visible row on.
+    area: Rect,
+    /// The number of lines of a row: two if there is room, otherwise one.
+    spacing: u16,
+    /// The index of the first visible row.
+    first: usize,
+    /// The number of visible rows.
+    visible: usize,
+}
+
+impl FieldRows {
+    /// Computes the places of rows in an area, so that the one with the focus is visible. Above them there is room for
+    /// a number of `fixed` rows, which don't scroll; the focus is None if one of these has it.
+    pub fn of(area: Rect, fixed: u16, rows: usize, focus: Option<usize>) -> Self {
+        let two_lines = usize::from(area.height / 2) >= usize::from(fixed) + rows;
+        let spacing = if two_lines { 2 } else { 1 };
+        let area = write::below(area, fixed * spacing);
+        let visible = usize::from(area.height / spacing).min(rows);
+        Self {
+            area,
+            spacing,
+            first: focus.map_or(0, |focus| (focus + 1).saturating_sub(visible)),
+            visible,
+        }
+    }
+
+    /// Returns the index of each visible row, with its lines.
+    pub fn visible(&self) -> impl Iterator<Item = (usize, Rect)> {
+        let rows = *self;
+        (0..rows.visible).map(move |index| {
+            let below = write::below(rows.area, narrow(index) * rows.spacing);
+            let height = rows.spacing;
+            (rows.first + index, Rect { height, ..below })
+        })
+    }
+
+    /// Returns the index of the row at a line of the screen.
+    pub fn at(&self, y: u16) -> Option<usize> {
+        let mut rows = self.visible();
+        let row = rows.find(|(_, lines)| (lines.top()..lines.bottom()).contains(&y));
+        row.map(|(index, _)| index)
+    }
+
+    /// Returns the area below the last visible row, up to the end of the pane.
+    pub fn rest(&self, pane: Rect) -> Rect {
+        let end = self.area.y + narrow(self.visible) * self.spacing;
+        write::below(pane, end - pane.y)
+    }
+}
+
+/// A field as a row of a form shows it.
+#[derive(Clone, Debug)]
+pub struct FieldRow<'a> {
+    /// The parameter that the field is about.
+    pub parameter: Parameter,
+    /// The text.
+    pub field: &'a TextField,
+    /// Whether the field has the focus.
+    pub focused: bool,
+    /// The allowed values.
+    pub range: Range,
+    /// A remark, and whether it is about the present value.
+    pub remark: Option<(&'a str, bool)>,
+    /// The error in the text; None if it is valid.
+    pub error: Option<String>,
+}
+
+impl FieldRow<'_> {
+    /// Draws the row, with this many columns for the label and for the text. Returns the position that the text
+    /// cursor has in the field.
+    pub fn draw(
+        &self,
+        theme: &Theme,
+        (label, input): (usize, usize),
+        buffer: &mut Buffer,
+        area: Rect,
+    ) -> Position {
+        // Without the focus a field is shown from its start; with the focus, its cursor must be visible.
+        let at = if self.focused { self.field.cursor() } else { 0 };
+        let (shown, cursor) = write::field_columns(self.field.text(), at, input, theme);
+        let role = if self.focused {
+            Role::Focus
+        } else {
+            Role::Text
+        };
+        let name = format!("{:label$}", self.parameter.row().label);
+        let line = write::row(area, 0);
+        write::line(buffer, line, theme, [(&*name, Role::Text), (&*shown, role)]);
+        let beside = write::right_of(line, area.x.saturating_add(narrow(label + input + 1)));
+        let under = write::right_of(write::row(area, 1), area.x.saturating_add(2));
+        let (first, second) = match (area.height, area.width >= WIDE) {
+            (2, true) => (beside, Some(under)),
+            (2, false) => (under, None),
+            _ => (beside, None),
+        };
+        if self.error.is_none() || second.is_some() {
+            self.draw_range(theme, buffer, first, second);
+        }
+        if let Some(error) = &self.error {
+            let place = second.unwrap_or(first);
+            let text = format!("! {error}");
+            write::line(buffer, place, theme, [(text.as_str(), Role::Error)]);
+        }
+        Position::new(area.x.saturating_add(narrow(label + cursor)), area.y)
+    }
+
+    /// Draws the range, and the remark under or behind it. If there is no room for everything, the unit is left out
+    /// first, then the remark, or the range if the remark is about the present value.
+    fn draw_range(&self, theme: &Theme, buffer: &mut Buffer, area: Rect, under: Option<Rect>) {
+        let bare = self.range.to_string();
+        let range = self.parameter.row().unit.after(&bare);
+        let mut write = |area: Rect, texts: &[&str]| {
+            let text = write::first_fitting(texts, usize::from(area.width));
+            write::line(buffer, area, theme, [(text, Role::Quiet)]);
+        };
+        match (self.remark.filter(|_| self.error.is_none()), under) {
+            (None, _) => write(area, &[&range, &bare]),
+            (Some((remark, _)), Some(under)) => {
+                write(area, &[&range, &bare]);
+                write(under, &[remark]);
+            }
+            (Some((remark, of_value)), None) => {
+                let (both, barely) = (format!("{range}; {remark}"), format!("{bare}; {remark}"));
+                let (first, second) = if of_value {
+                    (remark, remark)
+                } else {
+                    (&*range, &*bare)
+                };
+                write(area, &[&both, &barely, first, second]);
+            }
+        }
+    }
+}
