@@ -9,7 +9,7 @@ use crate::tui::keys::action;
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::{HelpLine, Keymap, help};
 use crate::tui::widget::columns::broken;
-use crate::tui::widget::found::{Search, contains, marked};
+use crate::tui::widget::found::{Search, contains, marked, number};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -20,8 +20,8 @@ pub struct Help {
     context: Context,
     /// The index of the first visible line.
     top: usize,
-    /// The search; None if there is none.
-    search: Option<Search>,
+    /// The search.
+    pub search: Search,
 }
 
 /// The lines of the list as they are drawn, each with the index of its entry: a long entry has several.
@@ -33,7 +33,7 @@ impl Help {
         Self {
             context,
             top: 0,
-            search: None,
+            search: Search::default(),
         }
     }
 
@@ -58,44 +58,31 @@ impl Help {
     }
 
     /// Searches for a text from the first visible line, then from the start, and goes to the first match. Returns the
-    /// number of that match, from 1, and the number of all matches; (0, 0) if there is none.
-    pub fn search(&mut self, wanted: &str, keymap: &Keymap, room: (u16, u16)) -> (usize, usize) {
+    /// number of that match, from 1, and the number of all matches; None if there is none.
+    pub fn search_for(
+        &mut self,
+        wanted: &str,
+        keymap: &Keymap,
+        room: (u16, u16),
+    ) -> Option<(usize, usize)> {
         let entries = matches(self.context, keymap, wanted);
         let (lines, top) = self.lines(keymap, room);
         let from = lines.get(top).map_or(0, |(entry, _)| *entry);
-        let Some(search) = Search::new(wanted, &entries, from) else {
-            return (0, 0);
-        };
-        let (entry, number) = (search.entry(), search.number(&entries));
-        self.search = Some(search);
+        let entry = self.search.begin(wanted, &entries, from)?;
         self.show(entry, keymap, room);
-        number
+        number(entry, &entries)
     }
 
     /// Goes to the match `by` places further on; after the last match comes the first. Returns false if there is no
     /// search or no match.
     pub fn go_to_match(&mut self, by: i8, keymap: &Keymap, room: (u16, u16)) -> bool {
-        let Some(search) = &mut self.search else {
+        let entries = matches(self.context, keymap, self.search.wanted());
+        let from = self.search.entry();
+        let Some(entry) = from.and_then(|from| self.search.go(from, by, &entries)) else {
             return false;
         };
-        let entries = matches(self.context, keymap, search.wanted());
-        let found = search.go(search.entry(), by, &entries);
-        let entry = search.entry();
         self.show(entry, keymap, room);
-        found
-    }
-
-    /// Ends the search.
-    pub fn leave_search(&mut self) {
-        self.search = None;
-    }
-
-    /// Returns the number of the match at which the search is, from 1, and the number of all matches; None without a
-    /// search.
-    fn number(&self, keymap: &Keymap) -> Option<(usize, usize)> {
-        let search = self.search.as_ref()?;
-        let entries = matches(self.context, keymap, search.wanted());
-        Some(search.number(&entries))
+        true
     }
 
     /// Makes an entry visible: if it is out of sight, scrolls so that a third of the lines is above it.
@@ -122,7 +109,7 @@ impl Help {
         buffer: &mut Buffer,
         row: Rect,
     ) {
-        let wanted = self.search.as_ref().map_or("", Search::wanted);
+        let wanted = self.search.wanted();
         let indent = indent(row.width.into());
         let mut pieces = Vec::new();
         let pad;
@@ -163,7 +150,7 @@ impl Page for Help {
     ) -> Option<Position> {
         write::clear(buffer, area);
         let (lines, top) = self.lines(keymap, area.as_size().into());
-        let here = self.search.as_ref().map(Search::entry);
+        let here = self.search.entry();
         let mut cursor = None;
         for (index, (entry, line)) in lines.iter().skip(top).enumerate() {
             let row = write::row(area, index);
@@ -181,12 +168,12 @@ impl Page for Help {
     }
 
     fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
-        self.search.is_some() || !matches!(message, Message::Match(_))
+        self.search.entry().is_some() || !matches!(message, Message::Match(_))
     }
 
     /// The update leaves the search first.
     fn cancels_itself(&self) -> bool {
-        self.search.is_some()
+        self.search.entry().is_some()
     }
 
     /// Returns the number of the present match, and, if not all lines are visible, which ones are.
@@ -205,7 +192,9 @@ impl Page for Help {
         };
         let visible =
             more.map(|more| format!("lines {}-{last} of {}; {more}", top + 1, lines.len()));
-        let found = self.number(keymap);
+        let entries = matches(self.context, keymap, self.search.wanted());
+        let found = self.search.entry();
+        let found = found.and_then(|entry| number(entry, &entries));
         let found = found.map(|(number, all)| format!("match {number} of {all}"));
         // A second line would hide the last line of the list.
         let (text, short) = match (found, visible) {

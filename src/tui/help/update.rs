@@ -33,7 +33,7 @@ pub(in crate::tui) fn in_help(app: &mut App, mut help: Help, message: &Message) 
                 .extend([Dialog::Help(help), Dialog::Search(dialog)]);
             return None;
         }
-        Message::Cancel => help.leave_search(),
+        Message::Cancel => help.search.end(),
         Message::Quit => return None,
         _ => {}
     }

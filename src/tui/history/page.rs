@@ -8,7 +8,7 @@ use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
-use crate::tui::widget::found::{Search, contains, marked};
+use crate::tui::widget::found::{Search, contains, marked, number};
 use crate::tui::widget::theme::{Role, Theme};
 use crate::tui::widget::write;
 
@@ -21,8 +21,8 @@ pub struct HistoryDialog {
     present: usize,
     /// The selected row; row 0 is the state before all steps.
     selected: usize,
-    /// The search; None if there is none.
-    search: Option<Search>,
+    /// The search.
+    pub search: Search,
 }
 
 /// The name of row 0.
@@ -35,7 +35,7 @@ impl HistoryDialog {
             steps,
             present,
             selected: present,
-            search: None,
+            search: Search::default(),
         }
     }
 
@@ -50,34 +50,22 @@ impl HistoryDialog {
     }
 
     /// Searches for a text from the selected row, then from the start, and selects the first match. Returns the
-    /// number of that match, from 1, and the number of all matches; (0, 0) if there is none.
-    pub fn search(&mut self, wanted: &str) -> (usize, usize) {
+    /// number of that match, from 1, and the number of all matches; None if there is none.
+    pub fn search_for(&mut self, wanted: &str) -> Option<(usize, usize)> {
         let rows = self.matches(wanted);
-        let Some(search) = Search::new(wanted, &rows, self.selected) else {
-            return (0, 0);
-        };
-        self.selected = search.entry();
-        let number = search.number(&rows);
-        self.search = Some(search);
-        number
+        self.selected = self.search.begin(wanted, &rows, self.selected)?;
+        number(self.selected, &rows)
     }
 
     /// Selects the match `by` places further on; after the last match comes the first. Returns false if there is no
     /// search or no match.
     pub fn go_to_match(&mut self, by: i8) -> bool {
-        let Some(mut search) = self.search.take() else {
+        let rows = self.matches(self.search.wanted());
+        let Some(row) = self.search.go(self.selected, by, &rows) else {
             return false;
         };
-        let rows = self.matches(search.wanted());
-        let found = search.go(self.selected, by, &rows);
-        self.selected = search.entry();
-        self.search = Some(search);
-        found
-    }
-
-    /// Ends the search.
-    pub fn leave_search(&mut self) {
-        self.search = None;
+        self.selected = row;
+        true
     }
 
     /// Returns the text of each row, the start first.
@@ -122,7 +110,7 @@ impl Page for HistoryDialog {
         let first = self.first(area);
         let visible = usize::from(area.height.saturating_sub(1));
         let width = self.steps.len().to_string().len();
-        let wanted = self.search.as_ref().map_or("", Search::wanted);
+        let wanted = self.search.wanted();
         let mut cursor = None;
         for (index, text) in self.rows().enumerate().skip(first).take(visible) {
             let row = write::row(area, index - first + 1);
@@ -158,19 +146,18 @@ impl Page for HistoryDialog {
     }
 
     fn has_use_for(&self, message: &Message, _area: Rect) -> bool {
-        self.search.is_some() || !matches!(message, Message::Match(_))
+        self.search.entry().is_some() || !matches!(message, Message::Match(_))
     }
 
     /// The update leaves the search first.
     fn cancels_itself(&self) -> bool {
-        self.search.is_some()
+        self.search.entry().is_some()
     }
 
     /// Returns the number of the selected match.
     fn remark(&self, _keymap: &Keymap, _body: Rect) -> Option<(String, Role)> {
-        let search = self.search.as_ref()?;
-        let rows = self.matches(search.wanted());
-        let at = rows.iter().position(|&row| row == self.selected)?;
-        Some((format!("match {} of {}", at + 1, rows.len()), Role::Key))
+        let rows = self.matches(self.search.wanted());
+        let (number, all) = number(self.selected, &rows)?;
+        Some((format!("match {number} of {all}"), Role::Key))
     }
 }

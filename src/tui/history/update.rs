@@ -43,7 +43,7 @@ pub(in crate::tui) fn in_history(
                 .extend([Dialog::History(list), Dialog::Search(dialog)]);
             return None;
         }
-        Message::Cancel => list.leave_search(),
+        Message::Cancel => list.search.end(),
         Message::Quit => return None,
         Message::Accept => {
             app.history.go_to(list.selected());

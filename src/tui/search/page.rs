@@ -29,8 +29,8 @@ pub struct SearchDialog {
     field: TextField,
     /// The list before the search.
     before: Searched,
-    /// The number of the present match, from 1, and the number of all matches; (0, 0) if there is none.
-    found: (usize, usize),
+    /// The number of the present match, from 1, and the number of all matches; None if there is none.
+    found: Option<(usize, usize)>,
 }
 
 impl SearchDialog {
@@ -39,7 +39,7 @@ impl SearchDialog {
         Self {
             field: TextField::new("", LONGEST),
             before,
-            found: (0, 0),
+            found: None,
         }
     }
 
@@ -56,7 +56,7 @@ impl SearchDialog {
     /// Returns the wanted text if it was not found; None otherwise.
     pub fn unfound(&self) -> Option<&str> {
         let text = self.field.text();
-        (self.found.1 == 0 && !text.is_empty()).then_some(text)
+        (self.found.is_none() && !text.is_empty()).then_some(text)
     }
 
     /// Returns the list after a search for the typed text, which starts where the list was; if nothing is found, the
@@ -64,14 +64,8 @@ impl SearchDialog {
     pub fn searched(&mut self, keymap: &Keymap, room: (u16, u16)) -> Searched {
         let (wanted, mut list) = (self.field.text(), self.before.clone());
         self.found = match &mut list {
-            Searched::Help(help) => {
-                help.leave_search();
-                help.search(wanted, keymap, room)
-            }
-            Searched::History(history) => {
-                history.leave_search();
-                history.search(wanted)
-            }
+            Searched::Help(help) => help.search_for(wanted, keymap, room),
+            Searched::History(history) => history.search_for(wanted),
         };
         list
     }
@@ -98,8 +92,8 @@ impl LinePrompt for SearchDialog {
             (_, Searched::History(_)) if self.field.text().is_empty() => {
                 "   a word in a step".into()
             }
-            ((_, 0), _) => "   no match".into(),
-            ((number, all), _) => format!("   {number} of {all}").into(),
+            (None, _) => "   no match".into(),
+            (Some((number, all)), _) => format!("   {number} of {all}").into(),
         }
     }
 }

@@ -46,38 +46,45 @@ fn first(text: &str, wanted: &str) -> Option<(usize, usize)> {
     })
 }
 
-/// A search in a list, at one of its matches.
-#[derive(Clone, Debug)]
+/// A search in a list, at one of its matches; at first there is none.
+#[derive(Clone, Debug, Default)]
 pub struct Search {
-    /// The text that is searched for.
+    /// The text that is searched for; empty if there is no search.
     wanted: String,
     /// The index of the entry at which the search is.
     entry: usize,
 }
 
 impl Search {
-    /// Creates a search at the first match from the entry `from` on, or else at the first match of all; None if there
-    /// is no match. `matches` are the indices of the matching entries, in ascending order, here and below.
-    pub fn new(wanted: &str, matches: &[usize], from: usize) -> Option<Self> {
+    /// Searches for a text from the entry `from` on, then from the start. Returns the entry of the first match; if
+    /// there is none, the search ends. `matches` are the indices of the matching entries, in ascending order, here
+    /// and below.
+    pub fn begin(&mut self, wanted: &str, matches: &[usize], from: usize) -> Option<usize> {
+        self.end();
         let ahead = matches.iter().find(|&&entry| entry >= from);
-        let &entry = ahead.or(matches.first())?;
-        let wanted = wanted.to_owned();
-        Some(Self { wanted, entry })
+        self.entry = *ahead.or(matches.first())?;
+        wanted.clone_into(&mut self.wanted);
+        Some(self.entry)
     }
 
-    /// Returns the text that is searched for.
+    /// Ends the search.
+    pub fn end(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Returns the text that is searched for; empty if there is no search.
     pub fn wanted(&self) -> &str {
         &self.wanted
     }
 
-    /// Returns the index of the entry at which the search is.
-    pub fn entry(&self) -> usize {
-        self.entry
+    /// Returns the index of the entry at which the search is; None if there is no search.
+    pub fn entry(&self) -> Option<usize> {
+        (!self.wanted.is_empty()).then_some(self.entry)
     }
 
     /// Goes from an entry to the next match, or to the previous one if `by` is negative; after the last match comes
-    /// the first. Returns false if there is no match.
-    pub fn go(&mut self, from: usize, by: i8, matches: &[usize]) -> bool {
+    /// the first. Returns its entry; None if there is no match.
+    pub fn go(&mut self, from: usize, by: i8, matches: &[usize]) -> Option<usize> {
         let next = if by > 0 {
             let ahead = matches.iter().find(|&&entry| entry > from);
             ahead.or(matches.first())
@@ -85,17 +92,15 @@ impl Search {
             let back = matches.iter().rev().find(|&&entry| entry < from);
             back.or(matches.last())
         };
-        if let Some(&entry) = next {
-            self.entry = entry;
-        }
-        next.is_some()
+        self.entry = *next?;
+        Some(self.entry)
     }
+}
 
-    /// Returns the number of the match at which the search is, from 1, and the number of all matches.
-    pub fn number(&self, matches: &[usize]) -> (usize, usize) {
-        let before = matches.iter().filter(|&&entry| entry < self.entry);
-        (before.count() + 1, matches.len())
-    }
+/// Returns the number of the match at an entry, from 1, and the number of all matches; None if the entry is no match.
+pub fn number(entry: usize, matches: &[usize]) -> Option<(usize, usize)> {
+    let before = matches.binary_search(&entry).ok()?;
+    Some((before + 1, matches.len()))
 }
 
 #[cfg(test)]
@@ -121,15 +126,17 @@ mod tests {
     #[test]
     fn after_the_last_match_comes_the_first() {
         let matches = [2, 5, 9];
-        let mut search = Search::new("x", &matches, 6).expect("found");
-        assert_eq!((search.entry(), search.number(&matches)), (9, (3, 3)));
-        let mut gone = Vec::new();
-        for by in [1, 1, -1, -1] {
-            assert!(search.go(search.entry(), by, &matches));
-            gone.push(search.entry());
-        }
+        let mut search = Search::default();
+        assert_eq!(search.begin("x", &matches, 6), Some(9));
+        assert_eq!(number(9, &matches), Some((3, 3)));
+        let mut at = 9;
+        let gone = [1, 1, -1, -1].map(|by| {
+            at = search.go(at, by, &matches).expect("a match");
+            at
+        });
         assert_eq!(gone, [2, 5, 2, 9]);
-        assert!(!search.go(9, 1, &[]) && Search::new("x", &[], 0).is_none());
+        assert_eq!((search.entry(), search.go(9, 1, &[])), (Some(9), None));
+        assert_eq!((search.begin("y", &[], 0), search.entry()), (None, None));
     }
 
     #[test]
