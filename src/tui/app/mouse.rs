@@ -133,6 +133,7 @@ fn at(app: &App, column: u16, row: u16) -> Option<Target> {
         return inside(panes.content).then_some(Target::Panel);
     }
     let grid = app.grid().filter(|_| inside(panes.matrix))?;
-    let (column, row) = grid.taxel(column, row)?;
-    Some(Target::Taxel(column, row, grid.whole))
+    let (column, row) = grid.taxel(column, row, app.cursor())?;
+    let whole = grid.columns.is_whole() && grid.rows.is_whole();
+    Some(Target::Taxel(column, row, whole))
 }

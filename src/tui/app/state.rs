@@ -400,9 +400,8 @@ impl App {
     /// Returns the positions of the taxels on the screen; None if it is too small.
     pub(in crate::tui) fn grid(&self) -> Option<TaxelGrid> {
         let area = self.panes()?.matrix;
-        let imprint = &self.reading().imprint;
-        let (cursor, seen) = (self.cursor(), self.seen());
-        Some(TaxelGrid::of(area, imprint, cursor, seen, self.halves()))
+        let (imprint, seen) = (&self.reading().imprint, self.seen());
+        Some(TaxelGrid::of(area, imprint, seen, self.halves()))
     }
 
     /// Returns the part of the matrix that the window keeps visible.

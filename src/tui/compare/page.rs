@@ -11,12 +11,11 @@ use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot, Wheel};
 use crate::tui::keys::binding::Context;
 use crate::tui::keys::keymap::Keymap;
+use crate::tui::matrix::layout::{AxisWindow, RULER, TaxelGrid, TaxelSize};
+use crate::tui::matrix::rulers;
 use crate::tui::widget::number::{around, narrow};
 use crate::tui::widget::theme::{Role, Theme, spelling};
 use crate::tui::widget::write;
-
-/// The width of the row ruler, in columns.
-const RULER: u16 = 3;
 
 /// The number of columns between two columns of the table.
 const GAP: u16 = 2;
@@ -71,16 +70,6 @@ struct ComparedPanes {
     table: Option<Rect>,
 }
 
-/// The taxels that a view shows.
-struct ComparedWindow {
-    /// The width of a taxel, in characters.
-    cell: u16,
-    /// The first column, and the number of columns.
-    columns: (u16, u16),
-    /// The first row, and the number of rows.
-    rows: (u16, u16),
-}
-
 impl Comparison {
     /// Compares two imprints, given with their names. If one has fewer columns or rows, the missing taxels count as
     /// inactive.
@@ -119,11 +108,9 @@ impl Comparison {
         let panes = self.panes(area);
         let [first, _] = &*self.imprints;
         let views = panes.views.iter().map(|&(_, area)| {
-            let window = self.window(area);
-            (
-                u16::from(first.columns()) - window.columns.1,
-                u16::from(first.rows()) - window.rows.1,
-            )
+            let grid = self.grid(area);
+            let columns = first.columns() - grid.columns.count;
+            (columns.into(), (first.rows() - grid.rows.count).into())
         });
         let table = panes.table.map(|area| (0, self.rows_beyond(area.height)));
         let all = views.chain(table);
@@ -148,15 +135,15 @@ impl Comparison {
                 table,
             };
         }
-        let all = 3 * self.grid(2) + table <= body.width;
+        let all = 3 * self.width(2) + table <= body.width;
         let shown = if all { GRIDS } else { &[view] };
         // Taxels of two characters, or else of one, leave the room that the descriptors need.
         let beside = if views == GRIDS { table } else { 0 };
-        let room = body.width.saturating_sub(beside).max(self.grid(1));
+        let room = body.width.saturating_sub(beside).max(self.width(1));
         let room = room.min(body.width);
         let mut x = body.x;
         let views = shown.iter().map(|&view| {
-            let width = self.grid(2).min((body.x + room).saturating_sub(x));
+            let width = self.width(2).min((body.x + room).saturating_sub(x));
             let place = Rect { x, width, ..body };
             x += width;
             (view, place)
@@ -168,25 +155,28 @@ impl Comparison {
         }
     }
 
-    /// Returns the taxels that a view shows in an area: two characters per taxel, or one if there is no room for two.
-    fn window(&self, area: Rect) -> ComparedWindow {
+    /// Returns the places of the taxels of a view in its area: two characters per taxel, or one if there is no room
+    /// for two.
+    fn grid(&self, area: Rect) -> TaxelGrid {
         let [first, _] = &*self.imprints;
-        let (columns, rows) = (u16::from(first.columns()), u16::from(first.rows()));
         let room = area.width.saturating_sub(RULER);
-        let cell = if columns * 2 <= room { 2 } else { 1 };
-        let part = |all: u16, room: u16, hidden: u16| {
-            let count = room.min(all);
-            (hidden.min(all - count), count)
+        let size = if 2 * u16::from(first.columns()) <= room {
+            TaxelSize::Square(1)
+        } else {
+            TaxelSize::Narrow
         };
-        ComparedWindow {
-            cell,
-            columns: part(columns, room / cell, self.left),
-            rows: part(rows, area.height.saturating_sub(2), self.top),
+        let lines = area.height.saturating_sub(2);
+        TaxelGrid {
+            x: area.x + RULER,
+            y: area.y + 2,
+            size,
+            columns: AxisWindow::after(self.left, first.columns(), room / size.columns()),
+            rows: AxisWindow::after(self.top, first.rows(), lines),
         }
     }
 
     /// Returns the width of a view in columns, with this many characters per taxel.
-    fn grid(&self, characters: u16) -> u16 {
+    fn width(&self, characters: u16) -> u16 {
         RULER + characters * u16::from(self.imprints[0].columns()) + 1
     }
 
@@ -202,7 +192,7 @@ impl Comparison {
     fn views(&self, columns: u16) -> &'static [ComparedView] {
         let [symbol, first, second, _] = self.widths();
         let least = symbol + first + second + 2 * GAP;
-        if self.grid(1) + least <= columns {
+        if self.width(1) + least <= columns {
             GRIDS
         } else {
             &VIEWS
@@ -217,15 +207,9 @@ impl Comparison {
     /// Draws a view: a heading, the rulers, the taxels. Arrows in the heading show where there are more taxels.
     fn draw_view(&self, view: ComparedView, theme: &Theme, buffer: &mut Buffer, area: Rect) {
         let [first, second] = &*self.imprints;
-        let window = self.window(area);
-        let (cell, (left, wide), (top, high)) = (window.cell, window.columns, window.rows);
-        let more = [
-            top > 0,
-            top + high < first.rows().into(),
-            left > 0,
-            left + wide < first.columns().into(),
-        ];
-        let arrows = more.into_iter().zip(theme.more());
+        let grid = self.grid(area);
+        let ((above, below), (left, right)) = (grid.rows.hidden(), grid.columns.hidden());
+        let arrows = [above, below, left, right].into_iter().zip(theme.more());
         let arrows: String = arrows
             .filter(|(any, _)| *any)
             .map(|(_, sign)| sign)
@@ -243,29 +227,16 @@ impl Comparison {
         let titles: Vec<&str> = titles.iter().map(String::as_str).collect();
         let title = write::first_fitting(&titles, area.width.saturating_sub(1).into());
         write::line(buffer, area, theme, [(title, Role::Title)]);
-        let every = if cell == 1 { 5 } else { 2 };
-        let numbers = (left..left + wide).filter(|column| column.is_multiple_of(every));
-        let numbers = numbers.map(|column| (column - left, column.to_string()));
         // A number that does not fit would touch the descriptors.
-        for (place, number) in
-            numbers.filter(|(place, number)| place * cell + narrow(number.len()) <= wide * cell)
-        {
-            let place = write::right_of(write::row(area, 1), area.x + RULER + place * cell);
-            write::line(buffer, place, theme, [(number.as_str(), Role::Quiet)]);
-        }
-        for row in top..top + high {
-            let line = write::row(area, usize::from(row - top) + 2);
-            let ruler = format!("{row:>2}");
-            write::line(buffer, line, theme, [(ruler.as_str(), Role::Quiet)]);
-            for column in left..left + wide {
-                let at = |imprint: &Imprint| {
-                    let (column, row) = (u8::try_from(column), u8::try_from(row));
-                    matches!((column, row), (Ok(column), Ok(row)) if imprint.get(column, row))
-                };
-                let (signs, role) = signs(theme, view, (at(first), at(second)));
-                let x = line.x + RULER + (column - left) * cell;
-                for (offset, sign) in (0..cell).zip(signs) {
-                    if let Some(target) = buffer.cell_mut(Position::new(x + offset, line.y)) {
+        let line = write::left_of(write::row(area, 1), grid.x + grid.characters().0);
+        rulers::draw_columns(theme, &grid, buffer, line);
+        rulers::draw_rows(theme, &grid, buffer, area);
+        for (y, row) in grid.rows.visible() {
+            for (x, column) in grid.columns.visible() {
+                let active = (first.get(column, row), second.get(column, row));
+                let (signs, role) = signs(theme, view, active);
+                for (place, sign) in grid.cell_rect(x, y).positions().zip(signs) {
+                    if let Some(target) = buffer.cell_mut(place) {
                         target.set_char(sign).set_style(theme.style(role));
                     }
                 }

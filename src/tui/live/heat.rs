@@ -74,13 +74,12 @@ impl<'a> HeatMap<'a> {
             format!("{}-{last}", axis.first)
         };
         let (columns, rows) = (self.grid.columns, self.grid.rows);
-        let (all_columns, all_rows) = (self.reading.values.columns(), self.reading.values.rows());
-        let is_whole = columns.count == all_columns && rows.count == all_rows;
         let text = || {
             let (columns, rows) = (span(columns), span(rows));
             let long = format!("columns {columns}, rows {rows}");
             [long, format!("at {columns}, {rows}")]
         };
+        let is_whole = columns.is_whole() && rows.is_whole();
         (!is_whole && columns.count > 0 && rows.count > 0).then(text)
     }
 

@@ -85,13 +85,13 @@ impl HeatGrid {
             (0, 0)
         };
         let (width, lines) = (area.width - rulers.0, area.height - rulers.1);
-        let columns = AxisWindow::new(columns, width / wide, near.0);
+        let columns = AxisWindow::showing(columns, width / wide, near.0..near.0 + 1, 1);
         // The same two taxels share a character while the window moves.
         let (step, lines) = match form {
             CellForm::Half => (2, lines.saturating_mul(2)),
             _ => (1, lines / high),
         };
-        let rows = AxisWindow::in_steps(rows, lines, near.1, step);
+        let rows = AxisWindow::showing(rows, lines, near.1..near.1 + 1, step);
         Self {
             form,
             columns,

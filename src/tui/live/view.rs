@@ -126,7 +126,7 @@ pub(super) fn hides_taxels(live: &Live, area: Rect) -> bool {
     };
     let size = (reading.values.columns(), reading.values.rows());
     let grid = HeatGrid::of(panes(live, area).map, size, live.display.numbers, (0, 0));
-    (grid.columns.count, grid.rows.count) != size
+    !(grid.columns.is_whole() && grid.rows.is_whole())
 }
 
 /// Returns the taxel to look at to see hidden ones in a direction, on a page of this area; None if none are hidden

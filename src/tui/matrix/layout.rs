@@ -86,19 +86,20 @@ pub struct AxisWindow {
 }
 
 impl AxisWindow {
-    /// Creates a window of at most `room` of `cells` cells that shows the cursor. It moves by half of its size.
-    pub(in crate::tui) fn new(cells: u8, room: u16, cursor: u8) -> Self {
-        Self::in_steps(cells, room, cursor, 1)
+    /// Creates a window of at most `room` of `cells` cells after `hidden` ones, or after fewer if these are too many.
+    pub(in crate::tui) fn after(hidden: u16, cells: u8, room: u16) -> Self {
+        let count = taxels(room).min(cells);
+        let first = taxels(hidden).min(cells - count);
+        Self {
+            first,
+            count,
+            all: cells,
+        }
     }
 
-    /// Creates a window like [`AxisWindow::new`] that begins at a multiple of `step`.
-    pub(in crate::tui) fn in_steps(cells: u8, room: u16, cursor: u8, step: u8) -> Self {
-        Self::showing(cells, room, cursor..cursor + 1, step)
-    }
-
-    /// Creates a window that begins at a multiple of `step` and shows all of `seen`, or its beginning if it is too
-    /// large.
-    fn showing(cells: u8, room: u16, seen: Range<u8>, step: u8) -> Self {
+    /// Creates a window of at most `room` of `cells` cells that begins at a multiple of `step` and shows all of
+    /// `seen`, or its beginning if it is too large. It moves by half of its size.
+    pub(in crate::tui) fn showing(cells: u8, room: u16, seen: Range<u8>, step: u8) -> Self {
         let count = taxels(room).min(cells);
         let whole_steps = |number: u8| number / step * step;
         let stride = whole_steps(count / 2).max(step);
@@ -118,6 +119,11 @@ impl AxisWindow {
     /// Returns the visible cells, each with its place from the first one.
     pub fn visible(&self) -> impl Iterator<Item = (u16, u8)> {
         (0..self.count).map(|index| (u16::from(index), self.first + index))
+    }
+
+    /// Returns true if all cells are visible.
+    pub fn is_whole(&self) -> bool {
+        self.count == self.all
     }
 
     /// Returns whether there are cells before the first visible one, and after the last.
@@ -144,16 +150,12 @@ pub struct TaxelGrid {
     pub columns: AxisWindow,
     /// The visible rows.
     pub rows: AxisWindow,
-    /// Whether all taxels are visible.
-    pub whole: bool,
-    /// The taxel that the cursor is on: column, row.
-    cursor: (u8, u8),
 }
 
 impl TaxelGrid {
-    /// Computes the places of a matrix's taxels in its pane, with the cursor at a taxel and the window around `seen`.
-    /// `halves` is whether two taxels may share a character.
-    pub fn of(area: Rect, imprint: &Imprint, cursor: (u8, u8), seen: Bounds, halves: bool) -> Self {
+    /// Computes the places of a matrix's taxels in its pane, with the window around `seen`. `halves` is whether two
+    /// taxels may share a character.
+    pub fn of(area: Rect, imprint: &Imprint, seen: Bounds, halves: bool) -> Self {
         let size = TaxelSize::fitting(imprint, area, halves);
         let (across, lines) = (
             area.width.saturating_sub(RULER),
@@ -169,15 +171,12 @@ impl TaxelGrid {
         );
         let rows = narrow(2 * u32::from(lines) / u32::from(size.half_lines()));
         let rows = AxisWindow::showing(imprint.rows(), rows, seen.rows(), step);
-        let whole = columns.count == imprint.columns() && rows.count == imprint.rows();
         Self {
             x: area.x + RULER.min(area.width),
             y: area.y + 1,
             size,
             columns,
             rows,
-            whole,
-            cursor,
         }
     }
 
@@ -219,8 +218,8 @@ impl TaxelGrid {
 
     /// Returns the taxel that a click at a place of the screen means. If two share a character, this is the one with
     /// the cursor, otherwise the upper one.
-    pub fn taxel(&self, x: u16, y: u16) -> Option<(u8, u8)> {
-        let mut with_cursor = self.taxels(x, y).filter(|&taxel| taxel == self.cursor);
+    pub fn taxel(&self, x: u16, y: u16, cursor: (u8, u8)) -> Option<(u8, u8)> {
+        let mut with_cursor = self.taxels(x, y).filter(|&taxel| taxel == cursor);
         with_cursor.next().or_else(|| self.taxels(x, y).next())
     }
 }

@@ -9,7 +9,7 @@
 
 pub mod layout;
 
-mod rulers;
+pub(in crate::tui) mod rulers;
 
 pub mod layers;
 

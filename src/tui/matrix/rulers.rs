@@ -16,13 +16,16 @@ use crate::tui::widget::write;
 
 /// Draws both rulers and the arrows into the area of the matrix.
 pub(super) fn draw(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect) {
-    draw_columns(theme, grid, buffer, area);
-    draw_rows(theme, grid, buffer, area);
     let [above, below, left, right] = theme.more();
     let ((more_above, more_below), (more_left, more_right)) =
         (grid.rows.hidden(), grid.columns.hidden());
     let (width, height) = grid.characters();
     let before = grid.x.saturating_sub(1);
+    // Numbers end before an arrow.
+    let end = grid.x + width.saturating_sub(more_right.into());
+    let line = write::left_of(write::row(area, 0), end);
+    draw_columns(theme, grid, buffer, line);
+    draw_rows(theme, grid, buffer, area);
     let marks = [
         (more_above, before, grid.y, above),
         (more_below, before, grid.y + height.max(1) - 1, below),
@@ -35,17 +38,19 @@ pub(super) fn draw(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: R
     }
 }
 
-/// Draws the numbers of columns, as many as fit: none in the place of an arrow, and none past the last column, where
-/// the descriptors may follow.
-fn draw_columns(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect) {
-    let (cell, line) = (grid.size.columns(), write::row(area, 0));
+/// Draws the numbers of columns that fit whole into a line.
+pub(in crate::tui) fn draw_columns(
+    theme: &Theme,
+    grid: &TaxelGrid,
+    buffer: &mut Buffer,
+    line: Rect,
+) {
+    let cell = grid.size.columns();
     let every = match cell {
         1 => 5,
         2 => 2,
         _ => 1,
     };
-    let (_, more) = grid.columns.hidden();
-    let end = grid.x + grid.characters().0 - u16::from(more);
     for (index, column) in grid
         .columns
         .visible()
@@ -53,7 +58,7 @@ fn draw_columns(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect
     {
         let x = grid.x + index * cell + (cell.max(2) - 2) / 2;
         let text = column.to_string();
-        if x + narrow(text.len()) <= end {
+        if x + narrow(text.len()) <= line.right() {
             let place = write::right_of(line, x);
             write::line(buffer, place, theme, [(text.as_str(), Role::Quiet)]);
         }
@@ -61,7 +66,7 @@ fn draw_columns(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect
 }
 
 /// Draws the number of each row; of the upper row if two share a line.
-fn draw_rows(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect) {
+pub(in crate::tui) fn draw_rows(theme: &Theme, grid: &TaxelGrid, buffer: &mut Buffer, area: Rect) {
     let rows = if grid.size == TaxelSize::Half { 2 } else { 1 };
     for (index, row) in grid.rows.visible().step_by(rows) {
         let place = grid.cell_rect(0, index);

@@ -71,7 +71,7 @@ impl<'a> MatrixView<'a> {
     /// Returns the places of the taxels in an area.
     fn grid(&self, area: Rect) -> TaxelGrid {
         let halves = self.display == Display::Imprint && self.compared.is_none();
-        TaxelGrid::of(area, &self.reading.imprint, self.cursor, self.seen, halves)
+        TaxelGrid::of(area, &self.reading.imprint, self.seen, halves)
     }
 
     /// Draws the matrix. Returns the position of the cursor; None if it is not visible.

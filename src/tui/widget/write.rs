@@ -122,6 +122,12 @@ pub fn right_of(area: Rect, x: u16) -> Rect {
     }
 }
 
+/// Returns the part of an area to the left of `x`.
+pub fn left_of(area: Rect, x: u16) -> Rect {
+    let width = x.saturating_sub(area.x).min(area.width);
+    Rect { width, ..area }
+}
+
 /// Returns the part of a text that a field of `room` columns shows so that the cursor is visible, and the column of
 /// the cursor in that part. An ellipsis at its start stands for the hidden text before. The part extends to the end
 /// of the text: the caller shortens it at the right, which never hides the character under the cursor.
