@@ -20,6 +20,7 @@ fn every_size_of_every_screen_is_drawn() {
         "?",
         "?<PageDown>",
         "f<Enter>i",
+        "f<Enter><Space>=",
         "<Space>q",
         "fr<Enter>e",
         "fr<Enter>e9<Enter>",
@@ -377,6 +378,19 @@ fn the_number_of_descriptors_without_room_is_shown() {
         shows(&smallest, &["NA 52 NAE 52 CE 20\n", "and 14 more\n"]);
     }
     hides(&sized((40, 12), false, "f<Enter>i"), &["more"]);
+}
+
+#[test]
+fn the_smallest_screen_shows_an_imprint_of_the_list() {
+    let sweep = "fr<Enter>:explore --x0 5:6:0.1 --y0 5 --angle 0<Enter>";
+    shows(&sized((20, 6), false, sweep), &["\n>  0 "]);
+    shows(&sized((20, 7), false, sweep), &["poses", "\n>  0 "]);
+}
+
+#[test]
+fn the_smallest_screen_shows_a_row_of_compared_imprints() {
+    let smallest = sized((20, 6), false, "lkey<Enter><Space>=");
+    shows(&smallest, &["1 taxel differs", "a: A, b: B", "\n 0 ·"]);
 }
 
 /// A form leaves enough room for the matrix to show something, or takes that room as well.

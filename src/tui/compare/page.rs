@@ -165,10 +165,12 @@ impl Comparison {
         } else {
             TaxelSize::Narrow
         };
-        let lines = area.height.saturating_sub(2);
+        // A low view has a row before it has numbers of columns.
+        let above = if area.height > 2 { 2 } else { 1 };
+        let lines = area.height.saturating_sub(above);
         TaxelGrid {
             x: area.x + RULER,
-            y: area.y + 2,
+            y: area.y + above,
             size,
             columns: AxisWindow::after(self.left, first.columns(), room / size.columns()),
             rows: AxisWindow::after(self.top, first.rows(), lines),
@@ -229,7 +231,9 @@ impl Comparison {
         write::line(buffer, area, theme, [(title, Role::Title)]);
         // A number that does not fit would touch the descriptors.
         let line = write::left_of(write::row(area, 1), grid.x + grid.characters().0);
-        rulers::draw_columns(theme, &grid, buffer, line);
+        if grid.y > line.y {
+            rulers::draw_columns(theme, &grid, buffer, line);
+        }
         rulers::draw_rows(theme, &grid, buffer, area);
         for (y, row) in grid.rows.visible() {
             for (x, column) in grid.columns.visible() {

@@ -123,28 +123,27 @@ impl ImprintList {
             ..page
         };
         let x = table.right().saturating_add(2).min(page.right());
+        // A low page has a row before it has headings, and these before the line about the selected imprint.
+        let (above, below) = (u16::from(page.height > 1), u16::from(page.height > 2));
         let gallery = Rect {
             x,
             width: page.right() - x,
-            height: page.height.saturating_sub(1),
+            height: page.height - below,
             ..page
         };
         let rows = Rect {
-            height: page.height.saturating_sub(2),
-            ..write::below(table, 1)
+            height: page.height - above - below,
+            ..write::below(table, above)
         };
         Self {
             head: Rect {
-                height: page.height.min(1),
+                height: above,
                 ..table
             },
             // The list turns page by page, so that a clicked row stays where it is.
             first: results.first_row(rows.height.into()),
             rows,
-            detail: Rect {
-                height: u16::from(page.height > 1),
-                ..write::below(page, page.height.saturating_sub(1))
-            },
+            detail: write::below(page, page.height - below),
             gallery: beside.then_some(gallery),
             id,
             poses,
