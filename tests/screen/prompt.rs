@@ -54,6 +54,10 @@ fn the_cursor_and_the_shape_are_moved_by_commands() {
             "! there is no such taxel: columns are 0 to 15, rows 0 to 15",
         ),
         (
+            "cursor 12345678901234567890 0",
+            "! there is no such taxel: columns are 0 to 15, rows 0 to 15",
+        ),
+        (
             "cursor far",
             "! cursor takes left, right, up, down, start, end, top, bottom or COLUMN ROW",
         ),
@@ -323,6 +327,10 @@ fn commands_do_what_keys_do() {
         (
             "figure blob",
             "! figure: \"blob\" is unknown, expected one of ellipse,",
+        ),
+        (
+            "figure \"hexagon\"",
+            "! figure takes a kind without quotes: hexagon",
         ),
         ("figure hexagon --side", "! --side needs a value"),
         ("figure hexagon --side=", "! --side needs a value"),

@@ -140,7 +140,8 @@ fn degrees(text: &str) -> Result<Message, String> {
 /// Reads a taxel of the sensor.
 fn taxel(column: &str, row: &str, sensor: &Sensor) -> Result<Message, String> {
     for text in [column, row] {
-        if text.parse::<i64>().is_err() {
+        let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
+        if digits.is_empty() || !digits.bytes().all(|digit| digit.is_ascii_digit()) {
             let text = shortened(text);
             return Err(format!(
                 "cursor takes a column and a row like 3 4, found {text:?}"
@@ -220,8 +221,14 @@ fn numbers(
 fn figure(kind: &str, words: &[&str], app: &App) -> Result<Message, String> {
     let sensor = app.shown().sensor;
     let kind = FigureKind::from_name(kind).ok_or_else(|| {
-        let found = shortened(kind);
-        RecordError::FigureKind { found }.to_string()
+        let bare = kind.trim_matches(['"', '\'']);
+        match FigureKind::from_name(bare) {
+            Some(_) => format!("figure takes a kind without quotes: {bare}"),
+            None => RecordError::FigureKind {
+                found: shortened(kind),
+            }
+            .to_string(),
+        }
     })?;
     let values = numbers(words, kind.parameters(), &sensor)?;
     if let Some((foreign, _)) = values
