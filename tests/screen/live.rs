@@ -70,6 +70,15 @@ fn a_source_is_shown_frame_by_frame() {
 }
 
 #[test]
+fn keys_for_the_shades_say_what_they_do() {
+    let mut page = watched(6, "g");
+    shows(&page, &["shades over this frame's values"]);
+    then(&mut page, "g", &["shades over a fixed range"]);
+    then(&mut page, "v", &["no threshold, so there is no imprint"]);
+    then(&mut page, "vv", &["no tare, so these are the raw values"]);
+}
+
+#[test]
 fn a_source_from_which_no_frame_came_says_why() {
     let folder = tempfile::tempdir().expect("a folder");
     for (content, flags, reason) in [

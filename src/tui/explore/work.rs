@@ -175,6 +175,9 @@ pub(in crate::tui) fn in_ranges(
                 refuse(app, trouble.full);
             }
         },
+        Message::Type(character) if form.focus().is_none() && character != ' ' => {
+            refuse(app, "an arrow or Space chooses the other anchor");
+        }
         message => form.take(&message),
     }
     let effect = measure(&mut form);

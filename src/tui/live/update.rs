@@ -21,6 +21,7 @@ use crate::tui::keys::binding::Context;
 use crate::tui::keys::key::Arrow;
 use crate::tui::live::message::{LiveEvent, LiveMessage, RecordedFrames};
 use crate::tui::live::named_source::NamedSource;
+use crate::tui::live::reading::HeatLayer;
 use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
 use crate::tui::live::state::Live;
@@ -192,12 +193,16 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         LiveMessage::PeakHold => {
             page.hold_peak();
         }
-        LiveMessage::NextLayer => {
-            page.next_layer();
-        }
+        LiveMessage::NextLayer => next_layer(app, page),
         LiveMessage::Numbers => page.display.numbers ^= true,
         LiveMessage::OwnRange => {
-            page.switch_range();
+            let own = page.switch_range();
+            let over = if own {
+                "this frame's values"
+            } else {
+                "a fixed range"
+            };
+            inform(app, format!("shades over {over}"));
         }
         LiveMessage::Window(towards) => look_further(app, page, *towards),
         LiveMessage::FollowContact => {
@@ -224,6 +229,16 @@ fn adjust(app: &mut App, page: &mut Live, asked: &LiveMessage) -> Option<Effect>
         LiveMessage::Open | LiveMessage::Watch(_) => {}
     }
     None
+}
+
+/// Shows the next layer, and says why if it looks like the one before.
+fn next_layer(app: &mut App, page: &mut Live) {
+    let reason = match page.next_layer() {
+        HeatLayer::Tared if page.tare().is_none() => "no tare, so these are the raw values",
+        HeatLayer::Imprint if page.rule().is_none() => "no threshold, so there is no imprint",
+        _ => return,
+    };
+    inform(app, reason);
 }
 
 /// Shows taxels further in a direction, if not all are visible. The first time, a notice says how to see the contact

@@ -429,6 +429,13 @@ fn all_ranges_are_visible_on_a_small_screen() {
     shows(&sized((40, 12), false, "fr<Enter>e"), &["> top left\n"]);
 }
 
+#[test]
+fn the_row_of_the_anchor_says_what_changes_it() {
+    let keys = "fr<Enter>e<S-Tab>g";
+    shows(keys, &["! an arrow or Space chooses the other anchor"]);
+    shows("fr<Enter>e<S-Tab><Space>", &["< centre >"]);
+}
+
 fn any_keys() -> impl Strategy<Value = Vec<&'static str>> {
     let key = prop::sample::select(vec![
         "e",
