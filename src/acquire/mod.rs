@@ -27,6 +27,8 @@ mod arrival_clock;
 
 mod stream;
 
+mod pace;
+
 mod playback;
 
 mod run;
