@@ -1,14 +1,11 @@
 //! The pace of a recording that is played back: when each frame is due.
 
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::acquire::event::{AcquireEvent, AcquireOptions, Playback};
+use crate::acquire::event::{AcquireOptions, Playback};
 use crate::acquire::followed_file::Growth;
-use crate::acquire::stream::Consumer;
 use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingNote};
-use crate::formats::stream::StreamCounts;
 use crate::frame::Frame;
 
 /// The seconds per frame of a recording that does not state them: ten frames a second.
@@ -21,14 +18,21 @@ pub(super) const MOMENT: Duration = Duration::from_millis(100);
 const LONGEST: f64 = 86_400.0;
 
 /// The longest time between two frames, in seconds, that always counts as a pause and is waited for. A longer one
-/// counts as a change of the clock if it is also longer than [`PAUSE_RATIO`] times the one before.
+/// counts as a change of the clock if it is also longer than [`PAUSE_RATIO`] times the one before, unless the last such
+/// time was about as long: then frames or series of frames are regularly so far apart.
 const PAUSE: f64 = 60.0;
 
 /// See [`PAUSE`].
 const PAUSE_RATIO: f64 = 10.0;
 
+/// The factor up to which two times between frames are about as long.
+const ALIKE: f64 = 2.0;
+
 /// The seconds that a change of the clock is played as.
 const PLAYED: f64 = 2.0;
+
+/// A function that is called now and then during a wait; it breaks if no more is wanted.
+pub(super) type Tick<'a> = dyn FnMut() -> ControlFlow<()> + 'a;
 
 /// The pace of a recording, from its beginning: when its next frame is due.
 pub(super) struct Pace<'a> {
@@ -42,8 +46,10 @@ pub(super) struct Pace<'a> {
     last: Option<f64>,
     /// The seconds from the first to the last of them, without changes of the clock.
     played: f64,
-    /// The seconds between the last two.
+    /// The seconds of the last pause between two of them.
     before: f64,
+    /// The seconds of the last change of the clock, if the clock was not set back since.
+    jump: Option<f64>,
     /// The channel that sets the pace. Frames of other channels, before, between or after its own, are not waited
     /// for.
     channel: ChannelChoice,
@@ -68,6 +74,7 @@ impl<'a> Pace<'a> {
             last: None,
             played: 0.0,
             before: STEP,
+            jump: None,
             channel: ChannelChoice::new(options.channel.as_deref()),
             unshaped: None,
             growth,
@@ -98,15 +105,10 @@ impl<'a> Pace<'a> {
         self.unshaped.is_some() && self.channel.takes(frame.channel)
     }
 
-    /// Waits until a frame is due. Returns `Break` if no more is wanted.
-    pub(super) fn wait(
-        &mut self,
-        frame: &Frame,
-        stop: &AtomicBool,
-        consumer: &mut Consumer<'_>,
-    ) -> ControlFlow<()> {
+    /// Takes the next frame of the recording. Returns a note if its time shows a change of the clock.
+    pub(super) fn take(&mut self, frame: &Frame) -> Option<RecordingNote> {
         if !self.channel.takes(frame.channel) {
-            return ControlFlow::Continue(());
+            return None;
         }
         let own = f64::from(self.frames) * self.step;
         self.frames = self.frames.saturating_add(1);
@@ -115,28 +117,40 @@ impl<'a> Pace<'a> {
         let last = self.last.replace(due).unwrap_or(due);
         // After a clock was set back, the frame is due at once.
         let gap = (due - last).max(0.0);
-        let is_pause = gap <= PAUSE.max(PAUSE_RATIO * self.before);
-        if gap > 0.0 && is_pause {
+        let is_pause = self.is_pause(gap);
+        if due < last {
+            self.jump = None;
+        } else if !is_pause {
+            self.jump = Some(gap);
+        } else if gap > 0.0 {
             self.before = gap;
         }
-        if !is_pause && !self.growth.is_some_and(Growth::has_grown) {
-            let note = RecordingNote::Gap {
-                frame: frame.number,
-                seconds: gap,
-                played: PLAYED,
-            };
-            consumer(AcquireEvent::Note(&note))?;
-        }
         self.played += if is_pause { gap } else { PLAYED };
-        self.until(self.played, stop, consumer)
+        (!is_pause && !self.has_grown()).then_some(RecordingNote::Gap {
+            frame: frame.number,
+            seconds: gap,
+            played: PLAYED,
+        })
+    }
+
+    /// Returns true if a time between two frames, in seconds, is a pause and no change of the clock.
+    fn is_pause(&self, gap: f64) -> bool {
+        let is_alike = |jump: f64| (jump / ALIKE..=jump * ALIKE).contains(&gap);
+        gap <= PAUSE.max(PAUSE_RATIO * self.before) || self.jump.is_some_and(is_alike)
+    }
+
+    /// Returns true if the recording is a file that has grown, so that nothing is waited for.
+    fn has_grown(&self) -> bool {
+        self.growth.is_some_and(Growth::has_grown)
+    }
+
+    /// Waits until the last frame that was taken is due. Calls `tick` meanwhile, and returns `Break` if it does.
+    pub(super) fn wait(&self, tick: &mut Tick<'_>) -> ControlFlow<()> {
+        self.until(self.played, tick)
     }
 
     /// Waits after the last frame as long as one frame lasts, so that a repeated recording keeps its pace.
-    pub(super) fn last_frame(
-        &self,
-        stop: &AtomicBool,
-        consumer: &mut Consumer<'_>,
-    ) -> ControlFlow<()> {
+    pub(super) fn wait_for_end(&self, tick: &mut Tick<'_>) -> ControlFlow<()> {
         if self.frames == 0 {
             return ControlFlow::Continue(());
         }
@@ -146,28 +160,20 @@ impl<'a> Pace<'a> {
         } else {
             self.step
         };
-        self.until(self.played + step, stop, consumer)
+        self.until(self.played + step, tick)
     }
 
     /// Waits until this many seconds have been played.
-    fn until(
-        &self,
-        seconds: f64,
-        stop: &AtomicBool,
-        consumer: &mut Consumer<'_>,
-    ) -> ControlFlow<()> {
+    fn until(&self, seconds: f64, tick: &mut Tick<'_>) -> ControlFlow<()> {
         let longest = self.begun.elapsed().as_secs_f64() + LONGEST;
         let seconds = (seconds / self.speed).clamp(0.0, longest);
         let due = self.begun + Duration::from_secs_f64(seconds);
         loop {
             let left = due.saturating_duration_since(Instant::now());
-            if stop.load(Ordering::Relaxed) {
-                return ControlFlow::Break(());
-            }
-            if left.is_zero() || self.growth.is_some_and(Growth::has_grown) {
+            if left.is_zero() || self.has_grown() {
                 return ControlFlow::Continue(());
             }
-            consumer(AcquireEvent::Tick(&StreamCounts::default()))?;
+            tick()?;
             std::thread::sleep(left.min(MOMENT));
         }
     }
@@ -200,10 +206,8 @@ mod tests {
         }
         let mut frame = Frame::default();
         let mut waits = |frame: &Frame| {
-            // The consumer stops it at the first wait.
-            let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
-            pace.wait(frame, &AtomicBool::new(false), consumer)
-                .is_break()
+            pace.take(frame);
+            pace.wait(&mut || ControlFlow::Break(())).is_break()
         };
         frame.time = Some(1000.0);
         assert!(!waits(&frame), "of the other channel");
@@ -216,38 +220,35 @@ mod tests {
     fn the_first_frame_is_not_waited_for_even_if_its_time_is_late() {
         let mut pace = Pace::new(&AcquireOptions::default(), None);
         pace.channel.add(&ChannelInfo::default());
-        let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
         let mut frame = Frame::default();
         for (time, is_waited_for) in [(1000.0, false), (1000.0, false), (2000.0, true)] {
             frame.time = Some(time);
-            let wait = pace.wait(&frame, &AtomicBool::new(false), consumer);
+            pace.take(&frame);
+            let wait = pace.wait(&mut || ControlFlow::Break(()));
             assert_eq!(wait.is_break(), is_waited_for, "{time}");
         }
     }
 
+    /// Returns the notes about frames at these times, and the seconds that are played.
+    fn notes(times: &[f64]) -> (Vec<String>, f64) {
+        let mut pace = Pace::new(&AcquireOptions::default(), None);
+        // All frames are due.
+        let begun = Instant::now().checked_sub(Duration::from_secs(36_000));
+        pace.begun = begun.expect("later");
+        pace.channel.add(&ChannelInfo::default());
+        let mut frame = Frame::default();
+        let mut notes = Vec::new();
+        for (number, &time) in (0..).zip(times) {
+            (frame.number, frame.time) = (number, Some(time));
+            notes.extend(pace.take(&frame).map(|note| note.to_string()));
+            let flow = pace.wait(&mut || ControlFlow::Break(()));
+            assert!(flow.is_continue(), "frame {number} is not due");
+        }
+        (notes, pace.played)
+    }
+
     #[test]
     fn a_change_of_the_clock_is_said_and_played_as_a_moment() {
-        let notes = |times: &[f64]| {
-            let mut pace = Pace::new(&AcquireOptions::default(), None);
-            // All frames are due.
-            let begun = Instant::now().checked_sub(Duration::from_secs(36_000));
-            pace.begun = begun.expect("later");
-            pace.channel.add(&ChannelInfo::default());
-            let mut frame = Frame::default();
-            let mut notes = Vec::new();
-            for (number, &time) in (0..).zip(times) {
-                (frame.number, frame.time) = (number, Some(time));
-                let flow = pace.wait(&frame, &AtomicBool::new(false), &mut |event| {
-                    match event {
-                        AcquireEvent::Note(note) => notes.push(note.to_string()),
-                        _ => return ControlFlow::Break(()),
-                    }
-                    ControlFlow::Continue(())
-                });
-                assert!(flow.is_continue(), "frame {number} is not due");
-            }
-            (notes, pace.played)
-        };
         let (said, played) = notes(&[0.0, 0.5, 1e9, 1e9 + 0.5, 3.0, 3.5]);
         let expected = "frame 2 comes 11,574 days after the one before, which is played as 2 s at normal speed";
         assert_eq!((said, played), (vec![expected.to_owned()], 3.5));
@@ -255,6 +256,23 @@ mod tests {
             let (said, played) = notes(&pauses);
             assert!(said.is_empty() && (played - pauses[3]).abs() < 1e-9);
         }
+        // A clock that is wrong again and again.
+        let (said, played) = notes(&[0.0, 0.5, 1e9, 1.0, 1e9, 1.5]);
+        assert_eq!((said.len(), played), (2, 4.5));
+    }
+
+    #[test]
+    fn a_gap_that_is_usual_for_a_recording_is_not_said() {
+        let single = [0.0, 300.0, 610.0, 900.0, 1200.0];
+        let series = [0.0, 0.5, 400.0, 400.5, 650.0, 650.5];
+        for (times, first, waited) in [(&single[..], 1, 900.0), (&series, 2, 251.0)] {
+            let (said, played) = notes(times);
+            assert!(said[0].starts_with(&format!("frame {first} ")), "{said:?}");
+            assert_eq!((said.len(), played), (1, PLAYED + waited));
+        }
+        // The second gap is four times as long as the first.
+        let (said, played) = notes(&[0.0, 0.5, 400.0, 400.5, 2000.0, 2000.5]);
+        assert_eq!((said.len(), played), (2, 2.0 * PLAYED + 1.5));
     }
 
     #[test]
@@ -263,9 +281,8 @@ mod tests {
         let begun = Instant::now().checked_sub(Duration::from_secs(48 * 3600));
         pace.begun = begun.expect("later");
         let waits = |seconds: f64| {
-            let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
-            let wait = pace.until(seconds, &AtomicBool::new(false), consumer);
-            wait.is_break()
+            pace.until(seconds, &mut || ControlFlow::Break(()))
+                .is_break()
         };
         assert!(!waits(47.0 * 3600.0), "it was due an hour ago");
         assert!(waits(49.0 * 3600.0), "it is due in an hour");
@@ -281,14 +298,14 @@ mod tests {
                 .checked_sub(Duration::from_secs(2 * 3600))
                 .expect("later");
             (pace.step, pace.before) = (4000.0, 4000.0);
-            let stop = AtomicBool::new(false);
-            let consumer = &mut |_: AcquireEvent<'_>| ControlFlow::Break(());
+            let tick = &mut || ControlFlow::Break(());
             let mut frame = Frame::default();
             for &time in times {
                 frame.time = time;
-                assert!(pace.wait(&frame, &stop, consumer).is_continue());
+                pace.take(&frame);
+                assert!(pace.wait(tick).is_continue());
             }
-            pace.last_frame(&stop, consumer).is_break()
+            pace.wait_for_end(tick).is_break()
         };
         assert!(with(&[None, None]), "until 8,000 s, and 7,200 are gone");
         assert!(!with(&[None]), "until 4,000 s");

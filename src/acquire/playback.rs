@@ -45,6 +45,7 @@ pub(super) fn run(
         description,
         consumer: RefCell::new(consumer),
         counts: RefCell::default(),
+        damage: RefCell::default(),
     };
     let file = File::open(path).map_err(AcquireError::opening)?;
     let format = format_of(file, ReadOptions::default())?;
@@ -65,6 +66,8 @@ struct Player<'a, 'b> {
     consumer: RefCell<&'a mut Consumer<'b>>,
     /// The counts of wrong frames in a followed file.
     counts: RefCell<StreamCounts>,
+    /// The error of the first of them.
+    damage: RefCell<Option<RecordingError>>,
 }
 
 /// A channel that was reported.
@@ -146,10 +149,9 @@ impl Player<'_, '_> {
             let (pace, read) = self.round(format, &mut file, &mut round);
             // A recording without frames is not repeated: it would be read again and again without a pause.
             let ends = read?.is_break() || !repeats || !pace.has_begun();
-            let consumer = &mut **self.consumer.borrow_mut();
             if ends
-                || pace.last_frame(self.stop, consumer).is_break()
-                || consumer(AcquireEvent::Again).is_break()
+                || pace.wait_for_end(&mut || self.tick()).is_break()
+                || self.report(AcquireEvent::Again).is_break()
             {
                 return Ok(());
             }
@@ -172,12 +174,14 @@ impl Player<'_, '_> {
             let end;
             (file, end) = followed.into_parts();
             let how = match end {
-                None => return read.map(drop).map_err(AcquireError::from),
+                None if read?.is_break() || growth.has_grown() => return Ok(()),
+                // The file was complete before: wrong frames are damage to a recording.
+                None => return self.damage.take().map_or(Ok(()), |error| Err(error.into())),
                 Some(FollowEnd::Stopped) => return Ok(()),
                 // An error in the end that was torn by the change does not count.
                 Some(FollowEnd::Anew(how)) => how,
             };
-            if (self.consumer.borrow_mut())(AcquireEvent::Anew(how)).is_break() {
+            if self.report(AcquireEvent::Anew(how)).is_break() {
                 return Ok(());
             }
             round.begin(true);
@@ -194,16 +198,21 @@ impl Player<'_, '_> {
         }
     }
 
+    /// Reports an event. Returns `Break` if no more is wanted.
+    fn report(&self, event: AcquireEvent<'_>) -> ControlFlow<()> {
+        (self.consumer.borrow_mut())(event)
+    }
+
     /// Reports a tick. Returns `Break` if no more is wanted.
     fn tick(&self) -> ControlFlow<()> {
         if self.stop.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
         }
-        (self.consumer.borrow_mut())(AcquireEvent::Tick(&self.counts.borrow()))
+        self.report(AcquireEvent::Tick(&self.counts.borrow()))
     }
 
     /// Leaves out and counts a wrong frame of a followed file if there were frames before it: a program that was
-    /// interrupted writes on behind a torn line. A file that may be about to grow is waited for. Returns `Break` if
+    /// interrupted writes on behind a torn line. Whether the file still grows may show only later. Returns `Break` if
     /// the error ends the reading.
     fn leave_out(
         &self,
@@ -211,20 +220,26 @@ impl Player<'_, '_> {
         bytes: &[u8],
         round: &Round<'_>,
     ) -> ControlFlow<()> {
-        let Some(growth) = round.growth.filter(|_| round.has_frames()) else {
+        if round.growth.is_none() || !round.has_frames() {
             return ControlFlow::Break(());
-        };
-        while !growth.has_grown() {
-            if !growth.may_go_on() {
-                return ControlFlow::Break(());
-            }
-            self.tick()?;
-            std::thread::sleep(MOMENT);
         }
+        let mut damage = self.damage.borrow_mut();
+        damage.get_or_insert_with(|| error.copied());
         let mut counts = self.counts.borrow_mut();
         counts.drop_frames(1, bytes);
         counts.reason = Some(error.to_string());
         ControlFlow::Continue(())
+    }
+
+    /// Waits until a frame is due, unless all frames are wanted at once. Returns `Break` if no more is wanted.
+    fn wait(&self, pace: &mut Pace<'_>, frame: &Frame) -> ControlFlow<()> {
+        if self.options.playback == Playback::Once {
+            return ControlFlow::Continue(());
+        }
+        if let Some(note) = pace.take(frame) {
+            self.report(AcquireEvent::Note(&note))?;
+        }
+        pace.wait(&mut || self.tick())
     }
 
     /// Reads a recording from its beginning to its end. Returns the pace that it reached, and whether no more is
@@ -246,21 +261,19 @@ impl Player<'_, '_> {
             if let RecordingEvent::Damage { error, bytes } = event {
                 return self.leave_out(error, bytes, round);
             }
-            let consumer = &mut **self.consumer.borrow_mut();
             flow = match event {
                 RecordingEvent::Channel(info) => {
                     let info = info.completed(self.description.as_ref());
                     pace.add(&info);
                     if round.add(&info) {
-                        consumer(AcquireEvent::Channel(&info))
+                        self.report(AcquireEvent::Channel(&info))
                     } else {
                         ControlFlow::Continue(())
                     }
                 }
                 RecordingEvent::Frame(frame) if pace.has_no_shape(frame) => ControlFlow::Break(()),
                 RecordingEvent::Frame(mut frame) => {
-                    let given_up = self.options.playback != Playback::Once
-                        && pace.wait(frame, self.stop, consumer).is_break();
+                    let given_up = self.wait(&mut pace, frame).is_break();
                     // The present content of a file has arrived at some other time.
                     let arrives = round.growth.is_some_and(Growth::has_caught_up);
                     let time = round.times.time(frame.time, arrives);
@@ -273,10 +286,10 @@ impl Player<'_, '_> {
                     if given_up || self.stop.load(Ordering::Relaxed) {
                         ControlFlow::Break(())
                     } else {
-                        consumer(AcquireEvent::Frame { frame, time })
+                        self.report(AcquireEvent::Frame { frame, time })
                     }
                 }
-                RecordingEvent::Note(note) => consumer(AcquireEvent::Note(note)),
+                RecordingEvent::Note(note) => self.report(AcquireEvent::Note(note)),
                 RecordingEvent::Damage { .. } => flow,
             };
             flow
@@ -308,6 +321,9 @@ fn description_of(
 
 #[cfg(test)]
 mod tests {
+    use std::io::Write;
+    use std::time::{Duration, SystemTime};
+
     use super::*;
     use crate::formats::seconds::to_nanoseconds;
 
@@ -330,6 +346,41 @@ mod tests {
         });
         assert!(result.is_ok());
         times
+    }
+
+    #[test]
+    fn a_wrong_line_that_stands_in_a_file_is_counted_and_is_an_error_unless_the_file_grows() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("r.jsonl");
+        let line = "{\"frame\":[[1,2]]}\n";
+        let content = line.repeat(2) + "{\"frame\":[[1\n" + &line.repeat(3);
+        for grows in [false, true] {
+            std::fs::write(&path, &content).expect("written");
+            let mut file = File::options().append(true).open(&path).expect("opened");
+            let long_ago = SystemTime::now() - Duration::from_secs(60);
+            file.set_modified(long_ago).expect("its time is set");
+            let (options, stop) = (AcquireOptions::default(), AtomicBool::new(false));
+            let (mut frames, mut dropped) = (0, 0);
+            let result = run(&path, &options, &stop, &mut |event| {
+                match event {
+                    AcquireEvent::Frame { .. } => frames += 1,
+                    AcquireEvent::Tick(counts) => dropped = dropped.max(counts.dropped),
+                    _ => {}
+                }
+                if frames == 4 && grows {
+                    file.write_all(line.as_bytes()).expect("written");
+                    frames += 10;
+                }
+                if frames == 16 && dropped > 0 {
+                    return ControlFlow::Break(());
+                }
+                ControlFlow::Continue(())
+            });
+            let error = result.err().map(|error| error.to_string());
+            let error = error.map(|error| error.starts_with("line 3, "));
+            let expected = if grows { (16, None) } else { (5, Some(true)) };
+            assert_eq!((frames, error), expected);
+        }
     }
 
     #[test]

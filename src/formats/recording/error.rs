@@ -69,6 +69,16 @@ impl RecordingError {
         matches!(self, Self::Shape { .. } | Self::Columns { .. })
     }
 
+    /// Returns an error with the same message, and the same hint at rows and columns.
+    #[cfg(feature = "acquire")]
+    pub(crate) fn copied(&self) -> Self {
+        match *self {
+            Self::Shape { values } => Self::Shape { values },
+            Self::Columns { numbers } => Self::Columns { numbers },
+            _ => Self::damaged(self.to_string()),
+        }
+    }
+
     /// Returns the error for damage without a place.
     pub(crate) fn damaged(message: impl Into<String>) -> Self {
         let message = message.into();
