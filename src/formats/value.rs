@@ -2,7 +2,7 @@
 
 use crate::description::{Dimension, Value};
 
-pub use crate::parameter::number::{counted, grouped};
+pub use crate::parameter::number::{counted, grouped, time_in_words};
 
 /// Formats a value; None if the value does not exist.
 ///

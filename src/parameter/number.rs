@@ -107,6 +107,27 @@ pub fn counted(count: impl Into<u128>, noun: &str) -> String {
     format!("{} {noun}{ending}", grouped(count))
 }
 
+/// Formats a time in seconds in the largest unit of which there are two or more, rounded.
+///
+/// ```
+/// use taxel::parameter::number::time_in_words;
+/// assert_eq!([1.0, 119.4, 120.0, 7300.0].map(time_in_words), ["1 second", "119 seconds", "2 minutes", "2 hours"]);
+/// ```
+pub fn time_in_words(seconds: f64) -> String {
+    let units = [(86_400.0, "day"), (3600.0, "hour"), (60.0, "minute")];
+    let unit = units
+        .into_iter()
+        .find(|(length, _)| seconds >= 2.0 * length);
+    let (length, unit) = unit.unwrap_or((1.0, "second"));
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a number for a message"
+    )]
+    let count = (seconds / length).round() as u64;
+    counted(count, unit)
+}
+
 /// Formats the number of taxels in which two imprints differ.
 ///
 /// ```

@@ -7,9 +7,9 @@ use crate::formats::recording::description::{FrameMark, RecordingMetadata};
 use crate::formats::recording::error::RecordingError;
 use crate::frame::{Frame, FrameSize, Rule, RuleOrigin, SetRule, Tare, View};
 use crate::parameter::named;
-use crate::parameter::number::counted;
 #[cfg(feature = "tui")]
 use crate::parameter::number::short;
+use crate::parameter::number::{counted, time_in_words};
 
 /// A format of recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -342,7 +342,7 @@ impl fmt::Display for RecordingNote {
             } => write!(
                 f,
                 "frame {frame} comes {} after the one before, which is played as {played} s at normal speed",
-                in_words(*seconds)
+                time_in_words(*seconds)
             ),
             Self::Maximum => f.write_str(
                 "the picture [Data] is the maximum of the numbered ones and is left out",
@@ -350,22 +350,6 @@ impl fmt::Display for RecordingNote {
             Self::Description { complaint } => f.write_str(complaint),
         }
     }
-}
-
-/// Returns a time in the largest unit of which there are two or more, rounded.
-fn in_words(seconds: f64) -> String {
-    let units = [(86_400.0, "day"), (3600.0, "hour"), (60.0, "minute")];
-    let unit = units
-        .into_iter()
-        .find(|(length, _)| seconds >= 2.0 * length);
-    let (length, unit) = unit.unwrap_or((1.0, "second"));
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a number for a message"
-    )]
-    let count = (seconds / length).round() as u64;
-    counted(count, unit)
 }
 
 /// An event that a reader reports.

@@ -16,7 +16,7 @@ use std::time::Duration;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::formats::value::counted;
+use crate::formats::value::{counted, time_in_words};
 use crate::pose::Anchor;
 use crate::tui::app::message::Message;
 use crate::tui::app::page::{Page, Slot};
@@ -174,16 +174,10 @@ fn draw_summary(theme: &Theme, form: &RangesForm, buffer: &mut Buffer, area: Rec
 
 /// Returns a time in words: "about 20 seconds".
 pub fn about(time: Duration) -> String {
-    let seconds = time.as_secs();
-    let rounded = |unit: u64| (seconds + unit / 2) / unit;
-    let (number, unit) = match seconds {
-        0 => return "under a second".to_owned(),
-        1..100 => (seconds, "second"),
-        100..6_000 => (rounded(60), "minute"),
-        6_000..172_800 => (rounded(3_600), "hour"),
-        _ => (rounded(86_400), "day"),
-    };
-    format!("about {}", counted(number, unit))
+    if time < Duration::from_secs(1) {
+        return "under a second".to_owned();
+    }
+    format!("about {}", time_in_words(time.as_secs_f64()))
 }
 
 #[cfg(test)]
@@ -200,7 +194,7 @@ mod tests {
                 "under a second",
                 "about 1 second",
                 "about 99 seconds",
-                "about 2 minutes",
+                "about 100 seconds",
                 "about 100 minutes",
                 "about 2 hours",
                 "about 2 days",
