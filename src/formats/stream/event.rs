@@ -1,7 +1,7 @@
 //! The formats and options of streams, and the events and counts that a decoder reports.
 
 use crate::formats::recording::{ChannelInfo, RecordingError};
-use crate::formats::value::grouped;
+use crate::formats::value::{counted, grouped};
 use crate::frame::{Frame, FrameSize};
 use crate::parameter::named;
 
@@ -160,6 +160,22 @@ impl StreamCounts {
         }
     }
 
+    /// Returns the reason why a stream has come to its end without a frame; None if there was one.
+    pub fn frameless(&self) -> Option<Frameless<'_>> {
+        if self.frames > 0 {
+            return None;
+        }
+        Some(match self.refusal() {
+            _ if self.bytes == 0 => Frameless::Empty,
+            Some(refusal) => Frameless::Refused(refusal),
+            None if self.unknown => Frameless::Refused(StreamRefusal::Unknown),
+            None => Frameless::Undecoded {
+                bytes: self.bytes,
+                reason: self.reason.as_deref(),
+            },
+        })
+    }
+
     /// Counts dropped frames.
     pub(crate) fn drop_frames(&mut self, frames: u64, bytes: &[u8]) {
         self.dropped += frames;
@@ -210,6 +226,30 @@ impl StreamRefusal {
     }
 }
 
+/// The reason why a stream has come to its end without a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Frameless<'a> {
+    /// There was not a single byte.
+    #[error("the source is empty")]
+    Empty,
+    /// Something must be given or changed before any frame can be decoded.
+    #[error(transparent)]
+    Refused(StreamRefusal),
+    /// There were bytes, but none of them a frame; rows, columns or format may be wrong.
+    #[error(
+        "{} but no frame{}",
+        counted(*bytes, "byte"),
+        reason.map_or(String::new(), |reason| format!("; the last line: {reason}"))
+    )]
+    Undecoded {
+        /// The number of bytes.
+        bytes: u64,
+        /// The reason why the last line is not a frame, if the format shows it.
+        reason: Option<&'a str>,
+    },
+}
+
 /// A function that takes the events of a decoder.
 pub type StreamSink<'a> = dyn FnMut(StreamEvent<'_>) + 'a;
 
@@ -230,5 +270,21 @@ mod tests {
         counts.frames = 1;
         assert_eq!(counts.refusal(), None);
         assert_eq!(counts.silence(0.0), "the source has gone silent");
+    }
+
+    #[test]
+    fn a_stream_without_a_frame_has_a_reason() {
+        let said = |counts: &StreamCounts| counts.frameless().map(|reason| reason.to_string());
+        let mut counts = StreamCounts::default();
+        assert_eq!(said(&counts).as_deref(), Some("the source is empty"));
+        counts.bytes = 9;
+        assert_eq!(said(&counts).as_deref(), Some("9 bytes but no frame"));
+        counts.reason = Some("line 2: a row".to_owned());
+        let expected = "9 bytes but no frame; the last line: line 2: a row";
+        assert_eq!(said(&counts).as_deref(), Some(expected));
+        counts.unknown = true;
+        assert_eq!(said(&counts), Some(StreamRefusal::Unknown.to_string()));
+        counts.frames = 1;
+        assert_eq!(said(&counts), None);
     }
 }

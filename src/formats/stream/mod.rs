@@ -41,5 +41,5 @@ mod decoder;
 
 pub use decoder::StreamDecoder;
 pub use event::{
-    StreamCounts, StreamEvent, StreamFormat, StreamOptions, StreamRefusal, StreamSink,
+    Frameless, StreamCounts, StreamEvent, StreamFormat, StreamOptions, StreamRefusal, StreamSink,
 };

@@ -1,0 +1,147 @@
+//! The answers to the frames of a source, on standard output.
+
+use crate::cli::commands::watch::reports::SourceReports;
+use crate::cli::error::CliError;
+use crate::cli::output::line_writer::LineWriter;
+use crate::formats::json;
+use crate::formats::recording::FrameAnswer;
+use crate::formats::value::counted;
+use crate::frame::{Frame, Processing, SetRule, Tare};
+
+/// The answers, a line each.
+pub(super) struct Answers {
+    output: Output,
+    /// Whether frames are recorded: then the watch goes on if answers cannot be written, since frames do not come again.
+    is_recorded: bool,
+    /// Whether frames may be left unanswered if the reader is slow.
+    may_give_up: bool,
+    /// The number of frames answered.
+    answered: u64,
+    /// The number of frames not answered because crop, tare, mask or gain do not fit their size.
+    unfit: u64,
+}
+
+/// The state of standard output.
+enum Output {
+    /// It is written by a thread of its own.
+    Open(LineWriter),
+    /// Its reader is gone, while frames are recorded.
+    Closed,
+    /// It cannot be written any more for this reason, while frames are recorded.
+    Failed(CliError),
+}
+
+impl Answers {
+    /// Begins the answers. They are given up only for a live source that is recorded.
+    pub(super) fn new(lines: LineWriter, is_live: bool, is_recorded: bool) -> Self {
+        Self {
+            output: Output::Open(lines),
+            is_recorded,
+            may_give_up: is_live && is_recorded,
+            answered: 0,
+            unfit: 0,
+        }
+    }
+
+    /// Processes a frame and sends its line, with the name of its channel. A frame whose size does not fit crop, tare,
+    /// mask or gain is left out if others did fit: the sensor continues.
+    ///
+    /// # Errors
+    /// Returns an error if the first frame does not fit; [`CliError::Write`] once standard output is closed.
+    pub(super) fn add(
+        &mut self,
+        (frame, channel): (&Frame, Option<&str>),
+        processing: &mut Processing,
+        rule: Option<SetRule>,
+        reports: &mut SourceReports<'_>,
+    ) -> Result<(), CliError> {
+        let Output::Open(lines) = &mut self.output else {
+            return Ok(());
+        };
+        let tare = processing.tare.as_ref().map_or(0, Tare::frames);
+        let processed = match processing.run(frame) {
+            Ok(processed) => processed,
+            Err(error) if self.answered > 0 && error.is_of_size() => {
+                self.unfit += 1;
+                if self.unfit == 1 {
+                    let number = frame.number;
+                    reports.say(&format!("frame {number} is not printed: {error}"));
+                }
+                return Ok(());
+            }
+            Err(error) => return Err(reports.refused(&error)),
+        };
+        self.answered += 1;
+        let answer = FrameAnswer {
+            frame,
+            channel,
+            processed,
+            rule,
+            tare,
+        };
+        let line = json::ascii(&answer) + "\n";
+        if lines.send((line.into_bytes(), processed.imprint), self.may_give_up) {
+            return Ok(());
+        }
+        self.end(reports)
+    }
+
+    /// Ends the answers if no more can be written: the reader is gone, or there is no model.
+    ///
+    /// # Errors
+    /// Returns the reason why no more can be written, without a recording.
+    pub(super) fn tick(&mut self, reports: &mut SourceReports<'_>) -> Result<(), CliError> {
+        match &self.output {
+            Output::Open(lines) if lines.is_over() => self.end(reports),
+            _ => Ok(()),
+        }
+    }
+
+    /// Ends the answers, once no more can be written. A recording continues.
+    ///
+    /// # Errors
+    /// Returns the reason why no more can be written, without a recording.
+    fn end(&mut self, reports: &mut SourceReports<'_>) -> Result<(), CliError> {
+        let Output::Open(lines) = std::mem::replace(&mut self.output, Output::Closed) else {
+            return Ok(());
+        };
+        match lines.finish() {
+            Err(error @ CliError::Write(_)) if self.is_recorded => {
+                if error.is_closed_pipe() {
+                    reports.say("standard output is closed; the recording continues");
+                } else {
+                    reports.say(&format!("{error}; the recording continues"));
+                    self.output = Output::Failed(error);
+                }
+                Ok(())
+            }
+            written => written,
+        }
+    }
+
+    /// Waits until all answers are written, and reports the frames without one.
+    ///
+    /// # Errors
+    /// Returns the reason why answers could not be written. A recording does not need a reader of the answers.
+    pub(super) fn finish(self, reports: &mut SourceReports<'_>) -> Result<(), CliError> {
+        if self.unfit > 0 {
+            let frames = counted(self.unfit, "frame");
+            reports.say(&format!("{frames} of another size not printed"));
+        }
+        let written = match self.output {
+            Output::Open(lines) => {
+                if lines.given_up > 0 {
+                    let frames = counted(lines.given_up, "frame");
+                    reports.say(&format!("{frames} recorded but not printed"));
+                }
+                lines.finish()
+            }
+            Output::Closed => Ok(()),
+            Output::Failed(error) => Err(error),
+        };
+        match written {
+            Err(error) if self.is_recorded && error.is_closed_pipe() => Ok(()),
+            written => written,
+        }
+    }
+}

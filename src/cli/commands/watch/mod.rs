@@ -1,0 +1,370 @@
+//! `taxel watch`: prints a line of JSON for each frame of a source, and records all frames if a file is given.
+//!
+//! Every frame is recorded before it is answered. A live source that is recorded is never held up: if the reader of the
+//! answers is slow, some frames get no answer, and their number is reported. Otherwise answers wait, as in any
+//! pipeline. If the reader is gone, as in `| head -1`, or answers cannot be written, a recording continues; without a
+//! recording the command ends.
+//!
+//! ```text
+//! $ taxel watch /dev/ttyUSB0 --at-least 20 --write grip.npy | jq .na
+//! $ taxel watch - --format lines --percent 50 < rows.txt
+//! {"frame":0,"label":null,"time":null,"channel":null,"sum":42,"max":9,"rule":{"at_least":3,"from":"flag"},"imprint":[…
+//! ```
+//! Without a threshold, frames are answered with `"imprint":null`. With a tare, the first frames wait until it is
+//! complete and are then answered together. Oddities go to standard error, a line each, after the name of the source:
+//! `/dev/ttyUSB0: 12 frames dropped so far (torn, short, long or garbled), the last: \x00\x07\xff`. On a terminal,
+//! the screen's live page opens instead ([`request`]).
+//!
+//! ```text
+//! acquire -> ChannelGate -> WatchRecording: each frame of the channel
+//!                        -> TareQueue: the first frames, if a tare is made -> Answers -> standard output
+//!         -> SourceReports: oddities, errors -> standard error
+//! ```
+
+mod answers;
+
+mod channel_gate;
+
+mod check;
+
+mod recording;
+
+mod reports;
+
+mod tare_queue;
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::acquire::{AcquireError, AcquireEvent, FrameRecorder, FrameSource, Playback, acquire};
+use crate::cli::arguments::watch::WatchArguments;
+use crate::cli::commands::model;
+use crate::cli::commands::naming::FrameNamer;
+use crate::cli::commands::watch::answers::Answers;
+use crate::cli::commands::watch::channel_gate::ChannelGate;
+use crate::cli::commands::watch::check::check;
+use crate::cli::commands::watch::recording::WatchRecording;
+use crate::cli::commands::watch::reports::SourceReports;
+use crate::cli::commands::watch::tare_queue::TareQueue;
+use crate::cli::error::{CliError, note_advice};
+use crate::cli::input::processing;
+use crate::cli::input::shapes::Shelf;
+use crate::cli::output::charset::Charset;
+use crate::cli::output::line_writer::LineWriter;
+use crate::cli::output::progress::Progress;
+use crate::cli::signals::Signals;
+use crate::formats::recording::{ChannelInfo, RecordingMetadata};
+use crate::formats::stream::StreamCounts;
+use crate::frame::{Frame, FrameSize, Processing, SetRule};
+use crate::tui::live::request::WatchRequest;
+use crate::tui::runtime::check_source;
+
+/// The state of a watched source, which handles its frames as they come.
+struct Watcher<'a> {
+    /// The flags.
+    asked: &'a WatchArguments,
+    reports: SourceReports<'a>,
+    gate: ChannelGate<'a>,
+    /// The processing from values to the imprint; tare and rule of the recording are set when they become known.
+    processing: Processing,
+    /// The threshold in use; None if neither a flag nor a recording has set one yet.
+    rule: Option<SetRule>,
+    /// The frames that wait for the tare; None if none is made any more.
+    tare: Option<TareQueue>,
+    recording: Option<WatchRecording<'a>>,
+    answers: Answers,
+    /// The memory of a frame, reused for the next one.
+    frame: Frame,
+    /// Rows and columns of the last frame; None before the first.
+    size: Option<FrameSize>,
+    /// The first error; it ends the reading and is returned at the end.
+    failure: Option<CliError>,
+}
+
+/// Answers the frames of a source until it ends. Returns the exit status: 0, or that of the signal that stopped it.
+///
+/// # Errors
+/// Returns an error if the source, the recording or the answers fail.
+pub(crate) fn watch(
+    asked: &WatchArguments,
+    shelf: &Shelf,
+    note: &mut dyn FnMut(&str),
+) -> Result<u8, CliError> {
+    let source = FrameSource::new(&asked.source);
+    let signals = Signals::catch().map_err(CliError::System)?;
+    let processing = processing::processing(&asked.processing)?;
+    check(&source, asked)?;
+    // Errors in these are reported before a recording begins.
+    let lines = line_writer(asked, &processing, shelf, &signals.stopped)?;
+    let recording = WatchRecording::create(&source, asked).map_err(CliError::Recorder)?;
+    let is_live =
+        asked.options.playback != Playback::Once && !matches!(source, FrameSource::File(_));
+    let mut watcher = Watcher {
+        asked,
+        reports: SourceReports::new(&source, note),
+        gate: ChannelGate::new(&source, asked),
+        processing,
+        rule: None,
+        tare: TareQueue::new(asked.processing.tare.unwrap_or_default()),
+        answers: Answers::new(lines, is_live, recording.is_some()),
+        recording,
+        frame: Frame::default(),
+        size: None,
+        failure: None,
+    };
+    watcher.set_rule(asked.processing.set_rule());
+    let acquired = acquire(&source, &asked.options, &signals.stopped, &mut |event| {
+        watcher.on(event)
+    });
+    let stopped = signals.stopped.load(Ordering::Relaxed);
+    watcher.finish(acquired, stopped)?;
+    Ok(match signals.failure() {
+        CliError::Stopped { status } if stopped => status,
+        _ => 0,
+    })
+}
+
+/// Starts the writer of the answers. With a model, it also names each imprint, so that neither training nor search
+/// delays a recording. A model in a file is read at once. Training shows no progress: standard error is for oddities
+/// of the source.
+fn line_writer(
+    asked: &WatchArguments,
+    processing: &Processing,
+    shelf: &Shelf,
+    stopped: &Arc<AtomicBool>,
+) -> Result<LineWriter, CliError> {
+    let noise = asked.naming.noise_with(processing.view.mask.as_ref());
+    let found = asked.naming.find(shelf)?;
+    LineWriter::start(stopped, move |lines| {
+        let Some(found) = found else {
+            return lines.write(&mut |_, _| ());
+        };
+        let model = found.ready(&|poses| Progress::new(poses, true, Charset::Ascii))?;
+        let namer = FrameNamer::new(&model, noise.as_ref());
+        lines.write(&mut |line, imprint| namer.extend(line, imprint))
+    })
+}
+
+/// Returns the same request for the live page of the screen.
+///
+/// # Errors
+/// Returns an error if the file, the mask or the gain cannot be read, if there is no such model or channel, or if the
+/// recording cannot be started.
+pub(crate) fn request(asked: &WatchArguments, shelf: &Shelf) -> Result<WatchRequest, CliError> {
+    let source = FrameSource::new(&asked.source);
+    check_source(&source).map_err(|message| CliError::Frames {
+        name: source.name(),
+        message,
+    })?;
+    check(&source, asked)?;
+    if let Some(path) = &asked.write {
+        // The recording is created and dropped again: no file appears before the first frame.
+        let metadata = RecordingMetadata::default();
+        let begun = source
+            .refuse_as_target(path)
+            .and_then(|()| FrameRecorder::create(path, asked.existing, &metadata));
+        drop(begun.map_err(CliError::Recorder)?);
+    }
+    let mut request = WatchRequest::new(&asked.source);
+    request.options = asked.options.clone();
+    request.processing = processing::processing(&asked.processing)?;
+    request.rule = asked.processing.set_rule();
+    request.history_bytes = asked.history_bytes;
+    request.processing.least = asked.processing.least;
+    request.tare = asked.processing.tare.unwrap_or_default();
+    request.own_tare = asked.processing.tare.is_none();
+    let model = asked.naming.model.as_ref();
+    request.model = model.map(|model| model::choice(model, shelf)).transpose()?;
+    request.noise = asked.naming.noise;
+    request.write = asked.write.clone().map(|path| (path, asked.existing));
+    Ok(request)
+}
+
+impl Watcher<'_> {
+    /// Sets the threshold for the next answers; None to answer without imprints.
+    fn set_rule(&mut self, rule: Option<SetRule>) {
+        self.rule = rule;
+        SetRule::apply(rule, &mut self.processing);
+    }
+
+    /// Handles one event of the source. After an error nothing more is read.
+    fn on(&mut self, event: AcquireEvent<'_>) -> ControlFlow<()> {
+        let done = match event {
+            AcquireEvent::Channel(info) => self.add_channel(info),
+            AcquireEvent::Frame { frame, time } => self.add_frame(frame, time),
+            AcquireEvent::Tick(counts) => self.tick(counts),
+            AcquireEvent::Ended(counts) => self.reports.end(counts),
+            event => {
+                if let Some(text) = remark(event) {
+                    self.reports.say(&text);
+                }
+                Ok(())
+            }
+        };
+        match done {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => {
+                self.failure = Some(error);
+                ControlFlow::Break(())
+            }
+        }
+    }
+
+    /// Adds a channel. With the watched channel come unit and pitch, and threshold and tare unless flags set them.
+    fn add_channel(&mut self, info: &ChannelInfo) -> Result<(), CliError> {
+        if !self.gate.add(info, &mut self.reports)? {
+            return Ok(());
+        }
+        if self.rule.is_none() {
+            self.set_rule(info.own_rule(self.asked.processing.least));
+        }
+        if self.asked.processing.tare.is_none() {
+            let view = &self.processing.view;
+            self.processing.tare = info.tare_for(view).cloned();
+            if let Some(unused) = processing::unused_tare(&self.asked.processing, info, view) {
+                self.reports.say(&format!("warning: {unused}"));
+            }
+        }
+        let Some(recording) = &mut self.recording else {
+            return Ok(());
+        };
+        recording.describe(|metadata| {
+            metadata.tare.clone_from(&self.processing.tare);
+            metadata.seconds_per_frame = info.seconds_per_frame;
+            metadata.unit.clone_from(&info.unit);
+            metadata.pitch_mm = info.pitch_mm;
+            metadata.rule = self.rule;
+        })
+    }
+
+    /// Takes a frame if it is one of the watched channel.
+    fn add_frame(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
+        if !self.gate.admits(frame, time, &mut self.reports) {
+            return Ok(());
+        }
+        self.release()?;
+        self.take(frame, time)
+    }
+
+    /// Takes the frame that was held back, if there is one.
+    fn release(&mut self) -> Result<(), CliError> {
+        match self.gate.release() {
+            Some((frame, time)) => self.take(&frame, time),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes a frame of the channel: records it, and answers it or keeps it for the tare.
+    fn take(&mut self, frame: &Frame, time: Option<f64>) -> Result<(), CliError> {
+        let size = frame.size();
+        let before = self.size.replace(size);
+        let is_new_size = before.is_some_and(|before| before != size);
+        // In a recording, each frame may have a size of its own.
+        if is_new_size && !self.gate.has_channels() {
+            let (number, size) = (frame.number, size.in_words());
+            self.reports
+                .say(&format!("{size} cells from frame {number} on"));
+        }
+        if let Some(recording) = &mut self.recording {
+            recording.add(frame, time, &mut self.reports)?;
+        }
+        let mut own = std::mem::take(&mut self.frame);
+        own.copy_from(frame);
+        own.time = time;
+        let Some(queue) = &mut self.tare else {
+            let answered = self.answer(&own);
+            self.frame = own;
+            return answered;
+        };
+        let is_complete = queue.add(own, &self.processing.view);
+        if is_complete.map_err(|error| self.reports.refused(&error))? {
+            self.end_tare()?;
+        }
+        Ok(())
+    }
+
+    /// Uses the complete tare, and answers the frames that waited for it.
+    fn end_tare(&mut self) -> Result<(), CliError> {
+        let Some(queue) = self.tare.take() else {
+            return Ok(());
+        };
+        let (tare, waiting) = queue
+            .finish()
+            .map_err(|error| self.reports.refused(&error))?;
+        if let Some(recording) = &mut self.recording {
+            recording.describe(|metadata| metadata.tare = Some(tare.clone()))?;
+        }
+        self.processing.tare = Some(tare);
+        waiting.iter().try_for_each(|frame| self.answer(frame))
+    }
+
+    /// Answers a frame.
+    fn answer(&mut self, frame: &Frame) -> Result<(), CliError> {
+        let channel = self.gate.name(frame.channel);
+        let (processing, reports) = (&mut self.processing, &mut self.reports);
+        self.answers
+            .add((frame, channel), processing, self.rule, reports)
+    }
+
+    /// Handles a tick, ten times a second: flushes the recording, and reports dropped frames.
+    fn tick(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
+        if let Some(recording) = &mut self.recording {
+            recording.tick()?;
+        }
+        self.reports.check_shape(counts)?;
+        self.answers.tick(&mut self.reports)?;
+        self.reports.tick(counts);
+        Ok(())
+    }
+
+    /// Ends the recording and the answers. Returns the first error in this order: of recording, of writing answers,
+    /// of the frames, of the source. A tare that lacks frames is an error of the frames, unless the source has
+    /// failed.
+    fn finish(mut self, acquired: Result<(), AcquireError>, stopped: bool) -> Result<(), CliError> {
+        let mut failure = self.failure.take().or_else(|| self.release().err());
+        let ended_well = acquired.is_ok() && !stopped;
+        let damage = acquired.err().map(|error| self.reports.damage(error));
+        if let (Some(error), Some(recording)) =
+            (failure.as_ref().or(damage.as_ref()), &mut self.recording)
+        {
+            recording.note_reason(error);
+        }
+        if ended_well {
+            failure = failure.or_else(|| self.unfinished());
+        }
+        let recording = self.recording.take();
+        let recorded =
+            recording.map(|recording| recording.finish(failure.as_ref(), &mut self.reports));
+        let written = self.answers.finish(&mut self.reports);
+        recorded.unwrap_or(Ok(()))?;
+        written?;
+        failure.or(damage).map_or(Ok(()), Err)
+    }
+
+    /// Returns the error of a source that has ended before a tare was complete, or without a frame of the channel. For
+    /// a stream, the latter is an error already.
+    fn unfinished(&self) -> Option<CliError> {
+        if let Some(queue) = &self.tare {
+            let reason = self.asked.processing.tare_refused(&queue.incomplete());
+            return Some(self.reports.refused(&reason));
+        }
+        let reason = self.gate.frameless()?;
+        Some(self.reports.refused(&reason))
+    }
+}
+
+/// Returns the note about an oddity of the source.
+fn remark(event: AcquireEvent<'_>) -> Option<String> {
+    Some(match event {
+        AcquireEvent::Silent {
+            bytes_per_second,
+            counts,
+        } => counts.silence(bytes_per_second),
+        AcquireEvent::Lost(error) => AcquireEvent::lost(error),
+        AcquireEvent::Back { gap } => AcquireEvent::back_after(gap),
+        AcquireEvent::Note(note) => format!("warning: {note}{}", note_advice(note)),
+        AcquireEvent::Anew(how) => how.to_string(),
+        _ => return None,
+    })
+}

@@ -1,0 +1,130 @@
+//! The lines on standard error about a watched source, and the errors that end the watch.
+
+use std::time::{Duration, Instant};
+
+use crate::acquire::{AcquireError, FrameSource};
+use crate::cli::error::{CliError, stream_advice};
+use crate::formats::recording::RecordingError;
+use crate::formats::stream::{Frameless, StreamCounts, StreamRefusal};
+use crate::formats::value::counted;
+
+/// The shortest time between two reports of dropped frames.
+const REPORT: Duration = Duration::from_secs(1);
+
+/// The reports about a source, which begin with its name.
+pub(super) struct SourceReports<'a> {
+    source: &'a FrameSource,
+    /// The function that writes a line on standard error.
+    note: &'a mut dyn FnMut(&str),
+    /// The number of dropped frames reported so far.
+    dropped: u64,
+    /// The time of the last report of dropped frames.
+    reported: Option<Instant>,
+}
+
+impl<'a> SourceReports<'a> {
+    /// Begins without a report.
+    pub(super) fn new(source: &'a FrameSource, note: &'a mut dyn FnMut(&str)) -> Self {
+        Self {
+            source,
+            note,
+            dropped: 0,
+            reported: None,
+        }
+    }
+
+    /// Notes a line about the source.
+    pub(super) fn say(&mut self, text: &str) {
+        let line = format!("{}: {text}", self.source.name());
+        (self.note)(&line);
+    }
+
+    /// Returns an error of the source with this reason.
+    pub(super) fn refused(&self, reason: &impl ToString) -> CliError {
+        CliError::Frames {
+            name: self.source.name(),
+            message: reason.to_string(),
+        }
+    }
+
+    /// Returns the error of a source that cannot be read to its end.
+    pub(super) fn damage(&self, error: AcquireError) -> CliError {
+        match error {
+            AcquireError::Recording(error) => self.damaged(error),
+            error => self.refused(&error),
+        }
+    }
+
+    /// Returns the error of a recording.
+    fn damaged(&self, error: RecordingError) -> CliError {
+        CliError::Recording {
+            name: self.source.name(),
+            error,
+        }
+    }
+
+    /// Reports dropped frames, unless that was done a moment ago.
+    pub(super) fn tick(&mut self, counts: &StreamCounts) {
+        if self.reported.is_none_or(|last| last.elapsed() >= REPORT) {
+            self.report_dropped(counts);
+        }
+    }
+
+    /// Reports the number of dropped frames if it has grown, with the bytes of the last one.
+    fn report_dropped(&mut self, counts: &StreamCounts) {
+        if counts.dropped <= self.dropped {
+            return;
+        }
+        self.dropped = counts.dropped;
+        self.reported = Some(Instant::now());
+        let dropped = counted(counts.dropped, "frame");
+        let mut text = format!("{dropped} dropped so far (torn, short, long or garbled)");
+        if let Some(sample) = &counts.sample {
+            text += &format!(", the last: {sample}");
+        }
+        if let Some(reason) = &counts.reason {
+            text += &format!(" ({reason})");
+        }
+        self.say(&text);
+    }
+
+    /// Returns an error if the stream cannot be decoded without more flags.
+    pub(super) fn check_shape(&self, counts: &StreamCounts) -> Result<(), CliError> {
+        match counts.refusal() {
+            // An echo that leaves out values of some messages is refused too, since the others are not all frames.
+            None if counts.cut => Err(self.undecoded(StreamRefusal::Cut)),
+            None => Ok(()),
+            Some(refusal) => Err(self.undecoded(refusal)),
+        }
+    }
+
+    /// Returns the error for a stream that cannot be decoded without more flags; it says which flags help. An unknown
+    /// format is an error of recordings for a file, and of streams for any other source.
+    fn undecoded(&self, refusal: StreamRefusal) -> CliError {
+        match (refusal, self.source) {
+            (StreamRefusal::Unknown, FrameSource::File(_)) => self.damaged(RecordingError::Unknown),
+            _ => self.refused(&format!("{refusal}{}", stream_advice(refusal))),
+        }
+    }
+
+    /// Handles the end of a stream.
+    ///
+    /// # Errors
+    /// Returns an error if there was no frame at all: the format, or rows and columns, are wrong.
+    pub(super) fn end(&mut self, counts: &StreamCounts) -> Result<(), CliError> {
+        self.check_shape(counts)?;
+        self.report_dropped(counts);
+        match counts.frameless() {
+            None => Ok(()),
+            Some(Frameless::Empty) => Err(CliError::Empty {
+                name: self.source.name(),
+            }),
+            Some(Frameless::Refused(refusal)) => Err(self.undecoded(refusal)),
+            Some(reason @ Frameless::Undecoded { reason: None, .. }) => {
+                let advice = "check --rows, --columns and --format";
+                Err(self.refused(&format!("{reason}; {advice}")))
+            }
+            Some(reason) => Err(self.refused(&reason)),
+        }
+    }
+}

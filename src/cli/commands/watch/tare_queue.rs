@@ -1,0 +1,46 @@
+//! The first frames of a source, which wait for the tare that is made of them.
+
+use crate::frame::{Frame, FrameError, Tare, TareFrames, View};
+
+/// The frames that wait, and the tare as far as it is made. The whole frames wait, not only their visible parts.
+pub(super) struct TareQueue {
+    tare: TareFrames,
+    waiting: Vec<Frame>,
+}
+
+impl TareQueue {
+    /// Begins a tare of so many frames; None for a tare of 0 frames.
+    pub(super) fn new(frames: u64) -> Option<Self> {
+        (frames > 0).then(|| Self {
+            tare: TareFrames::new(frames),
+            waiting: Vec::new(),
+        })
+    }
+
+    /// Adds a frame. Returns true once the tare is complete.
+    ///
+    /// # Errors
+    /// Returns an error if the frame does not fit the view or the frames before it, or if the tare would take too much
+    /// memory.
+    pub(super) fn add(&mut self, frame: Frame, view: &View) -> Result<bool, FrameError> {
+        self.tare.check_memory(frame.values().len())?;
+        self.tare.add_frame(&frame, view)?;
+        self.waiting.push(frame);
+        Ok(self.tare.missing() == 0)
+    }
+
+    /// Returns the error that the source has ended before the tare was complete.
+    pub(super) fn incomplete(&self) -> FrameError {
+        let wanted = self.tare.wanted();
+        let frames = wanted - self.tare.missing();
+        FrameError::Tare { frames, wanted }
+    }
+
+    /// Returns the tare, and the frames that have waited for it.
+    ///
+    /// # Errors
+    /// Returns an error if the tare is not complete.
+    pub(super) fn finish(self) -> Result<(Tare, Vec<Frame>), FrameError> {
+        Ok((self.tare.finish()?, self.waiting))
+    }
+}
