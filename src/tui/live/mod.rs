@@ -5,6 +5,7 @@
 //! named_source     the text after `:watch`: a source and flags
 //! message          requests by keys and commands, and reports from the source
 //! history          the most recent frames, as many as fit into a given amount of memory
+//! cursor           which frame is shown: the newest one, or one that the user stays at
 //! naming           what a model says about the imprint
 //! reading          values, imprint and descriptors of one frame
 //! marks            the marked frames
@@ -14,7 +15,7 @@
 //! range            the range of values that the shades cover
 //! display          how a frame is laid out, as chosen by keys
 //! recording_state  whether frames are recorded, and if not, why
-//! state            the state of the page: which frame is shown, and how
+//! state            the state of the page: how the shown frame is processed
 //! layout           the places of taxels and numbers on the screen
 //! heat             the heat map, with the edge of the imprint
 //! title            the title: which frame of which source is shown, and how
@@ -37,6 +38,8 @@ pub mod reading;
 mod marks;
 
 pub mod refusal;
+
+mod cursor;
 
 pub mod tare;
 

@@ -1,5 +1,4 @@
-//! The state of the live page: which frame is shown and how, and its description. Keys change all of this together, so
-//! it is in one long file.
+//! The state of the live page: how the shown frame is processed, and its description.
 
 use std::sync::Arc;
 
@@ -7,15 +6,13 @@ use crate::formats::recording::{ChannelInfo, FrameMark, RecordedView};
 use crate::frame::{Frame, FrameError, Processing, Rule, RuleOrigin, SetRule, Tare};
 use crate::imprint::Imprint;
 use crate::storage::ModelChoice;
+use crate::tui::live::cursor::{FrameCursor, ProvisionalOutcome};
 use crate::tui::live::display::LiveDisplay;
-use crate::tui::live::history::{FrameHistory, is_same};
 use crate::tui::live::marks::FrameMarks;
-use crate::tui::live::message::{
-    FeedStatus, FrameBatch, ProvisionalChange, SourceGaps, SourceState,
-};
+use crate::tui::live::message::{FeedStatus, FrameBatch, SourceGaps, SourceState};
 use crate::tui::live::naming::{NamedImprint, Naming, NamingRequest, next_choice};
 use crate::tui::live::range::ShadeRange;
-use crate::tui::live::reading::{HeatLayer, LiveReading, hold};
+use crate::tui::live::reading::{HeatLayer, LiveReading};
 use crate::tui::live::recording_state::RecordingState;
 use crate::tui::live::refusal::LiveRefusal;
 use crate::tui::live::request::WatchRequest;
@@ -44,13 +41,8 @@ pub struct Live {
     converted: Option<(Rule, Rule)>,
     /// Whether the threshold or the tare has changed since they were last written into a recording.
     is_viewed_anew: bool,
-    history: FrameHistory,
-    /// The number in the history of the first frame since the source was watched again; 0 if it was not watched
-    /// again.
-    watched_from: u64,
-    /// The number in the history of the shown frame; None if the page follows the source.
-    frozen: Option<u64>,
-    provisional: Option<Arc<Frame>>,
+    /// The frames, and the shown one.
+    cursor: FrameCursor,
     status: FeedStatus,
     /// The gaps between frames that the user has already seen.
     seen_gaps: SourceGaps,
@@ -61,8 +53,6 @@ pub struct Live {
     pub display: LiveDisplay,
     /// The range of values that the shades cover.
     range: ShadeRange,
-    /// The largest value of each cell since peak hold was switched on; None if it is off.
-    held: Option<Arc<Frame>>,
     /// How the tare was made, or is being made.
     tare: LiveTare,
     /// The number of frames that were never drawn, because others came before the screen was drawn again.
@@ -86,17 +76,13 @@ impl Live {
             rule: None,
             converted: None,
             is_viewed_anew: false,
-            history: FrameHistory::new(request.history_bytes),
-            watched_from: 0,
-            frozen: None,
-            provisional: None,
+            cursor: FrameCursor::new(request.history_bytes),
             status: FeedStatus::default(),
             seen_gaps: SourceGaps::default(),
             stopped: false,
             layer: HeatLayer::Tared,
             display: LiveDisplay::default(),
             range: ShadeRange::default(),
-            held: None,
             tare: LiveTare::new(&request),
             not_drawn: 0,
             recording: RecordingState::default(),
@@ -129,7 +115,7 @@ impl Live {
 
     /// Returns the number of frames that have come since the source was last watched anew.
     pub fn arrived(&self) -> u64 {
-        self.history.next_number() - self.watched_from
+        self.cursor.arrived()
     }
 
     /// Returns true if no more frames are taken from the source.
@@ -140,7 +126,9 @@ impl Live {
     /// Returns the shown frame; None before the first one.
     pub fn frame(&self) -> Option<Arc<Frame>> {
         let processed = self.reading.as_ref().map(|reading| &reading.frame);
-        processed.cloned().or_else(|| Some(self.shown()?.1))
+        processed
+            .cloned()
+            .or_else(|| Some(self.cursor.shown()?.frame))
     }
 
     /// Returns the processed frame that is shown; None before the first one, and for a frame that cannot be
@@ -163,15 +151,7 @@ impl Live {
             (None, Some((taken, wanted))) if self.reading.is_some() => {
                 LiveRefusal::TareIsMade { taken, wanted }
             }
-            (None, _) => self.no_frame(),
-        }
-    }
-
-    /// Returns the reason why no frame is available.
-    fn no_frame(&self) -> LiveRefusal {
-        match self.frozen {
-            Some(_) => LiveRefusal::LeftHistory,
-            None => LiveRefusal::NoFrame,
+            (None, _) => LiveRefusal::NoFrame,
         }
     }
 
@@ -187,13 +167,12 @@ impl Live {
 
     /// Returns true if the largest value of each cell is shown.
     pub fn holds_peak(&self) -> bool {
-        self.held.is_some()
+        self.cursor.holds_peak()
     }
 
     /// Returns the number of frames from the shown one to the newest; None if the page follows the source.
     pub fn frozen(&self) -> Option<u64> {
-        let later = |shown: u64| self.history.next_number().saturating_sub(shown + 1);
-        self.frozen.map(later)
+        self.cursor.frozen()
     }
 
     /// Returns how the tare was made; None without one.
@@ -270,8 +249,8 @@ impl Live {
 
     /// Returns true if the shown frame is marked.
     pub fn is_marked(&self) -> bool {
-        let shown = self.shown();
-        shown.is_some_and(|(number, frame)| self.marks.has(number, &frame))
+        let shown = self.cursor.shown();
+        shown.is_some_and(|shown| self.marks.has(shown.number, &shown.frame))
     }
 
     /// Marks the shown frame, or removes its mark. Returns its number and whether it is marked now.
@@ -280,11 +259,9 @@ impl Live {
     /// Returns an error before the first frame, and for a frame that came before the source was watched again: marks
     /// belong to one recording, and that frame is not in it.
     pub fn mark(&mut self) -> Result<(u64, bool), LiveRefusal> {
-        let (number, frame) = self.shown().ok_or_else(|| self.no_frame())?;
-        if number < self.watched_from {
-            return Err(LiveRefusal::EarlierWatch(frame.number));
-        }
-        Ok((frame.number, self.marks.switch(number, &frame)))
+        let shown = self.cursor.of_this_watch()?;
+        let marked = self.marks.switch(shown.number, &shown.frame);
+        Ok((shown.frame.number, marked))
     }
 
     /// Returns the model that names imprints, and its last answer; None if imprints are not named.
@@ -360,7 +337,7 @@ impl Live {
             let step = self.status.channel.as_deref()?.seconds_per_frame?;
             (step > 0.0).then(|| 1.0 / step)
         };
-        self.history.rate().or_else(stated)
+        self.cursor.rate().or_else(stated)
     }
 
     /// Takes new frames, and the state of the source.
@@ -373,43 +350,24 @@ impl Live {
         if !had_channel && let Some(channel) = self.status.channel.clone() {
             self.take_channel(&channel);
         }
-        let next_number = self.history.next_number();
+        let next_number = self.cursor.next_number();
         for frame in &batch.frames {
             self.add(frame);
         }
         let tare_fails = self.status.state.is_final() && self.tare.end_of_source();
-        if self.frozen.is_none() {
+        if self.cursor.follows() {
             let unseen = batch.frames.len().saturating_sub(1);
             self.not_drawn += unseen as u64;
         }
-        let is_changed = self.take_provisional(&batch.provisional, next_number);
-        if !batch.frames.is_empty() || is_changed || tare_fails {
+        let outcome = self
+            .cursor
+            .take_provisional(&batch.provisional, next_number);
+        if outcome == ProvisionalOutcome::Withdrawn {
+            self.marks.take_off(next_number);
+        }
+        if !batch.frames.is_empty() || outcome != ProvisionalOutcome::Same || tare_fails {
             self.read();
         }
-    }
-
-    /// Takes a change of the frame that is not confirmed yet. Its number in the history is `number`, now or once it
-    /// is confirmed. Returns true if the shown frame may have changed.
-    fn take_provisional(&mut self, change: &ProvisionalChange, number: u64) -> bool {
-        let next = match change {
-            ProvisionalChange::Unchanged => return false,
-            ProvisionalChange::Shown(frame) => Some(Arc::clone(frame)),
-            ProvisionalChange::Gone => None,
-        };
-        let before = std::mem::replace(&mut self.provisional, next);
-        // A frame that has left the history cannot be compared any more; its mark stays.
-        let has_left = self.history.oldest() > Some(number);
-        if let Some(before) = before.as_ref().filter(|_| !has_left) {
-            let present = self.history.get(number).or(self.provisional.as_ref());
-            if !present.is_some_and(|present| is_same(present, before)) {
-                // The frame was withdrawn: another frame has its number, or will have it.
-                self.marks.take_off(number);
-                if self.frozen == Some(number) {
-                    self.frozen = self.confirmed();
-                }
-            }
-        }
-        before.is_some() || self.provisional.is_some()
     }
 
     /// Takes threshold, tare and marks from a recording's description of its channel.
@@ -426,10 +384,7 @@ impl Live {
         if let Ok(values) = self.processing.values(frame) {
             self.range.add(values);
         }
-        if let Some(held) = &mut self.held {
-            hold(Arc::make_mut(held), frame);
-        }
-        self.history.push(Arc::clone(frame));
+        self.cursor.push(frame);
         self.retare(|tare, processing| tare.add(frame, processing));
     }
 
@@ -440,9 +395,7 @@ impl Live {
         if self.tare.mark() != before {
             self.is_viewed_anew = true;
             self.range.begin_anew();
-            let newest = self.history.newest();
-            let frames = newest.map(|newest| self.history.back_from(newest, RANGED));
-            for frame in frames.into_iter().flatten() {
+            for frame in self.cursor.newest(RANGED) {
                 if let Ok(values) = self.processing.values(frame) {
                     self.range.add(values);
                 }
@@ -458,16 +411,7 @@ impl Live {
     /// Returns an error before the first frame, for a frame that has left the history, and for one that does not fit
     /// the crop.
     pub fn tare_now(&mut self) -> Result<u64, LiveRefusal> {
-        let shown = self.confirmed().ok_or(LiveRefusal::NoFrame)?;
-        let frames = self.history.back_from(shown, TARED).cloned();
-        // Those before a change of the sensor have no part in it.
-        let size = self.history.get(shown).map(|frame| frame.size());
-        let frames: Vec<_> = frames
-            .take_while(|frame| Some(frame.size()) == size)
-            .collect();
-        if frames.is_empty() {
-            return Err(LiveRefusal::LeftHistory);
-        }
+        let frames = self.cursor.up_to_shown(TARED)?;
         self.retare(|tare, processing| tare.of_last(&frames, processing))?;
         self.read();
         Ok(frames.len() as u64)
@@ -522,48 +466,36 @@ impl Live {
 
     /// Freezes the shown frame, or follows the source again. Returns true if the frame is frozen.
     pub fn freeze(&mut self) -> bool {
-        self.frozen = match self.frozen {
-            Some(_) => None,
-            None => self.position(),
-        };
+        self.cursor.freeze();
         self.read();
-        self.frozen.is_some()
+        !self.cursor.follows()
     }
 
     /// Shows the frame that is `by` frames later in the history, or earlier if `by` is negative, and stays there.
     pub fn scrub(&mut self, by: i64) {
-        if let (Some(oldest), Some(newest)) = (self.history.oldest(), self.history.newest()) {
-            let shown = self.position().unwrap_or(newest);
-            let next = shown.saturating_add_signed(by);
-            self.frozen = Some(next.clamp(oldest, newest.max(shown)));
+        if self.cursor.scrub(by) {
             self.read();
         }
     }
 
     /// Shows the oldest frame of the history, and stays there.
     pub fn to_oldest(&mut self) {
-        self.frozen = self.history.oldest();
+        self.cursor.stay_at_oldest();
         self.read();
     }
 
     /// Follows the source.
     pub fn to_newest(&mut self) {
-        self.frozen = None;
+        self.cursor.follow();
         self.read();
     }
 
     /// Shows the largest value of each cell from now on, or the present values again. Returns true if the largest are
     /// shown.
     pub fn hold_peak(&mut self) -> bool {
-        self.held = if self.held.is_some() {
-            None
-        } else {
-            // Not of a frame that may be withdrawn.
-            self.confirmed()
-                .and_then(|number| self.history.get(number).cloned())
-        };
+        self.cursor.switch_peak();
         self.read();
-        self.held.is_some()
+        self.cursor.holds_peak()
     }
 
     /// Shows the next layer: raw values, tared values or imprint.
@@ -606,12 +538,9 @@ impl Live {
     /// the tare.
     pub fn restart(&mut self, number: u64) {
         self.number = number;
-        self.watched_from = self.history.next_number();
         self.stopped = false;
         self.recording.forget_refusal();
-        self.frozen = None;
-        self.provisional = None;
-        self.held = None;
+        self.cursor.restart();
         self.marks.clear();
         self.tare.restart();
         self.read();
@@ -622,44 +551,9 @@ impl Live {
         self.name_by(choice, number);
     }
 
-    /// Returns the number in the history of the shown frame; None before the first one.
-    fn position(&self) -> Option<u64> {
-        self.frozen.or_else(|| Some(self.shown()?.0))
-    }
-
-    /// Returns the number in the history of the shown frame, or of the newest one if the shown one is not confirmed
-    /// yet; None before the first one.
-    fn confirmed(&self) -> Option<u64> {
-        let newest = self.history.newest()?;
-        Some(self.frozen.unwrap_or(newest).min(newest))
-    }
-
-    /// Returns the shown frame, unprocessed, and its number in the history; a frame that is not confirmed yet has the
-    /// number that it will have.
-    fn shown(&self) -> Option<(u64, Arc<Frame>)> {
-        let Some(number) = self.frozen else {
-            // A held peak is made of confirmed frames.
-            if let (Some(frame), None) = (&self.provisional, &self.held) {
-                return Some((self.history.next_number(), Arc::clone(frame)));
-            }
-            let number = self.history.newest()?;
-            return Some((number, Arc::clone(self.history.get(number)?)));
-        };
-        let next = self.provisional.as_ref();
-        let next = next.filter(|_| number == self.history.next_number());
-        // A frame that has left the history stays as long as it is shown.
-        let looked_at = || self.reading.as_ref().map(|reading| &reading.frame);
-        let frame = self.history.get(number).or(next).or_else(looked_at)?;
-        Some((number, Arc::clone(frame)))
-    }
-
     /// Reads the shown frame again.
     fn read(&mut self) {
-        let shown = match &self.held {
-            Some(held) if self.frozen.is_none() => Some(Arc::clone(held)),
-            _ => self.shown().map(|(_, frame)| frame),
-        };
-        (self.reading, self.error) = match shown {
+        (self.reading, self.error) = match self.cursor.drawn() {
             Some(frame) => self.read_frame(frame),
             None => (None, None),
         };
