@@ -6,21 +6,18 @@
 //! ```
 //! The thread that reads the source adds frames, and the screen's thread takes them; neither waits long for the other.
 
-use std::mem::take;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
 
-use crate::acquire::{AcquireError, AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
-use crate::formats::recording::{ChannelChoice, ChannelInfo, RecordingError, RecordingMetadata};
-use crate::formats::stream::{StreamCounts, StreamRefusal};
-use crate::formats::value::counted;
+use crate::acquire::{AcquireEvent, AcquireOptions, FrameSource, Playback, acquire};
+use crate::formats::recording::RecordingMetadata;
 use crate::frame::Frame;
 use crate::storage::Existing;
-use crate::tui::live::history::bytes_of;
 use crate::tui::live::message::{FrameBatch, ProvisionalChange, RecordedFrames, SourceState};
 use crate::tui::live::request::WatchRequest;
+use crate::tui::runtime::frames::no_frame;
+use crate::tui::runtime::frames::pending::Pending;
 use crate::tui::runtime::frames::recording::Recording;
 use crate::tui::runtime::frames::source;
 use crate::tui::runtime::lock::locked;
@@ -35,34 +32,13 @@ pub(in crate::tui::runtime) struct FrameFeed {
     recording: Mutex<Option<Arc<Recording>>>,
 }
 
-/// The frames and the state that the screen takes next. They are swapped out under a short lock, so that the source
-/// hardly waits.
-#[derive(Debug, Default)]
-struct Pending {
-    /// The frames, and the state of the source.
-    batch: FrameBatch,
-    /// The memory that those frames take.
-    bytes: usize,
-    /// Whether there is something that was not taken yet.
-    is_new: bool,
-    /// The channels so far, and the one that is watched.
-    channels: ChannelChoice,
-    /// Whether a frame of the watched channel has come.
-    begun: bool,
-    /// The reason why a stream came to its end without a frame.
-    frameless: Option<String>,
-    /// The time of the last frame.
-    last_time: Option<f64>,
-    /// The time for which the source has been lost since that frame; None if it was not lost.
-    gap: Option<Duration>,
-}
-
 impl FrameFeed {
     /// Returns the feed for the channel that is asked for.
     pub(in crate::tui::runtime) fn of(request: &WatchRequest) -> Self {
-        let feed = Self::default();
-        locked(&feed.pending).channels = ChannelChoice::new(request.options.channel.as_deref());
-        feed
+        Self {
+            pending: Mutex::new(Pending::new(request.options.channel.as_deref())),
+            recording: Mutex::default(),
+        }
     }
 
     /// Returns the present recording.
@@ -80,33 +56,33 @@ impl FrameFeed {
 
     /// Notes that frames are recorded.
     pub(in crate::tui::runtime) fn note_begun(&self) {
-        let status = &mut locked(&self.pending).batch.status;
-        status.recorded = Some(RecordedFrames::default());
-        status.record_error = None;
+        let mut pending = locked(&self.pending);
+        pending.status().record_error = None;
+        pending.note_recorded(Ok(Some(RecordedFrames::default())));
     }
 
     /// Continues the earlier recording, if there is one, and notes its state.
     pub(in crate::tui::runtime) fn go_on_with(&self, recording: Option<Arc<Recording>>) {
         *locked(&self.recording) = recording;
         let recorded = self.recorded(Recording::tick);
-        locked(&self.pending).note(recorded);
+        locked(&self.pending).note_recorded(recorded);
     }
 
     /// Stops recording. Returns the recording.
     pub(in crate::tui::runtime) fn end(&self) -> Option<Arc<Recording>> {
         let recording = locked(&self.recording).take()?;
-        locked(&self.pending).batch.status.recorded = None;
+        locked(&self.pending).note_recorded(Ok(None));
         Some(recording)
     }
 
     /// Notes that the source cannot be read, and why.
     pub(in crate::tui::runtime) fn fail(&self, reason: String) {
-        self.change(|pending| pending.batch.status.state = SourceState::Failed(reason));
+        self.change(|pending| pending.status().state = SourceState::Failed(reason));
     }
 
     /// Returns true if there is something to take.
     pub(in crate::tui::runtime) fn has_new(&self) -> bool {
-        locked(&self.pending).is_new
+        locked(&self.pending).is_new()
     }
 
     /// Writes to the recording, if there is one. Returns the number of recorded frames.
@@ -163,22 +139,22 @@ impl FrameFeed {
             wanted
         };
         let ended = caught(|| acquire(source, options, stop, &mut consumer));
-        let ended = ended.and_then(|ended| ended.map_err(|error| reason(&error)));
+        let ended = ended.and_then(|ended| ended.map_err(|error| no_frame::reason(&error)));
         if wanted.is_break() {
             return;
         }
-        let state = match ended {
-            Ok(()) if stop.load(Ordering::Relaxed) => SourceState::Ended,
-            Ok(()) => locked(&self.pending).end(),
-            Err(reason) => SourceState::Failed(reason),
-        };
-        if self.change(|pending| pending.batch.status.state = state) {
+        let is_fresh = self.change(|pending| match ended {
+            Ok(()) if stop.load(Ordering::Relaxed) => pending.status().state = SourceState::Ended,
+            Ok(()) => pending.end(),
+            Err(reason) => pending.status().state = SourceState::Failed(reason),
+        });
+        if is_fresh {
             let _ = fresh(self);
         }
         // Nothing comes any more that would make the recording write its rest, and the page may stay open for long.
         // This is done after the end of the source is shown, because a disk may hang.
         let written = self.recorded(Recording::flush);
-        if written.is_err() && self.change(|pending| pending.note(written)) {
+        if written.is_err() && self.change(|pending| pending.note_recorded(written)) {
             let _ = fresh(self);
         }
     }
@@ -187,26 +163,17 @@ impl FrameFeed {
     fn change(&self, change: impl FnOnce(&mut Pending)) -> bool {
         let mut pending = locked(&self.pending);
         change(&mut pending);
-        !std::mem::replace(&mut pending.is_new, true)
+        pending.set_new()
     }
 
     /// Takes the pending frames and state; None if nothing is new.
     pub(in crate::tui::runtime) fn take(&self) -> Option<FrameBatch> {
-        let mut pending = locked(&self.pending);
-        if !take(&mut pending.is_new) {
-            return None;
-        }
-        pending.bytes = 0;
-        Some(FrameBatch {
-            frames: take(&mut pending.batch.frames),
-            provisional: take(&mut pending.batch.provisional),
-            status: pending.batch.status.clone(),
-        })
+        locked(&self.pending).take()
     }
 
     /// Records a frame of the channel that is watched, and shows it. Returns whether the screen must be woken.
     fn take_frame(&self, frame: &Frame, time: Option<f64>, request: &WatchRequest) -> bool {
-        if !locked(&self.pending).channels.takes(frame.channel) {
+        if !locked(&self.pending).watches(frame.channel) {
             return false;
         }
         // An error ends the recording; the frames are still shown.
@@ -214,196 +181,69 @@ impl FrameFeed {
         let mut own = frame.clone();
         own.time = time;
         self.change(|pending| {
-            pending.note(recorded);
-            pending.note_time(time);
+            pending.note_recorded(recorded);
             pending.push(Arc::new(own), request.history_bytes);
         })
     }
 
     /// Notes an event of the source. Returns true if it is to be shown and there was nothing to take before.
     fn take_in(&self, event: AcquireEvent<'_>, request: &WatchRequest) -> bool {
-        let state = |state: SourceState| self.change(|pending| pending.batch.status.state = state);
         match event {
             AcquireEvent::Channel(info) => self.change(|pending| pending.add_channel(info)),
             AcquireEvent::Frame { frame, time } => self.take_frame(frame, time, request),
             AcquireEvent::Provisional(frame) => {
                 let shown = ProvisionalChange::Shown(Arc::new(frame.clone()));
-                self.change(|pending| pending.batch.provisional = shown)
+                self.change(|pending| pending.change_provisional(shown))
             }
             AcquireEvent::Withdrawn => {
-                self.change(|pending| pending.batch.provisional = ProvisionalChange::Gone)
+                self.change(|pending| pending.change_provisional(ProvisionalChange::Gone))
             }
             AcquireEvent::Tick(counts) => {
                 let written = self.recorded(Recording::tick);
                 let mut pending = locked(&self.pending);
-                let status = &mut pending.batch.status;
-                let is_new = status.lost != counts.dropped || written.is_err();
-                status.note_dropped(counts);
-                pending.note(written);
-                is_new && !std::mem::replace(&mut pending.is_new, true)
+                let is_new = pending.status().lost != counts.dropped || written.is_err();
+                pending.status().note_dropped(counts);
+                pending.note_recorded(written);
+                is_new && pending.set_new()
             }
             AcquireEvent::Silent {
                 bytes_per_second,
                 counts,
-            } => {
+            } => self.change(|pending| {
                 let source = source::named(&request.source);
-                let why = silence(&source, counts, bytes_per_second);
-                state(SourceState::Silent(why))
-            }
-            AcquireEvent::Absent(error) => {
+                let why = no_frame::silence(&source, counts, bytes_per_second);
+                pending.status().state = SourceState::Silent(why);
+            }),
+            AcquireEvent::Absent(error) => self.change(|pending| {
                 let name = request.source.to_string_lossy();
                 let text = format!("waiting for {name}, trying again each second: {error}");
-                state(SourceState::Lost(text))
-            }
-            AcquireEvent::Lost(error) => self.change(|pending| {
-                pending.gap.get_or_insert_default();
-                pending.batch.status.state = SourceState::Lost(AcquireEvent::lost(error));
+                pending.status().state = SourceState::Lost(text);
             }),
+            AcquireEvent::Lost(error) => self.change(|pending| pending.lose(error)),
             AcquireEvent::Note(note) => self.change(|pending| {
-                let first = &mut pending.batch.status.note;
+                let first = &mut pending.status().note;
                 first.get_or_insert_with(|| note.to_string());
             }),
-            AcquireEvent::Back { gap } => self.change(|pending| {
-                pending.batch.status.state = pending.back_after(gap);
-            }),
+            AcquireEvent::Back { gap } => self.change(|pending| pending.back_after(gap)),
             AcquireEvent::Anew(how) => self.change(|pending| {
                 // A note rather than a state: the next frame would replace a state at once.
-                pending.batch.status.note = Some(format!("the file {how}"));
+                pending.status().note = Some(format!("the file {how}"));
             }),
             AcquireEvent::Ended(counts) => self.change(|pending| {
-                pending.batch.status.note_dropped(counts);
-                pending.frameless = frameless(&source::named(&request.source), counts);
+                let frameless = no_frame::frameless(&source::named(&request.source), counts);
+                pending.end_stream(counts, frameless);
             }),
             _ => false,
         }
     }
 }
 
-/// Returns the reason why a source cannot be read. No flag can be typed on the page, so it also says how to give what
-/// is missing.
-fn reason(error: &AcquireError) -> String {
-    let hint = match error {
-        AcquireError::Recording(error) if error.is_of_size() => SIZE_HINT,
-        _ => "",
-    };
-    format!("{error}{hint}")
-}
-
-/// Returns the reason why no frame comes. It stays true while the silence lasts: a page on which nothing changes
-/// sends nothing.
-fn silence(source: &FrameSource, counts: &StreamCounts, bytes_per_second: f64) -> String {
-    let refusal = counts.refusal();
-    // A file has no baud, and sends nothing.
-    if let (FrameSource::File(_), None, 0, 1..) = (source, refusal, counts.frames, counts.bytes) {
-        let bytes = counted(counts.bytes, "byte");
-        return format!("no frame yet: none in {bytes}; rows, columns or format?");
-    }
-    let hint = refusal.map_or("", hint);
-    let what = counts.silence(bytes_per_second);
-    format!("no frame for more than 2 s: {what}{hint}")
-}
-
-/// Returns the reason why a stream came to its end without a frame; None if there was one.
-fn frameless(source: &FrameSource, counts: &StreamCounts) -> Option<String> {
-    let bytes = counted(counts.bytes, "byte");
-    Some(match (counts.refusal(), &counts.reason) {
-        _ if counts.frames > 0 => return None,
-        _ if counts.bytes == 0 => "the source is empty".to_owned(),
-        (Some(StreamRefusal::Unknown), _) if matches!(source, FrameSource::File(_)) => {
-            RecordingError::Unknown.to_string()
-        }
-        (Some(refusal), _) => format!("{refusal}{}", hint(refusal)),
-        (None, Some(reason)) => format!("{bytes} but no frame; the last line: {reason}"),
-        (None, None) => format!("{bytes} but no frame; rows, columns or format?"),
-    })
-}
-
-/// Returns the end of a message that says where to give what a stream needs.
-fn hint(refusal: StreamRefusal) -> &'static str {
-    match refusal {
-        StreamRefusal::Unknown => FORMAT_HINT,
-        refusal if refusal.is_of_size() => SIZE_HINT,
-        _ => "",
-    }
-}
-
-/// The end of the message that says where to give the format.
-const FORMAT_HINT: &str = "; after Esc, add one to :watch, as in --format lines";
-
-/// The hint where to give rows and columns.
-const SIZE_HINT: &str = "; after Esc, add them to :watch, as in --rows R --columns C";
-
-impl Pending {
-    /// Adds a channel.
-    fn add_channel(&mut self, info: &ChannelInfo) {
-        if self.channels.add(info) {
-            self.batch.status.channel = Some(Arc::new(info.clone()));
-        }
-        self.batch.status.channels = self.channels.names().len();
-    }
-
-    /// Notes that the source is back after a time, and returns its state.
-    fn back_after(&mut self, time: Duration) -> SourceState {
-        let Some(gap) = &mut self.gap else {
-            return SourceState::Waiting;
-        };
-        *gap += time;
-        let back = AcquireEvent::back_after(*gap);
-        SourceState::Silent(format!("{back}; no frame yet"))
-    }
-
-    /// Returns the state of a source at its end. One from which no frame came was not what the user expected: the
-    /// state is the reason.
-    fn end(&mut self) -> SourceState {
-        if self.begun {
-            return SourceState::Ended;
-        }
-        let reason = self.channels.missing().or(self.frameless.take());
-        SourceState::Failed(reason.unwrap_or_else(|| "no frames".to_owned()))
-    }
-
-    /// Notes the time of a frame, which ends a gap.
-    fn note_time(&mut self, time: Option<f64>) {
-        let before = std::mem::replace(&mut self.last_time, time);
-        if let (Some(gap), Some((before, now))) = (self.gap.take(), before.zip(time)) {
-            let gaps = &mut self.batch.status.gaps;
-            gaps.count += 1;
-            gaps.waited += gap.as_secs_f64();
-            gaps.missing += now - before;
-        }
-    }
-
-    /// Adds a frame. If nobody takes the frames and they exceed `most` bytes, the older half is dropped.
-    /// Half of them go at once, so that a full buffer does not move all frames for each new one. At least one stays.
-    fn push(&mut self, frame: Arc<Frame>, most: usize) {
-        self.begun = true;
-        self.batch.status.state = SourceState::Live;
-        self.batch.provisional = ProvisionalChange::Gone;
-        self.bytes += bytes_of(&frame);
-        self.batch.frames.push(frame);
-        if self.bytes > most && self.batch.frames.len() > 1 {
-            let half = self.batch.frames.len() / 2;
-            let dropped = self.batch.frames.drain(..half);
-            self.bytes -= dropped.map(|frame| bytes_of(&frame)).sum::<usize>();
-            self.batch.status.overflowed += half as u64;
-        }
-    }
-
-    /// Notes the state of the recording, or its error.
-    fn note(&mut self, recorded: Result<Option<RecordedFrames>, String>) {
-        match recorded {
-            Ok(recorded) => self.batch.status.recorded = recorded,
-            Err(error) => {
-                self.batch.status.recorded = None;
-                self.batch.status.record_error = Some(error);
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
+    use crate::formats::recording::ChannelInfo;
     use crate::formats::stream::StreamCounts;
     use crate::frame::FrameSize;
     use crate::tui::live::state::Live;
@@ -415,20 +255,6 @@ mod tests {
             page.take(&batch);
         }
         page.reading().map(|reading| reading.frame.number)
-    }
-
-    #[test]
-    fn a_file_without_a_frame_is_not_asked_for_its_baud() {
-        let file = FrameSource::File("a.txt".into());
-        let counts = StreamCounts {
-            bytes: 272,
-            ..StreamCounts::default()
-        };
-        let said = "no frame yet: none in 272 bytes; rows, columns or format?";
-        // The message stays the same when nothing more comes.
-        for rate in [136.0, 0.0] {
-            assert_eq!(silence(&file, &counts, rate), said);
-        }
     }
 
     #[test]

@@ -1,0 +1,82 @@
+//! The reasons why a source on the live page gives no frame, in sentences. No flag can be typed on the page, so they also
+//! say where to give what is missing.
+
+use crate::acquire::{AcquireError, FrameSource};
+use crate::formats::recording::RecordingError;
+use crate::formats::stream::{Frameless, StreamCounts, StreamRefusal};
+use crate::formats::value::counted;
+
+/// The end of the message that says where to give the format.
+const FORMAT_HINT: &str = "; after Esc, add one to :watch, as in --format lines";
+
+/// The hint where to give rows and columns.
+const SIZE_HINT: &str = "; after Esc, add them to :watch, as in --rows R --columns C";
+
+/// Returns the reason why a source cannot be read.
+pub(super) fn reason(error: &AcquireError) -> String {
+    let hint = match error {
+        AcquireError::Recording(error) if error.is_of_size() => SIZE_HINT,
+        _ => "",
+    };
+    format!("{error}{hint}")
+}
+
+/// Returns the reason why no frame comes. It stays true while the silence lasts: a page on which nothing changes
+/// sends nothing.
+pub(super) fn silence(
+    source: &FrameSource,
+    counts: &StreamCounts,
+    bytes_per_second: f64,
+) -> String {
+    let refusal = counts.refusal();
+    // A file has no baud, and sends nothing.
+    if let (FrameSource::File(_), None, 0, 1..) = (source, refusal, counts.frames, counts.bytes) {
+        let bytes = counted(counts.bytes, "byte");
+        return format!("no frame yet: none in {bytes}; rows, columns or format?");
+    }
+    let hint = refusal.map_or("", hint);
+    let what = counts.silence(bytes_per_second);
+    format!("no frame for more than 2 s: {what}{hint}")
+}
+
+/// Returns the reason why a stream came to its end without a frame; None if there was one.
+pub(super) fn frameless(source: &FrameSource, counts: &StreamCounts) -> Option<String> {
+    let reason = counts.frameless()?;
+    let hint = match (reason, source) {
+        (Frameless::Refused(StreamRefusal::Unknown), FrameSource::File(_)) => {
+            return Some(RecordingError::Unknown.to_string());
+        }
+        (Frameless::Refused(refusal), _) => hint(refusal),
+        (Frameless::Undecoded { reason: None, .. }, _) => "; rows, columns or format?",
+        _ => "",
+    };
+    Some(format!("{reason}{hint}"))
+}
+
+/// Returns the end of a message that says where to give what a stream needs.
+fn hint(refusal: StreamRefusal) -> &'static str {
+    match refusal {
+        StreamRefusal::Unknown => FORMAT_HINT,
+        refusal if refusal.is_of_size() => SIZE_HINT,
+        _ => "",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_without_a_frame_is_not_asked_for_its_baud() {
+        let file = FrameSource::File("a.txt".into());
+        let counts = StreamCounts {
+            bytes: 272,
+            ..StreamCounts::default()
+        };
+        let said = "no frame yet: none in 272 bytes; rows, columns or format?";
+        // The message stays the same when nothing more comes.
+        for rate in [136.0, 0.0] {
+            assert_eq!(silence(&file, &counts, rate), said);
+        }
+    }
+}
