@@ -378,6 +378,23 @@ fn a_frame_that_cannot_be_processed_is_still_shown() {
 }
 
 #[test]
+fn a_frame_that_cannot_be_processed_is_shown_after_it_has_left_the_history() {
+    let mut page = set(|request| {
+        request.processing.gain = Some(gain_of(2, 2, 1.0));
+        // Memory for the newest frame only.
+        request.history_bytes = 1;
+    });
+    page.frames(2);
+    then(&mut page, "<Space>", &["frame 1", "frozen"]);
+    page.frames(3);
+    shows(
+        &page,
+        &["frame 1  0.1 s", "frozen, 3", "! the gain has 2 columns"],
+    );
+    hides(&page, &["no frame yet"]);
+}
+
+#[test]
 fn a_frame_that_has_left_the_history_is_distinguished_from_no_frame() {
     // Memory for the newest frame only.
     let mut page = set(|request| request.history_bytes = 1);
