@@ -244,7 +244,7 @@ pub(super) fn kind_in_words(kind: FileType) -> &'static str {
 /// Gives two files that belong together their names: both, or neither. If the program dies, a new file never stands
 /// beside an old version of the other one: the file that has the second name is moved away first, and the second name
 /// is given last. So a program that dies in between leaves no file of the second name. The old one is then called
-/// `.taxel-XXXXXX`, until a program that writes into the folder a minute later or more removes it. Of two programs that
+/// `.taxel-tmp-XXXXXXXXXXXXXXXX`, until a program that writes into the folder a minute later or more removes it. Of two programs that
 /// name such files in one folder at once, one waits for the other. Returns the first file, open, for further writing.
 ///
 /// # Errors

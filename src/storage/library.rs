@@ -451,7 +451,7 @@ impl Library {
                     Ok(_) => continue,
                     Err(_) => "a symbolic link, which is not followed",
                 },
-                Some(name) if name.starts_with(TEMPORARY) || is_temporary(name) => {
+                Some(name) if name == TEMPORARY || is_temporary(name) => {
                     "half-written by a program that died, or being written"
                 }
                 Some(name) if name_of(name).is_some() => continue,

@@ -15,7 +15,7 @@
 //! FOLDER/.forms                         the values that forms were accepted with, a line each
 //! FOLDER/.lock                          held while writing
 //! FOLDER/.taxel-tmp                     being written by the holder of the lock
-//! FOLDER/.taxel-4fQx0Z                  being written, or a file that is being replaced; the ending is random
+//! FOLDER/.taxel-tmp-4fQx0ZmW2k9bT7cR    being written, or a file that is being replaced; the ending is random
 //! FOLDER/.trash/0000000007 washer.json  deleted
 //! FOLDER/.trash/.taxel-tmp              being written
 //! FOLDER/.journal/4711-0.json           unsaved work of a running program, or of one that died

@@ -1,9 +1,10 @@
 //! A file that does not have its final name yet.
 //!
 //! If the file system has files without a name (`O_TMPFILE`, on Linux), the file has none until it is complete: a
-//! program that is killed leaves nothing behind. Elsewhere it is called `.taxel-XXXXXX`, with a random ending, in the
-//! folder that it is for, and its writer holds a lock on it. Such a file without a lock was left by a program that
-//! died; the next program that writes into the folder removes it ([`remove_left_over`]).
+//! program that is killed leaves nothing behind. Elsewhere it is called `.taxel-tmp-XXXXXXXXXXXXXXXX`, with a random
+//! ending, in the folder that it is for, and its writer holds a lock on it. Such a file without a lock was left by a
+//! program that died; the next program that writes into the folder removes it ([`remove_left_over`]). The name is long
+//! and strange, so that no file of a user has one like it.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -18,10 +19,10 @@ use tempfile::{Builder, NamedTempFile, TempPath};
 use crate::storage::error::FileError;
 
 /// The beginning of the name of a temporary file.
-const PREFIX: &str = ".taxel-";
+const PREFIX: &str = ".taxel-tmp-";
 
-/// The number of random characters that follow the prefix.
-const RANDOM: usize = 6;
+/// The number of random letters and digits that follow the prefix: more than a word has.
+const RANDOM: usize = 16;
 
 /// The age at which a file without a lock is removed, since its last change: a younger one may have been made just
 /// now.
@@ -291,7 +292,8 @@ fn link(_: &File, _: &Path) -> io::Result<()> {
 }
 
 /// A folder that only its owner can look into, removed when this is dropped. Its program holds the lock on the file
-/// `.lock` in it: a folder whose lock is free was left by a program that died, and the next program removes it.
+/// [`SCRATCH_MARK`] in it: a folder whose lock is free was left by a program that died, and the next program removes it.
+/// A folder without this file is something else, and stays.
 #[cfg(feature = "tui")]
 #[derive(Debug)]
 pub(crate) struct ScratchFolder {
@@ -312,7 +314,7 @@ impl ScratchFolder {
 
     fn in_place(place: &Path) -> io::Result<Self> {
         for path in temporaries(place) {
-            if path.is_dir() && is_left_over(&path.join(LOCK)).unwrap_or(false) {
+            if path.is_dir() && is_left_over(&path.join(SCRATCH_MARK)).unwrap_or(false) {
                 let _ = fs::remove_dir_all(path);
             }
         }
@@ -327,7 +329,7 @@ impl ScratchFolder {
         };
         place.metadata().map_err(refuse)?;
         let folder = builder.tempdir_in(place).map_err(refuse)?;
-        let lock = File::create(folder.path().join(LOCK))?;
+        let lock = File::create(folder.path().join(SCRATCH_MARK))?;
         let _ = lock.try_lock();
         Ok(Self {
             folder,
@@ -341,9 +343,9 @@ impl ScratchFolder {
     }
 }
 
-/// The name of the file in a temporary folder on which its program holds a lock.
+/// The name of the file in a temporary folder on which its program holds a lock. No library has such a file.
 #[cfg(feature = "tui")]
-const LOCK: &str = ".lock";
+const SCRATCH_MARK: &str = ".taxel-scratch";
 
 /// Removes the temporary files that programs have left in a folder when they died. What cannot be removed stays.
 ///
@@ -378,7 +380,7 @@ fn temporaries(folder: &Path) -> impl Iterator<Item = PathBuf> {
     named.map(|entry| entry.path())
 }
 
-/// Returns true if a name is that of a temporary file: `.taxel-` and six letters or digits.
+/// Returns true if a name is that of a temporary file: `.taxel-tmp-` and sixteen letters or digits.
 pub(crate) fn is_temporary(name: &str) -> bool {
     let random = name.strip_prefix(PREFIX);
     random.is_some_and(|random| {
@@ -406,6 +408,7 @@ fn is_left_over(path: &Path) -> io::Result<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
 
     /// Makes a file with a name and an age.
     fn aged(folder: &Path, name: &str, age: Duration) -> File {
@@ -418,43 +421,50 @@ mod tests {
     fn the_next_writer_removes_what_dead_programs_left() {
         let folder = tempfile::tempdir().expect("a folder");
         let hour = Duration::from_secs(3600);
-        for name in [
+        // Other files, also those that a user may have called like this.
+        let stays = [
+            ".taxel-backup",
+            ".taxel-config",
             ".taxel-tmp",
-            ".taxel-a b c d",
-            "taxel-AbC123",
-            ".taxel-toolong",
-        ] {
+            ".taxel-tmp-a b c d e f g h ",
+            ".taxel-tmp-backup",
+            ".taxel-tmp-toolong0toolong0t",
+            "taxel-tmp-AbC123AbC123AbC1",
+        ];
+        for name in stays {
             aged(folder.path(), name, hour);
         }
-        aged(folder.path(), ".taxel-AbC123", hour);
-        aged(folder.path(), ".taxel-Fresh1", Duration::ZERO);
-        let held = aged(folder.path(), ".taxel-Held01", hour);
-        held.lock().expect("locked");
+        aged(folder.path(), ".taxel-tmp-AbC123AbC123AbC1", hour);
+        let fresh = ".taxel-tmp-Fresh1Fresh1Fres";
+        aged(folder.path(), fresh, Duration::ZERO);
+        let held = ".taxel-tmp-Held01Held01Held";
+        let lock = aged(folder.path(), held, hour);
+        lock.lock().expect("locked");
         drop(TemporaryFile::new(folder.path()).expect("made"));
-        let mut left: Vec<String> = fs::read_dir(folder.path())
-            .expect("read")
-            .map(|entry| {
-                entry
-                    .expect("read")
-                    .file_name()
-                    .into_string()
-                    .expect("text")
-            })
-            .collect();
-        left.sort();
-        let stays = [
-            ".taxel-Fresh1",
-            ".taxel-Held01",
-            ".taxel-a b c d",
-            ".taxel-tmp",
-            ".taxel-toolong",
-            "taxel-AbC123",
-        ];
-        assert_eq!(left, stays);
+        let files = fs::read_dir(folder.path()).expect("read");
+        let names = files.map(|entry| entry.expect("read").file_name());
+        let left: BTreeSet<_> = names.map(|name| name.into_string().expect("text")).collect();
+        let expected = stays.into_iter().chain([fresh, held]);
+        assert_eq!(left, expected.map(str::to_owned).collect());
         // The folder was searched just now.
-        aged(folder.path(), ".taxel-Later1", hour);
+        let later = ".taxel-tmp-Later1Later1Late";
+        aged(folder.path(), later, hour);
         drop(TemporaryFile::new(folder.path()).expect("made"));
-        assert!(folder.path().join(".taxel-Later1").exists());
+        assert!(folder.path().join(later).exists());
+    }
+
+    /// A library has a lock, too, and perhaps a name like that of a temporary folder.
+    #[cfg(feature = "tui")]
+    #[test]
+    fn a_library_is_not_taken_for_a_scratch_folder() {
+        let place = tempfile::tempdir().expect("a folder");
+        for name in [".taxel-shapes", ".taxel-tmp-AbC123AbC123AbC1"] {
+            let library = place.path().join(name);
+            fs::create_dir(&library).expect("made");
+            aged(&library, ".lock", Duration::from_secs(3600));
+            drop(ScratchFolder::in_place(place.path()).expect("made"));
+            assert!(library.exists(), "{name}");
+        }
     }
 
     #[cfg(all(unix, feature = "tui"))]

@@ -194,9 +194,9 @@ fn the_next_script_removes_the_folder_of_a_killed_one() {
         command.env("TMPDIR", place.path());
         super::finish(command.spawn().expect("it starts"), script.as_bytes())
     };
-    let left = place.path().join(".taxel-Abc123");
+    let left = place.path().join(".taxel-tmp-Abc123Abc123Abc1");
     std::fs::create_dir(&left).expect("made");
-    let lock = std::fs::File::create(left.join(".lock")).expect("made");
+    let lock = std::fs::File::create(left.join(".taxel-scratch")).expect("made");
     let old = std::time::SystemTime::now() - std::time::Duration::from_secs(600);
     lock.set_modified(old).expect("set");
     lock.lock().expect("locked");
