@@ -8,11 +8,12 @@
 //! left: see [`crate::storage::temporary`] for files from [`UnfinishedFile::new`]; the name given to
 //! [`UnfinishedFile::with_temporary`] is taken over by the next caller.
 
-use std::fs::{self, File, FileType, Metadata, Permissions, TryLockError};
+use std::fs::{self, File, FileType, Metadata, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use crate::storage::access::{check_replaceable, keep_access};
 use crate::storage::error::FileError;
 #[cfg(feature = "acquire")]
 use crate::storage::file_id::FileId;
@@ -42,13 +43,14 @@ impl UnfinishedFile {
     ///
     /// # Errors
     /// Returns [`ErrorKind::AlreadyExists`] if there is a file and it is to be kept, [`ErrorKind::Other`] if what is
-    /// there is not a regular file, or the system's error.
+    /// there is not a regular file, [`ErrorKind::PermissionDenied`] if this user cannot replace it, or the system's
+    /// error.
     pub fn new(path: &Path, existing: Existing) -> Result<Self, FileError> {
         Self::begin(path, existing, || TemporaryFile::new(folder_of(path)))
     }
 
     /// Begins a file that replaces `path`, under a temporary name that only the holder of a lock uses. A file of that
-    /// name was left by a program that died, and is removed.
+    /// name was left by a program that died, and is removed. If something else has the name, a random one is used.
     ///
     /// # Errors
     /// Returns the errors of [`UnfinishedFile::new`].
@@ -56,8 +58,9 @@ impl UnfinishedFile {
         Self::begin(path, Existing::Replaced, || {
             match TemporaryFile::at(temporary) {
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-                    fs::remove_file(temporary)?;
-                    TemporaryFile::at(temporary)
+                    let removed = fs::remove_file(temporary);
+                    let again = removed.and_then(|()| TemporaryFile::at(temporary));
+                    again.or_else(|_| TemporaryFile::new(folder_of(path)))
                 }
                 made => made,
             }
@@ -78,9 +81,7 @@ impl UnfinishedFile {
             .map_err(refuse("write into its folder"))?;
         let file = create().map_err(refuse("write into its folder"))?;
         if let Some(old) = old {
-            file.file()
-                .set_permissions(permissions_after(&old))
-                .map_err(refuse("set its permissions"))?;
+            keep_access(file.file(), &old).map_err(refuse("set its permissions"))?;
         }
         Ok(Self {
             path: path.to_owned(),
@@ -197,7 +198,7 @@ impl FinishedFile {
 /// Returns the metadata of the file that is to be replaced; None if there is none.
 ///
 /// # Errors
-/// Returns an error if it is to be kept, or is not a regular file.
+/// Returns an error if it is to be kept, is not a regular file, or cannot be replaced by this user.
 fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileError> {
     let old = path.symlink_metadata().ok();
     match (existing, &old) {
@@ -210,20 +211,13 @@ fn replaced(path: &Path, existing: Existing) -> Result<Option<Metadata>, FileErr
             let error = ErrorKind::AlreadyExists.into();
             Err(FileError::new("create it", path, error))
         }
-        _ => Ok(old),
+        (Existing::Replaced, Some(found)) => {
+            let checked = check_replaceable(path, folder_of(path), found);
+            checked.map_err(|error| FileError::new("replace it", path, error))?;
+            Ok(old)
+        }
+        (_, None) => Ok(None),
     }
-}
-
-/// Returns the permissions of a file that replaces an old one: the same, so that it does not become readable for
-/// others. But not the bits that make it run as its owner or group: it has other content, and perhaps another owner.
-fn permissions_after(old: &Metadata) -> Permissions {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        Permissions::from_mode(old.permissions().mode() & 0o777)
-    }
-    #[cfg(not(unix))]
-    old.permissions()
 }
 
 /// Returns the kind of something that is not a regular file.
@@ -244,8 +238,9 @@ pub(super) fn kind_in_words(kind: FileType) -> &'static str {
 /// Gives two files that belong together their names: both, or neither. If the program dies, a new file never stands
 /// beside an old version of the other one: the file that has the second name is moved away first, and the second name
 /// is given last. So a program that dies in between leaves no file of the second name. The old one is then called
-/// `.taxel-tmp-XXXXXXXXXXXXXXXX`, until a program that writes into the folder a minute later or more removes it. Of two programs that
-/// name such files in one folder at once, one waits for the other. Returns the first file, open, for further writing.
+/// `.taxel-tmp-XXXXXXXXXXXXXXXX`, until a program that writes into the folder a minute later or more removes it. Of two
+/// programs that name such files in one folder at once, one waits for the other. Returns the first file, open, for
+/// further writing.
 ///
 /// # Errors
 /// Returns the errors of [`FinishedFile::persist`]. If one of the files got no name, the old files are there again;

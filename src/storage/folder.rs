@@ -7,6 +7,7 @@ use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use crate::formats::shape::MAX_BYTES;
+use crate::storage::access::share;
 use crate::storage::atomic_file::{kind_in_words, sync_folder};
 use crate::storage::error::{FileError, LibraryError};
 
@@ -178,9 +179,16 @@ impl InnerFolder {
         &self.0
     }
 
-    /// Does the same as [`make`].
+    /// Makes the folder if there is none, and opens it to all who may write in the library.
     pub(crate) fn make(&self) -> Result<(), LibraryError> {
-        make(&self.0)
+        if self.0.is_dir() {
+            return Ok(());
+        }
+        make(&self.0)?;
+        if let (Some(library), Ok(folder)) = (self.0.parent(), File::open(&self.0)) {
+            share(&folder, library);
+        }
+        Ok(())
     }
 
     /// Returns the paths of everything in the folder; empty if the folder does not exist.

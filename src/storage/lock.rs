@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use crate::storage::access::share;
 use crate::storage::error::{FileError, LibraryError};
 use crate::storage::file_id::FileId;
 use crate::storage::folder::regular;
@@ -76,15 +77,18 @@ impl Lock {
     /// # Errors
     /// Returns the system's error.
     pub(crate) fn attempt(path: &Path) -> Result<LockAttempt, LibraryError> {
-        let file = open(path)?;
-        Ok(match try_lock(&file, path)? {
+        let lock = Self { file: open(path)? };
+        Ok(match try_lock(&lock.file, path)? {
             // The program that held it may have removed the file: then this lock protects nothing.
-            Some(true) if FileId::of(&file).is_ok_and(|id| id.is_at(path)) => {
-                LockAttempt::Free(Self { file })
-            }
+            Some(true) if lock.is_at(path) => LockAttempt::Free(lock),
             Some(_) => LockAttempt::Held,
             None => LockAttempt::Unsupported,
         })
+    }
+
+    /// Returns true if the locked file still has this path: otherwise nobody else finds the lock.
+    pub(crate) fn is_at(&self, path: &Path) -> bool {
+        FileId::of(&self.file).is_ok_and(|id| id.is_at(path))
     }
 
     /// Takes the lock at a path; None if this fails for any reason.
@@ -131,15 +135,21 @@ pub(crate) fn path_in(folder: &Path) -> PathBuf {
     folder.join(".lock")
 }
 
-/// Opens the lock's file, and makes it if it does not exist. A file that another user has made is opened for reading.
+/// Opens the lock's file, and makes it if it does not exist, for all who may write in its folder. A file that another
+/// user has made is opened for reading.
 fn open(path: &Path) -> Result<File, LibraryError> {
+    let mut options = File::options();
+    options.write(true);
     if fs::symlink_metadata(path).is_ok() {
         // Checked before opening: opening a pipe waits.
         regular(path)?;
+    } else if let Ok(made) = options.clone().create_new(true).open(path) {
+        if let Some(folder) = path.parent() {
+            share(&made, folder);
+        }
+        return Ok(made);
     }
-    let mut options = File::options();
-    let file = options.create(true).truncate(false).write(true).open(path);
-    let file = match file {
+    let file = match options.create(true).truncate(false).open(path) {
         Err(error)
             if matches!(
                 error.kind(),

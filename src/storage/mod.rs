@@ -25,6 +25,8 @@
 
 mod error;
 
+mod access;
+
 mod atomic_file;
 
 mod temporary;

@@ -15,6 +15,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use tempfile::{Builder, NamedTempFile, TempPath};
 
+use crate::storage::access::keep_access;
 #[cfg(feature = "tui")]
 use crate::storage::error::FileError;
 
@@ -240,9 +241,8 @@ fn rename(from: TempPath, path: &Path, replace: bool) -> io::Result<()> {
 fn copied(mut file: File, folder: &Path) -> io::Result<(File, TempPath)> {
     let mut copy = TemporaryFile::named(folder)?;
     file.rewind()?;
-    let permissions = file.metadata()?.permissions();
+    keep_access(&copy.file, &file.metadata()?)?;
     io::copy(&mut Read::by_ref(&mut file), &mut copy.file)?;
-    copy.file.set_permissions(permissions)?;
     copy.file.sync_all()?;
     let path = copy.path.ok_or(ErrorKind::NotFound)?;
     Ok((copy.file, path))
@@ -443,7 +443,9 @@ mod tests {
         drop(TemporaryFile::new(folder.path()).expect("made"));
         let files = fs::read_dir(folder.path()).expect("read");
         let names = files.map(|entry| entry.expect("read").file_name());
-        let left: BTreeSet<_> = names.map(|name| name.into_string().expect("text")).collect();
+        let left: BTreeSet<_> = names
+            .map(|name| name.into_string().expect("text"))
+            .collect();
         let expected = stays.into_iter().chain([fresh, held]);
         assert_eq!(left, expected.map(str::to_owned).collect());
         // The folder was searched just now.

@@ -371,6 +371,19 @@ fn read_only_files_are_not_replaced_and_modes_are_kept() {
 }
 
 #[test]
+fn a_folder_with_the_name_of_a_temporary_file_is_no_obstacle() {
+    let scratch = Scratch::with(&["one"]);
+    for folder in [".taxel-tmp", ".trash/.taxel-tmp"] {
+        fs::create_dir_all(scratch.path(folder)).expect("made");
+    }
+    scratch.save("two", 2);
+    let thrown = scratch.library.throw_away(&shape("lost", 3));
+    assert_eq!(thrown.expect("thrown away"), "lost 1");
+    assert_eq!(scratch.own(), ["one", "two"]);
+    assert!(scratch.path(".taxel-tmp").is_dir());
+}
+
+#[test]
 fn a_read_only_folder_can_be_read() {
     if is_root() {
         skipped("root may write everywhere; tests/crash does this with a read-only disk");
