@@ -139,6 +139,24 @@ pub(crate) fn check_replaceable(_: &Path, _: &Path, _: &Metadata) -> io::Result<
     Ok(())
 }
 
+/// Returns true if this user may remove a file, apart from a whole file system that is read-only at present.
+#[cfg(all(unix, feature = "library"))]
+pub(crate) fn is_removable(path: &Path) -> bool {
+    use rustix::fs::{Access, access};
+    use rustix::io::Errno;
+    let (Some(folder), Ok(file)) = (path.parent(), path.symlink_metadata()) else {
+        return false;
+    };
+    let may_write = access(folder, Access::WRITE_OK | Access::EXEC_OK);
+    !matches!(may_write, Err(Errno::ACCESS | Errno::PERM)) && !is_protected(folder, &file)
+}
+
+/// Returns true: only the attempt shows it.
+#[cfg(all(not(unix), feature = "library"))]
+pub(crate) fn is_removable(_: &Path) -> bool {
+    true
+}
+
 /// Does nothing: there is no umask.
 #[cfg(all(not(unix), feature = "library"))]
 pub(crate) fn share(_: &File, _: &Path) {}
@@ -189,6 +207,7 @@ mod tests {
         fs::write(&path, "").expect("written");
         let found = path.metadata().expect("there");
         check_replaceable(&path, folder.path(), &found).expect("replaceable");
+        assert!(is_removable(&path));
     }
 
     #[test]

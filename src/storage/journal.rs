@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use crate::formats::shape::StoredShape;
+use crate::storage::access::is_removable;
 use crate::storage::atomic_file;
 use crate::storage::error::{FileError, LibraryError};
 use crate::storage::folder::{self, InnerFolder, JOURNAL, is_journal};
@@ -47,17 +48,6 @@ impl Journal {
     /// # Errors
     /// Returns the system's error. The shape kept before is still there.
     pub fn keep(&mut self, shape: &StoredShape) -> Result<(), LibraryError> {
-        match self.write(shape) {
-            // The folder was removed meanwhile: it is made again.
-            Err(LibraryError::System(refused)) if refused.error.kind() == ErrorKind::NotFound => {
-                self.open = None;
-                self.write(shape)
-            }
-            written => written,
-        }
-    }
-
-    fn write(&mut self, shape: &StoredShape) -> Result<(), LibraryError> {
         let path = self.file()?;
         let content = shape.write();
         Ok(atomic_file::write(
@@ -67,11 +57,27 @@ impl Journal {
         )?)
     }
 
-    /// Returns the journal's file; its name is chosen at the first use.
+    /// Returns true if the shape that was kept last is still there: someone may have removed it, or the whole folder.
+    pub fn is_intact(&self) -> bool {
+        self.is_locked() && self.open.as_ref().is_some_and(|(path, _)| path.exists())
+    }
+
+    /// Returns true if other programs find the lock of the file, or its folder if there are no locks.
+    fn is_locked(&self) -> bool {
+        let is_there = |(path, lock): &(PathBuf, Option<Lock>)| match lock {
+            Some(lock) => lock.is_at(&lock_of(path)),
+            None => path.parent().is_some_and(Path::is_dir),
+        };
+        self.open.as_ref().is_some_and(is_there)
+    }
+
+    /// Returns the journal's file. Its name is chosen at the first use, and again if someone has removed its lock:
+    /// other programs would take the file for that of a dead one.
     fn file(&mut self) -> Result<PathBuf, LibraryError> {
-        if let Some((path, _)) = &self.open {
+        if let Some((path, _)) = self.open.as_ref().filter(|_| self.is_locked()) {
             return Ok(path.clone());
         }
+        self.open = None;
         let folder = InnerFolder::of(&self.library, JOURNAL)?;
         folder.make()?;
         let process = std::process::id();
@@ -115,7 +121,8 @@ pub struct Orphan {
 impl Orphan {
     /// Returns the newest journals that wait in a library, at most 100, the oldest of them first. Removes work that
     /// is identical to the saved shape of its name. Leaves a journal alone if it cannot be read: it may be of a later
-    /// version. Leaves files of other names alone, too, and a folder outside of the library that a link leads to.
+    /// version; and if this user may not remove it: it is another user's. Leaves files of other names alone, too, and
+    /// a folder outside of the library that a link leads to.
     pub fn all(library: &Library) -> Vec<Self> {
         let folder = InnerFolder::of(library.folder(), JOURNAL);
         // A folder that cannot be read must not keep the program from starting.
@@ -164,6 +171,9 @@ impl Orphan {
             content => content.ok()?,
         };
         let shape = StoredShape::read(&content).ok()?;
+        if !is_removable(&path) {
+            return None;
+        }
         if is_saved(library, &shape) {
             remove(&path, Some(lock));
             return None;
@@ -178,9 +188,10 @@ impl Orphan {
         written.elapsed().ok()
     }
 
-    /// Removes the work, because it is stored elsewhere now or is not wanted.
-    pub fn discard(self) {
-        remove(&self.path, Some(self.lock));
+    /// Removes the work, because it is stored elsewhere now or is not wanted. Returns false if the system refuses: then
+    /// it is still there.
+    pub fn discard(self) -> bool {
+        remove(&self.path, Some(self.lock))
     }
 }
 
@@ -203,11 +214,14 @@ fn temporary_of(path: &Path) -> PathBuf {
     path.with_extension("tmp")
 }
 
-/// Removes a journal. The lock goes last, so that nobody finds the file without it.
-fn remove(path: &Path, lock: Option<Lock>) {
+/// Removes a journal, and returns whether its file is gone. The lock goes last, so that nobody finds the file without
+/// it.
+fn remove(path: &Path, lock: Option<Lock>) -> bool {
     // What cannot be removed is offered again: better twice than never.
     let _ = fs::remove_file(temporary_of(path));
     let _ = fs::remove_file(path);
+    let is_gone = path.symlink_metadata().is_err();
     let _ = fs::remove_file(lock_of(path));
     drop(lock);
+    is_gone
 }

@@ -99,6 +99,44 @@ fn a_folder_that_was_removed_is_made_again() {
     assert_eq!(offered_soon(&scratch), [shape("work", 2)]);
 }
 
+/// Without its lock, other programs would offer the work while this one runs.
+#[test]
+fn a_journal_whose_lock_was_removed_gets_another_one() {
+    let scratch = Scratch::new();
+    let mut journal = Journal::new(&scratch.library);
+    journal.keep(&shape("work", 1)).expect("kept");
+    assert!(journal.is_intact());
+    for file in files(&scratch.path(".journal")) {
+        std::fs::remove_file(scratch.path(".journal").join(file)).expect("removed");
+    }
+    assert!(!journal.is_intact());
+    journal.keep(&shape("work", 2)).expect("kept again");
+    assert!(journal.is_intact());
+    assert_eq!(offered(&scratch), [], "its program is running");
+    drop(journal);
+    assert_eq!(offered_soon(&scratch), [shape("work", 2)]);
+}
+
+/// It would be offered again and again, and each refusal would fill the trash.
+#[cfg(unix)]
+#[test]
+fn work_that_this_user_cannot_remove_is_not_offered() {
+    use std::fs::{Permissions, set_permissions};
+    use std::os::unix::fs::PermissionsExt;
+    if super::is_root() {
+        crate::skip::skipped("root may remove everything");
+        return;
+    }
+    let scratch = Scratch::new();
+    left(&scratch, &shape("work", 1));
+    assert_eq!(offered_soon(&scratch).len(), 1);
+    let mode = |mode| set_permissions(scratch.path(".journal"), Permissions::from_mode(mode));
+    mode(0o555).expect("set");
+    let found = offered(&scratch);
+    mode(0o755).expect("set");
+    assert_eq!(found, []);
+}
+
 #[test]
 fn each_of_several_programs_keeps_its_own_work() {
     let scratch = Scratch::new();

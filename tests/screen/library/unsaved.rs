@@ -1,7 +1,9 @@
 //! Unsaved work is kept while the program runs, offered after a crash, and thrown away so that it can be restored.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::channel;
+use std::time::{Duration, Instant};
 
 use taxel::storage::{Library, LibraryEntry, ShapeOrigin};
 use taxel::tui::app::message::Message;
@@ -72,6 +74,38 @@ fn restored_work_is_not_lost_by_undo() {
     then(&mut again, "q", &["An earlier drawing is not saved."]);
 }
 
+/// Waits until unsaved work is on the disk.
+fn journal_is_written(library: &Path) {
+    let end = Instant::now() + Duration::from_secs(60);
+    let is_there = || {
+        let files = std::fs::read_dir(library.join(".journal"));
+        let mut paths = files
+            .into_iter()
+            .flatten()
+            .flatten()
+            .map(|file| file.path());
+        paths.any(|path| path.extension().is_some_and(|ending| ending == "json"))
+    };
+    while !is_there() {
+        assert!(Instant::now() < end, "nothing is written");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Someone has removed the folder, or a stick was pulled and put back.
+#[test]
+fn work_that_vanished_from_the_disk_is_written_again_at_the_end() {
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let library = folder.path().join("library");
+    let world = World::new(Library::open(library.clone()));
+    let session = started(world, "<Space>");
+    journal_is_written(&library);
+    std::fs::remove_dir_all(&library).expect("removed");
+    drop(session);
+    let later = session_on(&library, "");
+    shows(&later, &["There is unsaved work from last time: 1 taxel"]);
+}
+
 /// If it cannot be thrown away, nothing is left of the attempt, and this program does not ask again.
 #[test]
 fn unsaved_work_that_cannot_go_to_the_trash_stays() {
@@ -139,9 +173,9 @@ fn a_drawing_whose_file_was_deleted_is_unsaved() {
     then(&mut session, "a<Enter>", &["saved as a"]);
 }
 
-/// A journal that cannot be written is reported once, and the work is written at the end.
+/// A journal that cannot be written is reported once, and the work is written when it can be.
 #[test]
-fn work_that_could_not_be_kept_is_kept_at_the_end() {
+fn work_that_could_not_be_kept_is_kept_later() {
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let journal = folder.path().join(".journal");
     std::fs::write(&journal, "in the way").expect("written");
@@ -151,7 +185,7 @@ fn work_that_could_not_be_kept_is_kept_at_the_end() {
         let _ = post.send(told);
     }));
     let mut session = started(world, "<Space>");
-    let reason = told.recv_timeout(std::time::Duration::from_secs(60));
+    let reason = told.recv_timeout(Duration::from_secs(60));
     let Ok(WorkerEvent::Refused(reason)) = reason else {
         panic!("nothing is told: {reason:?}");
     };
@@ -162,6 +196,8 @@ fn work_that_could_not_be_kept_is_kept_at_the_end() {
     session.send(Message::Worker(WorkerEvent::Refused(reason)));
     shows(&session, &["! unsaved work cannot be kept: "]);
     std::fs::remove_file(&journal).expect("removed");
+    // Without a further change.
+    journal_is_written(folder.path());
     drop(session);
     let later = session_on(folder.path(), "");
     shows(

@@ -1,14 +1,14 @@
 //! Writes unsaved work to the journal on a separate thread, so that no key waits for a disk.
 //!
 //! ```text
-//!             Persist                400 ms, or Flush
-//! Nothing ------------> Since(shape) -----------------> written: Nothing
-//!    ^                       ^                          error:   Failed(shape), reported once
-//!    |  Clear                |  Persist                    |
-//!    +---- any               +-----------------------------+  tried again with the next change
+//!            Persist                400 ms, or Flush
+//! no work -----------> work, due ---------------------> written: work, nothing due
+//!    ^                     ^                            error:   due again in 5 s, reported once
+//!    |  Clear              |  Persist                      |
+//!    +---- any             +-------------------------------+
 //! ```
-//! Of the changes within the interval only the last one is written. The thread sleeps while there is nothing to
-//! write.
+//! Of the changes within the interval only the last one is written. The thread sleeps while nothing is due. A flush
+//! also writes work that was written before, if someone has removed it from the disk.
 
 use std::cell::Cell;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -24,6 +24,9 @@ use crate::tui::runtime::work::threads::{self, PATIENCE};
 
 /// Changes are gathered for this time before they are written, so a crash loses less than a second of work.
 const GATHER: Duration = Duration::from_millis(400);
+
+/// The time after which work that could not be written is tried again: a full disk may have room by then.
+const RETRY: Duration = Duration::from_secs(5);
 
 /// The program's end of the channel to the thread.
 #[derive(Debug)]
@@ -60,7 +63,8 @@ impl JournalWriter {
         let (notes, inbox) = channel();
         let writer = JournalThread {
             journal,
-            pending: Pending::Nothing,
+            work: None,
+            due: None,
             adopted: Vec::new(),
             post: None,
             reported: false,
@@ -164,23 +168,14 @@ impl Drop for JournalWriter {
     }
 }
 
-/// Work that is not in the journal yet.
-enum Pending {
-    /// Everything is written.
-    Nothing,
-    /// A shape that waits for further changes since that time.
-    Since(Box<StoredShape>, Instant),
-    /// A shape that could not be written. It is tried again with the next change or the next flush, not by the clock:
-    /// a full disk may have room by then.
-    Failed(Box<StoredShape>),
-}
-
 /// The thread's end: gathers changes for a moment, then writes the latest.
 struct JournalThread {
     /// The journal that it writes to.
     journal: Journal,
-    /// The work that is still to be written.
-    pending: Pending,
+    /// The unsaved work, if there is any.
+    work: Option<Box<StoredShape>>,
+    /// The time to write it; None if it is written.
+    due: Option<Instant>,
     /// Work of programs that crashed, which stays in their journals until it is written here.
     adopted: Vec<Orphan>,
     /// The receiver of errors.
@@ -193,27 +188,19 @@ impl JournalThread {
     /// Serves requests until the program drops its end of the channel.
     fn run(mut self, inbox: &Receiver<JournalRequest>) {
         loop {
-            let note = match &self.pending {
-                Pending::Since(_, since) => {
-                    inbox.recv_timeout(GATHER.saturating_sub(since.elapsed()))
-                }
-                _ => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
+            let note = match self.due {
+                Some(due) => inbox.recv_timeout(due.saturating_duration_since(Instant::now())),
+                None => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
             };
             match note {
-                Ok(JournalRequest::Persist(shape)) => {
-                    let since = match self.pending {
-                        Pending::Since(_, since) => since,
-                        _ => Instant::now(),
-                    };
-                    self.pending = Pending::Since(shape, since);
-                }
+                Ok(JournalRequest::Persist(shape)) => self.note(shape),
                 Ok(JournalRequest::Adopt(orphan)) => {
-                    self.pending = Pending::Since(Box::new(orphan.shape.clone()), Instant::now());
+                    self.note(Box::new(orphan.shape.clone()));
                     self.adopted.push(*orphan);
                     self.write();
                 }
                 Ok(JournalRequest::Clear) => {
-                    self.pending = Pending::Nothing;
+                    (self.work, self.due) = (None, None);
                     self.journal.clear();
                 }
                 Ok(JournalRequest::Flush(done)) => {
@@ -232,20 +219,32 @@ impl JournalThread {
         }
     }
 
-    /// Writes the pending work, and returns true if everything is written. A shape that cannot be written stays
-    /// pending.
+    /// Takes work to be written after a moment, together with later changes.
+    fn note(&mut self, work: Box<StoredShape>) {
+        let soon = Instant::now() + GATHER;
+        self.work = Some(work);
+        self.due = Some(self.due.map_or(soon, |due| due.min(soon)));
+    }
+
+    /// Writes the work unless it is on the disk already, and returns true if it is there then.
     fn write(&mut self) -> bool {
-        let pending = std::mem::replace(&mut self.pending, Pending::Nothing);
-        let (Pending::Since(shape, _) | Pending::Failed(shape)) = pending else {
+        let Some(work) = &self.work else {
             return true;
         };
-        match self.journal.keep(&shape) {
+        if self.due.is_none() && self.journal.is_intact() {
+            return true;
+        }
+        match self.journal.keep(work) {
             Ok(()) => {
+                self.due = None;
                 self.reported = false;
-                self.adopted.drain(..).for_each(Orphan::discard);
+                // What cannot be removed is offered again: better twice than never.
+                self.adopted.drain(..).for_each(|orphan| {
+                    orphan.discard();
+                });
             }
             Err(error) => {
-                self.pending = Pending::Failed(shape);
+                self.due = Some(Instant::now() + RETRY);
                 if let Some(post) = self.post.as_ref().filter(|_| !self.reported) {
                     post(WorkerEvent::Refused(format!(
                         "unsaved work cannot be kept: {error}"
@@ -254,6 +253,6 @@ impl JournalThread {
                 }
             }
         }
-        matches!(self.pending, Pending::Nothing)
+        self.due.is_none()
     }
 }

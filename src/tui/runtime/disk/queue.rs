@@ -8,6 +8,7 @@
 //! Without a receiver of events, as in a script, a request is carried out at once.
 
 use std::collections::VecDeque;
+use std::io::ErrorKind;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::Builder;
@@ -216,12 +217,24 @@ fn is_read_only(library: &Library) -> bool {
     matches!(writable, Err(Errno::ACCESS | Errno::PERM | Errno::ROFS))
 }
 
+/// Returns true if an error says that nothing in the library can be changed. A file system that went read-only after an
+/// error of the disk may still call its folders writable, so the error itself decides first.
+fn says_read_only(library: &Library, error: &LibraryError) -> bool {
+    match error {
+        LibraryError::System(refused) => {
+            refused.error.kind() == ErrorKind::ReadOnlyFilesystem || is_read_only(library)
+        }
+        _ => false,
+    }
+}
+
 /// Returns the sentence about a refused change: `what` says what was not done. In a read-only library each file would
 /// be refused, so the file's name would only mislead.
 fn not_changed(library: &Library, what: &str, error: &LibraryError) -> String {
-    match error {
-        LibraryError::System(_) if is_read_only(library) => format!("{what}: {READ_ONLY}"),
-        _ => sentence(library, error),
+    if says_read_only(library, error) {
+        format!("{what}: {READ_ONLY}")
+    } else {
+        sentence(library, error)
     }
 }
 
@@ -229,7 +242,7 @@ fn not_changed(library: &Library, what: &str, error: &LibraryError) -> String {
 fn store(library: &Library, shape: Box<StoredShape>, expected: Expected) -> DiskAnswer {
     let stored = library.save(&shape, expected);
     let in_the_way = match &stored {
-        Err(LibraryError::System(_)) if is_read_only(library) => {
+        Err(error) if says_read_only(library, error) => {
             let text = format!("not saved: {READ_ONLY}; :write FILE saves elsewhere");
             return DiskAnswer::Library(LibraryEvent::NotStored(text));
         }
@@ -268,19 +281,16 @@ fn restore(library: &Library, name: Option<String>) -> Result<String, LibraryErr
     name.map_or_else(|| library.restore_last(), |name| library.restore(&name))
 }
 
-/// Moves unsaved work to the trash. Other work is looked for only after this succeeds; otherwise the same work would be
-/// offered again without end.
+/// Moves unsaved work to the trash. Other work is looked for only if this one is gone; otherwise the same work would be
+/// offered, and moved, again without end.
 fn throw_away(library: &Library, orphan: Orphan) -> DiskAnswer {
     let mut shape = orphan.shape.clone();
     if let Ok(name) = Name::new(UNNAMED) {
         shape = shape.renamed(name);
     }
     let thrown = library.throw_away(&shape);
-    let mut next = None;
-    if thrown.is_ok() {
-        orphan.discard();
-        next = newest_orphan(library);
-    }
+    let is_gone = thrown.is_ok() && orphan.discard();
+    let next = is_gone.then(|| newest_orphan(library)).flatten();
     DiskAnswer::ThrownAway(thrown, next)
 }
 
@@ -562,6 +572,7 @@ impl Drop for DiskQueue {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::storage::FileError;
 
     /// Returns a queue whose thread does not run yet, as if the system had not started it.
     fn without_thread() -> DiskQueue {
@@ -575,6 +586,20 @@ mod tests {
         queue.post_to(Arc::new(|_| {}));
         queue.thread = Some(DiskThread { shared, answers });
         queue
+    }
+
+    /// The folder of a file system that went read-only after an error is still said to be writable.
+    #[test]
+    fn the_error_itself_says_that_a_library_is_read_only() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let library = Library::open(folder.path().to_owned());
+        let said = |kind: ErrorKind| {
+            let error = FileError::new("write it", folder.path(), kind.into());
+            not_changed(&library, "not deleted", &error.into())
+        };
+        let expected = "not deleted: the library is read-only";
+        assert_eq!(said(ErrorKind::ReadOnlyFilesystem), expected);
+        assert!(said(ErrorKind::StorageFull).contains("cannot write it"));
     }
 
     #[test]
