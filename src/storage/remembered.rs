@@ -6,6 +6,7 @@
 use std::fs;
 use std::path::PathBuf;
 
+use crate::storage::folder;
 use crate::storage::library::{COMMANDS, FORMS, RECOGNISED_SET};
 use crate::storage::{Existing, FinishedFile, Library};
 
@@ -59,12 +60,20 @@ impl RememberedFile {
         lines[first..].iter().map(|&line| line.to_owned()).collect()
     }
 
+    /// Adds lines to those of the file, which another program may have changed, and keeps only the last ones if there
+    /// are too many.
+    pub(crate) fn add(&self, lines: Vec<String>) {
+        let mut all = self.read();
+        all.extend(lines);
+        self.write(&all);
+    }
+
     /// Replaces the lines of the file, and keeps only the last ones if there are too many. Makes the folder if there
     /// is none.
     pub(crate) fn write(&self, lines: &[String]) {
         if let Some(folder) = self.path.parent() {
             // Without the folder nothing can be written, which does no harm.
-            let _ = fs::create_dir_all(folder);
+            let _ = folder::make(folder);
         }
         let kept = &lines[lines.len().saturating_sub(self.most)..];
         let text: String = kept.iter().map(|line| format!("{line}\n")).collect();
@@ -91,11 +100,14 @@ mod tests {
         let path = library.folder().join(".commands");
         fs::write(path, "new\n\u{1b}[31m\n\ngrab\n").expect("written");
         assert_eq!(file.read(), ["new", "grab"]);
+        // Another program has written meanwhile.
+        file.add(vec!["turn 20".to_owned()]);
+        assert_eq!(file.read(), ["new", "grab", "turn 20"]);
         let set = RememberedFile::recognised_set(&library);
         set.write(&["my parts".to_owned()]);
         assert_eq!(
             (set.read(), file.read().len()),
-            (vec!["my parts".to_owned()], 2)
+            (vec!["my parts".to_owned()], 3)
         );
         let path = library.folder().join(".recognise");
         fs::write(path, "x".repeat(1 << 18)).expect("written");

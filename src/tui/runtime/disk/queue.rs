@@ -48,8 +48,10 @@ pub(in crate::tui::runtime) enum DiskRequest {
     ThrowAway(Box<Orphan>),
     /// Read or write a file, or list some.
     File(FileRequest),
-    /// Remember lines for the next run.
+    /// Remember lines for the next run, in place of those remembered before.
     Remember(RememberedFile, Vec<String>),
+    /// Remember further lines for the next run.
+    RememberMore(RememberedFile, Vec<String>),
     /// Create a file and record the frames of the source of that number in it.
     BeginRecording(u64, Box<RecordingMetadata>),
     /// Write threshold, tare and marks into the description of a recording of the source of that number.
@@ -95,7 +97,7 @@ impl DiskRequest {
             Self::File(FileRequest::Open(name)) => format!("Opening {name}"),
             Self::File(FileRequest::Source(request)) => format!("Opening {}", request.name()),
             Self::File(FileRequest::Paths(_)) => "Listing files".to_owned(),
-            Self::Remember(..) => "Remembering it".to_owned(),
+            Self::Remember(..) | Self::RememberMore(..) => "Remembering it".to_owned(),
             Self::BeginRecording(..) => "Starting a recording".to_owned(),
             Self::DescribeRecording(_, recording, _) => {
                 format!("Describing {}", recording.path().display())
@@ -134,6 +136,10 @@ impl DiskRequest {
             Self::File(request) => DiskAnswer::File(files::perform(request, access)),
             Self::Remember(file, lines) => {
                 file.write(&lines);
+                DiskAnswer::Nothing
+            }
+            Self::RememberMore(file, lines) => {
+                file.add(lines);
                 DiskAnswer::Nothing
             }
             Self::BeginRecording(number, metadata) => {

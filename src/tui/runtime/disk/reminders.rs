@@ -59,14 +59,15 @@ impl Reminders {
     /// Remembers everything new. A set is remembered once its model is ready, so that it surely exists. A model from
     /// a file is not, since the next run may begin in another folder.
     pub(in crate::tui::runtime) fn note(&mut self, app: &App, queue: &mut DiskQueue) {
-        let mut write = |file: &RememberedFile, lines| {
-            // The answer says nothing.
-            let _ = queue.begin(DiskRequest::Remember(file.clone(), lines));
-        };
-        if app.commands.len() > self.remembered {
-            write(&self.commands, app.commands.clone());
+        // The answers say nothing.
+        if let Some(new @ [_, ..]) = app.commands.get(self.remembered..) {
+            let (file, new) = (self.commands.clone(), new.to_vec());
+            let _ = queue.begin(DiskRequest::RememberMore(file, new));
             self.remembered = app.commands.len();
         }
+        let mut write = |file: &RememberedFile, lines| {
+            let _ = queue.begin(DiskRequest::Remember(file.clone(), lines));
+        };
         let is_new = |now: &&ModelChoice| {
             !matches!(now, ModelChoice::File(_)) && self.chosen.as_ref() != Some(*now)
         };
