@@ -51,6 +51,7 @@ use arguments::library::LibraryCommand;
 use arguments::model::ModelRequest;
 use arguments::request::{self, Invocation, Request};
 use arguments::sweep::{SweepArguments, Swept};
+use commands::Summary;
 use commands::export::Exported;
 use commands::frames::FramesOutput;
 use commands::naming::FrameNamer;
@@ -166,7 +167,7 @@ impl Surroundings {
             }
             Request::Sweep(asked) => self.sweep(*asked)?,
             Request::Merge(files, wanted) => {
-                print(&threads::on_all_cores(|| {
+                print_summary(threads::on_all_cores(|| {
                     merge::merge(&files, &wanted, charset)
                 })?)?;
             }
@@ -224,8 +225,8 @@ impl Surroundings {
                 note(text, self.charset);
             }
         }
-        let text = sweep::sweep(&grid, asked.shard, asked.jobs, &asked.wanted, self.charset)?;
-        print(&text)
+        let (shard, jobs, wanted) = (asked.shard, asked.jobs, &asked.wanted);
+        print_summary(sweep::sweep(&grid, shard, jobs, wanted, self.charset)?)
     }
 
     /// Runs `taxel frames`. If an error occurs, the answers made before it are still printed.
@@ -257,7 +258,9 @@ impl Surroundings {
     fn model(&self, request: ModelRequest) -> Result<(), CliError> {
         let (shelf, charset) = (&self.shelf, self.charset);
         let text = match request {
-            ModelRequest::Train(asked) => model::train(&asked, shelf, charset)?,
+            ModelRequest::Train(asked) => {
+                return print_summary(model::train(&asked, shelf, charset)?);
+            }
             ModelRequest::Show(which, json) => model::show(&which, json, shelf, charset)?,
             ModelRequest::Names => model::names(shelf)?,
             ModelRequest::List(json) => model::list(json, shelf, charset)?,
@@ -316,6 +319,12 @@ fn path_line(path: &Path, on_terminal: bool, charset: Charset) -> Vec<u8> {
 /// Writes text to standard output.
 fn print(text: &str) -> Result<(), CliError> {
     write(text.as_bytes())
+}
+
+/// Prints a summary, and then returns the error if its files could not be written.
+fn print_summary((text, written): Summary) -> Result<(), CliError> {
+    print(&text)?;
+    written
 }
 
 /// Writes bytes to standard output and flushes it.

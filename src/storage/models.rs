@@ -8,7 +8,7 @@
 
 use std::ffi::OsString;
 use std::fs;
-use std::io::{BufReader, Cursor, Read, Seek};
+use std::io::{self, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
@@ -18,6 +18,7 @@ use crate::formats::byte_order_mark::without_mark;
 use crate::formats::{ArchiveError, Name, read_model, write_model};
 use crate::recognition::{Model, Training};
 use crate::storage::atomic_file::{Existing, FinishedFile, UnfinishedFile};
+use crate::storage::error::LibraryError;
 use crate::storage::first_error::FirstErrorWriter;
 use crate::storage::folder;
 use crate::storage::sweep_file::{ArchiveFileError, open_archive};
@@ -149,6 +150,27 @@ impl ModelFolder {
         Ok(names)
     }
 
+    /// Makes the folder if there is none, for a model that is to be written there.
+    ///
+    /// # Errors
+    /// Returns the system's error, with the folder's name.
+    pub fn made(&self) -> Result<MadeFolder, ArchiveFileError> {
+        let is_new = !self.0.is_dir();
+        match folder::make(&self.0) {
+            Ok(()) => Ok(MadeFolder(is_new.then(|| self.0.clone()))),
+            Err(LibraryError::System(refused)) => Err(refused.into()),
+            Err(LibraryError::InTheWay {
+                path,
+                what,
+                expected,
+            }) => {
+                let text = format!("is {what}, expected {expected}");
+                Err(ArchiveFileError::new(&path, io::Error::other(text)))
+            }
+            Err(other) => Err(ArchiveFileError::new(&self.0, io::Error::other(other))),
+        }
+    }
+
     /// Writes a model under a name, and makes the folder for it.
     ///
     /// # Errors
@@ -160,7 +182,7 @@ impl ModelFolder {
         existing: Existing,
         stopped: &AtomicBool,
     ) -> Result<PathBuf, ArchiveFileError> {
-        fs::create_dir_all(&self.0).map_err(|error| ArchiveFileError::new(&self.0, error))?;
+        let _folder = self.made()?;
         let path = self.file(name);
         save_model(model, &path, existing, stopped)?;
         Ok(path)
@@ -175,6 +197,20 @@ impl ModelFolder {
         let path = self.path_of(&stored);
         fs::remove_file(&path).map_err(|error| ArchiveFileError::new(&path, error))?;
         Ok(stored)
+    }
+}
+
+/// A folder that exists. If it is new and still empty when this is dropped, it is removed again.
+#[derive(Debug)]
+#[must_use = "an empty folder is removed when this is dropped"]
+pub struct MadeFolder(Option<PathBuf>);
+
+impl Drop for MadeFolder {
+    fn drop(&mut self) {
+        if let Some(folder) = &self.0 {
+            // The system refuses if something is in it.
+            let _ = fs::remove_dir(folder);
+        }
     }
 }
 
@@ -233,7 +269,7 @@ impl ModelCache {
         let going = AtomicBool::new(false);
         let mut output = FirstErrorWriter::new(&mut bytes, most, &going);
         let written = write_model(model, &mut output);
-        if output.finish(written).is_ok() && fs::create_dir_all(&self.0).is_ok() {
+        if output.finish(written).is_ok() && folder::make(&self.0).is_ok() {
             let _ = FinishedFile::new(path, bytes.get_ref(), Existing::Replaced)
                 .and_then(FinishedFile::persist);
         }

@@ -1,7 +1,8 @@
 //! File systems without some features, simulated with `strace`: locks, renaming without replacing, hard links, free
 //! space. Also folders that a stranger has filled.
 
-use std::fs;
+use std::fs::{self, Permissions};
+use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
 use std::path::Path;
 use std::process::Command;
 
@@ -59,6 +60,90 @@ pub(crate) fn done_without() -> String {
     );
     "no locks, no links, no names without replacing: saved; what is refused is told by its own name"
         .to_owned()
+}
+
+/// On file systems without modes and owners, and for users who may not set them.
+pub(crate) fn owners() -> String {
+    if !strace::works() {
+        return "SKIPPED, strace is missing or may not trace".to_owned();
+    }
+    let replaced = |mode: u32, group: Option<u32>, calls: &str| {
+        let state = State::new();
+        let path = state.folder.join("one.json");
+        fs::set_permissions(&path, Permissions::from_mode(mode)).expect("set");
+        let given = group.is_none_or(|group| chown(&path, None, Some(group)).is_ok());
+        let new = state.new.to_string_lossy();
+        let save = program(&["library", "save", "one", &new, "--force"], &state.folder);
+        let run = strace::refused(&save, calls, "EPERM");
+        let found = path.metadata().expect("there");
+        let now = (found.mode() & 0o777, found.gid());
+        (given, run.status.code(), state.version("one"), now)
+    };
+    let usual = State::new().new.metadata().expect("there");
+    let (usual, own) = (usual.mode() & 0o777, usual.gid());
+    // A mode that is right is not set; one that would open the file to others is not accepted.
+    let refused = "?fchmod,?fchmodat,?fchown";
+    let done = (true, Some(0), Some(9), (usual, own));
+    assert_eq!(replaced(usual, None, refused), done);
+    let kept = (true, Some(1), Some(1), (0o600, own));
+    assert_eq!(replaced(0o600, None, refused), kept);
+    // Only root has a group to which it does not belong.
+    if replaced(0o660, Some(2000), "?chroot").0 {
+        let same = (true, Some(0), Some(9), (0o660, 2000));
+        assert_eq!(replaced(0o660, Some(2000), "?chroot"), same);
+        for (mode, narrowed) in [(0o660, 0o600), (0o640, 0o600), (0o664, 0o644)] {
+            let expected = (true, Some(0), Some(9), (narrowed, own));
+            assert_eq!(replaced(mode, Some(2000), "?fchown"), expected, "{mode:o}");
+        }
+    }
+    "modes and groups that cannot be set: saved if nobody else can read it then".to_owned()
+}
+
+/// What took long is printed even if its file cannot be named at last.
+pub(crate) fn printed() -> String {
+    if !strace::works() {
+        return "SKIPPED, strace is missing or may not trace".to_owned();
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let (atlas, model) = (path("a.csv"), path("m.npz"));
+    let sweep = [
+        "sweep", "hexagon", "--angle", "0", "--quiet", "--atlas", &atlas,
+    ];
+    let train = [
+        "model",
+        "train",
+        "--shape",
+        "disc=ellipse radius_x=4 radius_y=4",
+        "--shape",
+        "bar=rectangle length=6 width=3",
+        "--positions",
+        "2",
+        "--angle",
+        "0",
+        "--quiet",
+        "--out",
+        &model,
+    ];
+    let cases: [(&[&str], &str, &str); 2] =
+        [(&sweep, &atlas, "poses"), (&train, &model, "distinct")];
+    for (arguments, file, printed) in cases {
+        let run = strace::refused(
+            &program(arguments, folder.path()),
+            "?link,?linkat,?rename,?renameat,?renameat2",
+            "EIO",
+        );
+        assert_eq!(run.status.code(), Some(1), "{run:?}");
+        let [output, message] =
+            [&run.stdout, &run.stderr].map(|text| String::from_utf8_lossy(text));
+        assert!(output.contains(printed), "{output}");
+        assert!(
+            message.starts_with(&format!("error: {file}: ")),
+            "{message}"
+        );
+        assert_eq!(fs::read_dir(folder.path()).expect("read").count(), 0);
+    }
+    "a sweep and a training whose files are refused: the summary is printed".to_owned()
 }
 
 /// Returns the number of frames in an array, and checks that its header and its length agree on it.

@@ -41,7 +41,7 @@ use std::time::Instant;
 /// A campaign, which returns a summary in one line.
 type Campaign = fn() -> String;
 
-const CAMPAIGNS: [(&str, Campaign); 12] = [
+const CAMPAIGNS: [(&str, Campaign); 14] = [
     // The longest come first, so that no thread waits for one of them at the end.
     ("killed_at_random", random::killed),
     ("killed_at_every_call", calls::killed),
@@ -53,6 +53,8 @@ const CAMPAIGNS: [(&str, Campaign); 12] = [
     ("a_refused_recording_keeps_the_old_one", recording::refused),
     ("naive_writing_is_caught", random::naive),
     ("file_systems_that_lack_something", lacking::done_without),
+    ("owners_and_modes_that_cannot_be_set", lacking::owners),
+    ("work_whose_files_are_refused_is_printed", lacking::printed),
     ("crafted_folders_do_no_harm", lacking::crafted),
     ("no_threads_are_done_without", threads::refused),
     ("a_full_disk_loses_nothing", disk::full),

@@ -17,6 +17,7 @@ use crate::cli::arguments::model::train::model_file;
 use crate::cli::arguments::sweep::Wanted;
 use crate::cli::commands::confusion::fits_in_table;
 use crate::cli::commands::sweep::leave;
+use crate::cli::commands::{Summary, unless_stopped};
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::evaluation::{self, EvaluationJson};
@@ -120,7 +121,7 @@ pub(crate) fn merge(
     files: &[PathBuf],
     wanted: &Wanted,
     charset: Charset,
-) -> Result<String, CliError> {
+) -> Result<Summary, CliError> {
     let start = Instant::now();
     if let Some(file) = &wanted.atlas {
         file.check(wanted.there.existing())?;
@@ -164,14 +165,14 @@ pub(crate) fn merge(
         let result = sweeps(&parts, &memory)?;
         // Until here nothing is written, so a signal may just end the program.
         let signals = Signals::catch().map_err(CliError::System)?;
-        let summary = leave(&result, start, wanted, None, charset, &signals)?;
+        let summary = leave(&result, start, wanted, Ok(None), charset, &signals)?;
         (result.atlas.len(), summary)
     };
     if let Some(peak) = peak() {
         let imprints = counted(imprints as u64, "imprint");
         say(&format!("merged: {imprints}, {peak} of memory"));
     }
-    wanted.note_written(charset);
+    wanted.note_written(&summary, charset);
     Ok(summary)
 }
 
@@ -236,29 +237,27 @@ fn models(parts: &[Part], memory: &MemoryGuard) -> Result<Model, CliError> {
     Ok(merge.finish().map_err(TrainingError::from)?)
 }
 
-/// Writes a merged model, and returns the text to print.
-fn leave_model(model: &Model, wanted: &Wanted) -> Result<String, CliError> {
+/// Writes a merged model, and returns the summary to print, with the error if there is no file.
+fn leave_model(model: &Model, wanted: &Wanted) -> Result<Summary, CliError> {
     if wanted.json {
         // Before anything is written.
         fits_in_table("confusion matrix", model.shapes().len())?;
     }
     let signals = Signals::catch().map_err(CliError::System)?;
-    if let Some(file) = &wanted.atlas {
-        let saved = save_model(
-            model,
-            file.path(),
-            wanted.there.existing(),
-            &signals.stopped,
-        );
-        saved.map_err(|error| signals.failure_or(error.into()))?;
-    }
+    let saved = wanted.atlas.as_ref().map_or(Ok(()), |file| {
+        let existing = wanted.there.existing();
+        let saved = save_model(model, file.path(), existing, &signals.stopped);
+        saved.map_err(|error| signals.failure_or(error.into()))
+    });
+    let saved = unless_stopped(saved)?;
     let limit = Evaluation::of(model);
-    Ok(if wanted.json {
+    let text = if wanted.json {
         json::ascii(&EvaluationJson {
             evaluation: &limit,
             classifier: None,
         }) + "\n"
     } else {
         evaluation::summary(&limit, evaluation::NamedBy::Imprint)
-    })
+    };
+    Ok((text, saved))
 }

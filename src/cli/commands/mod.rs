@@ -50,3 +50,17 @@ pub(super) mod script;
 pub(super) mod completions;
 
 pub(super) mod man;
+
+use crate::cli::error::CliError;
+
+/// The summary of long work, and the error if its files could not be written: it is reported after the summary is
+/// printed, so that the work is not lost.
+pub(super) type Summary = (String, Result<(), CliError>);
+
+/// Returns the outcome of writing files unless a signal stopped it: then there is no summary.
+fn unless_stopped(written: Result<(), CliError>) -> Result<Result<(), CliError>, CliError> {
+    match written {
+        Err(stopped @ CliError::Stopped { .. }) => Err(stopped),
+        written => Ok(written),
+    }
+}

@@ -23,6 +23,7 @@ use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
 use crate::cli::arguments::model::train::{ModelTarget, TrainArguments};
 use crate::cli::commands::resume::{self, KEPT};
 use crate::cli::commands::training_grid::TrainingGrid;
+use crate::cli::commands::{Summary, unless_stopped};
 use crate::cli::error::CliError;
 use crate::cli::input::shape_set;
 use crate::cli::input::shapes::Shelf;
@@ -47,8 +48,8 @@ use crate::storage::{
 use crate::storage::{ModelChoice, unknown_set};
 use crate::sweep::Shard;
 
-/// Trains a model and writes it. Returns the text to print. The path is tried before the work begins. A signal stops
-/// the training and leaves no file.
+/// Trains a model and writes it. Returns the text to print, with the error if there is no file. The path is tried
+/// before the work begins. A signal stops the training and leaves no file.
 ///
 /// # Errors
 /// Returns the errors of the shapes; an error if the sensor cuts shapes off and `--allow-cut` is not given, or if the
@@ -57,7 +58,7 @@ pub(crate) fn train(
     asked: &TrainArguments,
     shelf: &Shelf,
     charset: Charset,
-) -> Result<String, CliError> {
+) -> Result<Summary, CliError> {
     let path = path_of(&asked.to, shelf)?;
     let shapes = shape_set::read(&asked.set, shelf)?;
     let grid = TrainingGrid::of(asked, &shapes)?;
@@ -73,8 +74,12 @@ pub(crate) fn train(
         ShardFile::Refused | ShardFile::Replaced => Ok(None),
     };
     if let Some(model) = kept()? {
-        return trained(&model, &path, KEPT, asked, charset);
+        return Ok((trained(&model, &path, Some(KEPT), asked, charset)?, Ok(())));
     }
+    let _folder = match &asked.to {
+        ModelTarget::Named(_) => Some(folder(shelf)?.made()?),
+        ModelTarget::File(_) => None,
+    };
     // A path that cannot be written is an error before the work, not after it.
     drop(UnfinishedFile::new(&path, asked.there.existing())?);
     if !asked.quiet {
@@ -92,14 +97,13 @@ pub(crate) fn train(
         error => signals.training_failure(error, &memory),
     })?;
     let saved = save_model(&model, &path, asked.there.existing(), stopped);
-    match saved {
+    let (done, outcome) = match saved {
+        Ok(()) => (Some("written"), Ok(())),
         // Another job may have written this shard meanwhile: it was queued again, or started twice.
-        Err(error) if error.exists() && kept()?.is_some() => {
-            trained(&model, &path, KEPT, asked, charset)
-        }
-        Err(error) => Err(signals.failure_or(error.into())),
-        Ok(()) => trained(&model, &path, "written", asked, charset),
-    }
+        Err(error) if error.exists() && kept()?.is_some() => (Some(KEPT), Ok(())),
+        Err(error) => (None, unless_stopped(Err(signals.failure_or(error.into())))?),
+    };
+    Ok((trained(&model, &path, done, asked, charset)?, outcome))
 }
 
 /// Runs a training until it is done, memory runs short or `stopped` becomes true.
@@ -121,14 +125,15 @@ fn run(
     model
 }
 
-/// Returns the text to print about a model. `done` tells whether its file was written or existed already.
+/// Returns the text to print about a model. `done` tells whether its file was written or existed already; None if there
+/// is none.
 ///
 /// # Errors
 /// Returns the errors of [`card_json`].
 fn trained(
     model: &Model,
     path: &Path,
-    done: &str,
+    done: Option<&str>,
     asked: &TrainArguments,
     charset: Charset,
 ) -> Result<String, CliError> {
@@ -136,11 +141,13 @@ fn trained(
     let name = path.to_string_lossy();
     Ok(if asked.json {
         let mut text = card_json(model, &limit)?;
-        text.insert("file".to_owned(), json!(name));
+        if done.is_some() {
+            text.insert("file".to_owned(), json!(name));
+        }
         json::ascii(&text) + "\n"
     } else {
         let mut text = evaluation::summary(&limit, NamedBy::Imprint);
-        if !asked.quiet {
+        if let Some(done) = done.filter(|_| !asked.quiet) {
             let said = charset.line(&format!("{done}: {name}")).into_owned();
             text.insert_str(0, &(said + "\n"));
         }
@@ -148,7 +155,7 @@ fn trained(
     })
 }
 
-/// Returns the file of a new model, and makes the folder beside the library if necessary.
+/// Returns the file of a new model. Its folder may not exist yet.
 fn path_of(target: &ModelTarget, shelf: &Shelf) -> Result<PathBuf, CliError> {
     match target {
         ModelTarget::File(path) => Ok(path.clone()),
@@ -156,12 +163,7 @@ fn path_of(target: &ModelTarget, shelf: &Shelf) -> Result<PathBuf, CliError> {
             if !ModelChoice::from_name(name.clone()).is_read() {
                 return Err(CliError::BuiltInSet { name: name.clone() });
             }
-            let models = folder(shelf)?;
-            std::fs::create_dir_all(models.path()).map_err(|error| CliError::File {
-                name: models.path().to_string_lossy().into_owned(),
-                error,
-            })?;
-            Ok(models.file(name))
+            Ok(folder(shelf)?.file(name))
         }
     }
 }

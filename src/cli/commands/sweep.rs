@@ -18,6 +18,7 @@ use crate::cli::arguments::flags::TOO_LITTLE_MEMORY;
 use crate::cli::arguments::sweep::Wanted;
 use crate::cli::commands::export::written;
 use crate::cli::commands::resume::{self, KEPT};
+use crate::cli::commands::{Summary, unless_stopped};
 use crate::cli::error::CliError;
 use crate::cli::output::charset::Charset;
 use crate::cli::output::note::note;
@@ -34,11 +35,11 @@ use crate::storage::{ArchiveFileError, AtlasFile, FinishedFile, PoseFile, persis
 use crate::sweep::{Shard, Sweep, SweepResult};
 
 impl Wanted {
-    /// Notes each file that was written, in a line on standard error.
-    pub(super) fn note_written(&self, charset: Charset) {
+    /// Notes each file in a line on standard error, if the files of a summary were written.
+    pub(super) fn note_written(&self, (_, outcome): &Summary, charset: Charset) {
         let atlas = self.atlas.as_ref().map(AtlasFile::path);
         let files = atlas.into_iter().chain(self.poses.as_deref());
-        for path in files.filter(|_| !self.quiet) {
+        for path in files.filter(|_| outcome.is_ok() && !self.quiet) {
             note(&written(path), charset);
         }
     }
@@ -101,19 +102,19 @@ pub(crate) fn grid(
 /// print.
 ///
 /// # Errors
-/// Returns [`CliError::Stopped`] after a signal; otherwise the errors of the files.
+/// Returns [`CliError::Stopped`] after a signal; otherwise the errors of the files that show before the sweep.
 pub(crate) fn sweep(
     grid: &PoseGrid,
     shard: Shard,
     jobs: usize,
     wanted: &Wanted,
     charset: Charset,
-) -> Result<String, CliError> {
+) -> Result<Summary, CliError> {
     let start = Instant::now();
     let signals = Signals::catch().map_err(CliError::System)?;
     let stopped = &signals.stopped;
     if let Some(kept) = kept(grid, shard, wanted, charset)? {
-        return Ok(summary(&kept, start, wanted, charset));
+        return Ok((summary(&kept, start, wanted, charset), Ok(())));
     }
     if let Some(file) = &wanted.atlas {
         file.check(wanted.there.existing())?;
@@ -146,31 +147,48 @@ pub(crate) fn sweep(
     if memory.exceeded() {
         return Err(CliError::Memory(memory.message()));
     }
-    let poses = poses.map(PoseFile::finish).transpose()?;
+    let poses = poses.map(PoseFile::finish).transpose();
     if !result.complete() {
+        poses?;
         return Err(signals.failure());
     }
-    let left = leave(&result, start, wanted, poses, charset, &signals);
+    let left = leave(&result, start, wanted, poses, charset, &signals)?;
     // Another job may have written this shard meanwhile: it was queued again, or started twice.
-    if matches!(left, Err(CliError::Taken { .. }))
+    if matches!(left, (_, Err(CliError::Taken { .. })))
         && let Some(kept) = kept(grid, shard, wanted, charset)?
     {
-        return Ok(summary(&kept, start, wanted, charset));
+        return Ok((summary(&kept, start, wanted, charset), Ok(())));
     }
-    let text = left?;
-    wanted.note_written(charset);
-    Ok(text)
+    wanted.note_written(&left, charset);
+    Ok(left)
 }
 
-/// Writes the atlas, gives the files their names, and returns the summary to print.
+/// Writes the atlas, gives the files their names, and returns the summary to print, with the error if there are no
+/// files.
+///
+/// # Errors
+/// Returns [`CliError::Stopped`] after a signal.
 pub(super) fn leave(
     result: &SweepResult,
     start: Instant,
     wanted: &Wanted,
-    poses: Option<FinishedFile>,
+    poses: Result<Option<FinishedFile>, ArchiveFileError>,
     charset: Charset,
     signals: &Signals,
-) -> Result<String, CliError> {
+) -> Result<Summary, CliError> {
+    let poses = poses.map_err(CliError::from);
+    let written = poses.and_then(|poses| write(result, wanted, poses, signals));
+    let written = unless_stopped(written)?;
+    Ok((summary(result, start, wanted, charset), written))
+}
+
+/// Writes the atlas and gives the files their names.
+fn write(
+    result: &SweepResult,
+    wanted: &Wanted,
+    poses: Option<FinishedFile>,
+    signals: &Signals,
+) -> Result<(), CliError> {
     let atlas = match &wanted.atlas {
         Some(file) => {
             let whole = file.prepare(result, wanted.there.existing(), &signals.stopped);
@@ -186,8 +204,7 @@ pub(super) fn leave(
         (Some(file), None) | (None, Some(file)) => file.persist(),
         (None, None) => Ok(()),
     };
-    named.map_err(ArchiveFileError::from)?;
-    Ok(summary(result, start, wanted, charset))
+    Ok(named.map_err(ArchiveFileError::from)?)
 }
 
 /// Returns the summary of a result to print.
