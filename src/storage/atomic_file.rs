@@ -31,6 +31,7 @@ pub enum Existing {
 
 /// A file under a temporary name, still being written.
 #[derive(Debug)]
+#[must_use = "only `finish` and `persist` make a file of it"]
 pub struct UnfinishedFile {
     path: PathBuf,
     existing: Existing,
@@ -136,6 +137,7 @@ impl UnfinishedFile {
 
 /// A file that is on disk and lacks only its name.
 #[derive(Debug)]
+#[must_use = "only `persist` gives the file its name"]
 pub struct FinishedFile {
     path: PathBuf,
     existing: Existing,
@@ -159,7 +161,6 @@ impl FinishedFile {
     }
 
     /// Returns the same file, with another treatment of a file that has its name by then.
-    #[must_use]
     pub fn with_existing(self, existing: Existing) -> Self {
         Self { existing, ..self }
     }

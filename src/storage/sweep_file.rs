@@ -115,8 +115,7 @@ impl AtlasFile {
     /// # Errors
     /// Returns the system's error, with the file's name; also if a file is there and is to be kept.
     pub fn check(&self, existing: Existing) -> Result<(), ArchiveFileError> {
-        UnfinishedFile::new(&self.path, existing)?;
-        Ok(())
+        Ok(UnfinishedFile::new(&self.path, existing).map(drop)?)
     }
 
     /// Writes the atlas of a result. Leaves nothing behind if `stopped` becomes true on the way.
@@ -190,10 +189,39 @@ pub fn is_poses(name: impl AsRef<Path>) -> bool {
 
 /// A file with the atlas number of every pose: `uint32` in an array shaped angles × y0 × x0, preceded by the zooms
 /// (y, then x) if there are several.
+///
+/// The array is that of a whole grid, so the rows must come from a sweep of the whole grid, not of a shard.
+///
+/// ```
+/// use std::sync::atomic::{AtomicBool, Ordering};
+/// use taxel::prelude::*;
+/// use taxel::storage::{Existing, PoseFile};
+///
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("poses.npy");
+/// let hexagon = Source::Figure(Figure::default_of(FigureKind::Hexagon, &Sensor::default()));
+/// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
+/// let grid = PoseGrid::new(hexagon, Sensor::default(), Anchor::Centre, ranges)?;
+/// let mut file = PoseFile::new(&path, &grid, Existing::Kept)?;
+/// let failed = AtomicBool::new(false);
+/// let go_on = |_| !failed.load(Ordering::Relaxed);
+/// let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &failed);
+/// let result = Sweep::new(&grid).progress(&go_on).rows(&mut take).run();
+/// if let Some(whole) = file.finish()? {
+///     whole.persist()?;
+/// }
+/// # assert!(result.complete() && path.exists());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct PoseFile {
     file: UnfinishedFile,
     start: u64,
+    /// The number of rows of the grid, and of poses in each.
+    rows: u64,
+    row_length: u64,
+    /// The number of rows that were not taken yet.
+    missing: u64,
     /// The first error.
     error: Option<io::Error>,
     bytes: Vec<u8>,
@@ -220,40 +248,58 @@ impl PoseFile {
         Ok(Self {
             file,
             start: header.len() as u64,
+            rows: grid.rows(),
+            row_length: grid.row_length(),
+            missing: grid.rows(),
             error: None,
             bytes: Vec::new(),
         })
     }
 
-    /// Writes a row: its number in the grid and the atlas numbers of its poses. All rows have the same length. If the
-    /// row cannot be written, `stopped` becomes true.
+    /// Writes a row: its number in the grid and the atlas numbers of its poses. Takes each row once, in any order. If
+    /// the row cannot be written, or is not one of the grid, `stopped` becomes true and [`Self::finish`] returns the
+    /// error.
     pub fn take(&mut self, row: u64, ids: &[u32], stopped: &AtomicBool) {
         if self.error.is_some() {
             return;
+        }
+        match self.write_row(row, ids) {
+            Ok(()) => self.missing = self.missing.saturating_sub(1),
+            Err(error) => {
+                self.error = Some(error);
+                stopped.store(true, Ordering::Relaxed);
+            }
+        }
+    }
+
+    fn write_row(&mut self, row: u64, ids: &[u32]) -> io::Result<()> {
+        let (rows, row_length) = (self.rows, self.row_length);
+        let length = ids.len() as u64;
+        if row >= rows || length != row_length {
+            let error = format!(
+                "row {row} with {length} numbers, expected {rows} rows of {row_length} numbers"
+            );
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, error));
         }
         self.bytes.clear();
         self.bytes
             .extend(ids.iter().flat_map(|id| id.to_le_bytes()));
         let place = self.start + row * self.bytes.len() as u64;
         let output = &mut self.file.output;
-        let written = output
-            .seek(SeekFrom::Start(place))
-            .and_then(|_| output.write_all(&self.bytes));
-        if let Err(error) = written {
-            self.error = Some(error);
-            stopped.store(true, Ordering::Relaxed);
-        }
+        output.seek(SeekFrom::Start(place))?;
+        output.write_all(&self.bytes)
     }
 
-    /// Completes the file when all rows were taken, without giving it its name yet. If it is dropped instead, nothing
-    /// is left of it.
+    /// Completes the file, without giving it its name yet. Returns None if rows are missing, because the sweep was
+    /// stopped or was one of a shard; then nothing is left of the file, and neither is if it is dropped instead.
     ///
     /// # Errors
     /// Returns the first error, with the file's name.
-    pub fn finish(self) -> Result<FinishedFile, ArchiveFileError> {
+    pub fn finish(self) -> Result<Option<FinishedFile>, ArchiveFileError> {
         match self.error {
             Some(error) => Err(ArchiveFileError::new(self.file.path(), error)),
-            None => Ok(self.file.finish()?),
+            None if self.missing > 0 => Ok(None),
+            None => Ok(Some(self.file.finish()?)),
         }
     }
 }
@@ -262,17 +308,27 @@ impl PoseFile {
 mod tests {
     use super::*;
     use crate::figure::{Figure, FigureKind};
+    use crate::index::index;
     use crate::pose::{Anchor, Axis, Ranges};
     use crate::sensor::Sensor;
     use crate::source::Source;
     use crate::storage::persist_pair;
-    use crate::sweep::Sweep;
+    use crate::sweep::{Shard, Sweep};
 
     fn result() -> SweepResult {
         let ranges = Ranges::default().with(Axis::Angle, "0".parse().expect("a range"));
         let source = Source::Figure(Figure::default_of(FigureKind::Hexagon, &Sensor::default()));
         let grid = PoseGrid::new(source, Sensor::default(), Anchor::Corner, ranges);
         Sweep::new(&grid.expect("in range")).run()
+    }
+
+    /// Writes the file of all poses, up to its name.
+    fn whole(path: &Path, grid: &PoseGrid, existing: Existing) -> FinishedFile {
+        let mut file = PoseFile::new(path, grid, existing).expect("begun");
+        let ids = vec![7; index(grid.row_length())];
+        let stopped = AtomicBool::new(false);
+        (0..grid.rows()).for_each(|row| file.take(row, &ids, &stopped));
+        file.finish().expect("written").expect("all rows")
     }
 
     fn files(folder: &Path) -> Vec<String> {
@@ -327,8 +383,7 @@ mod tests {
         let pair = |existing| {
             let file = AtlasFile::new(&atlas).expect("a format");
             let first = file.prepare(&result, existing, &going).expect("written");
-            let second = PoseFile::new(&poses, &result.grid, existing).expect("begun");
-            (first, second.finish().expect("written"))
+            (first, whole(&poses, &result.grid, existing))
         };
         let (first, second) = pair(Existing::Kept);
         std::fs::write(&poses, "theirs").expect("written");
@@ -378,8 +433,7 @@ mod tests {
             std::fs::create_dir(&elsewhere).expect("made");
             let file = AtlasFile::new(&atlas).expect("a format");
             let first = file.prepare(&result, existing, &going).expect("written");
-            let second = PoseFile::new(elsewhere.join("a.npy"), &result.grid, existing);
-            let second = second.expect("begun").finish().expect("written");
+            let second = whole(&elsewhere.join("a.npy"), &result.grid, existing);
             std::fs::remove_dir_all(&elsewhere).expect("removed");
             let refused = persist_pair(first, second).expect_err("its folder is gone");
             assert!(refused.is_missing(), "{refused}");
@@ -400,8 +454,7 @@ mod tests {
             }
             let file = AtlasFile::new(&atlas).expect("a format");
             let first = file.prepare(&result, Existing::Replaced, &going);
-            let second = PoseFile::new(&poses, &result.grid, Existing::Replaced);
-            let second = second.expect("begun").finish().expect("written");
+            let second = whole(&poses, &result.grid, Existing::Replaced);
             std::fs::remove_dir_all(&elsewhere).expect("removed");
             let refused = persist_pair(first.expect("written"), second);
             let refused = refused.expect_err("a folder is gone");
@@ -417,11 +470,49 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("poses.npy");
         let result = result();
-        let file = PoseFile::new(&path, &result.grid, Existing::Kept).expect("begun");
+        let whole = whole(&path, &result.grid, Existing::Kept);
         std::fs::write(&path, "mine").expect("written");
-        let whole = file.finish().expect("written");
         assert!(whole.persist().expect_err("it is there").exists());
         assert_eq!(std::fs::read(&path).ok().as_deref(), Some(&b"mine"[..]));
         assert_eq!(files(folder.path()), ["poses.npy"]);
+    }
+
+    #[test]
+    fn a_pose_file_without_all_rows_is_not_finished() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("poses.npy");
+        let grid = result().grid;
+        let swept = |shard: &str, go_on: bool| {
+            let mut file = PoseFile::new(&path, &grid, Existing::Kept).expect("begun");
+            let stopped = AtomicBool::new(false);
+            let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &stopped);
+            let shard: Shard = shard.parse().expect("a shard");
+            let progress = |_| go_on;
+            let sweep = Sweep::new(&grid).shard(shard).progress(&progress);
+            sweep.rows(&mut take).run();
+            file.finish().expect("no error").is_some()
+        };
+        let cases = [("1/1", true), ("1/1", false), ("1/2", true), ("2/2", true)];
+        let finished = cases.map(|(shard, go_on)| swept(shard, go_on));
+        assert_eq!(finished, [true, false, false, false]);
+        assert_eq!(files(folder.path()), [""; 0], "nothing was named");
+    }
+
+    #[test]
+    fn a_row_that_the_grid_does_not_have_is_an_error() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("poses.npy");
+        let grid = result().grid;
+        for (row, length) in [(100, 100), (u64::MAX, 100), (0, 99), (0, 0)] {
+            let mut file = PoseFile::new(&path, &grid, Existing::Kept).expect("begun");
+            let stopped = AtomicBool::new(false);
+            file.take(row, &vec![0; length], &stopped);
+            assert!(stopped.into_inner());
+            let error = file.finish().expect_err("no such row").to_string();
+            let expected = format!(
+                "poses.npy: row {row} with {length} numbers, expected 100 rows of 100 numbers"
+            );
+            assert!(error.ends_with(&expected), "{error}");
+        }
     }
 }

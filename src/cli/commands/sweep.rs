@@ -147,7 +147,7 @@ pub(crate) fn sweep(
     if memory.exceeded() {
         return Err(CliError::Memory(memory.message()));
     }
-    let poses = poses.map(PoseFile::finish).transpose();
+    let poses = poses.map(PoseFile::finish).transpose().map(Option::flatten);
     if !result.complete() {
         poses?;
         return Err(signals.failure());

@@ -351,10 +351,10 @@ fn write_poses(
     let progress = |poses: u64| proceed(poses, stop, clock) && !full.load(Ordering::Relaxed);
     let mut take = |row: u64, ids: &[u32]| file.take(row, ids, &full);
     let sweep = Sweep::new(&result.grid).progress(&progress).rows(&mut take);
-    let complete = sweep.run().complete();
-    let whole = file.finish()?;
-    if complete {
-        whole.persist()?;
-    }
-    Ok(complete)
+    sweep.run();
+    let Some(whole) = file.finish()? else {
+        return Ok(false);
+    };
+    whole.persist()?;
+    Ok(true)
 }
