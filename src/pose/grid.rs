@@ -170,8 +170,15 @@ impl PoseGrid {
         Self::new(self.source.clone(), self.sensor, self.anchor, ranges).ok()
     }
 
-    /// Returns the shape in a pose. A value beyond the range of its parameter is ignored.
-    pub fn placed(&self, pose: Pose) -> Placed {
+    /// Returns the shape in pose `number`. Numbers beyond the last pose start again at the first. For a pose between
+    /// those of the grid, see [`Self::source_at`].
+    pub fn placed(&self, number: u64) -> Placed {
+        self.placed_in(self.pose(number))
+    }
+
+    /// Returns the shape in a pose, which may lie between those of the grid. A centre may lie anywhere; any other value
+    /// beyond the range of its parameter is ignored.
+    pub(crate) fn placed_in(&self, pose: Pose) -> Placed {
         match self.anchor {
             Anchor::Corner => Placed::at_corner(self.source_in(pose)),
             Anchor::Centre => {
@@ -194,7 +201,8 @@ impl PoseGrid {
         source
     }
 
-    /// Returns the point about which the shape turns, in a pose and for any anchor: x and y in cells.
+    /// Returns the point about which the shape turns, in pose `number` and for any anchor: x and y in cells. Numbers
+    /// beyond the last pose start again at the first.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -202,10 +210,14 @@ impl PoseGrid {
     /// // 6 × 3, with its corner at 5, 5 before it is turned.
     /// let rectangle = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
     /// let grid = PoseGrid::new(rectangle, Sensor::default(), Anchor::Corner, Ranges::default())?;
-    /// assert_eq!(grid.centre(grid.pose(0)), [8.0, 6.5]);
+    /// assert_eq!(grid.centre(0), [8.0, 6.5]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn centre(&self, pose: Pose) -> [f64; 2] {
+    pub fn centre(&self, number: u64) -> [f64; 2] {
+        self.centre_in(self.pose(number))
+    }
+
+    fn centre_in(&self, pose: Pose) -> [f64; 2] {
         if self.anchor == Anchor::Centre {
             return [pose[Axis::X0], pose[Axis::Y0]];
         }
@@ -213,13 +225,14 @@ impl PoseGrid {
         [centre.x, centre.y]
     }
 
-    /// Returns the shape in a pose, placed by its corner as in forms and files.
+    /// Returns the shape in a pose, placed by its corner as in forms and files. The pose may lie between those of the
+    /// grid.
     ///
     /// If the grid's anchor is the centre, the corner is rounded to nine decimals. So a taxel that is covered just at
     /// the threshold may differ.
     ///
     /// # Errors
-    /// Returns an error if the corner lies outside of the range of x0 or y0.
+    /// Returns an error if the corner lies outside of the range of x0 or y0, or a value of the pose is out of range.
     ///
     /// ```
     /// use taxel::prelude::*;
@@ -280,13 +293,13 @@ impl PoseGrid {
     /// Returns the boundary of the shape in an orientation, with its anchor at the origin.
     pub(crate) fn boundary<T: Real>(&self, orientation: u64) -> Boundary<T> {
         let pose = self.first_pose(orientation);
-        Boundary::of(&self.placed(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0)))
+        Boundary::of(&self.placed_in(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0)))
     }
 
     /// Returns the point about which the shape turns, in an orientation, with the anchor at the origin.
     pub(crate) fn centre_from_anchor(&self, orientation: u64) -> [f64; 2] {
         let pose = self.first_pose(orientation);
-        self.centre(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0))
+        self.centre_in(pose.with(Axis::X0, 0.0).with(Axis::Y0, 0.0))
     }
 
     /// Returns the position of the anchor in the plane, for the values of x0 and y0 with indices `x` and `y`.
@@ -410,7 +423,7 @@ mod tests {
             for number in (0..grid.poses()).step_by(7) {
                 let pose = grid.pose(number);
                 let source = grid.source_at(pose).expect("inside of the sensor");
-                let expected = plane.touch(&grid.placed(pose));
+                let expected = plane.touch(&grid.placed(number));
                 assert_eq!(plane.touch(&source), expected, "{anchor:?} {pose:?}");
                 assert!(grid.is_of(&source, grid.sensor()));
             }

@@ -131,13 +131,13 @@ impl Model {
         for run in runs {
             let first = grid.pose(run.first);
             // All poses of a run leave one imprint, in one place.
-            let there = plane.touch(&grid.placed(first)).bounds()?;
+            let there = plane.touch(&grid.placed(run.first)).bounds()?;
             let by = [
                 f64::from(bounds.left) - f64::from(there.left),
                 f64::from(bounds.top) - f64::from(there.top),
             ];
-            let last = grid.centre(grid.pose(run.first + run.poses - 1))[0];
-            let [x, y] = grid.centre(first);
+            let last = grid.centre(run.first + run.poses - 1)[0];
+            let [x, y] = grid.centre(run.first);
             let weight = run.poses * run.orientations;
             sums.add(weight, (x + by[0], last + by[0]), run.poses, y + by[1]);
             if most > 0 {
@@ -358,14 +358,14 @@ mod tests {
         for shape in [0, 1, 2, 5] {
             let grid = &grids[shape];
             let mut plane = Plane::new(*grid.sensor());
-            let imprint = plane.touch(&grid.placed(grid.pose(4321)));
+            let imprint = plane.touch(&grid.placed(4321));
             let key = ImprintKey::of(&imprint);
             let estimate = model.pose_of(shape, &imprint, &|_| true).expect("it does");
             let bounds = imprint.bounds().expect("not empty");
             let (mut poses, mut x, mut square) = (0_u32, 0.0, 0.0);
             for number in 0..grid.poses() {
                 let pose = grid.pose(number);
-                let other = plane.touch(&grid.placed(pose));
+                let other = plane.touch(&grid.placed(number));
                 if ImprintKey::of(&other) == key {
                     let there = other.bounds().expect("not empty");
                     let at = pose[Axis::X0] + f64::from(bounds.left) - f64::from(there.left);
@@ -413,7 +413,7 @@ mod tests {
         let training = Training::fitting(shapes, steps).expect("it fits");
         let grid = training.grids()[0].clone();
         let model = training.run().expect("not stopped");
-        let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(grid.pose(21)));
+        let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(21));
         let pose = model.pose_of(0, &imprint, &|_| true).expect("it leaves it");
         let angle = pose.angle.expect("it has one");
         assert!((angle.period - 360.0 / 7.0).abs() < 1e-12, "{angle:?}");

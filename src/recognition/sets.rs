@@ -205,7 +205,7 @@ mod tests {
             let grid = Training::fitting(vec![shape.clone()], steps).expect("it fits");
             let grid = &grid.grids()[0];
             let mut plane = crate::touch::Plane::new(*grid.sensor());
-            plane.touch(&grid.placed(grid.pose(0)));
+            plane.touch(&grid.placed(0));
             let area: f64 = plane.coverages().values().iter().sum();
             assert!((area - 30.0).abs() < 0.2, "{}: {area}", shape.name);
         }

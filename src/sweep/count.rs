@@ -163,7 +163,7 @@ mod tests {
                 let found: u64 = runs.iter().map(|run| run.poses * run.orientations).sum();
                 assert_eq!(found, count, "{imprint}");
                 for run in runs {
-                    let placed = grid.placed(grid.pose(run.first + run.poses - 1));
+                    let placed = grid.placed(run.first + run.poses - 1);
                     assert_eq!(crate::touch::Plane::new(sensor).touch(&placed), imprint);
                 }
                 poses += count;

@@ -320,7 +320,7 @@ mod tests {
                 assert_eq!(ids.len(), 14 * 7);
                 for (index, id) in (0..).zip(ids) {
                     let index = [3 + index % 14, 2 + index / 14, turn, zoom, 0];
-                    let pose = grid.pose(grid.number(PoseIndex::new(index)));
+                    let pose = grid.number(PoseIndex::new(index));
                     let touched = plane.touch(&grid.placed(pose));
                     assert_eq!(id, result.atlas.find(&touched), "{pose:?}");
                     assert!(id.is_some());

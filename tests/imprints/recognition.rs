@@ -192,7 +192,7 @@ fn counts_equal_those_of_touching_pose_by_pose() {
         let grid = PoseGrid::new(shape.source.clone(), sensor, Anchor::Corner, ranges);
         let grid = grid.expect("in range");
         for number in 0..grid.poses() {
-            let imprint = Plane::new(sensor).touch(&grid.placed(grid.pose(number)));
+            let imprint = Plane::new(sensor).touch(&grid.placed(number));
             *counts.entry((ImprintKey::of(&imprint), index)).or_default() += 1;
         }
     }

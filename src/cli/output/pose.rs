@@ -126,7 +126,7 @@ impl PoseReport {
             name: named.name.clone(),
             estimate,
             corner: [f64::from(bounds.left), f64::from(bounds.top)],
-            placed: grid.placed(pose),
+            placed: grid.placed_in(pose),
             pitch_mm,
         })
     }

@@ -483,7 +483,7 @@ impl Results {
     /// Returns the number of the imprint that a pose leaves; None if the pose was not swept.
     pub fn id_at(&self, pose: u64) -> Option<u32> {
         let grid = &self.sweep().grid;
-        let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(grid.pose(pose)));
+        let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
         self.id(&imprint)
     }
 

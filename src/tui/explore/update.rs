@@ -209,12 +209,12 @@ fn follow(app: &mut App, results: &mut Results) {
 /// another sensor by now. Taxels that it reads differently are set by hand, so that the imprint is the selected one.
 fn put_onto_matrix(app: &mut App, results: Box<Results>) -> Option<Effect> {
     let grid = &results.sweep().grid;
-    let Some(pose) = results.pose().map(|number| grid.pose(number)) else {
+    let Some(pose) = results.pose() else {
         refuse(app, "nothing is selected here");
         app.dialogs.push(Dialog::Results(results));
         return None;
     };
-    let source = match grid.source_at(pose) {
+    let source = match grid.source_at(grid.pose(pose)) {
         Ok(source) => source,
         Err(error) => {
             refuse(app, error.to_string());

@@ -58,7 +58,7 @@ impl Quiz {
     /// sensor if it fits there, off the rim if there is room; otherwise on the model's sensor.
     pub fn touch(&mut self, sensor: Sensor, random: &mut Pcg64) -> Option<(Sensor, Imprint)> {
         let grid = self.trained.grid(self.shape)?;
-        let pose = grid.pose(below(random, grid.poses()));
+        let pose = below(random, grid.poses());
         let own = *grid.sensor();
         let imprint = Plane::new(own).touch(&grid.placed(pose));
         let (sensor, imprint) = onto(&imprint, sensor, own);

@@ -113,7 +113,7 @@ fn unknown_between(model: &Model) -> Option<(u64, u64)> {
             continue;
         };
         for _ in 0..TRIED {
-            let pose = grid.pose(below(&mut random, grid.poses()));
+            let pose = below(&mut random, grid.poses());
             let imprint = plane.touch(&grid.placed(pose));
             tried += 1;
             unknown += u64::from(model.counts_of(&imprint).is_empty());

@@ -297,7 +297,7 @@ pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
     let mut known = 0;
     let mut counts = vec![0_u64; imprints.len()];
     for (number, &id) in (0..).zip(&ids) {
-        let placed = grid.placed(grid.pose(number));
+        let placed = grid.placed(number);
         let touched = plane.touch(&placed);
         let entry = imprints
             .get(id as usize)

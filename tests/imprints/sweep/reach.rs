@@ -19,7 +19,7 @@ use super::cases::{self, picture};
 
 /// Counts the poses of a grid that are cut off, one by one.
 fn cut_off_one_by_one(grid: &PoseGrid) -> u64 {
-    let cut = |&number: &u64| reaches_beyond(&grid.placed(grid.pose(number)), grid.sensor());
+    let cut = |&number: &u64| reaches_beyond(&grid.placed(number), grid.sensor());
     (0..grid.poses()).filter(cut).count() as u64
 }
 

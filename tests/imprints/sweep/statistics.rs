@@ -55,7 +55,7 @@ fn statistics_equal_those_of_a_plain_loop() {
             if number % turn == 0 {
                 turns.push(vec![Vec::new(); features().len()]);
             }
-            let regions = regions(&plane.touch(&grid.placed(grid.pose(number))));
+            let regions = regions(&plane.touch(&grid.placed(number)));
             let Some(main) = main_region(&regions) else {
                 continue;
             };

@@ -280,8 +280,9 @@ fn draw_rulers(theme: &Theme, grid: &PoseGrid, pane: &MapPane, buffer: &mut Buff
 fn draw_pose(theme: &Theme, results: &Results, pane: &MapPane, buffer: &mut Buffer) {
     let result = results.sweep();
     let grid = &result.grid;
-    let pose = grid.pose(grid.number(results.pose_index()));
-    let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(pose));
+    let number = grid.number(results.pose_index());
+    let pose = grid.pose(number);
+    let imprint = Plane::new(*grid.sensor()).touch(&grid.placed(number));
     let entry = results.id(&imprint).and_then(|id| result.atlas.entry(id));
     let (which, poses) = match entry {
         Some(entry) => (
