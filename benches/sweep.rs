@@ -225,7 +225,7 @@ impl Pools {
             wake(pool);
             seconds(|| {
                 let result = pool.install(|| Sweep::new(grid).run());
-                times.distinct = black_box(result).atlas.len();
+                times.distinct = black_box(result).atlas().len();
             })
         });
         times.one.push(one[0]);

@@ -33,12 +33,12 @@ pub(crate) fn report() -> String {
     );
     for (name, x0, y0, claimed) in EXPERIMENTS {
         let result = sweep(x0, y0);
-        let (shifts, symmetry) = result.atlas.distinct_classes();
+        let (shifts, symmetry) = result.atlas().distinct_classes();
         let _ = writeln!(
             table,
             "| {name} | {} | {claimed} | {} | {shifts} | {symmetry} |",
-            result.poses,
-            result.atlas.len(),
+            result.poses(),
+            result.atlas().len(),
         );
     }
     table

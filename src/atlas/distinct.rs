@@ -159,7 +159,8 @@ impl Atlas {
     /// let bar = Source::from(Figure::rectangle(3.0, 1.0).on(&sensor)?);
     /// let ranges = Ranges::new(["2:2.9:0.1", "2", "0", "1", "1"].map(|range| range.parse().expect("a range")));
     /// let grid = PoseGrid::new(bar, sensor, Anchor::Corner, ranges)?;
-    /// let atlas = Sweep::new(&grid).run().atlas;
+    /// let result = Sweep::new(&grid).run();
+    /// let atlas = result.atlas();
     /// let moved = Figure::rectangle(3.0, 1.0).at(7.0, 1.0).on(&sensor)?;
     /// let imprint = Plane::new(sensor).touch(&moved);
     /// assert_eq!(atlas.find(&imprint), None);

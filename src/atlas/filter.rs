@@ -24,7 +24,8 @@ use crate::quote::shortened;
 /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
 /// let ranges = Ranges::default().with(Axis::Angle, "0".parse()?);
 /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, ranges)?;
-/// let atlas = Sweep::new(&grid).run().atlas;
+/// let result = Sweep::new(&grid).run();
+/// let atlas = result.atlas();
 /// // At angle 0 a rectangle 6 × 3 leaves 18 taxels, or 21 and more where it lies between them.
 /// let filter: AtlasFilter = "na>18 holes=0".parse()?;
 /// let kept = filter.keeps(&atlas).into_iter().filter(|&kept| kept).count();

@@ -35,7 +35,7 @@ impl Histogram {
     /// let square = Source::Figure(Figure::default_of(FigureKind::Rectangle, &Sensor::default()));
     /// let grid = PoseGrid::new(square, Sensor::default(), Anchor::Corner, Ranges::default())?;
     /// let result = Sweep::new(&grid).run();
-    /// let na = Histogram::of(&result.atlas, &features()[0], &result.atlas.values(0), 10);
+    /// let na = Histogram::of(result.atlas(), &features()[0], &result.atlas().values(0), 10);
     /// assert_eq!((na.width, na.without), (1.0, 0));
     /// assert_eq!(na.poses.iter().sum::<u64>(), 3_600_000);
     /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -25,28 +25,51 @@ use crate::sweep::runs;
 /// let ranges = upright.with(Axis::X0, cell).with(Axis::Y0, cell);
 /// let grid = PoseGrid::new(ring.into(), sensor, Anchor::Corner, ranges).unwrap();
 /// let result = Sweep::new(&grid).run();
-/// assert_eq!((result.poses, result.atlas.len()), (10_000, 393));
+/// assert_eq!((result.poses(), result.atlas().len()), (10_000, 393));
 /// # Ok::<(), taxel::pose::RangeError>(())
 /// ```
 #[derive(Clone, Debug)]
-#[non_exhaustive]
 pub struct SweepResult {
-    /// The grid.
-    pub grid: PoseGrid,
-    /// The part of the grid that was to be swept; [`Shard::WHOLE`] after a merge.
-    pub shard: Shard,
-    /// The number of poses swept. If the sweep was stopped, it is less than the number of poses of the shard.
-    pub poses: u64,
-    /// The number of poses that reach beyond the sensor.
-    pub partly_off: u64,
-    /// The distinct imprints.
-    pub atlas: Atlas,
-    /// The statistics of each feature, in the order of [`crate::atlas::features`].
-    pub statistics: Vec<Statistic>,
+    pub(crate) grid: PoseGrid,
+    pub(crate) shard: Shard,
+    pub(crate) poses: u64,
+    pub(crate) partly_off: u64,
+    pub(crate) atlas: Atlas,
+    pub(crate) statistics: Vec<Statistic>,
     pub(crate) variance_parts: VarianceParts,
 }
 
 impl SweepResult {
+    /// Returns the grid.
+    pub fn grid(&self) -> &PoseGrid {
+        &self.grid
+    }
+
+    /// Returns the part of the grid that was to be swept; [`Shard::WHOLE`] after a merge.
+    pub fn shard(&self) -> Shard {
+        self.shard
+    }
+
+    /// Returns the number of poses swept. If the sweep was stopped, it is less than the number of poses of the shard.
+    pub fn poses(&self) -> u64 {
+        self.poses
+    }
+
+    /// Returns the number of poses that reach beyond the sensor.
+    pub fn partly_off(&self) -> u64 {
+        self.partly_off
+    }
+
+    /// Returns the distinct imprints.
+    pub fn atlas(&self) -> &Atlas {
+        &self.atlas
+    }
+
+    /// Returns the statistics of each feature, in the order of [`crate::atlas::features`].
+    pub fn statistics(&self) -> &[Statistic] {
+        &self.statistics
+    }
+
     /// Returns true if every pose of the shard was swept.
     pub fn complete(&self) -> bool {
         let rows = self.shard.rows(self.grid.rows());
@@ -322,7 +345,7 @@ mod tests {
                     let index = [3 + index % 14, 2 + index / 14, turn, zoom, 0];
                     let pose = grid.number(PoseIndex::new(index));
                     let touched = plane.touch(&grid.placed(pose));
-                    assert_eq!(id, result.atlas.find(&touched), "{pose:?}");
+                    assert_eq!(id, result.atlas.find(&touched), "pose {pose}");
                     assert!(id.is_some());
                 }
             }

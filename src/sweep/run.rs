@@ -36,7 +36,7 @@ pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
 /// let done = std::sync::atomic::AtomicU64::new(0);
 /// let go_on = |poses| done.fetch_add(poses, std::sync::atomic::Ordering::Relaxed) < 1_000_000;
 /// let result = Sweep::new(&grid).progress(&go_on).run();
-/// assert!(result.poses <= grid.poses());
+/// assert!(result.poses() <= grid.poses());
 /// # Ok::<(), taxel::pose::GridError>(())
 /// ```
 pub struct Sweep<'a> {

@@ -278,7 +278,7 @@ pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
         ids[start..start + width].copy_from_slice(numbers);
     };
     let result = Sweep::new(grid).rows(&mut take).run();
-    let imprints: Vec<_> = result.atlas.entries().collect();
+    let imprints: Vec<_> = result.atlas().entries().collect();
     let free = Sweep::new(grid).run();
     let told = |result: &SweepResult| {
         let SweepResult {
@@ -289,7 +289,7 @@ pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
         } = result;
         format!("{poses} {partly_off} {statistics:?}")
     };
-    if told(&free) != told(&result) || !free.atlas.entries().eq(imprints.iter().copied()) {
+    if told(&free) != told(&result) || !free.atlas().entries().eq(imprints.iter().copied()) {
         return Err("without rows the result is another one".to_owned());
     }
     let mut plane = Plane::new(*grid.sensor());
@@ -318,7 +318,11 @@ pub(crate) fn differences(grid: &PoseGrid) -> Result<u64, String> {
             return Err(format!("{id} occurs before {known}"));
         }
     }
-    let claimed = (result.poses, result.partly_off, result.atlas.empty_poses());
+    let claimed = (
+        result.poses(),
+        result.partly_off(),
+        result.atlas().empty_poses(),
+    );
     if claimed != (grid.poses(), partly_off, empty) {
         return Err(format!(
             "{claimed:?} instead of {partly_off} partly off, {empty} empty"

@@ -63,7 +63,7 @@ fn statistics_equal_those_of_a_plain_loop() {
             let lists = turns.last_mut().expect("a turn");
             feature_values(&description, |index, value| lists[index].push(value));
         }
-        for (index, statistic) in result.statistics.iter().enumerate() {
+        for (index, statistic) in result.statistics().iter().enumerate() {
             let key = &statistic.feature.key;
             let by_turn: Vec<&[f64]> = turns.iter().map(|lists| &lists[index][..]).collect();
             let all = by_turn.concat();
@@ -128,7 +128,7 @@ fn ideal_values_are_those_of_the_continuous_figure() {
     let ideal = |source, key: &str| {
         let result = sweep(&small(source, "4", "0"));
         let found = result
-            .statistics
+            .statistics()
             .iter()
             .find(|statistic| statistic.feature.key == key);
         found.expect("a feature").ideal
@@ -204,16 +204,16 @@ fn classes_equal_those_from_comparing_all_images() {
         let result = sweep(&small(source, place, "0:359:7"));
         let mut shifted = HashMap::new();
         let mut symmetric = HashMap::new();
-        for entry in result.atlas.entries() {
+        for entry in result.atlas().entries() {
             let images = images(&entry.imprint);
             *shifted.entry(images[0].clone()).or_insert(0) += 1;
             *symmetric.entry(images.into_iter().min()).or_insert(0) += 1;
-            assert_eq!(result.atlas.find(&entry.imprint), Some(entry.id));
+            assert_eq!(result.atlas().find(&entry.imprint), Some(entry.id));
         }
         assert_eq!(
-            result.atlas.distinct_classes(),
+            result.atlas().distinct_classes(),
             (shifted.len(), symmetric.len())
         );
-        assert!(symmetric.len() < shifted.len() && shifted.len() < result.atlas.len());
+        assert!(symmetric.len() < shifted.len() && shifted.len() < result.atlas().len());
     }
 }
