@@ -38,6 +38,7 @@ pub const LEAST_SIDE: u8 = 16;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone)]
+#[must_use = "nothing is trained before `run`"]
 pub struct Training<'a> {
     grids: Vec<PoseGrid>,
     shapes: Vec<NamedShape>,
@@ -138,14 +139,12 @@ impl<'a> Training<'a> {
     }
 
     /// Also takes poses that the sensor cuts off. Their imprints depend on the sensor's rim, not on the shape alone.
-    #[must_use]
     pub fn allow_cut(mut self, allow: bool) -> Self {
         self.allow_cut = allow;
         self
     }
 
     /// Takes only one part of the poses; [`Model::merge`] merges all parts.
-    #[must_use]
     pub fn shard(mut self, shard: Shard) -> Self {
         self.shard = shard;
         self
@@ -153,7 +152,6 @@ impl<'a> Training<'a> {
 
     /// Calls `progress` from time to time, from any thread, with the number of poses done since the last call. The
     /// training stops when it returns `false`.
-    #[must_use]
     pub fn progress(mut self, progress: &'a (dyn Fn(u64) -> bool + Sync)) -> Self {
         self.progress = progress;
         self

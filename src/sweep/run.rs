@@ -39,6 +39,7 @@ pub type TakeRow<'a> = dyn FnMut(u64, &[u32]) + Send + 'a;
 /// assert!(result.poses() <= grid.poses());
 /// # Ok::<(), taxel::pose::GridError>(())
 /// ```
+#[must_use = "nothing is swept before `run`, `count` or `poses_where`"]
 pub struct Sweep<'a> {
     pub(super) grid: &'a PoseGrid,
     shard: Shard,
@@ -68,7 +69,6 @@ impl<'a> Sweep<'a> {
     }
 
     /// Sweeps only one shard of the grid.
-    #[must_use]
     pub fn shard(mut self, shard: Shard) -> Self {
         self.shard = shard;
         self
@@ -76,15 +76,13 @@ impl<'a> Sweep<'a> {
 
     /// Calls `progress` from time to time, from any thread, with the number of poses done since the last call. The
     /// sweep stops when it returns `false`.
-    #[must_use]
     pub fn progress(mut self, progress: &'a (dyn Fn(u64) -> bool + Sync)) -> Self {
         self.progress = progress;
         self
     }
 
-    /// Calls `rows` once for each complete row. Rows do not come in the order of the grid if several orientations show
-    /// the same shape.
-    #[must_use]
+    /// Calls `rows` once for each complete row: one y0 at one angle and one pair of zooms. Rows do not come in the
+    /// order of the grid if several orientations show the same shape.
     pub fn rows(mut self, rows: &'a mut TakeRow<'a>) -> Self {
         self.rows = Some(rows);
         self
