@@ -56,9 +56,10 @@ pub struct RecordingMetadata {
     pub source: String,
     /// The unit of the values.
     pub unit: Option<String>,
-    /// The distance between neighbouring cells in mm, along x and along y.
+    /// The distance between neighbouring cells in mm, along x and along y: above 0, up to 1e300. Other values are left
+    /// out of the text.
     pub pitch_mm: Option<[f64; 2]>,
-    /// The time from one frame to the next, in seconds.
+    /// The time from one frame to the next, in seconds: above 0, up to 1e300. Another value is left out of the text.
     pub seconds_per_frame: Option<f64>,
     /// The rule of the imprints on view at the end.
     pub rule: Option<SetRule>,
@@ -202,7 +203,6 @@ impl RecordingMetadata {
                 from: RuleOrigin::File,
             }),
         };
-        let positive = |value: &f64| *value > 0.0 && *value <= LARGEST_VALUE;
         let tare = match described.tare {
             Some(rows) => {
                 let frames = described.tare_frames.filter(|&frames| frames > 0);
@@ -210,7 +210,7 @@ impl RecordingMetadata {
                 let spread = described.tare_spread.as_ref();
                 let spread = spread.map(|rows| matrix(rows)).transpose();
                 let spread = spread.map_err(MetadataError::of_key("tare_spread"))?;
-                let step = described.tare_step.filter(positive);
+                let step = described.tare_step.filter(|&value| is_positive(value));
                 let tare = Tare::from_parts(baseline, spread, step, frames.unwrap_or(1));
                 Some(tare.map_err(MetadataError::of_key("tare"))?)
             }
@@ -219,10 +219,10 @@ impl RecordingMetadata {
         Ok(Self {
             source: shortened_message(&described.source),
             unit: described.unit.as_deref().map(shortened_message),
-            pitch_mm: described
-                .pitch_mm
-                .filter(|pitch| pitch.iter().all(positive)),
-            seconds_per_frame: described.seconds_per_frame.filter(positive),
+            pitch_mm: positive_pitch(described.pitch_mm),
+            seconds_per_frame: described
+                .seconds_per_frame
+                .filter(|&value| is_positive(value)),
             rule,
             tare,
             marks: described.marks,
@@ -241,8 +241,8 @@ impl RecordingMetadata {
             format: FORMAT.to_owned(),
             source: self.source.clone(),
             unit: self.unit.clone(),
-            pitch_mm: self.pitch_mm,
-            seconds_per_frame: self.seconds_per_frame,
+            pitch_mm: positive_pitch(self.pitch_mm),
+            seconds_per_frame: self.seconds_per_frame.filter(|&value| is_positive(value)),
             rule: self.rule.map(DescribedRule::Set),
             tare_frames: tare.map(Tare::frames),
             tare: tare.map(|tare| rows(tare.baseline())),
@@ -254,6 +254,15 @@ impl RecordingMetadata {
         });
         text.map_err(io::Error::from)
     }
+}
+
+fn is_positive(value: f64) -> bool {
+    value > 0.0 && value <= LARGEST_VALUE
+}
+
+/// Returns the pitch unless a side is out of range. JSON has no number for NaN, so it could not be read again.
+fn positive_pitch(pitch_mm: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    pitch_mm.filter(|pitch| pitch.iter().all(|&side| is_positive(side)))
 }
 
 fn rows(matrix: &Matrix<f64>) -> FrameRows {
@@ -322,6 +331,30 @@ mod tests {
                 (read.ended, read.ended_by.as_deref()),
                 (Some(true), Some("no room"))
             );
+        }
+    }
+
+    #[test]
+    fn a_description_with_any_numbers_can_be_read_again() {
+        for number in [f64::NAN, f64::INFINITY, -1.0, 0.0, 1e301] {
+            let metadata = RecordingMetadata {
+                pitch_mm: Some([number, 2.0]),
+                seconds_per_frame: Some(number),
+                unit: Some("kPa".to_owned()),
+                marks: vec![FrameMark {
+                    number: 65,
+                    time: Some(number).filter(|time| time.is_finite()),
+                }],
+                ..RecordingMetadata::default()
+            };
+            let text = metadata.text().expect("JSON");
+            let read = RecordingMetadata::read(&text).expect("a description");
+            let expected = RecordingMetadata {
+                pitch_mm: None,
+                seconds_per_frame: None,
+                ..metadata
+            };
+            assert_eq!(read, Ok(expected), "{number}");
         }
     }
 
